@@ -1,0 +1,26 @@
+// The commands of the program. Each add_ function declares its command's options at the root parser; the entry's
+// act() does the work once they have been read.
+#pragma once
+
+#include <functional>
+
+#include "app/console.h"
+#include "engine/result.h"
+
+namespace CLI {
+class App;
+}
+
+namespace spoonbill {
+
+struct CommandEntry {
+  CLI::App* parser;  // owned by the root parser
+  std::function<Status(Console&)> act;
+};
+
+CommandEntry add_replay(CLI::App& root);
+CommandEntry add_record(CLI::App& root);
+CommandEntry add_info(CLI::App& root);
+CommandEntry add_sample(CLI::App& root);
+
+}  // namespace spoonbill

@@ -1,0 +1,34 @@
+#include "app/commands/common_options.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <string>
+
+namespace spoonbill {
+
+void add_json_option(CLI::App& parser, bool& json) {
+  parser.add_flag("--json", json, "Print one JSON object instead of lines for people");
+}
+
+void add_instruction_set_option(CLI::App& parser, InstructionSet& set) {
+  std::string names;
+  for (const InstructionSet available : available_instruction_sets()) {
+    names += (names.empty() ? "" : ", ") + std::string(name_of(available));
+  }
+  const auto choose = [&set, names](const std::string& name) {
+    for (const InstructionSet available : available_instruction_sets()) {
+      if (name_of(available) != name) continue;
+      set = available;
+      return;
+    }
+    throw CLI::ValidationError("--instruction-set", "'" + name + "' is not one that this processor has: " + names);
+  };
+  parser
+      .add_option_function<std::string>(
+          "--instruction-set", choose,
+          "Vector instructions to compute with (" + names + "); the widest unless told. The result is the same")
+      ->type_name("NAME");
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,128 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/commands/command.h"
+#include "app/commands/common_options.h"
+#include "app/files/file_kind.h"
+#include "app/report/document_facts.h"
+#include "app/report/hash_text.h"
+#include "app/session/session.h"
+#include "engine/number_text.h"
+#include "haptic/recording.h"
+#include "haptic/script.h"
+
+namespace spoonbill {
+namespace {
+
+struct InfoOptions {
+  std::filesystem::path file;
+  bool json = false;
+};
+
+std::string seconds_text(std::uint64_t ticks) {
+  return number_text(static_cast<double>(ticks) / 1000.0) + " s";
+}
+
+void add_duration(FactSheet& facts, std::uint64_t ticks) {
+  facts.add("Ticks", std::to_string(ticks) + " (" + seconds_text(ticks) + ")", "ticks", ticks);
+  facts.add("", "", "duration_s", static_cast<double>(ticks) / 1000.0);
+}
+
+Status add_simulated(FactSheet& facts, const Document& document, const std::string& source) {
+  add_document_facts(facts, document);
+  auto session = Session::make(document, source, VirtualDevice::default_specification(), best_instruction_set());
+  if (!session) return session.error();
+  Snapshot snapshot;
+  write_snapshot(session.value(), snapshot);
+  add_simulation_facts(facts, snapshot);
+  return {};
+}
+
+Status describe_document(FactSheet& facts, const std::filesystem::path& file) {
+  const auto document = read_document(file);
+  if (!document) return document.error();
+  facts.add("Kind", "document", "kind", "document");
+  return add_simulated(facts, document.value(), file.string());
+}
+
+Status describe_recording(FactSheet& facts, const std::filesystem::path& file) {
+  const auto recording = read_recording(file);
+  if (!recording) return recording.error();
+  if (Status checked = check_commands(recording->commands); !checked) return checked;
+  const bool complete = recording->end.has_value();
+  facts.add("Kind", "recording", "kind", "recording");
+  facts.add("Complete", complete ? "yes" : "no: " + recording->notice, "complete", complete);
+  add_duration(facts, recording->readings.size());
+  facts.add("Commands", std::to_string(recording->commands.size()), "commands", recording->commands.size());
+  if (complete) {
+    const std::string hash = hash_text(recording->end->state_hash);
+    facts.add("State hash", hash + " at the end", "state_hash", hash);
+  }
+  const DeviceSpecification& device = recording->header.device;
+  facts.add("Device", device.name + ", at most " + number_text(device.maximum_force_n) + " N", "device",
+            {{"name", device.name}, {"maximum_force_n", device.maximum_force_n}});
+  return add_simulated(facts, recording->header.document, file.string());
+}
+
+Status describe_script(FactSheet& facts, const std::filesystem::path& file) {
+  const auto script = read_script(file);
+  if (!script) return script.error();
+  if (Status checked = check_commands(script->commands); !checked) return checked;
+  facts.add("Kind", "script", "kind", "script");
+  facts.add("Model", script->model_file.string(), "model", script->model_file.string());
+  add_duration(facts, script->tick_count());
+  facts.add("Commands", std::to_string(script->commands.size()), "commands", script->commands.size());
+  return {};
+}
+
+Status describe_material(FactSheet& facts, const std::filesystem::path& file) {
+  const auto material = read_material(file);
+  if (!material) return material.error();
+  facts.add("Kind", "material", "kind", "material");
+  add_material_facts(facts, material.value());
+  return {};
+}
+
+Status describe(FactSheet& facts, const std::filesystem::path& file) {
+  const auto kind = kind_of_file(file);
+  if (!kind) return kind.error();
+  switch (kind.value()) {
+    case FileKind::document:
+      return describe_document(facts, file);
+    case FileKind::recording:
+      return describe_recording(facts, file);
+    case FileKind::script:
+      return describe_script(facts, file);
+    case FileKind::material:
+      return describe_material(facts, file);
+  }
+  return {};
+}
+
+Status info(const InfoOptions& options, Console& console) {
+  FactSheet facts;
+  facts.add("File", options.file.string(), "file", options.file.string());
+  if (Status described = describe(facts, options.file); !described) return described;
+  facts.print(console.out, options.json);
+  return {};
+}
+
+}  // namespace
+
+CommandEntry add_info(CLI::App& root) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* parser = root.add_subcommand("info", "Tell what a model, recording, script or material holds");
+  parser->footer(
+      "A model is reported with its size, its surfaces' degrees, control points and knots, and the lattice that a\n"
+      "simulation would have: nodes, mass, and the Young's modulus felt while sculpting.\n"
+      "Example: spoonbill info assets/models/spoon-handle.json");
+  parser->add_option("FILE", options->file, "A document, script or material (.json), or a recording")->required();
+  add_json_option(*parser, options->json);
+  return {parser, [options](Console& console) { return info(*options, console); }};
+}
+
+}  // namespace spoonbill

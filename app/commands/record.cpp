@@ -1,0 +1,128 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/commands/command.h"
+#include "app/commands/common_options.h"
+#include "app/files/file_kind.h"
+#include "app/interrupt.h"
+#include "app/report/fact_sheet.h"
+#include "app/report/hash_text.h"
+#include "app/report/progress_bar.h"
+#include "app/session/lockstep.h"
+#include "app/session/scripted_device.h"
+#include "engine/number_text.h"
+#include "haptic/playback_device.h"
+
+namespace spoonbill {
+namespace {
+
+struct RecordOptions {
+  std::filesystem::path source;
+  std::filesystem::path out;
+  InstructionSet instruction_set = best_instruction_set();
+  bool json = false;
+};
+
+constexpr std::uint64_t ticks_between_looks = 100;
+
+Status run(Lockstep& lockstep, Console& console) {
+  InterruptWatch interrupt;
+  ProgressBar progress(console, "Recording", false);
+  while (lockstep.tick() < lockstep.tick_count()) {
+    if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_looks); !ran) return ran;
+    progress.show(lockstep.tick(), lockstep.tick_count());
+    if (!interrupt.requested()) continue;
+    interrupt.answer();
+    return Error{"stopped after " + std::to_string(lockstep.tick()) + " ticks; the recording replays up to there"};
+  }
+  return lockstep.finish();
+}
+
+Status record_input(const RecordOptions& options, const RecordingHeader& header, LockstepInput input,
+                    Console& console) {
+  if (Status checked = check_commands(input.commands); !checked) return checked;
+  auto session = Session::make(header.document, input.source, header.device, options.instruction_set);
+  if (!session) return session.error();
+  auto writer = RecordingWriter::create(options.out, header);
+  if (!writer) return writer.error();
+  const std::size_t command_count = input.commands.size();
+  Lockstep lockstep(session.value(), std::move(input), &writer.value());
+  if (Status ran = run(lockstep, console); !ran) return ran;
+
+  FactSheet facts;
+  const double duration_s = tick_s * static_cast<double>(lockstep.tick());
+  const std::string hash = hash_text(state_hash(session.value()));
+  facts.add("Recording", options.out.string(), "out", options.out.string());
+  facts.add("Ticks", std::to_string(lockstep.tick()) + " (" + number_text(duration_s) + " s)", "ticks",
+            lockstep.tick());
+  facts.add("", "", "duration_s", duration_s);
+  facts.add("Commands", std::to_string(command_count), "commands", command_count);
+  facts.add("State hash", hash, "state_hash", hash);
+  facts.print(console.out, options.json);
+  return {};
+}
+
+Status record_script(const RecordOptions& options, Console& console) {
+  const auto script = read_script(options.source);
+  if (!script) return script.error();
+  auto document = read_document(script->model_file);
+  if (!document) return document.error();
+  auto device = ScriptedDevice::make(script.value());
+  if (!device) return Error{options.source.string() + ": " + device.error().message};
+  LockstepInput input;
+  input.device = &device.value();
+  input.tick_count = script->tick_count();
+  input.commands = script->commands;
+  input.source = options.source.string();
+  return record_input(options, {device->specification(), std::move(document).value()}, std::move(input), console);
+}
+
+// The readings stay as they were; states and hashes are this version's.
+Status record_again(const RecordOptions& options, Console& console) {
+  const auto recording = read_recording(options.source);
+  if (!recording) return recording.error();
+  if (!recording->notice.empty()) console.err << "spoonbill: " << recording->notice << '\n';
+  PlaybackDevice device(recording->header.device, recording->readings);
+  LockstepInput input;
+  input.device = &device;
+  input.tick_count = recording->readings.size();
+  input.commands = recording->commands;
+  input.source = options.source.string();
+  return record_input(options, recording->header, std::move(input), console);
+}
+
+Status record(const RecordOptions& options, Console& console) {
+  const auto kind = kind_of_file(options.source);
+  if (!kind) return kind.error();
+  std::error_code ignored;
+  if (std::filesystem::equivalent(options.source, options.out, ignored)) {
+    return Error{options.out.string() + ": is the source itself; choose another name"};
+  }
+  if (kind.value() == FileKind::script) return record_script(options, console);
+  if (kind.value() == FileKind::recording) return record_again(options, console);
+  return Error{options.source.string() + ": is neither a script nor a recording"};
+}
+
+}  // namespace
+
+CommandEntry add_record(CLI::App& root) {
+  auto options = std::make_shared<RecordOptions>();
+  CLI::App* parser =
+      root.add_subcommand("record", "Play a script of tool motions on the model that it names, and record it");
+  parser->footer(
+      "An imitated hand of known mass and stiffness follows the script and feels the material's force; the path\n"
+      "that results is recorded, tick by tick, with the model. A recording as the source keeps its path and gets\n"
+      "this version's states: do that when `replay` says that another version made it.\n"
+      "Example: spoonbill record assets/recordings/spoon-handle-bend.script.json --out bend.recording.jsonl");
+  parser->add_option("SOURCE", options->source, "A script (.json), or a recording")->required();
+  parser->add_option("--out", options->out, "The recording to write")->required();
+  add_instruction_set_option(*parser, options->instruction_set);
+  add_json_option(*parser, options->json);
+  return {parser, [options](Console& console) { return record(*options, console); }};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,212 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/commands/command.h"
+#include "app/commands/common_options.h"
+#include "app/commands/option_values.h"
+#include "app/frames/frame_painter.h"
+#include "app/frames/replay_pictures.h"
+#include "app/interrupt.h"
+#include "app/report/fact_sheet.h"
+#include "app/report/hash_text.h"
+#include "app/report/progress_bar.h"
+#include "app/session/lockstep.h"
+#include "haptic/playback_device.h"
+#include "render/gl/allocator_thresholds.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr Range<int> picture_side_range{64, 7680};
+
+struct ReplayOptions {
+  std::filesystem::path recording;
+  std::filesystem::path out;
+  Extent size{1280, 720};
+  std::uint64_t every = 1;
+  std::filesystem::path video;
+  std::filesystem::path rerecord;
+  InstructionSet instruction_set = best_instruction_set();
+  bool no_frames = false;
+  bool progress = false;
+  bool json = false;
+};
+
+struct Replay {
+  const ReplayOptions& options;
+  Session& session;
+  Lockstep& lockstep;
+  Console& console;
+};
+
+Error stopped(const Lockstep& lockstep, InterruptWatch& interrupt) {
+  interrupt.answer();
+  return Error{"stopped after " + std::to_string(lockstep.tick()) + " of " + std::to_string(lockstep.tick_count()) +
+               " ticks; the frames that are there are whole"};
+}
+
+Status run_without_pictures(const Replay& replay) {
+  constexpr std::uint64_t ticks_between_looks = 100;
+  InterruptWatch interrupt;
+  ProgressBar progress(replay.console, "Replaying", replay.options.progress);
+  Lockstep& lockstep = replay.lockstep;
+  while (lockstep.tick() < lockstep.tick_count()) {
+    if (interrupt.requested()) return stopped(lockstep, interrupt);
+    if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_looks); !ran) return ran;
+    progress.show(lockstep.tick(), lockstep.tick_count());
+  }
+  return lockstep.finish();
+}
+
+PictureRequest picture_request(const ReplayOptions& options, const Lockstep& lockstep, Console& console) {
+  PictureRequest request;
+  request.width_px = options.size.width;
+  request.height_px = options.size.height;
+  request.frame_count = frame_count(lockstep.tick_count());
+  request.every = options.every;
+  if (!options.no_frames) request.folder = options.out;
+  if (options.video.empty()) return request;
+  if (VideoEncoder::available()) {
+    request.video = options.video;
+  } else {
+    console.err << "spoonbill: no video is made, because ffmpeg is not installed\n";
+  }
+  return request;
+}
+
+Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPictures& pictures,
+                   const InterruptWatch& interrupt) {
+  Snapshot snapshot;
+  write_snapshot(replay.session, snapshot);
+  auto painter = FramePainter::make(request.width_px, request.height_px, snapshot);
+  if (!painter) return painter.error();
+  ProgressBar progress(replay.console, "Drawing", replay.options.progress);
+  Image picture;
+  for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested(); frame += request.every) {
+    if (Status ran = replay.lockstep.run_to(tick_of_frame(frame)); !ran) return ran;
+    write_snapshot(replay.session, snapshot);
+    replay.session.flags = tick_flag_none;
+    if (Status painted = painter->paint(replay.session, snapshot, picture); !painted) return painted;
+    if (Status added = pictures.add(frame, snapshot.time_s(), picture); !added) return added;
+    progress.show(frame + 1, request.frame_count);
+  }
+  progress.show(1, 1);
+  return {};
+}
+
+Status run_with_pictures(const Replay& replay, FactSheet& facts) {
+  const PictureRequest request = picture_request(replay.options, replay.lockstep, replay.console);
+  if (!request.folder && !request.video) return run_without_pictures(replay);
+  keep_drawing_memory();
+  InterruptWatch interrupt;
+  auto pictures = ReplayPictures::start(request);
+  if (!pictures) return pictures.error();
+  if (Status drawn = draw_frames(replay, request, pictures.value(), interrupt); !drawn) return drawn;
+  if (interrupt.requested()) return stopped(replay.lockstep, interrupt);
+  if (Status finished = replay.lockstep.finish(); !finished) return finished;
+  if (Status finished = pictures->finish(); !finished) return finished;
+
+  facts.add("Frames", std::to_string(pictures->count()), "frames", pictures->count());
+  if (request.folder) {
+    const std::string sheet = pictures->contact_sheet_file().string();
+    facts.add("Folder", request.folder->string(), "out", request.folder->string());
+    facts.add("Contact sheet", sheet, "contact_sheet", sheet);
+  }
+  if (request.video) facts.add("Video", request.video->string(), "video", request.video->string());
+  return {};
+}
+
+Status replay_recording(const ReplayOptions& options, const Recording& recording, Console& console) {
+  if (Status checked = check_commands(recording.commands); !checked) return checked;
+  const std::string source = options.recording.string();
+  auto session = Session::make(recording.header.document, source, recording.header.device, options.instruction_set);
+  if (!session) return session.error();
+  std::optional<RecordingWriter> writer;
+  if (!options.rerecord.empty()) {
+    auto created = RecordingWriter::create(options.rerecord, recording.header);
+    if (!created) return created.error();
+    writer.emplace(std::move(created).value());
+  }
+  PlaybackDevice device(recording.header.device, recording.readings);
+  if (!recording.readings.empty()) session->reading = recording.readings.front();
+  LockstepInput input;
+  input.device = &device;
+  input.tick_count = recording.readings.size();
+  input.commands = recording.commands;
+  input.expected = recording.checkpoints;
+  input.expected_end = recording.end;
+  input.source = source;
+  Lockstep lockstep(session.value(), std::move(input), writer ? &*writer : nullptr);
+
+  FactSheet facts;
+  facts.add("Ticks", std::to_string(recording.readings.size()), "ticks", recording.readings.size());
+  if (Status ran = run_with_pictures({options, session.value(), lockstep, console}, facts); !ran) return ran;
+  const std::string hash = hash_text(state_hash(session.value()));
+  facts.add("State hash", hash, "state_hash", hash);
+  facts.add("", "", "complete", recording.end.has_value());
+  facts.add("", "", "instruction_set", std::string(name_of(options.instruction_set)));
+  facts.print(console.out, options.json);
+  return {};
+}
+
+Status replay(const ReplayOptions& options, Console& console) {
+  const auto recording = read_recording(options.recording);
+  if (!recording) return recording.error();
+  std::error_code ignored;
+  if (std::filesystem::equivalent(options.recording, options.rerecord, ignored)) {
+    return Error{options.rerecord.string() + ": is the source itself; choose another name"};
+  }
+  if (!recording->notice.empty()) console.err << "spoonbill: " << recording->notice << '\n';
+  return replay_recording(options, recording.value(), console);
+}
+
+void add_picture_options(CLI::App& parser, const std::shared_ptr<ReplayOptions>& options) {
+  parser.add_option("--out", options->out, "The folder for frame-####.png and contact-sheet.png")
+      ->type_name("DIR");
+  parser
+      .add_option_function<std::string>(
+          "--size",
+          [options](const std::string& text) {
+            const auto size = parse_extent(text, picture_side_range);
+            if (!size) throw CLI::ValidationError("--size", size.error().message);
+            options->size = size.value();
+          },
+          "The frames' size in pixels; 1280x720 unless told. The panel needs 750x700")
+      ->type_name("WxH");
+  parser.add_option("--every", options->every, "Draw only each N-th frame; 1 unless told")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}))
+      ->type_name("N");
+  parser.add_option("--video", options->video, "Also make a video, when ffmpeg is installed; the ending tells the format")
+      ->type_name("FILE");
+  parser.add_flag("--no-frames", options->no_frames, "Draw nothing; only compute and compare");
+}
+
+}  // namespace
+
+CommandEntry add_replay(CLI::App& root) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* parser = root.add_subcommand("replay", "Replay a recording and draw what happened");
+  parser->footer(
+      "Frame k shows the state after floor(k * 1000 / 60) ticks of 1 ms, on any machine and load. The states are\n"
+      "compared with those in the recording; a difference is an error that names the tick. A recording that was\n"
+      "cut replays up to the cut. Frames of an earlier replay in DIR are replaced.\n"
+      "Example: spoonbill replay assets/recordings/spoon-handle-bend.recording.jsonl --out output/bend");
+  parser->add_option("RECORDING", options->recording, "A recording (.recording.jsonl)")->required();
+  add_picture_options(*parser, options);
+  parser->add_option("--rerecord", options->rerecord, "Write what was replayed as a recording, the same bytes again")
+      ->type_name("FILE");
+  add_instruction_set_option(*parser, options->instruction_set);
+  parser->add_flag("--progress", options->progress, "Show the progress even when nobody watches");
+  add_json_option(*parser, options->json);
+  parser->callback([options] {
+    if (options->out.empty() && !options->no_frames) throw CLI::RequiredError("--out");
+  });
+  return {parser, [options](Console& console) { return replay(*options, console); }};
+}
+
+}  // namespace spoonbill

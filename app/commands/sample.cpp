@@ -1,0 +1,117 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/commands/command.h"
+#include "app/commands/option_values.h"
+#include "app/files/output_file.h"
+#include "engine/bspline/evaluate.h"
+#include "engine/exchange/document.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr Range<int> grid_side_range{2, 4096};
+constexpr std::size_t chunk_bytes = 1 << 20;
+
+struct SampleOptions {
+  std::filesystem::path model;
+  Extent grid{50, 50};
+  std::filesystem::path out;
+};
+
+// A CSV field: in quotes where a comma, a quote or a line break asks for them.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char letter : text) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+  return quoted + '"';
+}
+
+void append_number(std::string& line, double number) {
+  std::array<char, 32> text{};
+  // Without a negative zero, which tells a reader nothing.
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), number + 0.0);
+  line += ',';
+  line.append(text.data(), end);
+}
+
+// Hands the table to `write` in chunks and stops at its first failure.
+template <class Write>
+Status sample_body(const Body& body, Extent counts, Write write) {
+  const Surface& surface = body.surface;
+  const auto grid = make_grid(surface.u, surface.v, uniform_parameters(surface.u, counts.width),
+                              uniform_parameters(surface.v, counts.height));
+  if (!grid) return grid.error();
+  GridSamples<double> samples;
+  samples.resize(static_cast<std::size_t>(grid->rows()) * static_cast<std::size_t>(grid->columns()));
+  GridEvaluator<double> evaluator(grid.value(), best_instruction_set());
+  evaluator.points_and_normals(surface.net.x.data(), surface.net.y.data(), surface.net.z.data(), samples);
+
+  const std::string place = csv_field(body.name) + ",0";
+  std::string text = "body,surface,u,v,x_m,y_m,z_m,nx,ny,nz\n";
+  for (std::size_t i = 0, sample = 0; i < grid->u.parameters.size(); ++i) {
+    for (std::size_t j = 0; j < grid->v.parameters.size(); ++j, ++sample) {
+      text += place;
+      for (const double number :
+           {grid->u.parameters[i], grid->v.parameters[j], samples.x[sample], samples.y[sample],
+            samples.z[sample], samples.nx[sample], samples.ny[sample], samples.nz[sample]}) {
+        append_number(text, number);
+      }
+      text += '\n';
+    }
+    if (text.size() >= chunk_bytes || i + 1 == grid->u.parameters.size()) {
+      if (Status written = write(text); !written) return written;
+      text.clear();
+    }
+  }
+  return {};
+}
+
+Status sample(const SampleOptions& options, Console& console) {
+  const auto document = read_document(options.model);
+  if (!document) return document.error();
+  const Body& body = document->scene.body;
+  if (options.out == "-") {
+    return sample_body(body, options.grid, [&](const std::string& text) -> Status {
+      console.out << text;
+      return {};
+    });
+  }
+  auto file = OutputFile::create(options.out);
+  if (!file) return file.error();
+  const Status sampled =
+      sample_body(body, options.grid, [&](const std::string& text) { return file->write(text); });
+  return sampled ? file->commit() : sampled;
+}
+
+}  // namespace
+
+CommandEntry add_sample(CLI::App& root) {
+  auto options = std::make_shared<SampleOptions>();
+  CLI::App* parser = root.add_subcommand("sample", "Write points and unit normals of a model's surfaces as CSV");
+  parser->footer(
+      "The grid spans the whole knot domain of each surface, both ends included; the seam of a periodic\n"
+      "direction therefore appears twice. Lengths are metres. Numbers read back to the same bits.\n"
+      "Example: spoonbill sample assets/models/spoon-handle.json --grid 50x50 --out points.csv");
+  parser->add_option("MODEL", options->model, "A document (.json)")->required();
+  parser
+      ->add_option_function<std::string>(
+          "--grid",
+          [options](const std::string& text) {
+            const auto grid = parse_extent(text, grid_side_range);
+            if (!grid) throw CLI::ValidationError("--grid", grid.error().message);
+            options->grid = grid.value();
+          },
+          "Points along u and along v; 50x50 unless told")
+      ->type_name("UxV");
+  parser->add_option("--out", options->out, "The CSV file, or - for standard output")->required();
+  return {parser, [options](Console& console) { return sample(*options, console); }};
+}
+
+}  // namespace spoonbill

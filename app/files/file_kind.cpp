@@ -1,0 +1,38 @@
+#include "app/files/file_kind.h"
+
+#include <fstream>
+#include <string>
+
+#include "engine/exchange/file.h"
+#include "engine/exchange/json.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr std::size_t bytes_limit = std::size_t{64} << 20;
+
+// A recording is known by its first bytes: it may be long, and be cut where its JSON ends early.
+bool starts_like_recording(const std::filesystem::path& file) {
+  std::string start(64, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return start.find("\"spoonbill_recording\"") != std::string::npos;
+}
+
+}  // namespace
+
+Result<FileKind> kind_of_file(const std::filesystem::path& file) {
+  if (starts_like_recording(file)) return FileKind::recording;
+  const auto text = read_text_file(file, bytes_limit);
+  if (!text) return text.error();
+  const auto json = parse_json(text.value(), file.string());
+  if (!json) return json.error();
+  if (json->is_object()) {
+    if (json->contains("spoonbill_document")) return FileKind::document;
+    if (json->contains("spoonbill_script")) return FileKind::script;
+    if (json->contains("youngs_modulus_pa")) return FileKind::material;
+  }
+  return Error{file.string() + ": is no Spoonbill document, recording, script or material"};
+}
+
+}  // namespace spoonbill

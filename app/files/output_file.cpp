@@ -1,0 +1,57 @@
+#include "app/files/output_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include <unistd.h>
+
+namespace spoonbill {
+
+Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  const bool replaces = !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
+  std::filesystem::path written = path;
+  if (replaces) written += ".unfinished-" + std::to_string(getpid());
+  std::FILE* file = std::fopen(written.c_str(), "wb");
+  if (file == nullptr) return Error{path.string() + ": cannot be written: " + std::strerror(errno)};
+  return OutputFile(path, std::move(written), file);
+}
+
+OutputFile::OutputFile(std::filesystem::path path, std::filesystem::path written, std::FILE* file)
+    : path_(std::move(path)), written_(std::move(written)), file_(file) {}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept = default;
+
+OutputFile::~OutputFile() {
+  if (file_ == nullptr) return;
+  file_.reset();
+  std::error_code ignored;
+  if (written_ != path_) std::filesystem::remove(written_, ignored);
+}
+
+Error OutputFile::failure(std::string_view what) const {
+  return Error{path_.string() + ": " + std::string(what) + ": " + std::strerror(errno)};
+}
+
+Status OutputFile::write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) {
+    return failure("cannot be written");
+  }
+  return {};
+}
+
+Status OutputFile::commit() {
+  const bool stored = written_ == path_ ? std::fflush(file_.get()) == 0
+                                        : std::fflush(file_.get()) == 0 && fsync(fileno(file_.get())) == 0;
+  if (!stored) return failure("cannot be written");
+  if (written_ != path_ && std::rename(written_.c_str(), path_.c_str()) != 0) {
+    return failure("cannot be replaced");
+  }
+  file_.reset();
+  return {};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,56 @@
+#include "app/frames/frame_painter.h"
+
+#include <utility>
+
+#include "app/panel/font_file.h"
+#include "app/panel/panel.h"
+
+namespace spoonbill {
+namespace {
+
+BoundingBox box_of(const Snapshot& snapshot) {
+  BoundingBox box;
+  for (const SurfaceSnapshot& surface : snapshot.surfaces) {
+    for (std::size_t i = 0; i < surface.x.size(); ++i) {
+      box.include({surface.x[i], surface.y[i], surface.z[i]});
+    }
+  }
+  return box;
+}
+
+}  // namespace
+
+Result<FramePainter> FramePainter::make(int width_px, int height_px, const Snapshot& start) {
+  auto context = OsmesaContext::make(width_px, height_px);
+  if (!context) return context.error();
+  auto interface = InterfaceContext::make(font_file, panel_scale(height_px));
+  if (!interface) return interface.error();
+  auto renderer = Renderer::make(*context.value());
+  if (!renderer) return renderer.error();
+  renderer->upload_fonts(interface->fonts());
+  return FramePainter(std::move(context).value(), std::move(interface).value(), std::move(renderer).value(),
+                      box_of(start));
+}
+
+Status FramePainter::paint(const Session& session, const Snapshot& snapshot, Image& image) {
+  const int width = context_->width_px();
+  const int height = context_->height_px();
+  const ViewSettings view = settings_for(session.view, body_, width, height, panel_rectangle(width, height));
+  const ImDrawData* panel = view.panel_px.width > 0.0 ? &lay_out_panel(session, snapshot, view) : nullptr;
+  if (Status drawn = renderer_.draw(snapshot, view, panel); !drawn) return drawn;
+  renderer_.read_pixels(image);
+  return {};
+}
+
+const ImDrawData& FramePainter::lay_out_panel(const Session& session, const Snapshot& snapshot,
+                                             const ViewSettings& view) {
+  const PanelModel model = make_panel_model(
+      snapshot, {session.simulation.scene(), session.title, view, session.history.can_undo(),
+                         session.history.can_redo()});
+  interface_.begin_frame(context_->width_px(), context_->height_px());
+  // Nobody can press anything in a picture.
+  draw_panel(model, interface_.theme(), view.panel_px);
+  return interface_.end_frame();
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,26 @@
+// Ctrl+C and requests to end, asked for instead of suffered: while one of these lives, SIGINT and SIGTERM wait
+// until the work reaches a place where it can stop. Make it before other threads start; they inherit the waiting.
+#pragma once
+
+#include <csignal>
+
+namespace spoonbill {
+
+class InterruptWatch {
+ public:
+  InterruptWatch();
+  ~InterruptWatch();  // a signal that waits is dealt with then
+  InterruptWatch(const InterruptWatch&) = delete;
+  InterruptWatch& operator=(const InterruptWatch&) = delete;
+
+  bool requested() const;
+
+  // The signal has been answered: the process lives on to report it.
+  void answer();
+
+ private:
+  sigset_t watched_;
+  sigset_t before_;
+};
+
+}  // namespace spoonbill

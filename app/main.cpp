@@ -1,0 +1,22 @@
+#include <csignal>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include "app/program.h"
+
+int main(int argc, char** argv) {
+  // A reader of our output or an encoder that goes away is an error to report, not the end of the process.
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
+    spoonbill::Console console{std::cout, std::cerr, isatty(STDERR_FILENO) != 0};
+    return spoonbill::run_program(arguments, console);
+  } catch (const std::exception& exception) {
+    std::cerr << "spoonbill: " << exception.what() << '\n';
+    return spoonbill::exit_failed;
+  }
+}

@@ -1,0 +1,187 @@
+#include "app/panel/panel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "app/report/quantity_text.h"
+#include "app/panel/rows.h"
+
+namespace spoonbill {
+namespace {
+
+using Requests = std::vector<PanelRequest>;
+
+// Narrower than what files may hold: what a hand can tell apart.
+constexpr Range<double> radius_slider_m{0.001, 0.05};
+constexpr Range<double> modulus_slider_pa{1e3, 1e12};
+constexpr Range<double> density_slider_kg_per_m3{50.0, 20000.0};
+constexpr Range<double> damping_slider_per_s{0.0, 100.0};
+constexpr Range<double> force_scale_slider{0.01, 100.0};
+
+std::string rounded(double number, int decimals, const char* unit) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%.*f%s", decimals, number, unit);
+  return text.data();
+}
+
+void draw_title(const PanelModel& model, const Theme& theme, Requests& requests) {
+  ImGui::PushFont(theme.fonts.heading);
+  ImGui::TextUnformatted(model.title.c_str());
+  ImGui::PopFont();
+  ImGui::TextColored(colour::quiet_ink, "%.2f s", model.time_s);
+
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const auto width = [&](const char* name) {
+    return ImGui::CalcTextSize(name).x + 2.0F * style.FramePadding.x;
+  };
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - width("Undo") - style.ItemSpacing.x - width("Redo"));
+  ImGui::BeginDisabled(!model.can_undo);
+  if (ImGui::Button("Undo")) requests.emplace_back(UndoStroke{});
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  ImGui::BeginDisabled(!model.can_redo);
+  if (ImGui::Button("Redo")) requests.emplace_back(RedoStroke{});
+  ImGui::EndDisabled();
+}
+
+void draw_tool(const PanelModel& model, const Theme& theme, Requests& requests) {
+  const RowGroup group("Tool", theme);
+  if (!group) return;
+  Tool tool = model.tool;
+  int kind = static_cast<int>(tool.kind);
+  int action = static_cast<int>(tool.action);
+  bool changed = choice_row("Kind", kind, {"Point", "Sphere"});
+  changed |= choice_row("Action", action, {"Push", "Pull"});
+  tool.kind = static_cast<ToolKind>(kind);
+  tool.action = static_cast<ToolAction>(action);
+  ImGui::BeginDisabled(tool.kind == ToolKind::point);
+  changed |= slider_row("Radius", tool.radius_m, radius_slider_m, SliderScale::logarithmic,
+                        tool.kind == ToolKind::point ? "-" : millimetres_text(tool.radius_m));
+  ImGui::EndDisabled();
+  changed |= slider_row("Iterations", tool.iterations, tool_iterations_range,
+                        std::to_string(tool.iterations) + " a tick");
+  if (changed) requests.emplace_back(Command(SetTool{tool}));
+}
+
+bool draw_presets(const PanelModel& model, Material& material) {
+  bool changed = false;
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextColored(colour::quiet_ink, "Preset");
+  ImGui::TableNextColumn();
+  ImGui::SetNextItemWidth(-FLT_MIN);
+  if (!ImGui::BeginCombo("##Preset", material.name.c_str())) return false;
+  for (const Material& preset : model.presets) {
+    if (ImGui::Selectable(preset.name.c_str(), preset.name == material.name)) {
+      material = preset;
+      changed = true;
+    }
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+void draw_material(const PanelModel& model, const Theme& theme, Requests& requests) {
+  const RowGroup group("Material", theme);
+  if (!group) return;
+  Material material = model.material;
+  Sculpting sculpting = model.sculpting;
+  bool changed = draw_presets(model, material);
+  changed |= slider_row("E", material.youngs_modulus_pa, modulus_slider_pa, SliderScale::logarithmic,
+                        modulus_text(material.youngs_modulus_pa));
+  fact_row("Felt E", modulus_text(model.felt_youngs_modulus_pa) + "  (" +
+                         percent_text(model.felt_youngs_modulus_pa / material.youngs_modulus_pa) + " of E)");
+  changed |= slider_row("Poisson", material.poissons_ratio, poissons_ratio_range, SliderScale::linear,
+                        rounded(material.poissons_ratio, 2, ""));
+  changed |= slider_row("Density", material.density_kg_per_m3, density_slider_kg_per_m3,
+                        SliderScale::logarithmic, density_text(material.density_kg_per_m3));
+  const bool damped = slider_row("Damping", sculpting.damping_per_s, damping_slider_per_s, SliderScale::linear,
+                                 rounded(sculpting.damping_per_s, 1, " /s"));
+  fact_row("After touch", material.plastic ? "keeps its bend" : "springs back");
+  fact_row("Mass", grams_text(model.mass_kg));
+  if (changed) requests.emplace_back(Command(SetMaterial{material}));
+  if (damped) requests.emplace_back(Command(SetSculpting{sculpting}));
+}
+
+void draw_fixtures(const PanelModel& model, const Theme& theme) {
+  const RowGroup group("Fixtures", theme);
+  if (!group) return;
+  fact_row("Planes", std::to_string(model.plane_count));
+  fact_row("Fixed nodes",
+           std::to_string(model.fixed_node_count) + " of " + std::to_string(model.node_count));
+}
+
+void draw_view(const PanelModel& model, const Theme& theme, Requests& requests) {
+  const RowGroup group("View", theme);
+  if (!group) return;
+  ShowOverlays show{model.overlays, model.see_through_body};
+  bool changed = false;
+  const auto pair = [&](const char* left, bool& left_on, const char* right, bool& right_on) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    changed |= ImGui::Checkbox(left, &left_on);
+    ImGui::TableNextColumn();
+    ImGui::SetCursorPosX(0.5F * theme.metrics.panel_width_px);
+    changed |= ImGui::Checkbox(right, &right_on);
+  };
+  pair("Fixed nodes", show.overlays.fixed_nodes, "Touched nodes", show.overlays.touched_nodes);
+  pair("Lattice", show.overlays.lattice, "Control net", show.overlays.control_net);
+  pair("Force", show.overlays.force, "Fixing planes", show.overlays.fixing_planes);
+  pair("See through", show.see_through_body, "Legend", show.overlays.legend);
+  if (changed) requests.emplace_back(show);
+}
+
+void draw_device(const PanelModel& model, const Theme& theme, Requests& requests) {
+  {
+    const RowGroup group("Device", theme);
+    if (!group) return;
+    Sculpting sculpting = model.sculpting;
+    fact_row("Name", model.device);
+    gauge_row("Force", model.force_limit_n > 0.0 ? model.force_n / model.force_limit_n : 0.0,
+              rounded(model.force_n, 2, "") + " of " + newtons_text(model.force_limit_n));
+    if (slider_row("Force scale", sculpting.force_scale, force_scale_slider, SliderScale::logarithmic,
+                   rounded(sculpting.force_scale, 2, " \u00d7"))) {
+      requests.emplace_back(Command(SetSculpting{sculpting}));
+    }
+    fact_row("Rate", rounded(model.rate_hz, 0, model.rate_is_nominal ? " Hz (nominal)" : " Hz") + ", " +
+                         std::to_string(model.substeps) + (model.substeps == 1 ? " substep" : " substeps"));
+  }
+  for (const std::string& text : flag_texts(model.flags)) {
+    ImGui::TextColored(colour::warning, "%s", text.c_str());
+  }
+}
+
+}  // namespace
+
+double panel_scale(int height_px) { return std::max(1.0, std::round(2.0 * height_px / 720.0) / 2.0); }
+
+Rectangle panel_rectangle(int width_px, int height_px) {
+  constexpr int smallest_height_px = 700;
+  const double width = metrics_for(panel_scale(height_px)).panel_width_px;
+  if (height_px < smallest_height_px || width_px < 2.5 * width) return {};
+  return {0.0, 0.0, width, static_cast<double>(height_px)};
+}
+
+std::vector<PanelRequest> draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px) {
+  Requests requests;
+  ImGui::SetNextWindowPos(ImVec2(static_cast<float>(place_px.x), static_cast<float>(place_px.y)));
+  ImGui::SetNextWindowSize(ImVec2(static_cast<float>(place_px.width), static_cast<float>(place_px.height)));
+  ImGui::PushFont(theme.fonts.body);
+  ImGui::Begin("Panel", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+  draw_title(model, theme, requests);
+  draw_tool(model, theme, requests);
+  draw_material(model, theme, requests);
+  draw_fixtures(model, theme);
+  draw_view(model, theme, requests);
+  draw_device(model, theme, requests);
+  ImGui::End();
+  ImGui::PopFont();
+  return requests;
+}
+
+}  // namespace spoonbill

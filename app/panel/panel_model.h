@@ -1,0 +1,64 @@
+// What the panel shows, as plain data, and what a person asks for by it. Taken from a snapshot and the settings
+// once a frame; the panel never sees the simulation.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/simulation/command.h"
+#include "engine/simulation/snapshot.h"
+#include "render/view_settings.h"
+
+namespace spoonbill {
+
+struct PanelModel {
+  std::string title;
+  double time_s = 0.0;
+  bool can_undo = false;
+  bool can_redo = false;
+
+  Tool tool;
+  Sculpting sculpting;
+  Material material;
+  std::vector<Material> presets;  // to choose from
+
+  double felt_youngs_modulus_pa = 0.0;
+  double mass_kg = 0.0;
+  int plane_count = 0;
+  int fixed_node_count = 0;
+  int node_count = 0;
+
+  Overlays overlays;
+  bool see_through_body = false;
+
+  std::string device;
+  double force_n = 0.0;
+  double force_limit_n = 0.0;
+  double rate_hz = 0.0;
+  bool rate_is_nominal = true;  // lock-step has no clock to measure by
+  int substeps = 0;
+  std::uint32_t flags = tick_flag_none;
+};
+
+// The part of the settings that a snapshot does not hold.
+struct PanelSettings {
+  const Scene& scene;
+  const std::string& title;
+  const ViewSettings& view;
+  bool can_undo;
+  bool can_redo;
+};
+
+PanelModel make_panel_model(const Snapshot& snapshot, const PanelSettings& settings);
+
+struct UndoStroke {};
+struct RedoStroke {};
+struct ShowOverlays {
+  Overlays overlays;
+  bool see_through_body;
+};
+
+using PanelRequest = std::variant<Command, UndoStroke, RedoStroke, ShowOverlays>;
+
+}  // namespace spoonbill

@@ -1,0 +1,42 @@
+// The rows that the panel is made of: a label in the left column, a value or widget in the right one. To be called
+// between InterfaceContext::begin_frame() and end_frame(). Widgets return whether the person changed the value.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+
+#include "app/panel/theme.h"
+#include "engine/range.h"
+
+namespace spoonbill {
+
+// A group of rows under a heading, open as long as the object lives.
+class RowGroup {
+ public:
+  RowGroup(const char* heading, const Theme& theme);
+  ~RowGroup();
+  RowGroup(const RowGroup&) = delete;
+  RowGroup& operator=(const RowGroup&) = delete;
+
+  explicit operator bool() const { return open_; }
+
+ private:
+  bool open_;
+};
+
+enum class SliderScale { linear, logarithmic };
+
+// `text` is what the slider shows for the value it has now.
+bool slider_row(const char* label, double& value, Range<double> range, SliderScale scale,
+                const std::string& text);
+bool slider_row(const char* label, int& value, Range<int> range, const std::string& text);
+
+// One of a few choices side by side.
+bool choice_row(const char* label, int& chosen, std::initializer_list<const char*> names);
+
+void fact_row(const char* label, const std::string& text);
+
+// A bar that fills from 0 to 1.
+void gauge_row(const char* label, double share, const std::string& text);
+
+}  // namespace spoonbill

@@ -1,0 +1,62 @@
+#include "app/program.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+
+#include "app/commands/command.h"
+#include "app/version.h"
+
+namespace spoonbill {
+namespace {
+
+const char* const description =
+    "Spoonbill: shape B-spline surfaces by touch.\n"
+    "`spoonbill COMMAND --help` tells all about a command.";
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+int explain_wrong_use(const CLI::App& root, const CLI::ParseError& error, Console& console) {
+  const auto chosen = root.get_subcommands();
+  const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+  console.err << "spoonbill: " << first_line(error.what()) << "; see `spoonbill" << command << " --help`\n";
+  return exit_wrong_use;
+}
+
+int act(const CommandEntry& entry, Console& console) {
+  const Status status = entry.act(console);
+  if (!status) {
+    console.err << "spoonbill: " << first_line(status.error().message) << '\n';
+    return exit_failed;
+  }
+  console.out.flush();
+  if (!console.out) {
+    console.err << "spoonbill: standard output could not be written\n";
+    return exit_failed;
+  }
+  return exit_done;
+}
+
+}  // namespace
+
+int run_program(const std::vector<std::string>& arguments, Console& console) {
+  CLI::App root(description, "spoonbill");
+  root.set_version_flag("--version", std::string("spoonbill ") + version);
+  root.require_subcommand(1);
+  const std::vector<CommandEntry> commands = {add_replay(root), add_record(root), add_info(root),
+                                              add_sample(root)};
+  try {
+    root.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::Success& request) {  // --help, --version
+    root.exit(request, console.out, console.err);
+    return exit_done;
+  } catch (const CLI::ParseError& error) {
+    return explain_wrong_use(root, error, console);
+  }
+  const auto chosen = std::find_if(commands.begin(), commands.end(),
+                                   [](const CommandEntry& command) { return command.parser->parsed(); });
+  return act(*chosen, console);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,93 @@
+#include "app/report/document_facts.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "app/report/quantity_text.h"
+#include "engine/bspline/surface.h"
+#include "engine/number_text.h"
+
+namespace spoonbill {
+namespace {
+
+// Fine enough to find a size to a thousandth of it.
+constexpr int size_samples = 200;
+
+Vector3 size_of(const Surface& surface) {
+  Vector3 low = Vector3::Constant(1e30);
+  Vector3 high = -low;
+  const auto at = [](const KnotVector& knots, int i) {
+    return knots.domain_start() + (knots.domain_end() - knots.domain_start()) * i / size_samples;
+  };
+  for (int i = 0; i <= size_samples; ++i) {
+    for (int j = 0; j <= size_samples; ++j) {
+      const Vector3 point = evaluate(surface, at(surface.u, i), at(surface.v, j)).position_m;
+      low = low.cwiseMin(point);
+      high = high.cwiseMax(point);
+    }
+  }
+  return high - low;
+}
+
+Json direction_facts(const KnotVector& knots) {
+  return {{"degree", knots.degree()},
+          {"control_points", knots.control_point_count()},
+          {"periodic", knots.is_periodic()},
+          {"knots", knots.knots().size()},
+          {"spans", knots.breakpoints().size() - 1},
+          {"domain", {knots.domain_start(), knots.domain_end()}}};
+}
+
+std::string direction_text(const KnotVector& knots) {
+  return "degree " + std::to_string(knots.degree()) + ", " + std::to_string(knots.control_point_count()) +
+         " control points, " + std::to_string(knots.breakpoints().size() - 1) + " spans, " +
+         (knots.is_periodic() ? "periodic" : "open");
+}
+
+std::string size_text(const Vector3& size_m) {
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(), "%.1f x %.1f x %.1f mm", 1e3 * size_m.x(), 1e3 * size_m.y(),
+                1e3 * size_m.z());
+  return text.data();
+}
+
+}  // namespace
+
+void add_document_facts(FactSheet& facts, const Document& document) {
+  const Body& body = document.scene.body;
+  const Vector3 size = size_of(body.surface);
+  facts.add("Name", document.name, "name", document.name);
+  facts.add("Unit", "mm (of the file's lengths)", "unit", "mm");
+  facts.add("Size", size_text(size), "size_mm", {1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z()});
+  facts.add("Body", body.name, "body", body.name);
+  facts.add("Along u", direction_text(body.surface.u), "", nullptr);
+  facts.add("Along v", direction_text(body.surface.v), "", nullptr);
+  facts.add("", "", "surfaces",
+            Json::array({{{"u", direction_facts(body.surface.u)}, {"v", direction_facts(body.surface.v)}}}));
+  add_material_facts(facts, body.material);
+  facts.add("Fixing planes", std::to_string(document.scene.planes.size()), "fixing_planes",
+            document.scene.planes.size());
+}
+
+void add_material_facts(FactSheet& facts, const Material& material) {
+  facts.add("Material",
+            material.name + ": E " + modulus_text(material.youngs_modulus_pa) + ", Poisson " +
+                number_text(material.poissons_ratio) + ", density " + density_text(material.density_kg_per_m3),
+            "material", material_to_json(material));
+}
+
+void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot) {
+  const LatticeSnapshot& lattice = snapshot.lattice;
+  const auto fixed = std::count(lattice.fixed.begin(), lattice.fixed.end(), std::uint8_t{1});
+  const Json counts = {lattice.count[0], lattice.count[1], lattice.count[2]};
+  facts.add("Lattice",
+            std::to_string(lattice.count[0]) + " x " + std::to_string(lattice.count[1]) + " x " +
+                std::to_string(lattice.count[2]) + " nodes, " + std::to_string(fixed) + " of them fixed",
+            "lattice", {{"nodes", counts}, {"node_count", lattice.x.size()}, {"fixed_node_count", fixed}});
+  facts.add("Mass", grams_text(snapshot.material.mass_kg), "mass_kg", snapshot.material.mass_kg);
+  facts.add("Felt E", modulus_text(snapshot.material.felt_youngs_modulus_pa), "felt_youngs_modulus_pa",
+            snapshot.material.felt_youngs_modulus_pa);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,18 @@
+// What there is to say about a document, its material and the simulation made from it.
+#pragma once
+
+#include "app/report/fact_sheet.h"
+#include "engine/exchange/document.h"
+#include "engine/simulation/snapshot.h"
+
+namespace spoonbill {
+
+// Names the unit of the file's lengths and the size found.
+void add_document_facts(FactSheet& facts, const Document& document);
+
+void add_material_facts(FactSheet& facts, const Material& material);
+
+// Of the snapshot of a simulation that has just been built.
+void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot);
+
+}  // namespace spoonbill

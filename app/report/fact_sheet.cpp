@@ -1,0 +1,24 @@
+#include "app/report/fact_sheet.h"
+
+#include <algorithm>
+
+namespace spoonbill {
+
+void FactSheet::add(const std::string& label, const std::string& text, const std::string& field, Json value) {
+  if (!label.empty()) lines_.emplace_back(label, text);
+  if (!field.empty()) json_[field] = std::move(value);
+}
+
+void FactSheet::print(std::ostream& out, bool as_json) const {
+  if (as_json) {
+    out << json_to_line(json_) << '\n';
+    return;
+  }
+  std::size_t width = 0;
+  for (const auto& [label, text] : lines_) width = std::max(width, label.size());
+  for (const auto& [label, text] : lines_) {
+    out << label << std::string(width - label.size() + 2, ' ') << text << '\n';
+  }
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,62 @@
+#include "app/report/quantity_text.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "engine/simulation/snapshot.h"
+
+namespace spoonbill {
+namespace {
+
+std::string with_decimals(double number, int decimals, const char* unit) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f %s", decimals, number, unit);
+  return text.data();
+}
+
+// Three significant digits.
+std::string with_digits(double number, const char* unit) {
+  const double size = std::abs(number);
+  return with_decimals(number, size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2, unit);
+}
+
+}  // namespace
+
+std::string modulus_text(double pascals) {
+  constexpr std::array<std::pair<double, const char*>, 3> units = {
+      {{1e9, "GPa"}, {1e6, "MPa"}, {1e3, "kPa"}}};
+  for (const auto& [size, unit] : units) {
+    if (pascals >= 0.9995 * size) return with_digits(pascals / size, unit);
+  }
+  return with_digits(pascals, "Pa");
+}
+
+std::string millimetres_text(double metres) { return with_decimals(1e3 * metres, 1, "mm"); }
+
+std::string grams_text(double kilograms) { return with_digits(1e3 * kilograms, "g"); }
+
+std::string density_text(double kilograms_per_m3) {
+  return with_decimals(1e-3 * kilograms_per_m3, 2, "g/cm\u00b3");
+}
+
+std::string newtons_text(double newtons) { return with_decimals(newtons, 2, "N"); }
+
+std::string percent_text(double share) { return with_decimals(100.0 * share, 0, "%"); }
+
+std::vector<std::string> flag_texts(std::uint32_t flags) {
+  constexpr std::array<std::pair<std::uint32_t, const char*>, 4> meanings = {{
+      {tick_flag_time_slowed, "Too stiff for real time: soften E"},
+      {tick_flag_speed_capped, "Speed cap met: move more slowly"},
+      {tick_flag_contact_overflow, "Contact too large: use a smaller tool"},
+      {tick_flag_force_limited, "Force limit met: lower the force scale"},
+  }};
+  std::vector<std::string> texts;
+  for (const auto& [flag, meaning] : meanings) {
+    if ((flags & flag) != 0) texts.emplace_back(meaning);
+  }
+  return texts;
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,84 @@
+#include "app/session/lockstep.h"
+
+#include <utility>
+
+#include "app/report/hash_text.h"
+
+namespace spoonbill {
+
+std::uint64_t frame_count(std::uint64_t tick_count) {
+  std::uint64_t count = tick_count * frames_per_second / 1000;
+  while (tick_of_frame(count) <= tick_count) ++count;
+  return count;
+}
+
+Lockstep::Lockstep(Session& session, LockstepInput input, RecordingWriter* writer)
+    : session_(&session), input_(std::move(input)), writer_(writer) {}
+
+Status Lockstep::run_to(std::uint64_t tick) {
+  while (true) {
+    if (Status stands = stand_at_tick(); !stands) return stands;
+    if (tick_ >= tick || tick_ >= input_.tick_count) return {};
+    if (Status ran = run_tick(); !ran) return ran;
+  }
+}
+
+Status Lockstep::finish() {
+  if (Status ran = run_to(input_.tick_count); !ran) return ran;
+  if (input_.expected_end) {
+    if (Status same = compare_state(*input_.expected_end); !same) return same;
+  }
+  return writer_ != nullptr ? writer_->finish(state_hash(*session_)) : Status();
+}
+
+Status Lockstep::stand_at_tick() {
+  if (stands_) return {};
+  const bool has_checkpoint = has_checkpoint_here();
+  if (has_checkpoint) {
+    if (Status same = compare_state(input_.expected[next_expected_++]); !same) return same;
+  }
+  const bool more = tick_ < input_.tick_count;
+  if (writer_ != nullptr && (more || has_checkpoint) && writer_->checkpoint_due()) {
+    if (Status written = writer_->checkpoint(state_hash(*session_)); !written) return written;
+  }
+  if (Status applied = apply_due_commands(); !applied) return applied;
+  stands_ = true;
+  return {};
+}
+
+bool Lockstep::has_checkpoint_here() const {
+  return next_expected_ < input_.expected.size() && input_.expected[next_expected_].tick == tick_;
+}
+
+Status Lockstep::compare_state(const Checkpoint& expected) const {
+  const std::uint64_t hash = state_hash(*session_);
+  if (hash == expected.state_hash) return {};
+  return Error{input_.source + ": the state after " + std::to_string(tick_) + " ticks has the hash " +
+               hash_text(hash) + ", recorded was " + hash_text(expected.state_hash) +
+               "; another version made it: record it again with `spoonbill record`"};
+}
+
+Status Lockstep::apply_due_commands() {
+  for (; next_command_ < input_.commands.size() && input_.commands[next_command_].tick <= tick_;
+       ++next_command_) {
+    const TimedCommand& command = input_.commands[next_command_];
+    if (Status applied = apply_command(*session_, command); !applied) return applied;
+    if (writer_ == nullptr) continue;
+    if (Status written = writer_->command(command.command); !written) return written;
+  }
+  return {};
+}
+
+Status Lockstep::run_tick() {
+  const DeviceReading reading = input_.device->read();
+  if (writer_ != nullptr) {
+    if (Status written = writer_->reading(reading); !written) return written;
+  }
+  const TickResult result = advance(*session_, reading);
+  input_.device->set_force(result.force_n);
+  ++tick_;
+  stands_ = false;
+  return {};
+}
+
+}  // namespace spoonbill

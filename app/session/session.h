@@ -1,0 +1,48 @@
+// A session: one simulation with what belongs to it while it is worked on. Plain struct with one owner, whoever
+// ticks it: the lock-step loop, later the haptic thread.
+#pragma once
+
+#include <string>
+
+#include "app/undo/stroke_history.h"
+#include "app/view/view_choice.h"
+#include "engine/exchange/document.h"
+#include "haptic/device.h"
+#include "haptic/tick.h"
+#include "haptic/timed_command.h"
+
+namespace spoonbill {
+
+struct Session {
+  std::string title;
+  Simulation simulation;
+  CouplingState coupling;
+  StrokeHistory history;
+  ViewChoice view;
+
+  DeviceSpecification device;
+  DeviceReading reading;                // of the last tick
+  std::uint32_t flags = tick_flag_none;  // TickFlag bits, gathered until somebody clears them
+
+  // `source` names the document's file in messages.
+  static Result<Session> make(const Document& document, const std::string& source, DeviceSpecification device,
+                              InstructionSet set);
+};
+
+// One tick of touch; the undo history follows.
+TickResult advance(Session& session, const DeviceReading& reading);
+
+// What there is to draw of the last tick, or before the first one.
+void write_snapshot(const Session& session, Snapshot& snapshot);
+
+// FNV-1a over every bit that the next tick depends on.
+std::uint64_t state_hash(const Session& session);
+
+// Commands of the simulation, of the view, {"command": "undo"} and {"command": "redo"}. An error names the
+// command's origin and leaves the session as it was. May allocate.
+Status apply_command(Session& session, const TimedCommand& command);
+
+// Whether each command can be understood, so that a mistake in a recording's last second shows at its start.
+Status check_commands(const std::vector<TimedCommand>& commands);
+
+}  // namespace spoonbill

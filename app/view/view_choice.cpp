@@ -1,0 +1,127 @@
+#include "app/view/view_choice.h"
+
+#include <array>
+#include <numbers>
+#include <utility>
+
+#include "engine/exchange/field_reader.h"
+#include "engine/simulation/scene.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double radians_per_degree = std::numbers::pi / 180.0;
+constexpr Range<double> yaw_range_deg{-360.0, 360.0};
+constexpr Range<double> pitch_range_deg{-89.0, 89.0};
+constexpr Range<double> field_of_view_range_deg{5.0, 90.0};
+constexpr Range<double> distance_range_m{0.001, 100.0};
+
+constexpr std::array<std::pair<const char*, bool Overlays::*>, 11> overlay_fields = {{
+    {"fixed_nodes", &Overlays::fixed_nodes},
+    {"touched_nodes", &Overlays::touched_nodes},
+    {"lattice", &Overlays::lattice},
+    {"control_net", &Overlays::control_net},
+    {"force", &Overlays::force},
+    {"contact_normals", &Overlays::contact_normals},
+    {"fixing_planes", &Overlays::fixing_planes},
+    {"tool", &Overlays::tool},
+    {"ground_grid", &Overlays::ground_grid},
+    {"scale_bar", &Overlays::scale_bar},
+    {"legend", &Overlays::legend},
+}};
+
+void read_angle(FieldReader& reader, const char* field, Range<double> range_deg, double& angle_rad) {
+  if (reader.has(field)) angle_rad = radians_per_degree * reader.number(field, range_deg);
+}
+
+void read_camera(FieldReader& reader, ViewChoice& choice) {
+  Camera camera;
+  camera.yaw_rad = radians_per_degree * 25.0;
+  camera.pitch_rad = radians_per_degree * 20.0;
+  read_angle(reader, "yaw_deg", yaw_range_deg, camera.yaw_rad);
+  read_angle(reader, "pitch_deg", pitch_range_deg, camera.pitch_rad);
+  read_angle(reader, "field_of_view_deg", field_of_view_range_deg, camera.vertical_field_of_view_rad);
+  choice.shows_whole_body = !reader.has("target_mm") && !reader.has("distance_mm");
+  if (!choice.shows_whole_body) {
+    camera.target_m = reader.position_m("target_mm", position_range_m);
+    camera.distance_m = reader.length_m("distance_mm", distance_range_m);
+  }
+  choice.camera = camera;
+}
+
+void read_overlays(FieldReader& reader, Overlays& overlays) {
+  for (const auto& [field, member] : overlay_fields) {
+    if (reader.has(field)) overlays.*member = reader.boolean(field);
+  }
+}
+
+void read_see_through(FieldReader& reader, ViewChoice& choice) {
+  if (reader.has("see_through_body")) choice.see_through_body = reader.boolean("see_through_body");
+}
+
+std::string command_name(const Json& command) {
+  const auto name = command.is_object() ? command.find("command") : command.end();
+  return name != command.end() && name->is_string() ? name->get<std::string>() : std::string();
+}
+
+}  // namespace
+
+Result<ViewChoice> view_from_json(const Json& view, const std::string& source) {
+  const Json nothing = Json::object();
+  ViewChoice choice;
+  FieldReader reader(view, source);
+  FieldReader default_camera(nothing, source);
+  read_camera(default_camera, choice);
+  if (reader.has("camera")) {
+    FieldReader camera = reader.inner("camera");
+    read_camera(camera, choice);
+    camera.finish();
+  }
+  if (reader.has("overlays")) {
+    FieldReader overlays = reader.inner("overlays");
+    read_overlays(overlays, choice.overlays);
+    overlays.finish();
+  }
+  read_see_through(reader, choice);
+  reader.finish();
+  if (!reader.status()) return reader.status().error();
+  return choice;
+}
+
+bool is_view_command(const Json& command) {
+  const std::string name = command_name(command);
+  return name == "set_camera" || name == "set_overlays";
+}
+
+Status apply_view_command(const Json& command, const std::string& source, ViewChoice& choice) {
+  ViewChoice changed = choice;
+  FieldReader reader(command, source);
+  reader.ignore("command");
+  if (command_name(command) == "set_camera") {
+    read_camera(reader, changed);
+  } else {
+    read_overlays(reader, changed.overlays);
+    read_see_through(reader, changed);
+  }
+  reader.finish();
+  if (!reader.status()) return reader.status();
+  choice = changed;
+  return {};
+}
+
+ViewSettings settings_for(const ViewChoice& choice, const BoundingBox& body, int width_px, int height_px,
+                          const Rectangle& panel_px) {
+  ViewSettings settings;
+  settings.camera = choice.camera;
+  if (choice.shows_whole_body) {
+    settings.camera = frame(choice.camera, body, make_viewport(width_px, height_px, panel_px));
+  }
+  settings.panel_px = panel_px;
+  settings.interface_scale = interface_scale_for(height_px);
+  settings.overlays = choice.overlays;
+  settings.see_through_body = choice.see_through_body;
+  settings.ground_y_m = ground_below(body);
+  return settings;
+}
+
+}  // namespace spoonbill

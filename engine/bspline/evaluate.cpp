@@ -1,0 +1,340 @@
+#include "engine/bspline/evaluate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace spoonbill {
+
+namespace {
+
+template <class Real>
+const EvaluateKernels<Real>& kernels_for(InstructionSet set) {
+  constexpr bool single = std::is_same_v<Real, float>;
+  switch (set) {
+    case InstructionSet::avx512:
+      if constexpr (single)
+        return kernels_avx512::evaluate_kernels_float;
+      else
+        return kernels_avx512::evaluate_kernels_double;
+    case InstructionSet::avx2:
+      if constexpr (single)
+        return kernels_avx2::evaluate_kernels_float;
+      else
+        return kernels_avx2::evaluate_kernels_double;
+    case InstructionSet::baseline:
+      break;
+  }
+  if constexpr (single)
+    return kernels_baseline::evaluate_kernels_float;
+  else
+    return kernels_baseline::evaluate_kernels_double;
+}
+
+int blocks_for(int samples) {
+  return (samples + evaluate_block - 1) / evaluate_block;
+}
+
+std::vector<double> row_magnitudes(const BlendingMatrix& matrix, double length) {
+  std::vector<double> sums(static_cast<std::size_t>(matrix.rows), 0.0);
+  for (int row = 0; row < matrix.rows; ++row) {
+    for (int k = 0; k < matrix.bandwidth; ++k) {
+      sums[row] += std::abs(matrix.values[row * matrix.bandwidth + k]) * length;
+    }
+  }
+  return sums;
+}
+
+double domain_length(const KnotVector& knots) {
+  return knots.domain_end() - knots.domain_start();
+}
+
+// Whether the first (last) sample is the first (last) control point itself.
+bool starts_on_edge(const GridDirection& direction) {
+  return !direction.knots.is_periodic() && direction.values.values.front() == 1.0;
+}
+bool ends_on_edge(const GridDirection& direction) {
+  return !direction.knots.is_periodic() && direction.values.values.back() == 1.0;
+}
+
+template <class Real>
+struct NetExtent {
+  Real largest_coordinate;  // magnitude
+  Real reach;               // the longest side of the box around the net
+};
+
+template <class Real>
+NetExtent<Real> extent_of(const NetView<Real>& net, int count) {
+  NetExtent<Real> extent{Real(0), Real(0)};
+  for (const Real* values : {net.x, net.y, net.z}) {
+    Real lowest = values[0], highest = values[0];
+    for (int i = 1; i < count; ++i) {
+      lowest = std::min(lowest, values[i]);
+      highest = std::max(highest, values[i]);
+    }
+    extent.largest_coordinate = std::max({extent.largest_coordinate, -lowest, highest});
+    extent.reach = std::max(extent.reach, highest - lowest);
+  }
+  return extent;
+}
+
+// Of `count` control points, `step` apart from `first` on.
+template <class Real>
+bool coincide(const NetView<Real>& net, int first, int step, int count, Real tolerance) {
+  for (const Real* values : {net.x, net.y, net.z}) {
+    for (int i = 1; i < count; ++i) {
+      if (!(std::abs(values[first + i * step] - values[first]) <= tolerance)) return false;
+    }
+  }
+  return true;
+}
+
+// What rounding may leave of a derivative that is zero, squared.
+template <class Real>
+Real noise_squared(double largest_coordinate, double magnitude) {
+  const double noise = 8.0 * std::numeric_limits<Real>::epsilon() * largest_coordinate * magnitude;
+  return static_cast<Real>(noise * noise);
+}
+
+template <class Real>
+EvaluateOutput<Real> sample_row(GridSamples<Real>& samples, int row, int columns) {
+  const std::size_t first = static_cast<std::size_t>(row) * columns;
+  return {samples.x.data() + first,  samples.y.data() + first,  samples.z.data() + first,
+          samples.nx.data() + first, samples.ny.data() + first, samples.nz.data() + first};
+}
+
+template <class Real>
+EvaluateOutput<Real> spare_row(AlignedVector<Real>& spare) {
+  const std::size_t size = spare.size() / 6;
+  Real* const data = spare.data();
+  return {data, data + size, data + 2 * size, data + 3 * size, data + 4 * size, data + 5 * size};
+}
+
+template <class Real>
+bool has_normal(const EvaluateOutput<Real>& row, int j) {
+  return row.nx[j] != 0 || row.ny[j] != 0 || row.nz[j] != 0;
+}
+
+template <class Real>
+void copy_normals(const EvaluateOutput<Real>& from, int j, int count, const EvaluateOutput<Real>& to, int k) {
+  std::copy_n(from.nx + j, count, to.nx + k);
+  std::copy_n(from.ny + j, count, to.ny + k);
+  std::copy_n(from.nz + j, count, to.nz + k);
+}
+
+template <class Real>
+void copy_points(const EvaluateOutput<Real>& from, int j, int count, const EvaluateOutput<Real>& to, int k) {
+  std::copy_n(from.x + j, count, to.x + k);
+  std::copy_n(from.y + j, count, to.y + k);
+  std::copy_n(from.z + j, count, to.z + k);
+}
+
+}  // namespace
+
+template <class Real>
+GridEvaluator<Real>::GridEvaluator(const Grid& grid, InstructionSet set)
+    : grid_(&grid), kernels_(&kernels_for<Real>(set)), blocks_(blocks_for(grid.columns() + 2)) {
+  set_up_rows(grid.u);
+  set_up_columns(grid.v);
+  const std::size_t blocks = static_cast<std::size_t>(blocks_);
+  blended_.resize(static_cast<std::size_t>(grid.u.knots.control_point_count()) * blocks *
+                  evaluate_block_size);
+  dv_noise_squared_.resize(blocks * evaluate_block);
+  spare_.resize(6 * blocks * evaluate_block);
+}
+
+template <class Real>
+void GridEvaluator<Real>::set_up_rows(const GridDirection& u) {
+  const double length = domain_length(u.knots);
+  for (const double value : u.values.values) u_values_.push_back(static_cast<Real>(value));
+  for (const double value : u.first_derivatives.values) {
+    u_derivatives_.push_back(static_cast<Real>(value * length));
+  }
+  u_magnitude_ = row_magnitudes(u.first_derivatives, length);
+}
+
+// Dense blocks, so that loads are contiguous however few samples a span has.
+template <class Real>
+void GridEvaluator<Real>::set_up_columns(const GridDirection& v) {
+  const double length = domain_length(v.knots);
+  v_magnitude_ = row_magnitudes(v.first_derivatives, length);
+  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(blocks_ * evaluate_block, v.values.columns);
+  Eigen::MatrixXd derivatives = values;
+  values.topRows(v.values.rows) = v.values.dense();
+  derivatives.topRows(v.values.rows) = v.first_derivatives.dense() * length;
+  for (int control = 0; control < v.values.columns; ++control) {
+    for (int block = 0; block < blocks_; ++block) {
+      const auto block_values = values.col(control).segment<evaluate_block>(block * evaluate_block);
+      const auto block_derivatives = derivatives.col(control).segment<evaluate_block>(block * evaluate_block);
+      if (block_values.isZero(0.0) && block_derivatives.isZero(0.0)) continue;
+      reaches_.push_back({control, block});
+      for (const double value : block_values) v_values_.push_back(static_cast<Real>(value));
+      for (const double value : block_derivatives) v_derivatives_.push_back(static_cast<Real>(value));
+    }
+  }
+}
+
+template <class Real>
+void GridEvaluator<Real>::points_and_normals(const Real* x, const Real* y, const Real* z,
+                                             GridSamples<Real>& samples) {
+  const NetView<Real> net{x, y, z, grid_->v.knots.control_point_count()};
+  const NetExtent<Real> extent = extent_of(net, grid_->u.knots.control_point_count() * net.columns);
+  const CollapsedEdges edges = collapsed_edges(net, extent.reach);
+  blend_control_rows(net);
+  for (std::size_t j = 0; j < v_magnitude_.size(); ++j) {
+    dv_noise_squared_[j] = noise_squared<Real>(extent.largest_coordinate, v_magnitude_[j]);
+  }
+  set_up_limit_columns(edges);
+
+  int allowed = extent.reach > 0 ? 4 * (grid_->rows() + grid_->columns()) : 0;
+  for (int row = 0; row < grid_->rows(); ++row) {
+    EvaluateRow<Real> task = row_task(row);
+    task.du_noise_squared = noise_squared<Real>(extent.largest_coordinate, u_magnitude_[row]);
+    const int degenerate = compute_row(task, row, edges, samples);
+    if (row == 0) take_limit_row(task, row, edges.first_row, samples);
+    if (row == grid_->rows() - 1) take_limit_row(task, row, edges.last_row, samples);
+    if (degenerate > 0) take_unit_normals(net, row, allowed, samples);
+  }
+}
+
+template <class Real>
+void GridEvaluator<Real>::points(const Real* x, const Real* y, const Real* z, GridSamples<Real>& samples) {
+  blend_control_rows({x, y, z, grid_->v.knots.control_point_count()});
+  const int columns = grid_->columns(), whole = columns / evaluate_block;
+  const EvaluateOutput<Real> spare = spare_row(spare_);
+  for (int row = 0; row < grid_->rows(); ++row) {
+    const EvaluateRow<Real> task = row_task(row);
+    const EvaluateOutput<Real> out = sample_row(samples, row, columns);
+    kernels_->points(task, 0, whole, out);
+    const int left = columns - whole * evaluate_block;
+    if (left == 0) continue;
+    kernels_->points(task, whole, 1, spare);
+    copy_points(spare, 0, left, out, whole * evaluate_block);
+  }
+}
+
+template <class Real>
+auto GridEvaluator<Real>::collapsed_edges(const NetView<Real>& net, Real reach) const -> CollapsedEdges {
+  const int rows = grid_->u.knots.control_point_count(), columns = net.columns;
+  const Real tolerance = Real(1e-6) * reach;
+  CollapsedEdges edges;
+  if (starts_on_edge(grid_->u) && coincide(net, 0, 1, columns, tolerance)) edges.first_row = 1;
+  if (ends_on_edge(grid_->u) && coincide(net, (rows - 1) * columns, 1, columns, tolerance))
+    edges.last_row = -1;
+  if (starts_on_edge(grid_->v) && coincide(net, 0, columns, rows, tolerance)) edges.first_column = 1;
+  if (ends_on_edge(grid_->v) && coincide(net, columns - 1, columns, rows, tolerance)) edges.last_column = -1;
+  return edges;
+}
+
+template <class Real>
+void GridEvaluator<Real>::blend_control_rows(const NetView<Real>& net) {
+  const EvaluateBand<Real> band{reaches_.data(), v_values_.data(), v_derivatives_.data(),
+                                static_cast<long>(reaches_.size()), blocks_};
+  const std::size_t row_size = static_cast<std::size_t>(blocks_) * evaluate_block_size;
+  for (int row = 0; row < grid_->u.knots.control_point_count(); ++row) {
+    const int first = row * net.columns;
+    kernels_->blend(band, net.x + first, net.y + first, net.z + first, blended_.data() + row * row_size);
+  }
+}
+
+// At a collapsed column du vanishes, and a step h inside it is h duv: two further columns, of which only the
+// normals are used, hold that derivative in the place of the values.
+template <class Real>
+void GridEvaluator<Real>::set_up_limit_columns(const CollapsedEdges& edges) {
+  const int columns = grid_->columns();
+  const int edge_columns[] = {0, columns - 1};
+  const int inward[] = {edges.first_column, edges.last_column};
+  const auto place_of = [](int column) {
+    return static_cast<std::size_t>(column / evaluate_block * evaluate_block_size + column % evaluate_block);
+  };
+  const std::size_t row_size = static_cast<std::size_t>(blocks_) * evaluate_block_size;
+  for (int edge = 0; edge < 2; ++edge) {
+    if (inward[edge] == 0) continue;
+    dv_noise_squared_[columns + edge] = dv_noise_squared_[edge_columns[edge]];
+    for (Real* row = blended_.data(); row != blended_.data() + blended_.size(); row += row_size) {
+      const Real* derivatives = row + place_of(edge_columns[edge]) + 3 * evaluate_block;
+      Real* const limit = row + place_of(columns + edge);
+      for (int k = 0; k < 3 * evaluate_block; k += evaluate_block) {
+        limit[k] = static_cast<Real>(inward[edge]) * derivatives[k];
+        limit[k + 3 * evaluate_block] = derivatives[k];
+      }
+    }
+  }
+}
+
+template <class Real>
+EvaluateRow<Real> GridEvaluator<Real>::row_task(int row) const {
+  const BlendingMatrix& matrix = grid_->u.values;
+  const std::size_t first_value = static_cast<std::size_t>(row) * matrix.bandwidth;
+  return {blended_.data(),
+          static_cast<long>(blocks_) * evaluate_block_size,
+          matrix.columns,
+          matrix.first[row],
+          matrix.bandwidth,
+          u_values_.data() + first_value,
+          u_derivatives_.data() + first_value,
+          Real(0),
+          dv_noise_squared_.data()};
+}
+
+// Whole blocks go straight to the samples; the columns left over, and the limit columns, by way of the spare
+// row. Returns how many samples of the row are left without a normal.
+template <class Real>
+int GridEvaluator<Real>::compute_row(const EvaluateRow<Real>& task, int row, const CollapsedEdges& edges,
+                                     GridSamples<Real>& samples) {
+  const int columns = grid_->columns(), whole = columns / evaluate_block;
+  const int limits = edges.first_column != 0 || edges.last_column != 0 ? 2 : 0;
+  const int blocks = blocks_for(columns + limits) - whole, left = columns - whole * evaluate_block;
+  const EvaluateOutput<Real> out = sample_row(samples, row, columns), spare = spare_row(spare_);
+  int degenerate = kernels_->points_and_normals(task, 0, whole, out);
+  if (blocks == 0) return degenerate;
+
+  const int padding = blocks * evaluate_block - left;
+  degenerate += kernels_->points_and_normals(task, whole, blocks, spare) - padding;
+  copy_points(spare, 0, left, out, whole * evaluate_block);
+  copy_normals(spare, 0, left, out, whole * evaluate_block);
+  const int edge_columns[] = {0, columns - 1};
+  for (int edge = 0; edge < limits; ++edge) {
+    // Without a normal, it was counted among the padding.
+    if (!has_normal(spare, left + edge)) continue;
+    degenerate += has_normal(out, edge_columns[edge]) ? 1 : 0;
+    copy_normals(spare, left + edge, 1, out, edge_columns[edge]);
+  }
+  return degenerate;
+}
+
+// As with the limit columns: at a collapsed row dv vanishes, and a step h inside it is h duv.
+template <class Real>
+void GridEvaluator<Real>::take_limit_row(EvaluateRow<Real> task, int row, int inward,
+                                         GridSamples<Real>& samples) {
+  if (inward == 0) return;
+  Real values[max_degree + 1];
+  for (int k = 0; k < task.bandwidth; ++k) values[k] = static_cast<Real>(inward) * task.derivatives[k];
+  task.values = values;
+  const EvaluateOutput<Real> out = sample_row(samples, row, grid_->columns()), spare = spare_row(spare_);
+  kernels_->points_and_normals(task, 0, blocks_, spare);
+  for (int j = 0; j < grid_->columns(); ++j) {
+    if (has_normal(spare, j)) copy_normals(spare, j, 1, out, j);
+  }
+}
+
+template <class Real>
+void GridEvaluator<Real>::take_unit_normals(const NetView<Real>& net, int row, int& allowed,
+                                            GridSamples<Real>& samples) const {
+  const EvaluateOutput<Real> out = sample_row(samples, row, grid_->columns());
+  for (int j = 0; j < grid_->columns() && allowed > 0; ++j) {
+    if (has_normal(out, j)) continue;
+    --allowed;
+    const Vector3 normal =
+        unit_normal(grid_->u.knots, grid_->v.knots, net, grid_->u.parameters[row], grid_->v.parameters[j]);
+    out.nx[j] = static_cast<Real>(normal.x());
+    out.ny[j] = static_cast<Real>(normal.y());
+    out.nz[j] = static_cast<Real>(normal.z());
+  }
+}
+
+template class GridEvaluator<float>;
+template class GridEvaluator<double>;
+
+}  // namespace spoonbill

@@ -1,0 +1,79 @@
+// Evaluation of a surface on a whole grid: M = A_u P A_v^T (Eq. 4 of Pungotra et al. 2013), points and unit
+// normals into structure-of-arrays buffers.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/aligned_vector.h"
+#include "engine/bspline/evaluate_kernels.h"
+#include "engine/bspline/grid.h"
+#include "engine/bspline/surface.h"
+#include "engine/bspline/unit_normal.h"
+#include "engine/instruction_set.h"
+
+namespace spoonbill {
+
+// Rows x columns samples each, in the grid's order.
+template <class Real>
+struct GridSamples {
+  std::vector<Real> x, y, z;     // metres
+  std::vector<Real> nx, ny, nz;  // unit normals, see unit_normal() for poles and collapsed edges
+
+  void resize(std::size_t count) {
+    for (auto* values : {&x, &y, &z, &nx, &ny, &nz}) values->resize(count);
+  }
+};
+
+// Evaluates surfaces of one grid's knot structure. Holds its working memory: one evaluator a thread, and no
+// allocation after construction. The grid must outlive it.
+//
+// A clamped edge whose control points coincide to a millionth of the net's reach counts as collapsed: its
+// samples get the limit of the normal from inside. Other samples where du x dv is rounding noise get
+// unit_normal(), up to a number that bounds the time of a pass, and zero beyond it.
+template <class Real>
+class GridEvaluator {
+ public:
+  GridEvaluator(const Grid& grid, InstructionSet set);
+
+  // x, y, z: the control points in metres, rows x columns as in ControlNet. samples must have been resized to
+  // grid.rows() * grid.columns().
+  void points_and_normals(const Real* x, const Real* y, const Real* z, GridSamples<Real>& samples);
+
+  // Points alone: writes samples.x, y, z, to the same bits.
+  void points(const Real* x, const Real* y, const Real* z, GridSamples<Real>& samples);
+
+ private:
+  // +1 or -1, the way into the surface, where a grid line lies on a clamped edge whose control points
+  // coincide; 0 otherwise.
+  struct CollapsedEdges {
+    int first_row = 0, last_row = 0, first_column = 0, last_column = 0;
+  };
+
+  void set_up_rows(const GridDirection& u);
+  void set_up_columns(const GridDirection& v);
+  CollapsedEdges collapsed_edges(const NetView<Real>& net, Real reach) const;
+  void blend_control_rows(const NetView<Real>& net);
+  void set_up_limit_columns(const CollapsedEdges& edges);
+  EvaluateRow<Real> row_task(int row) const;
+  int compute_row(const EvaluateRow<Real>& task, int row, const CollapsedEdges& edges,
+                  GridSamples<Real>& samples);
+  void take_limit_row(EvaluateRow<Real> task, int row, int inward, GridSamples<Real>& samples);
+  void take_unit_normals(const NetView<Real>& net, int row, int& allowed, GridSamples<Real>& samples) const;
+
+  const Grid* grid_;
+  const EvaluateKernels<Real>* kernels_;
+  std::vector<Real> u_values_, u_derivatives_;     // rows x bandwidth, derivatives by domain length
+  std::vector<double> u_magnitude_, v_magnitude_;  // sums of the derivatives' magnitudes
+  int blocks_ = 0;                                 // for the columns and two limit columns
+  std::vector<EvaluateReach> reaches_;
+  AlignedVector<Real> v_values_, v_derivatives_;
+  AlignedVector<Real> blended_;           // control rows x blocks
+  AlignedVector<Real> dv_noise_squared_;  // columns of all blocks
+  AlignedVector<Real> spare_;             // a row of samples
+};
+
+extern template class GridEvaluator<float>;
+extern template class GridEvaluator<double>;
+
+}  // namespace spoonbill

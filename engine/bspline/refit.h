@@ -1,0 +1,51 @@
+// Refit: moves control points by the displacement of grid samples, dP = A_u^+ dM (A_v^+)^T. Carrying the
+// displacement, not the position, leaves an untouched surface untouched to the last bit, where refitting
+// positions by Eq. 5 of Pungotra et al. 2013 would smooth it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/bspline/grid.h"
+#include "engine/instruction_set.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+// What a refit must keep in direction v, besides fitting.
+struct RefitConstraints {
+  std::vector<std::uint8_t> held_columns;  // one a control column: 1 = never moves; empty = none
+  bool keep_ends =
+      false;  // the first and last sample are met exactly, so that a pole stays a pole; needs a clamped v
+};
+
+// Holds both pseudo-inverses in single precision and the working memory; no allocation after make(). One
+// owner, one thread.
+class DisplacementRefit {
+ public:
+  // Refused when the grid's samples do not determine the control points (see pseudo_inverse).
+  static Result<DisplacementRefit> make(const Grid& grid, InstructionSet set);
+
+  // The same with constraints: the free columns fit in the sense of least squares what the kept ends leave
+  // over.
+  static Result<DisplacementRefit> make(const Grid& grid, const RefitConstraints& constraints,
+                                        InstructionSet set);
+
+  int sample_rows() const { return sample_rows_; }
+  int sample_columns() const { return sample_columns_; }
+
+  // sample: grid.rows() x grid.columns() displacements of one coordinate in metres; control: r x s
+  // displacements of the control points, written. Exactly zero in gives exactly zero out.
+  void control_displacement(const float* sample, float* control);
+
+ private:
+  DisplacementRefit() = default;
+
+  InstructionSet set_{};
+  int sample_rows_ = 0, sample_columns_ = 0, control_rows_ = 0, control_columns_ = 0;
+  std::vector<float> u_inverse_;             // control_rows x sample_rows
+  std::vector<float> v_inverse_transposed_;  // sample_columns x control_columns
+  std::vector<float> half_;                  // control_rows x sample_columns
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,59 @@
+// A B-spline surface: a knot vector for u, one for v, and a control net (Eq. 1 of Pungotra et al. 2013).
+#pragma once
+
+#include <vector>
+
+#include "engine/bspline/knot_vector.h"
+#include "engine/pose.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+// The r x s control points in metres as a structure of arrays; point (i, j) lies at index i * columns + j,
+// i along u.
+struct ControlNet {
+  int rows = 0;
+  int columns = 0;
+  std::vector<double> x, y, z;
+
+  ControlNet() = default;
+  ControlNet(int row_count, int column_count)
+      : rows(row_count), columns(column_count), x(size()), y(size()), z(size()) {}
+
+  std::size_t size() const { return static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns); }
+  std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(j);
+  }
+  Vector3 point(int i, int j) const { return {x[index(i, j)], y[index(i, j)], z[index(i, j)]}; }
+  void set_point(int i, int j, const Vector3& p) {
+    x[index(i, j)] = p.x();
+    y[index(i, j)] = p.y();
+    z[index(i, j)] = p.z();
+  }
+};
+
+// A plain value with one owner. `net` may be changed in place; its size must stay what the knots ask for.
+struct Surface {
+  KnotVector u;
+  KnotVector v;
+  ControlNet net;
+};
+
+// Refused: a net whose size differs from the knots' control point counts, non-finite coordinates.
+Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net);
+
+// One point of a surface with its derivatives by the parameters, in double.
+struct SurfacePoint {
+  Vector3 position_m;
+  Vector3 du, dv;
+  Vector3 duu, duv, dvv;
+};
+
+// u, v are wrapped or clamped into the domain. Allocates nothing.
+SurfacePoint evaluate(const Surface& surface, double u, double v);
+
+// The unit normal along du x dv. At poles and collapsed edges, where that product vanishes, the limit from
+// inside the surface; zero where the surface has no normal at all (a single point or a line).
+Vector3 unit_normal(const Surface& surface, double u, double v);
+
+}  // namespace spoonbill

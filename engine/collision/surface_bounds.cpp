@@ -1,0 +1,88 @@
+#include "engine/collision/surface_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spoonbill {
+namespace {
+
+double reciprocal(double numerator, double denominator) { return denominator > 0.0 ? numerator / denominator : 0.0; }
+
+struct Unrolled {
+  std::vector<int> span, control;
+  std::vector<double> first_scale, second_scale;
+};
+
+Unrolled unroll(const KnotVector& knots) {
+  Unrolled result;
+  const std::vector<double>& u = knots.extended_knots();
+  const int p = knots.degree();
+  const int count = static_cast<int>(u.size()) - p - 1;
+  const std::vector<double> breaks = knots.breakpoints();
+  for (std::size_t b = 0; b + 1 < breaks.size(); ++b) {
+    result.span.push_back(knots.find_span(0.5 * (breaks[b] + breaks[b + 1])));
+  }
+  for (int i = 0; i < count; ++i) {
+    result.control.push_back(knots.control_index(i, p));
+    result.first_scale.push_back(i + 1 < count ? reciprocal(p, u[i + p + 1] - u[i + 1]) : 0.0);
+    result.second_scale.push_back(i + 2 < count ? reciprocal(p - 1, u[i + p + 1] - u[i + 2]) : 0.0);
+  }
+  return result;
+}
+
+}  // namespace
+
+SurfaceBounds::SurfaceBounds(const KnotVector& u, const KnotVector& v)
+    : degree_u_(u.degree()), degree_v_(v.degree()) {
+  Unrolled in_u = unroll(u), in_v = unroll(v);
+  rows_ = static_cast<int>(in_u.control.size());
+  columns_ = static_cast<int>(in_v.control.size());
+  span_u_ = std::move(in_u.span);
+  span_v_ = std::move(in_v.span);
+  control_u_ = std::move(in_u.control);
+  control_v_ = std::move(in_v.control);
+  first_scale_u_ = std::move(in_u.first_scale);
+  second_scale_u_ = std::move(in_u.second_scale);
+  first_scale_v_ = std::move(in_v.first_scale);
+  second_scale_v_ = std::move(in_v.second_scale);
+  norm_uu_.assign(static_cast<std::size_t>(rows_ * columns_), 0.0);
+  norm_vv_ = norm_uu_;
+  second_uu_.assign(span_u_.size() * span_v_.size(), 0.0);
+  second_vv_ = second_uu_;
+}
+
+void SurfaceBounds::update(const ControlNet& net) {
+  const auto point = [&](int i, int j) { return net.point(control_u_[i], control_v_[j]); };
+  for (int i = 0; i < rows_; ++i) {
+    for (int j = 0; j < columns_; ++j) {
+      const std::size_t at = static_cast<std::size_t>(i * columns_ + j);
+      if (i + 2 < rows_) {
+        const Vector3 a = first_scale_u_[i] * (point(i + 1, j) - point(i, j));
+        const Vector3 b = first_scale_u_[i + 1] * (point(i + 2, j) - point(i + 1, j));
+        norm_uu_[at] = (second_scale_u_[i] * (b - a)).squaredNorm();
+      }
+      if (j + 2 < columns_) {
+        const Vector3 a = first_scale_v_[j] * (point(i, j + 1) - point(i, j));
+        const Vector3 b = first_scale_v_[j + 1] * (point(i, j + 2) - point(i, j + 1));
+        norm_vv_[at] = (second_scale_v_[j] * (b - a)).squaredNorm();
+      }
+    }
+  }
+  for (int eu = 0; eu < elements_u(); ++eu) {
+    for (int ev = 0; ev < elements_v(); ++ev) {
+      double uu = 0.0, vv = 0.0;
+      for (int i = span_u_[eu] - degree_u_; i <= span_u_[eu]; ++i) {
+        for (int j = span_v_[ev] - degree_v_; j <= span_v_[ev]; ++j) {
+          const std::size_t at = static_cast<std::size_t>(i * columns_ + j);
+          if (i + 2 <= span_u_[eu]) uu = std::max(uu, norm_uu_[at]);
+          if (j + 2 <= span_v_[ev]) vv = std::max(vv, norm_vv_[at]);
+        }
+      }
+      const std::size_t e = static_cast<std::size_t>(eu * elements_v() + ev);
+      second_uu_[e] = std::sqrt(uu);
+      second_vv_[e] = std::sqrt(vv);
+    }
+  }
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,79 @@
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "engine/exchange/document.h"
+#include "engine/exchange/field_reader.h"
+#include "engine/exchange/scene_json.h"
+
+namespace spoonbill {
+
+namespace {
+
+constexpr std::array<std::string_view, 6> command_names = {"place_plane",  "remove_planes", "set_tool",
+                                                           "set_material", "set_sculpting", "keep_shape"};
+
+Command read_named(std::string_view name, FieldReader& reader) {
+  if (name == "place_plane") return PlacePlane{read_fixing_plane(reader)};
+  if (name == "remove_planes") return RemovePlanes{};
+  if (name == "set_tool") return SetTool{read_tool(reader)};
+  if (name == "set_material") return SetMaterial{read_material_fields(reader)};
+  if (name == "set_sculpting") return SetSculpting{read_sculpting(reader)};
+  if (name == "keep_shape") return KeepShape{};
+  std::string known;
+  for (const std::string_view other : command_names)
+    known += (known.empty() ? "" : ", ") + std::string(other);
+  reader.refuse("command", "is " + json_excerpt(Json(name)) + ", must be one of " + known);
+  return KeepShape{};
+}
+
+struct FieldsOf {
+  Json operator()(const PlacePlane& command) const {
+    Json json{{"command", "place_plane"}};
+    add_fixing_plane(command.plane, json);
+    return json;
+  }
+  Json operator()(const RemovePlanes&) const { return {{"command", "remove_planes"}}; }
+  Json operator()(const SetTool& command) const {
+    Json json{{"command", "set_tool"}};
+    add_tool(command.tool, json);
+    return json;
+  }
+  Json operator()(const SetMaterial& command) const {
+    Json json{{"command", "set_material"}};
+    add_material_fields(command.material, json);
+    return json;
+  }
+  Json operator()(const SetSculpting& command) const {
+    Json json{{"command", "set_sculpting"}};
+    add_sculpting(command.sculpting, json);
+    return json;
+  }
+  Json operator()(const KeepShape&) const { return {{"command", "keep_shape"}}; }
+};
+
+}  // namespace
+
+bool is_simulation_command(const Json& json) {
+  if (!json.is_object()) return false;
+  const auto name = json.find("command");
+  if (name == json.end() || !name->is_string()) return false;
+  return std::find(command_names.begin(), command_names.end(), name->get_ref<const std::string&>()) !=
+         command_names.end();
+}
+
+Result<Command> command_from_json(const Json& json, const std::string& source) {
+  FieldReader reader(json, source);
+  const std::string name = reader.text("command");
+  if (!reader.status().ok()) return reader.status().error();
+  Command command = read_named(name, reader);
+  reader.finish();
+  if (!reader.status().ok()) return reader.status().error();
+  return command;
+}
+
+Json command_to_json(const Command& command) {
+  return std::visit(FieldsOf{}, command);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,132 @@
+#include "engine/exchange/document.h"
+
+#include <utility>
+
+#include "engine/exchange/field_reader.h"
+#include "engine/exchange/file.h"
+#include "engine/exchange/scene_json.h"
+
+namespace spoonbill {
+
+namespace {
+
+constexpr std::size_t document_bytes_limit = std::size_t{64} << 20;
+constexpr std::size_t material_bytes_limit = std::size_t{1} << 20;
+
+std::optional<Body> read_body(FieldReader reader) {
+  std::string name = reader.text("name");
+  FieldReader surface_reader = reader.inner("surface");
+  std::optional<Surface> surface = read_surface(surface_reader);
+  surface_reader.finish();
+  FieldReader material_reader = reader.inner("material");
+  Material material = read_material_fields(material_reader);
+  material_reader.finish();
+  FieldReader lattice_reader = reader.inner("lattice");
+  const LatticeRequest lattice = read_lattice_request(lattice_reader);
+  lattice_reader.finish();
+  reader.finish();
+  if (!surface || !reader.status().ok()) return std::nullopt;
+  return Body{std::move(name), *std::move(surface), std::move(material), lattice};
+}
+
+std::vector<FixingPlane> read_planes(FieldReader& reader) {
+  std::vector<FixingPlane> planes;
+  if (!reader.has("fixing_planes")) {
+    reader.ignore("fixing_planes");
+    return planes;
+  }
+  for (const Json& item : reader.list("fixing_planes", fixing_plane_count_range)) {
+    FieldReader plane_reader = reader.element(item, "fixing_planes", planes.size());
+    planes.push_back(read_fixing_plane(plane_reader));
+    plane_reader.finish();
+  }
+  return planes;
+}
+
+Json body_to_json(const Body& body) {
+  Json json;
+  json["name"] = body.name;
+  json["surface"] = surface_to_json(body.surface);
+  add_material_fields(body.material, json["material"]);
+  add_lattice_request(body.lattice, json["lattice"]);
+  return json;
+}
+
+Result<Json> read_json(const std::filesystem::path& file, std::size_t bytes_limit) {
+  auto text = read_text_file(file, bytes_limit);
+  if (!text.ok()) return text.error();
+  return parse_json(text.value(), file.string());
+}
+
+}  // namespace
+
+Result<Document> document_from_json(const Json& json, const std::string& source) {
+  FieldReader reader(json, source);
+  reader.version("spoonbill_document", document_version);
+  std::string name = reader.text("name");
+  std::optional<Body> body = read_body(reader.inner("body"));
+  std::vector<FixingPlane> planes = read_planes(reader);
+  FieldReader tool_reader = reader.inner("tool");
+  const Tool tool = read_tool(tool_reader);
+  tool_reader.finish();
+  FieldReader sculpting_reader = reader.inner("sculpting");
+  const Sculpting sculpting = read_sculpting(sculpting_reader);
+  sculpting_reader.finish();
+  Json view = reader.has("view") ? reader.object("view") : Json::object();
+  reader.ignore("view");
+  reader.finish();
+  if (!body || !reader.status().ok()) return reader.status().error();
+  return Document{std::move(name), Scene{*std::move(body), std::move(planes), tool, sculpting},
+                  std::move(view)};
+}
+
+Json document_to_json(const Document& document) {
+  Json json;
+  json["spoonbill_document"] = document_version;
+  json["name"] = document.name;
+  json["body"] = body_to_json(document.scene.body);
+  Json& planes = json["fixing_planes"] = Json::array();
+  for (const FixingPlane& plane : document.scene.planes) add_fixing_plane(plane, planes.emplace_back());
+  add_tool(document.scene.tool, json["tool"]);
+  add_sculpting(document.scene.sculpting, json["sculpting"]);
+  json["view"] = document.view;
+  return json;
+}
+
+Result<Document> read_document(const std::filesystem::path& file) {
+  auto json = read_json(file, document_bytes_limit);
+  if (!json.ok()) return json.error();
+  return document_from_json(json.value(), file.string());
+}
+
+Status write_document(const Document& document, const std::filesystem::path& file) {
+  const std::string page = json_to_page(document_to_json(document));
+  if (page.size() > document_bytes_limit) return Error{file.string() + ": not saved, larger than 64 MiB"};
+  auto read_back = parse_json(page, file.string() + ": not saved");
+  if (!read_back.ok()) return read_back.error();
+  auto checked = document_from_json(read_back.value(), file.string() + ": not saved");
+  if (!checked.ok()) return checked.error();
+  return replace_file(file, page);
+}
+
+Result<Material> material_from_json(const Json& json, const std::string& source) {
+  FieldReader reader(json, source);
+  Material material = read_material_fields(reader);
+  reader.finish();
+  if (!reader.status().ok()) return reader.status().error();
+  return material;
+}
+
+Json material_to_json(const Material& material) {
+  Json json;
+  add_material_fields(material, json);
+  return json;
+}
+
+Result<Material> read_material(const std::filesystem::path& file) {
+  auto json = read_json(file, material_bytes_limit);
+  if (!json.ok()) return json.error();
+  return material_from_json(json.value(), file.string());
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,120 @@
+#include "engine/exchange/scene_json.h"
+
+#include "engine/exchange/length.h"
+
+namespace spoonbill {
+
+Json position_to_json(const Vector3& position_m) {
+  return Json::array(
+      {length_to_json(position_m.x()), length_to_json(position_m.y()), length_to_json(position_m.z())});
+}
+
+Json vector_to_json(const Vector3& vector) {
+  return Json::array({number_to_json(vector.x()), number_to_json(vector.y()), number_to_json(vector.z())});
+}
+
+FixingPlane read_fixing_plane(FieldReader& reader) {
+  FixingPlane plane;
+  plane.point_m = reader.position_m("point_mm", position_range_m);
+  plane.normal = reader.direction("normal");
+  return plane;
+}
+
+void add_fixing_plane(const FixingPlane& plane, Json& json) {
+  json["point_mm"] = position_to_json(plane.point_m);
+  json["normal"] = vector_to_json(plane.normal);
+}
+
+LatticeRequest read_lattice_request(FieldReader& reader) {
+  LatticeRequest lattice;
+  if (reader.has("nodes") == reader.has("node_budget")) {
+    reader.refuse("must have either nodes or node_budget");
+    return lattice;
+  }
+  if (reader.has("node_budget")) {
+    lattice.node_budget = reader.integer("node_budget", node_budget_range);
+    return lattice;
+  }
+  const Range<double> range{static_cast<double>(node_count_range.low),
+                            static_cast<double>(node_count_range.high)};
+  const Vector3 nodes = reader.vector("nodes", range);
+  lattice.counts = {static_cast<int>(nodes.x()), static_cast<int>(nodes.y()), static_cast<int>(nodes.z())};
+  if (nodes != Vector3((*lattice.counts)[0], (*lattice.counts)[1], (*lattice.counts)[2])) {
+    reader.refuse("nodes", "must be whole numbers");
+  }
+  if (nodes.prod() > node_budget_range.high) {
+    reader.refuse("nodes", "must make at most " + std::to_string(node_budget_range.high) + " nodes together");
+  }
+  return lattice;
+}
+
+void add_lattice_request(const LatticeRequest& lattice, Json& json) {
+  if (lattice.counts) {
+    json["nodes"] = *lattice.counts;
+  } else {
+    json["node_budget"] = lattice.node_budget;
+  }
+}
+
+Material read_material_fields(FieldReader& reader) {
+  Material material;
+  material.name = reader.text("name");
+  material.source = reader.text("source");
+  material.youngs_modulus_pa = reader.number("youngs_modulus_pa", youngs_modulus_range_pa);
+  material.poissons_ratio = reader.number("poissons_ratio", poissons_ratio_range);
+  material.density_kg_per_m3 = reader.number("density_kg_per_m3", density_range_kg_per_m3);
+  material.damping_ratio = reader.number("damping_ratio", damping_ratio_range);
+  material.plastic = reader.boolean("plastic");
+  material.yield_strain = reader.number("yield_strain", yield_strain_range_of(material.plastic));
+  material.flow_rate_per_s = reader.number("flow_rate_per_s", flow_rate_range_per_s);
+  return material;
+}
+
+void add_material_fields(const Material& material, Json& json) {
+  json["name"] = material.name;
+  json["source"] = material.source;
+  json["youngs_modulus_pa"] = number_to_json(material.youngs_modulus_pa);
+  json["poissons_ratio"] = number_to_json(material.poissons_ratio);
+  json["density_kg_per_m3"] = number_to_json(material.density_kg_per_m3);
+  json["damping_ratio"] = number_to_json(material.damping_ratio);
+  json["plastic"] = material.plastic;
+  json["yield_strain"] = number_to_json(material.yield_strain);
+  json["flow_rate_per_s"] = number_to_json(material.flow_rate_per_s);
+}
+
+Tool read_tool(FieldReader& reader) {
+  Tool tool;
+  tool.kind = reader.choice<ToolKind>("kind", {{"point", ToolKind::point}, {"sphere", ToolKind::sphere}});
+  tool.action = reader.choice<ToolAction>("action", {{"push", ToolAction::push}, {"pull", ToolAction::pull}});
+  tool.radius_m = reader.length_m("radius_mm", tool_radius_range_m);
+  tool.iterations = reader.integer("iterations", tool_iterations_range);
+  return tool;
+}
+
+void add_tool(const Tool& tool, Json& json) {
+  json["kind"] = tool.kind == ToolKind::point ? "point" : "sphere";
+  json["action"] = tool.action == ToolAction::push ? "push" : "pull";
+  json["radius_mm"] = length_to_json(tool.radius_m);
+  json["iterations"] = tool.iterations;
+}
+
+Sculpting read_sculpting(FieldReader& reader) {
+  Sculpting sculpting;
+  sculpting.damping_per_s = reader.number("damping_per_s", sculpting_damping_range_per_s);
+  sculpting.gravity_m_per_s2 =
+      reader.vector("gravity_m_per_s2", {-gravity_limit_m_per_s2, gravity_limit_m_per_s2});
+  sculpting.force_scale = reader.number("force_scale", force_scale_range);
+  if (sculpting.gravity_m_per_s2.norm() > gravity_limit_m_per_s2) {
+    reader.refuse("gravity_m_per_s2",
+                  "must be no longer than " + std::to_string(static_cast<int>(gravity_limit_m_per_s2)));
+  }
+  return sculpting;
+}
+
+void add_sculpting(const Sculpting& sculpting, Json& json) {
+  json["damping_per_s"] = number_to_json(sculpting.damping_per_s);
+  json["gravity_m_per_s2"] = vector_to_json(sculpting.gravity_m_per_s2);
+  json["force_scale"] = number_to_json(sculpting.force_scale);
+}
+
+}  // namespace spoonbill

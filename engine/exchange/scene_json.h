@@ -1,0 +1,36 @@
+// The parts of a scene as JSON fields, shared by documents, material files and commands. Each read_ function
+// takes the fields it names from the reader, which keeps the first problem; each add_ function is its
+// inverse.
+#pragma once
+
+#include <optional>
+
+#include "engine/exchange/field_reader.h"
+#include "engine/exchange/json.h"
+#include "engine/simulation/scene.h"
+
+namespace spoonbill {
+
+FixingPlane read_fixing_plane(FieldReader& reader);
+void add_fixing_plane(const FixingPlane& plane, Json& json);
+
+LatticeRequest read_lattice_request(FieldReader& reader);
+void add_lattice_request(const LatticeRequest& lattice, Json& json);
+
+Material read_material_fields(FieldReader& reader);
+void add_material_fields(const Material& material, Json& json);
+
+Tool read_tool(FieldReader& reader);
+void add_tool(const Tool& tool, Json& json);
+
+Sculpting read_sculpting(FieldReader& reader);
+void add_sculpting(const Sculpting& sculpting, Json& json);
+
+// Nothing after a problem: a surface has no harmless value.
+std::optional<Surface> read_surface(FieldReader& reader);
+Json surface_to_json(const Surface& surface);
+
+Json position_to_json(const Vector3& position_m);
+Json vector_to_json(const Vector3& vector);
+
+}  // namespace spoonbill

@@ -1,0 +1,387 @@
+#include "engine/material/lattice_kernels.h"
+
+namespace spoonbill::SPOONBILL_KERNELS {
+namespace {
+
+constexpr int block = lattice_block;
+constexpr float tiny = 1e-30f;
+
+struct BlockForces {
+  alignas(64) float x[block], y[block], z[block];
+};
+
+inline float min_of(float a, float b) { return a < b ? a : b; }
+inline float max_of(float a, float b) { return a > b ? a : b; }
+
+// Each spring pulls its two ends: the near end first, then the far one, so that overlapping offsets cannot clash.
+inline void scatter(const BlockForces& force, float* __restrict f_x, float* __restrict f_y, float* __restrict f_z,
+                    int start, int offset) {
+  for (int l = 0; l < block; ++l) f_x[start + l] += force.x[l];
+  for (int l = 0; l < block; ++l) f_y[start + l] += force.y[l];
+  for (int l = 0; l < block; ++l) f_z[start + l] += force.z[l];
+  for (int l = 0; l < block; ++l) f_x[start + offset + l] -= force.x[l];
+  for (int l = 0; l < block; ++l) f_y[start + offset + l] -= force.y[l];
+  for (int l = 0; l < block; ++l) f_z[start + offset + l] -= force.z[l];
+}
+
+void clear_forces(const LatticeView& view) {
+  float* const forces[3] = {view.fx, view.fy, view.fz};
+  for (float* f : forces) {
+    for (int i = 0; i < view.padded_count; ++i) f[i] = 0.0f;
+  }
+}
+
+// The extension is a difference of squares over a sum, so that a small one keeps all its digits.
+void spring_block(const LatticeView& view, const SpringArrays& s, int start, float tau, BlockForces& force) {
+  const int o = s.offset;
+  const float *dx = view.dx + start, *dy = view.dy + start, *dz = view.dz + start;
+  const float *vx = view.vx + start, *vy = view.vy + start, *vz = view.vz + start;
+  const float *rx = s.rest_x + start, *ry = s.rest_y + start, *rz = s.rest_z + start;
+  const float *k = s.stiffness + start, *rest = s.rest_length + start, *q = s.square_difference + start;
+  for (int l = 0; l < block; ++l) {
+    const float ex = dx[l + o] - dx[l], ey = dy[l + o] - dy[l], ez = dz[l + o] - dz[l];
+    const float ax = rx[l] + ex, ay = ry[l] + ey, az = rz[l] + ez;
+    const float length = __builtin_sqrtf(ax * ax + ay * ay + az * az + tiny);
+    const float squares = 2.0f * (rx[l] * ex + ry[l] * ey + rz[l] * ez) + (ex * ex + ey * ey + ez * ez) + q[l];
+    const float extension = squares / (length + rest[l]);
+    const float inverse = 1.0f / length;
+    const float rate = ((vx[l + o] - vx[l]) * ax + (vy[l + o] - vy[l]) * ay + (vz[l + o] - vz[l]) * az) * inverse;
+    const float scale = k[l] * (extension + tau * rate) * inverse;
+    force.x[l] = scale * ax;
+    force.y[l] = scale * ay;
+    force.z[l] = scale * az;
+  }
+}
+
+void spring_forces(const LatticeView& view, float tau) {
+  BlockForces force;
+  for (const SpringArrays& s : view.springs) {
+    for (int start = 0; start < view.padded_count; start += block) {
+      spring_block(view, s, start, tau, force);
+      scatter(force, view.fx, view.fy, view.fz, start, s.offset);
+    }
+  }
+}
+
+struct Vector {
+  float x, y, z;
+};
+inline Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vector cross(Vector a, Vector b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline float dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+// Twelve times the gradient of a trilinear cell's volume by its corners 1..7, for corner 0 at the origin (corner
+// 0's own is minus their sum). Each quad face a, b, c, d, seen from outside counter-clockwise, adds the mean of
+// its two triangulations: (a.(b x c) + a.(c x d) + a.(b x d) + b.(c x d)) / 12. Corner bits: 1 = k, 2 = j, 4 = i.
+struct Gradient {
+  Vector g[8];
+};
+inline void add_far_face(const Vector* p, Vector* g, int a, int b, int c, int d) {
+  const Vector ab = cross(p[a], p[b]), bc = cross(p[b], p[c]), cd = cross(p[c], p[d]), da = cross(p[d], p[a]);
+  const Vector ac = cross(p[a], p[c]), bd = cross(p[b], p[d]);
+  g[a] = g[a] + bc + cd + bd;
+  g[b] = g[b] + cd + da - ac;
+  g[c] = g[c] + da + ab - bd;
+  g[d] = g[d] + ab + bc + ac;
+}
+inline void add_near_face(const Vector* p, Vector* g, int b, int c, int d) {
+  const Vector bc = cross(p[b], p[c]), cd = cross(p[c], p[d]), bd = cross(p[b], p[d]);
+  g[b] = g[b] + cd;
+  g[c] = g[c] - bd;
+  g[d] = g[d] + bc;
+}
+inline Gradient volume_gradient(const Vector* p) {
+  Gradient result;
+  Vector* g = result.g;
+  for (int c = 0; c < 8; ++c) g[c] = {0.0f, 0.0f, 0.0f};
+  add_near_face(p, g, 1, 3, 2);
+  add_near_face(p, g, 2, 6, 4);
+  add_near_face(p, g, 4, 5, 1);
+  add_far_face(p, g, 4, 6, 7, 5);
+  add_far_face(p, g, 2, 3, 7, 6);
+  add_far_face(p, g, 1, 5, 7, 3);
+  g[0] = Vector{0.0f, 0.0f, 0.0f} - (g[1] + g[2] + g[3] + g[4] + g[5] + g[6] + g[7]);
+  return result;
+}
+
+// The corners of the cell at node n relative to its first.
+inline void cell_corners(const LatticeView& view, int n, Vector* p) {
+  p[0] = {0.0f, 0.0f, 0.0f};
+  for (int c = 1; c < 8; ++c) {
+    const SpringArrays& s = view.springs[view.corner_direction[c]];
+    const int m = n + view.corner_offset[c];
+    p[c] = {s.rest_x[n] + (view.dx[m] - view.dx[n]), s.rest_y[n] + (view.dy[m] - view.dy[n]),
+            s.rest_z[n] + (view.dz[m] - view.dz[n])};
+  }
+}
+
+// Corner-major results of one block of cells, scattered afterwards.
+struct BlockCells {
+  alignas(64) float x[8][block], y[8][block], z[8][block];
+  alignas(64) float dilation[block];
+};
+
+void volume_block(const LatticeView& view, int start, float tau, BlockCells& out) {
+  for (int l = 0; l < block; ++l) {
+    const int n = start + l;
+    Vector p[8];
+    cell_corners(view, n, p);
+    const Gradient gradient = volume_gradient(p);
+    float volume = 0.0f, rate = 0.0f;
+    for (int c = 1; c < 8; ++c) volume += dot(p[c], gradient.g[c]);
+    for (int c = 0; c < 8; ++c) {
+      const int m = n + view.corner_offset[c];
+      rate += dot({view.vx[m], view.vy[m], view.vz[m]}, gradient.g[c]);
+    }
+    const float dilation = volume * (1.0f / 36.0f) * view.inverse_volume[n];
+    const float strain = dilation - 1.0f + tau * (rate * (1.0f / 12.0f) * view.inverse_volume[n]);
+    const float scale = -view.bulk_stiffness[n] * view.inverse_volume[n] * strain * (1.0f / 12.0f);
+    for (int c = 0; c < 8; ++c) {
+      out.x[c][l] = scale * gradient.g[c].x;
+      out.y[c][l] = scale * gradient.g[c].y;
+      out.z[c][l] = scale * gradient.g[c].z;
+    }
+    out.dilation[l] = dilation * view.has_cell[n];
+  }
+}
+
+void volume_forces(const LatticeView& view, float tau) {
+  BlockCells cells;
+  for (int i = 0; i < view.padded_count; ++i) view.node_dilation[i] = 0.0f;
+  for (int start = 0; start < view.padded_count; start += block) {
+    volume_block(view, start, tau, cells);
+    for (int c = 0; c < 8; ++c) {
+      float* __restrict fx = view.fx + start + view.corner_offset[c];
+      float* __restrict fy = view.fy + start + view.corner_offset[c];
+      float* __restrict fz = view.fz + start + view.corner_offset[c];
+      float* __restrict j = view.node_dilation + start + view.corner_offset[c];
+      for (int l = 0; l < block; ++l) fx[l] += cells.x[c][l];
+      for (int l = 0; l < block; ++l) fy[l] += cells.y[c][l];
+      for (int l = 0; l < block; ++l) fz[l] += cells.z[c][l];
+      for (int l = 0; l < block; ++l) j[l] += cells.dilation[l];
+    }
+  }
+  for (int i = 0; i < view.padded_count; ++i) view.node_dilation[i] *= view.inverse_cell_count[i];
+}
+
+void kick(const LatticeView& view, float h, float decay, float gx, float gy, float gz) {
+  const float gravity[3] = {gx, gy, gz};
+  float* velocity[3] = {view.vx, view.vy, view.vz};
+  const float* force[3] = {view.fx, view.fy, view.fz};
+  for (int axis = 0; axis < 3; ++axis) {
+    float* __restrict v = velocity[axis];
+    const float* __restrict f = force[axis];
+    const float g = gravity[axis];
+    for (int i = 0; i < view.padded_count; ++i) {
+      v[i] = (v[i] + h * (f[i] * view.inverse_mass[i] + g)) * decay * view.free_node[i];
+    }
+  }
+}
+
+// Limits one block's velocities and returns the squared ratios of speed to cap.
+inline void cap_block(float* __restrict vx, float* __restrict vy, float* __restrict vz, const float* __restrict free,
+                      float* __restrict lanes, float inverse_square, float mx, float my, float mz) {
+  for (int l = 0; l < 16; ++l) {
+    const float rx = vx[l] - mx, ry = vy[l] - my, rz = vz[l] - mz;
+    const float ratio = (rx * rx + ry * ry + rz * rz) * inverse_square * free[l];
+    const float keep = 1.0f / __builtin_sqrtf(max_of(ratio, 1.0f));
+    // Exactly 1 below the cap, where the velocity must keep its bits.
+    vx[l] = keep < 1.0f ? mx + rx * keep : vx[l];
+    vy[l] = keep < 1.0f ? my + ry * keep : vy[l];
+    vz[l] = keep < 1.0f ? mz + rz * keep : vz[l];
+    lanes[l] = max_of(lanes[l], ratio);
+  }
+}
+
+float drift(const LatticeView& view, float h, float cap, float mx, float my, float mz) {
+  alignas(64) float lanes[16] = {};
+  const float inverse_square = 1.0f / (cap * cap);
+  for (int start = 0; start < view.padded_count; start += 16) {
+    cap_block(view.vx + start, view.vy + start, view.vz + start, view.free_node + start, lanes, inverse_square, mx, my,
+              mz);
+  }
+  float* const displacement[3] = {view.dx, view.dy, view.dz};
+  const float* const velocity[3] = {view.vx, view.vy, view.vz};
+  for (int axis = 0; axis < 3; ++axis) {
+    float* __restrict d = displacement[axis];
+    const float* __restrict v = velocity[axis];
+    for (int i = 0; i < view.padded_count; ++i) d[i] += h * v[i];
+  }
+  float largest = 0.0f;
+  for (float lane : lanes) largest = max_of(largest, lane);
+  return largest;
+}
+
+void momentum(const LatticeView& view, const float* mass, float sum[4]) {
+  float x[16] = {}, y[16] = {}, z[16] = {}, m[16] = {};
+  for (int start = 0; start < view.padded_count; start += 16) {
+    for (int l = 0; l < 16; ++l) {
+      const int i = start + l;
+      x[l] += mass[i] * view.vx[i];
+      y[l] += mass[i] * view.vy[i];
+      z[l] += mass[i] * view.vz[i];
+      m[l] += mass[i];
+    }
+  }
+  for (int l = 1; l < 16; ++l) {
+    x[0] += x[l];
+    y[0] += y[l];
+    z[0] += z[l];
+    m[0] += m[l];
+  }
+  sum[0] = x[0];
+  sum[1] = y[0];
+  sum[2] = z[0];
+  sum[3] = m[0];
+}
+
+// Two Newton steps from the tangent at 1: within 1e-4 for J from 0.5 to 2, exact at 1.
+inline float cube_root(float j) {
+  const float a = min_of(max_of(j, 0.125f), 8.0f);
+  float y = 1.0f + (a - 1.0f) * (1.0f / 3.0f);
+  y = y - (y * y * y - a) / (3.0f * y * y);
+  y = y - (y * y * y - a) / (3.0f * y * y);
+  return y;
+}
+
+// The present length of each spring of a block.
+inline void length_block(const LatticeView& view, const SpringArrays& s, int start, float* __restrict length) {
+  const int o = s.offset;
+  const float *dx = view.dx + start, *dy = view.dy + start, *dz = view.dz + start;
+  const float *rx = s.rest_x + start, *ry = s.rest_y + start, *rz = s.rest_z + start;
+  for (int l = 0; l < block; ++l) {
+    const float ax = rx[l] + (dx[l + o] - dx[l]), ay = ry[l] + (dy[l + o] - dy[l]), az = rz[l] + (dz[l + o] - dz[l]);
+    length[l] = __builtin_sqrtf(ax * ax + ay * ay + az * az + tiny);
+  }
+}
+
+inline void flow_block(const float* __restrict length, const float* __restrict root, const float* __restrict root_far,
+                       const float* __restrict stiffness, const float* __restrict first, float* __restrict rest_length,
+                       float* __restrict square_difference, float yield, float rate_step) {
+  for (int l = 0; l < block; ++l) {
+    const float rest = rest_length[l];
+    const float strain = length[l] / (rest * (0.5f * (root[l] + root_far[l]))) - 1.0f;
+    const float beyond = max_of(strain - yield, 0.0f) + min_of(strain + yield, 0.0f);
+    const float limited = min_of(max_of(beyond * rate_step, -0.1f), 0.1f) * rest;
+    const float next = min_of(max_of(rest + limited, 0.25f * first[l]), 4.0f * first[l]);
+    const float change = stiffness[l] > 0.0f ? next - rest : 0.0f;
+    square_difference[l] -= change * (2.0f * rest + change);
+    rest_length[l] = rest + change;
+  }
+}
+
+void flow(const LatticeView& view, float yield, float rate_step) {
+  float* __restrict root = view.fx;
+  const float* __restrict dilation = view.node_dilation;
+  for (int i = 0; i < view.padded_count; ++i) root[i] = cube_root(dilation[i]);
+  alignas(64) float length[block];
+  for (const SpringArrays& s : view.springs) {
+    for (int start = 0; start < view.padded_count; start += block) {
+      length_block(view, s, start, length);
+      flow_block(length, root + start, root + start + s.offset, s.stiffness + start, s.first_rest_length + start,
+                 s.rest_length + start, s.square_difference + start, yield, rate_step);
+    }
+  }
+}
+
+void stiffness_product_springs(const LatticeView& view) {
+  BlockForces force;
+  for (const SpringArrays& s : view.springs) {
+    const int o = s.offset;
+    for (int start = 0; start < view.padded_count; start += block) {
+      for (int l = 0; l < block; ++l) {
+        const int i = start + l;
+        const float ax = s.rest_x[i] + (view.dx[i + o] - view.dx[i]);
+        const float ay = s.rest_y[i] + (view.dy[i + o] - view.dy[i]);
+        const float az = s.rest_z[i] + (view.dz[i + o] - view.dz[i]);
+        const float wx = view.power_x[i + o] - view.power_x[i];
+        const float wy = view.power_y[i + o] - view.power_y[i];
+        const float wz = view.power_z[i + o] - view.power_z[i];
+        const float scale = s.stiffness[i] * (wx * ax + wy * ay + wz * az) / (ax * ax + ay * ay + az * az + tiny);
+        force.x[l] = -scale * ax;
+        force.y[l] = -scale * ay;
+        force.z[l] = -scale * az;
+      }
+      scatter(force, view.fx, view.fy, view.fz, start, o);
+    }
+  }
+}
+
+void stiffness_product_volume(const LatticeView& view) {
+  BlockCells cells;
+  for (int start = 0; start < view.padded_count; start += block) {
+    for (int l = 0; l < block; ++l) {
+      const int n = start + l;
+      Vector p[8];
+      cell_corners(view, n, p);
+      const Gradient gradient = volume_gradient(p);
+      float rate = 0.0f;
+      for (int c = 0; c < 8; ++c) {
+        const int m = n + view.corner_offset[c];
+        rate += dot({view.power_x[m], view.power_y[m], view.power_z[m]}, gradient.g[c]);
+      }
+      const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
+      const float scale = view.bulk_stiffness[n] * inverse * inverse * rate;
+      for (int c = 0; c < 8; ++c) {
+        cells.x[c][l] = scale * gradient.g[c].x;
+        cells.y[c][l] = scale * gradient.g[c].y;
+        cells.z[c][l] = scale * gradient.g[c].z;
+      }
+    }
+    for (int c = 0; c < 8; ++c) {
+      const int to = start + view.corner_offset[c];
+      for (int l = 0; l < block; ++l) view.fx[to + l] += cells.x[c][l];
+      for (int l = 0; l < block; ++l) view.fy[to + l] += cells.y[c][l];
+      for (int l = 0; l < block; ++l) view.fz[to + l] += cells.z[c][l];
+    }
+  }
+}
+
+inline float mass_norm(const float* mass, const float* x, const float* y, const float* z, int count) {
+  alignas(64) float lanes[16] = {};
+  for (int start = 0; start < count; start += 16) {
+    for (int l = 0; l < 16; ++l) {
+      const int i = start + l;
+      lanes[l] += mass[i] * (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+    }
+  }
+  for (int l = 1; l < 16; ++l) lanes[0] += lanes[l];
+  return __builtin_sqrtf(lanes[0]);
+}
+
+inline void take_power_step(float* __restrict w, const float* __restrict f, const float* __restrict noise,
+                            const float* __restrict free, float scale, float sign, int count) {
+  for (int i = 0; i < count; ++i) w[i] = (f[i] * scale + sign * noise[i]) * free[i];
+}
+
+inline void divide_by_mass(float* __restrict f, const float* __restrict inverse_mass, int count) {
+  for (int i = 0; i < count; ++i) f[i] *= inverse_mass[i];
+}
+
+float power_step(const LatticeView& view, const float* mass) {
+  clear_forces(view);
+  stiffness_product_springs(view);
+  stiffness_product_volume(view);
+  const int count = view.padded_count;
+  const float before = mass_norm(mass, view.power_x, view.power_y, view.power_z, count);
+  divide_by_mass(view.fx, view.inverse_mass, count);
+  divide_by_mass(view.fy, view.inverse_mass, count);
+  divide_by_mass(view.fz, view.inverse_mass, count);
+  const float after = mass_norm(mass, view.fx, view.fy, view.fz, count);
+  const float scale = after > 0.0f ? 1.0f / after : 0.0f;
+  take_power_step(view.power_x, view.fx, view.power_noise, view.free_node, scale, 1.0f, count);
+  take_power_step(view.power_y, view.fy, view.power_noise, view.free_node, scale, -1.0f, count);
+  take_power_step(view.power_z, view.fz, view.power_noise, view.free_node, scale, 1.0f, count);
+  return before > 0.0f ? after / before : 0.0f;
+}
+
+}  // namespace
+
+const LatticeKernels lattice_kernels = {
+    clear_forces, spring_forces, volume_forces, kick, drift, momentum, flow, power_step,
+};
+
+}  // namespace spoonbill::SPOONBILL_KERNELS

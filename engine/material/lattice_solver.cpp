@@ -1,0 +1,95 @@
+#include "engine/material/lattice_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spoonbill {
+namespace {
+
+// Of the strain beyond yield that one tick may take away: the rest of it stays for the next.
+constexpr double largest_flow_share = 0.5;
+
+struct Substeps {
+  int count;
+  double h;
+  bool slowed;
+};
+
+Substeps choose_substeps(const SpringLattice& lattice, double step_s) {
+  const double omega = lattice.fastest_frequency();
+  const double limit = stability_share * stable_step_s(omega, 0.5 * lattice.damping_time_s() * omega);
+  const double wanted = std::ceil(step_s / limit);
+  if (!(wanted <= substep_ceiling)) return {substep_ceiling, limit, true};
+  const int count = std::max(1, static_cast<int>(wanted));
+  return {count, step_s / count, false};
+}
+
+void apply_node_forces(const SpringLattice& lattice, const LatticeView& view) {
+  if (!lattice.has_applied_force()) return;
+  for (int i = 0; i < view.padded_count; ++i) {
+    view.fx[i] += lattice.applied_force(0)[i];
+    view.fy[i] += lattice.applied_force(1)[i];
+    view.fz[i] += lattice.applied_force(2)[i];
+  }
+}
+
+// One step of the power iteration a tick follows the fastest frequency as the lattice deforms.
+void follow_fastest_frequency(SpringLattice& lattice, const LatticeView& view) {
+  const float square = lattice.kernels().power_step(view, lattice.free_mass());
+  if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_frequency(std::sqrt(square));
+}
+
+// Returns whether a node met the speed cap.
+bool substep(SpringLattice& lattice, const LatticeView& view, const RelaxSettings& settings, float h, float fraction,
+             ContactConstraints& contacts) {
+  const LatticeKernels& kernels = lattice.kernels();
+  kernels.clear_forces(view);
+  kernels.spring_forces(view, lattice.damping_time_s());
+  kernels.volume_forces(view, lattice.damping_time_s());
+  apply_node_forces(lattice, view);
+  const float decay = 1.0f / (1.0f + h * static_cast<float>(settings.damping_per_s));
+  const Vector3& g = settings.gravity_m_per_s2;
+  kernels.kick(view, h, decay, static_cast<float>(g.x()), static_cast<float>(g.y()), static_cast<float>(g.z()));
+  const float cap = static_cast<float>(speed_cap_cells) * lattice.cell_size_m() / h;
+  contacts.solve(view, h, fraction, 0.5f * cap);
+  float sum[4];
+  kernels.momentum(view, lattice.free_mass(), sum);
+  const float inverse = sum[3] > 0.0f ? 1.0f / sum[3] : 0.0f;
+  return kernels.drift(view, h, cap, sum[0] * inverse, sum[1] * inverse, sum[2] * inverse) > 1.0f;
+}
+
+}  // namespace
+
+double stable_step_s(double angular_frequency, double damping_ratio) {
+  return 2.0 / angular_frequency * (std::sqrt(1.0 + damping_ratio * damping_ratio) - damping_ratio);
+}
+
+double felt_modulus_limit_pa(double unit_frequency, double damping_ratio) {
+  const double root = felt_stability_share * stable_step_s(unit_frequency, damping_ratio) / relaxation_step_s;
+  return root * root;
+}
+
+RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings, const ToolMotion& motion,
+                  ContactConstraints& contacts) {
+  const LatticeView view = lattice.view();
+  follow_fastest_frequency(lattice, view);
+  const Substeps substeps = choose_substeps(lattice, settings.step_s);
+  RelaxReport report;
+  report.substeps = substeps.count;
+  report.time_slowed = substeps.slowed;
+  report.material_time_s = settings.iterations * substeps.count * substeps.h;
+  contacts.begin(motion, report.material_time_s);
+  const float h = static_cast<float>(substeps.h);
+  const int total = settings.iterations * substeps.count;
+  for (int s = 0; s < total; ++s) {
+    const float fraction = static_cast<float>(s + 1) / static_cast<float>(total);
+    report.speed_capped |= substep(lattice, view, settings, h, fraction, contacts);
+  }
+  if (lattice.plastic()) {
+    const double share = std::min(largest_flow_share, lattice.flow_rate_per_s() * report.material_time_s);
+    lattice.kernels().flow(view, lattice.yield_strain(), static_cast<float>(share));
+  }
+  return report;
+}
+
+}  // namespace spoonbill

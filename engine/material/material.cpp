@@ -1,0 +1,26 @@
+#include "engine/material/material.h"
+
+namespace spoonbill {
+
+Status check_material(const Material& material) {
+  const struct {
+    const char* field;
+    double value;
+    Range<double> range;
+  } checks[] = {
+      {"youngs_modulus_pa", material.youngs_modulus_pa, youngs_modulus_range_pa},
+      {"poissons_ratio", material.poissons_ratio, poissons_ratio_range},
+      {"density_kg_per_m3", material.density_kg_per_m3, density_range_kg_per_m3},
+      {"damping_ratio", material.damping_ratio, damping_ratio_range},
+      {"yield_strain", material.yield_strain, yield_strain_range_of(material.plastic)},
+      {"flow_rate_per_s", material.flow_rate_per_s, flow_rate_range_per_s},
+  };
+  for (const auto& check : checks) {
+    if (Status status = check_range(check.field, check.value, check.range); !status.ok()) {
+      return Error{"material " + material.name + ": " + status.error().message};
+    }
+  }
+  return {};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,40 @@
+// A material as the designer names it. Plain data; SI units.
+#pragma once
+
+#include <string>
+
+#include "engine/range.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+struct Material {
+  std::string name;    // "modelling-clay"
+  std::string source;  // where the values come from
+  double youngs_modulus_pa = 0.0;
+  double poissons_ratio = 0.0;  // 0.25 to 0.49 in the spring lattice
+  double density_kg_per_m3 = 0.0;
+  // Voigt damping along each spring: the ratio z of the lattice's fastest mode.
+  double damping_ratio = 0.0;
+  bool plastic = false;
+  double yield_strain = 0.0;     // deviatoric strain of a spring from which its rest length flows
+  double flow_rate_per_s = 0.0;  // of the rest length, by the strain beyond yield
+};
+
+// From the softest gel to beyond diamond, from an aerogel to beyond osmium: every solver stays finite inside.
+inline constexpr Range<double> youngs_modulus_range_pa{1.0, 1e12};
+inline constexpr Range<double> poissons_ratio_range{0.25, 0.49};
+inline constexpr Range<double> density_range_kg_per_m3{1.0, 30000.0};
+inline constexpr Range<double> damping_ratio_range{0.0, 2.0};
+inline constexpr Range<double> yield_strain_range{1e-4, 0.5};         // of plastic materials
+inline constexpr Range<double> elastic_yield_strain_range{0.0, 0.5};  // kept but unused where nothing flows
+inline constexpr Range<double> flow_rate_range_per_s{0.0, 1000.0};
+
+inline constexpr Range<double> yield_strain_range_of(bool plastic) {
+  return plastic ? yield_strain_range : elastic_yield_strain_range;
+}
+
+// The ranges within which every solver stays finite; the message names the field, the value and the range.
+Status check_material(const Material& material);
+
+}  // namespace spoonbill

@@ -1,0 +1,293 @@
+#include "engine/material/spring_lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "engine/material/cell_springs.h"
+
+namespace spoonbill {
+namespace {
+
+// The 13 directions of a regular lattice as steps in i, j, k, each with a positive offset in memory.
+constexpr int direction_step[lattice_direction_count][3] = {
+    {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 1, 1},  {0, 1, -1}, {1, 0, 1}, {1, 0, -1},
+    {1, 1, 0}, {1, -1, 0}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1},
+};
+
+int direction_of(int di, int dj, int dk) {
+  for (int d = 0; d < lattice_direction_count; ++d) {
+    if (direction_step[d][0] == di && direction_step[d][1] == dj && direction_step[d][2] == dk) return d;
+  }
+  return -1;
+}
+
+// A fixed, well-mixed sequence (Knuth's multiplicative hash), so that no mode is absent from it.
+float mixed(std::uint32_t i) {
+  const std::uint32_t bits = (i * 2654435761u) ^ ((i * 2654435761u) >> 15);
+  return static_cast<float>(bits & 0xffffu) / 32768.0f - 1.0f;
+}
+
+const LatticeKernels& kernels_for(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::avx512:
+      return kernels_avx512::lattice_kernels;
+    case InstructionSet::avx2:
+      return kernels_avx2::lattice_kernels;
+    case InstructionSet::baseline:
+      break;
+  }
+  return kernels_baseline::lattice_kernels;
+}
+
+constexpr int frequency_steps = 300;
+constexpr float noise_share = 1e-4f;
+
+}  // namespace
+
+Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const Material& material,
+                                          double youngs_modulus_pa, InstructionSet set) {
+  if (const Status status = check_material(material); !status.ok()) return status.error();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (mesh.count[axis] < 2) return Error{"lattice: node counts must be at least 2 in each direction"};
+  }
+  if (const Status status = check_cells(mesh); !status.ok()) return status.error();
+  SpringLattice lattice;
+  lattice.kernels_ = &kernels_for(set);
+  lattice.lay_out(mesh);
+  lattice.assemble(material, youngs_modulus_pa);
+  lattice.hold(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
+  lattice.measure_fastest_frequency();
+  lattice.damping_time_ = static_cast<float>(2.0 * material.damping_ratio / lattice.fastest_frequency_);
+  lattice.plastic_ = material.plastic;
+  lattice.yield_strain_ = static_cast<float>(material.yield_strain);
+  lattice.flow_rate_ = static_cast<float>(material.flow_rate_per_s);
+  return lattice;
+}
+
+void SpringLattice::lay_out(const LatticeMesh& mesh) {
+  mesh_ = mesh;
+  cell_size_ = static_cast<float>(mesh.mean_edge());
+  const int row = mesh.count[2], layer = mesh.count[1] * mesh.count[2];
+  int reach = 0;
+  for (int d = 0; d < lattice_direction_count; ++d) {
+    offset_[d] = direction_step[d][0] * layer + direction_step[d][1] * row + direction_step[d][2];
+    reach = std::max(reach, offset_[d]);
+  }
+  padded_count_ = (mesh.node_count() + lattice_block - 1) / lattice_block * lattice_block;
+  const std::size_t size = static_cast<std::size_t>(padded_count_ + reach + lattice_block);
+  for (Floats* a : {&dx_, &dy_, &dz_, &vx_, &vy_, &vz_, &fx_, &fy_, &fz_, &node_mass_, &free_mass_, &inverse_mass_,
+                    &free_node_, &applied_[0], &applied_[1], &applied_[2], &bulk_, &inverse_volume_, &has_cell_,
+                    &inverse_cell_count_, &node_dilation_, &power_x_, &power_y_, &power_z_, &power_noise_}) {
+    a->assign(size, 0.0f);
+  }
+  std::fill(inverse_volume_.begin(), inverse_volume_.end(), 1.0f);
+  for (int d = 0; d < lattice_direction_count; ++d) {
+    for (Floats* a : {&rest_y_[d], &rest_z_[d], &stiffness_[d], &square_difference_[d]}) a->assign(size, 0.0f);
+    // Springs that do not exist have a length all the same, so that nothing divides by zero.
+    for (Floats* a : {&rest_x_[d], &rest_length_[d], &first_rest_length_[d]}) a->assign(size, cell_size_);
+  }
+}
+
+void SpringLattice::assemble(const Material& material, double youngs_modulus_pa) {
+  youngs_modulus_ = youngs_modulus_pa;
+  const double shear = shear_modulus(youngs_modulus_pa, material.poissons_ratio);
+  const double bulk = bulk_stiffness(youngs_modulus_pa, material.poissons_ratio);
+  const std::size_t nodes = static_cast<std::size_t>(mesh_.node_count());
+  std::vector<double> mass(nodes, 0.0), cells(nodes, 0.0);
+  std::vector<std::vector<double>> stiffness(lattice_direction_count, std::vector<double>(nodes, 0.0));
+  rest_volume_ = 0.0;
+  report_ = {};
+  report_.worst_jacobian = 1.0;
+  for (int i = 0; i + 1 < mesh_.count[0]; ++i) {
+    for (int j = 0; j + 1 < mesh_.count[1]; ++j) {
+      for (int k = 0; k + 1 < mesh_.count[2]; ++k) {
+        const CellCorners corners = mesh_.cell(i, j, k);
+        const CellSprings springs = cell_springs(corners, shear);
+        const int first = mesh_.index(i, j, k);
+        for (int s = 0; s < cell_spring_count; ++s) {
+          const int low = cell_spring_corners[s][0], high = cell_spring_corners[s][1];
+          int step[3];
+          for (int axis = 0; axis < 3; ++axis) step[axis] = (high >> (2 - axis) & 1) - (low >> (2 - axis) & 1);
+          int from = mesh_.index(i + (low >> 2 & 1), j + (low >> 1 & 1), k + (low & 1));
+          int d = direction_of(step[0], step[1], step[2]);
+          if (d < 0) {
+            d = direction_of(-step[0], -step[1], -step[2]);
+            from = mesh_.index(i + (high >> 2 & 1), j + (high >> 1 & 1), k + (high & 1));
+          }
+          stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(from)] += springs.stiffness_n_per_m[s];
+        }
+        for (int c = 0; c < 8; ++c) {
+          const auto node = static_cast<std::size_t>(mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1)));
+          mass[node] += material.density_kg_per_m3 * springs.volume_m3 / 8.0;
+          cells[node] += 1.0;
+        }
+        bulk_[first] = static_cast<float>(bulk * springs.volume_m3);
+        inverse_volume_[first] = static_cast<float>(1.0 / springs.volume_m3);
+        has_cell_[first] = 1.0f;
+        rest_volume_ += springs.volume_m3;
+        const AchievedElasticity achieved = achieved_elasticity(corners, springs, bulk);
+        for (int axis = 0; axis < 3; ++axis) {
+          report_.youngs_modulus_ratio[axis] +=
+              springs.volume_m3 * achieved.youngs_modulus_pa[axis] / youngs_modulus_pa;
+          report_.poissons_ratio[axis] += springs.volume_m3 * achieved.poissons_ratio[axis];
+        }
+        report_.worst_cell_misfit = std::max(report_.worst_cell_misfit, springs.misfit);
+        report_.worst_jacobian = std::min(report_.worst_jacobian, smallest_jacobian_ratio(corners));
+      }
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    report_.youngs_modulus_ratio[axis] /= rest_volume_;
+    report_.poissons_ratio[axis] /= rest_volume_;
+  }
+  total_mass_ = material.density_kg_per_m3 * rest_volume_;
+  for (std::size_t n = 0; n < nodes; ++n) {
+    node_mass_[n] = static_cast<float>(mass[n]);
+    inverse_cell_count_[n] = static_cast<float>(1.0 / cells[n]);
+    power_noise_[n] = noise_share * mixed(static_cast<std::uint32_t>(n) + 1) /
+                      std::sqrt(static_cast<float>(total_mass_));
+  }
+  for (int d = 0; d < lattice_direction_count; ++d) {
+    for (int i = 0; i < mesh_.count[0]; ++i) {
+      for (int j = 0; j < mesh_.count[1]; ++j) {
+        for (int k = 0; k < mesh_.count[2]; ++k) {
+          const int to[3] = {i + direction_step[d][0], j + direction_step[d][1], k + direction_step[d][2]};
+          bool inside = true;
+          for (int axis = 0; axis < 3; ++axis) inside = inside && to[axis] >= 0 && to[axis] < mesh_.count[axis];
+          if (!inside) continue;
+          const int n = mesh_.index(i, j, k);
+          const Vector3 rest = mesh_.nodes[n + offset_[d]] - mesh_.nodes[n];
+          rest_x_[d][n] = static_cast<float>(rest.x());
+          rest_y_[d][n] = static_cast<float>(rest.y());
+          rest_z_[d][n] = static_cast<float>(rest.z());
+          rest_length_[d][n] = static_cast<float>(rest.norm());
+          first_rest_length_[d][n] = rest_length_[d][n];
+          stiffness_[d][n] = static_cast<float>(stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(n)]);
+        }
+      }
+    }
+  }
+}
+
+void SpringLattice::measure_fastest_frequency() {
+  const LatticeView lattice = view();
+  for (int n = 0; n < mesh_.node_count(); ++n) {
+    power_x_[n] = mixed(static_cast<std::uint32_t>(3 * n + 1));
+    power_y_[n] = mixed(static_cast<std::uint32_t>(3 * n + 2));
+    power_z_[n] = mixed(static_cast<std::uint32_t>(3 * n + 3));
+  }
+  float square = 0.0f;
+  for (int step = 0; step < frequency_steps; ++step) square = kernels_->power_step(lattice, node_mass_.data());
+  fastest_frequency_ = std::sqrt(square);
+}
+
+LatticeView SpringLattice::view() {
+  LatticeView v;
+  v.padded_count = padded_count_;
+  v.dx = dx_.data();
+  v.dy = dy_.data();
+  v.dz = dz_.data();
+  v.vx = vx_.data();
+  v.vy = vy_.data();
+  v.vz = vz_.data();
+  v.fx = fx_.data();
+  v.fy = fy_.data();
+  v.fz = fz_.data();
+  v.inverse_mass = inverse_mass_.data();
+  v.free_node = free_node_.data();
+  for (int d = 0; d < lattice_direction_count; ++d) {
+    v.springs[d] = {offset_[d],
+                    rest_x_[d].data(),
+                    rest_y_[d].data(),
+                    rest_z_[d].data(),
+                    stiffness_[d].data(),
+                    rest_length_[d].data(),
+                    square_difference_[d].data(),
+                    first_rest_length_[d].data()};
+  }
+  for (int c = 1; c < 8; ++c) {
+    v.corner_direction[c] = direction_of(c >> 2 & 1, c >> 1 & 1, c & 1);
+    v.corner_offset[c] = offset_[v.corner_direction[c]];
+  }
+  v.bulk_stiffness = bulk_.data();
+  v.inverse_volume = inverse_volume_.data();
+  v.has_cell = has_cell_.data();
+  v.inverse_cell_count = inverse_cell_count_.data();
+  v.node_dilation = node_dilation_.data();
+  v.power_x = power_x_.data();
+  v.power_y = power_y_.data();
+  v.power_z = power_z_.data();
+  v.power_noise = power_noise_.data();
+  return v;
+}
+
+double SpringLattice::volume_m3() const {
+  double volume = 0.0;
+  for (int i = 0; i + 1 < mesh_.count[0]; ++i) {
+    for (int j = 0; j + 1 < mesh_.count[1]; ++j) {
+      for (int k = 0; k + 1 < mesh_.count[2]; ++k) {
+        CellCorners corners;
+        for (int c = 0; c < 8; ++c) {
+          corners[c] = position(mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1)));
+        }
+        volume += cell_volume(corners);
+      }
+    }
+  }
+  return volume;
+}
+
+void SpringLattice::hold(std::span<const std::uint8_t> held) {
+  for (int n = 0; n < mesh_.node_count(); ++n) {
+    const bool free = held[static_cast<std::size_t>(n)] == 0;
+    inverse_mass_[n] = free ? 1.0f / node_mass_[n] : 0.0f;
+    free_mass_[n] = free ? node_mass_[n] : 0.0f;
+    free_node_[n] = free ? 1.0f : 0.0f;
+    if (!free) set_velocity(n, Vector3::Zero());
+  }
+}
+
+void SpringLattice::set_displacement(int node, const Vector3& d) {
+  dx_[node] = static_cast<float>(d.x());
+  dy_[node] = static_cast<float>(d.y());
+  dz_[node] = static_cast<float>(d.z());
+}
+
+void SpringLattice::set_velocity(int node, const Vector3& v) {
+  vx_[node] = static_cast<float>(v.x());
+  vy_[node] = static_cast<float>(v.y());
+  vz_[node] = static_cast<float>(v.z());
+}
+
+void SpringLattice::set_node_force(int node, const Vector3& force_n) {
+  for (int axis = 0; axis < 3; ++axis) applied_[axis][node] = static_cast<float>(force_n[axis]);
+  has_applied_force_ = true;
+}
+
+void SpringLattice::zero_velocities() {
+  for (Floats* a : {&vx_, &vy_, &vz_}) std::fill(a->begin(), a->end(), 0.0f);
+}
+
+std::vector<float> SpringLattice::shape() const {
+  std::vector<float> all;
+  visit_shape([&](const float* data, std::size_t count) { all.insert(all.end(), data, data + count); });
+  return all;
+}
+
+bool SpringLattice::set_shape(std::span<const float> shape) {
+  std::size_t size = 0;
+  visit_shape([&](const float*, std::size_t count) { size += count; });
+  if (size != shape.size()) return false;
+  const float* from = shape.data();
+  const auto take = [&](Floats& to) {
+    std::copy(from, from + to.size(), to.begin());
+    from += to.size();
+  };
+  for (Floats* a : {&dx_, &dy_, &dz_, &vx_, &vy_, &vz_}) take(*a);
+  for (Floats& a : rest_length_) take(a);
+  for (Floats& a : square_difference_) take(a);
+  return true;
+}
+
+}  // namespace spoonbill

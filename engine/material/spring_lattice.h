@@ -1,0 +1,120 @@
+// The spring lattice of one body: masses, springs and volume forces on a LatticeMesh, and their state. One owner;
+// stepped by relax() (lattice_solver.h). Built outside the tick, allocates nothing afterwards.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/aligned_vector.h"
+#include "engine/instruction_set.h"
+#include "engine/material/lattice_kernels.h"
+#include "engine/material/lattice_mesh.h"
+#include "engine/material/material.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+// What a body's lattice achieves of the wanted elasticity, as a mean over its cells by volume.
+struct LatticeReport {
+  double youngs_modulus_ratio[3] = {};  // achieved over wanted, along x, y, z
+  double poissons_ratio[3] = {};
+  double worst_cell_misfit = 0.0;       // see CellSprings::misfit
+  double worst_jacobian = 0.0;          // see smallest_jacobian_ratio()
+};
+
+class SpringLattice {
+ public:
+  // `youngs_modulus_pa` replaces the material's own where sculpting softens it. Refused: fewer than 2 nodes a
+  // direction, folded cells, a material outside its ranges.
+  static Result<SpringLattice> make(const LatticeMesh& mesh, const Material& material, double youngs_modulus_pa,
+                                    InstructionSet set);
+
+  const LatticeMesh& mesh() const { return mesh_; }
+  const LatticeReport& report() const { return report_; }
+  double mass_kg() const { return total_mass_; }
+  double volume_m3() const;  // of the deformed body
+  double rest_volume_m3() const { return rest_volume_; }
+  double youngs_modulus_pa() const { return youngs_modulus_; }
+
+  // The fastest angular frequency, rad/s: measured when built and followed as the lattice deforms.
+  double fastest_frequency() const { return fastest_frequency_; }
+  void set_fastest_frequency(double omega) { fastest_frequency_ = static_cast<float>(omega); }
+  // Voigt damping time of every spring and cell, s.
+  float damping_time_s() const { return damping_time_; }
+  bool plastic() const { return plastic_; }
+  float yield_strain() const { return yield_strain_; }
+  float flow_rate_per_s() const { return flow_rate_; }
+  float cell_size_m() const { return cell_size_; }
+
+  // Held nodes keep their displacement exactly. One byte a node, 1 = held.
+  void hold(std::span<const std::uint8_t> held);
+  bool is_held(int node) const { return inverse_mass_[node] == 0.0f; }
+  float inverse_mass(int node) const { return inverse_mass_[node]; }
+  float mass(int node) const { return node_mass_[node]; }
+
+  // Displacements from the rest shape along one axis, m, one a node.
+  const float* displacements(int axis) const { return (axis == 0 ? dx_ : axis == 1 ? dy_ : dz_).data(); }
+  Vector3 displacement(int node) const { return {dx_[node], dy_[node], dz_[node]}; }
+  Vector3 position(int node) const { return mesh_.nodes[node] + displacement(node); }
+  Vector3 velocity(int node) const { return {vx_[node], vy_[node], vz_[node]}; }
+  void set_displacement(int node, const Vector3& d);
+  void set_velocity(int node, const Vector3& v);
+  // A force on a node that stays until changed, N.
+  void set_node_force(int node, const Vector3& force_n);
+
+  // Views of the state; pointers stay valid for the lattice's life at its present address.
+  LatticeView view();
+  const LatticeKernels& kernels() const { return *kernels_; }
+  const float* free_mass() const { return free_mass_.data(); }
+  const float* applied_force(int axis) const { return applied_[axis].data(); }
+  bool has_applied_force() const { return has_applied_force_; }
+  void zero_velocities();
+
+  // Calls visit(const float*, count) on each array of the shape: displacements, velocities, rest lengths.
+  template <class Visitor>
+  void visit_shape(Visitor&& visit) const {
+    for (const auto* a : {&dx_, &dy_, &dz_, &vx_, &vy_, &vz_}) visit(a->data(), a->size());
+    for (const auto& a : rest_length_) visit(a.data(), a.size());
+    for (const auto& a : square_difference_) visit(a.data(), a.size());
+  }
+  // The same, and what else the next step depends on.
+  template <class Visitor>
+  void visit_state(Visitor&& visit) const {
+    visit_shape(visit);
+    for (const auto* a : {&power_x_, &power_y_, &power_z_}) visit(a->data(), a->size());
+    visit(&fastest_frequency_, 1);
+  }
+  std::vector<float> shape() const;
+  // False, and nothing changed, when the sizes differ.
+  bool set_shape(std::span<const float> shape);
+
+ private:
+  SpringLattice() = default;
+  void lay_out(const LatticeMesh& mesh);
+  void assemble(const Material& material, double youngs_modulus_pa);
+  void measure_fastest_frequency();
+
+  using Floats = AlignedVector<float>;
+
+  LatticeMesh mesh_;
+  LatticeReport report_;
+  const LatticeKernels* kernels_ = nullptr;
+  double total_mass_ = 0.0, rest_volume_ = 0.0, youngs_modulus_ = 0.0;
+  float fastest_frequency_ = 0.0f, damping_time_ = 0.0f, yield_strain_ = 0.0f, flow_rate_ = 0.0f;
+  float cell_size_ = 0.0f;
+  bool plastic_ = false, has_applied_force_ = false;
+  int padded_count_ = 0;
+  int offset_[lattice_direction_count] = {};
+
+  Floats dx_, dy_, dz_, vx_, vy_, vz_, fx_, fy_, fz_;
+  Floats node_mass_, free_mass_, inverse_mass_, free_node_;
+  Floats applied_[3];
+  Floats rest_x_[lattice_direction_count], rest_y_[lattice_direction_count], rest_z_[lattice_direction_count];
+  Floats stiffness_[lattice_direction_count], rest_length_[lattice_direction_count];
+  Floats square_difference_[lattice_direction_count], first_rest_length_[lattice_direction_count];
+  Floats bulk_, inverse_volume_, has_cell_, inverse_cell_count_, node_dilation_;
+  Floats power_x_, power_y_, power_z_, power_noise_;
+};
+
+}  // namespace spoonbill

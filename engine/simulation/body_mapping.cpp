@@ -1,0 +1,226 @@
+#include "engine/simulation/body_mapping.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/bspline/knot_insertion.h"
+
+namespace spoonbill {
+namespace {
+
+// Two cells for each element and direction: at least twice as many samples as control points, where the refit is
+// well conditioned.
+constexpr int refit_levels = 1;
+constexpr int edge_stations = 512;
+constexpr int edge_bisections = 40;
+
+bool ring_behind(const Surface& surface, const FixingPlane& plane, double v) {
+  constexpr int around = 64;
+  const double start = surface.u.domain_start(), length = surface.u.domain_end() - start;
+  for (int s = 0; s < around; ++s) {
+    const Vector3 point = evaluate(surface, start + length * s / around, v).position_m;
+    if (plane.normal.dot(point - plane.point_m) > 0.0) return false;
+  }
+  return true;
+}
+
+// How far from one end of v (share 0 to 1) the surface lies wholly behind the plane.
+double share_behind(const Surface& surface, const FixingPlane& plane, bool from_end) {
+  const double start = surface.v.domain_start(), end = surface.v.domain_end();
+  const auto behind = [&](double share) {
+    return ring_behind(surface, plane, from_end ? end - share * (end - start) : start + share * (end - start));
+  };
+  int station = 0;
+  while (station <= edge_stations && behind(static_cast<double>(station) / edge_stations)) ++station;
+  if (station == 0) return 0.0;
+  if (station > edge_stations) return 1.0;
+  double low = static_cast<double>(station - 1) / edge_stations, high = static_cast<double>(station) / edge_stations;
+  for (int b = 0; b < edge_bisections; ++b) {
+    const double middle = 0.5 * (low + high);
+    (behind(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+// The stretch of v at each end that lies wholly behind some plane.
+struct FixedStretch {
+  double low_end;    // fixed from the domain's start to here
+  double high_start; // and from here to its end
+};
+
+FixedStretch fixed_stretch(const Surface& surface, const std::vector<FixingPlane>& planes) {
+  const double start = surface.v.domain_start(), length = surface.v.domain_end() - start;
+  double low = 0.0, high = 0.0;
+  for (const FixingPlane& plane : planes) {
+    low = std::max(low, share_behind(surface, plane, false));
+    high = std::max(high, share_behind(surface, plane, true));
+  }
+  return {start + low * length, start + (1.0 - high) * length};
+}
+
+// A knot of multiplicity degree - 1: the displacement may start there with a curvature of its own, the surface stays
+// smooth (C1). Near an existing knot that one is used, so that no sliver of an element arises.
+Result<Surface> with_edge_knot(const Surface& surface, double& v) {
+  const std::vector<double> breaks = surface.v.breakpoints();
+  const double near = 1e-3 * (surface.v.domain_end() - surface.v.domain_start());
+  for (const double knot : breaks) {
+    if (std::abs(knot - v) < near) v = knot;
+  }
+  if (v <= surface.v.domain_start() || v >= surface.v.domain_end()) return surface;
+  return insert_knot(surface, Direction::v, v, std::max(1, surface.v.degree() - 1));
+}
+
+// Columns whose basis function reaches into the fixed stretch.
+std::vector<std::uint8_t> columns_to_hold(const KnotVector& v, const FixedStretch& fixed) {
+  const std::vector<double>& knots = v.extended_knots();
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(v.control_point_count()), 0);
+  for (int c = 0; c < v.control_point_count(); ++c) {
+    const bool in_low = fixed.low_end > v.domain_start() && knots[c] < fixed.low_end;
+    const bool in_high = fixed.high_start < v.domain_end() && knots[c + v.degree() + 1] > fixed.high_start;
+    held[static_cast<std::size_t>(c)] = in_low || in_high;
+  }
+  return held;
+}
+
+// The cell in which a point lies, or which it lies nearest to, among those around the nearest node.
+EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
+  int nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    const double distance = (mesh.nodes[n] - point).squaredNorm();
+    if (distance < least) {
+      least = distance;
+      nearest = n;
+    }
+  }
+  const int ni = nearest / (mesh.count[1] * mesh.count[2]), nj = nearest / mesh.count[2] % mesh.count[1],
+            nk = nearest % mesh.count[2];
+  CellLocation best;
+  best.outside = std::numeric_limits<double>::infinity();
+  std::array<int, 3> cell{};
+  for (int i = std::max(0, ni - 1); i <= std::min(ni, mesh.count[0] - 2); ++i) {
+    for (int j = std::max(0, nj - 1); j <= std::min(nj, mesh.count[1] - 2); ++j) {
+      for (int k = std::max(0, nk - 1); k <= std::min(nk, mesh.count[2] - 2); ++k) {
+        const CellLocation location = locate_in_cell(mesh.cell(i, j, k), point);
+        if (location.outside < best.outside - 1e-9) {
+          best = location;
+          cell = {i, j, k};
+        }
+      }
+    }
+  }
+  EmbeddedPoint embedded;
+  if (!(best.outside < 1.0)) {
+    embedded.count = 1;
+    embedded.node[0] = nearest;
+    embedded.weight[0] = 1.0f;
+    return embedded;
+  }
+  embedded.count = 8;
+  for (int c = 0; c < 8; ++c) {
+    embedded.node[c] = mesh.index(cell[0] + (c >> 2 & 1), cell[1] + (c >> 1 & 1), cell[2] + (c & 1));
+    embedded.weight[c] = static_cast<float>(best.weights[c]);
+  }
+  return embedded;
+}
+
+}  // namespace
+
+Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& current, const SpringLattice& lattice,
+                                      const std::vector<FixingPlane>& planes, InstructionSet set) {
+  BodyMapping mapping(rest, current);
+  FixedStretch fixed = fixed_stretch(current, planes);
+  for (double* edge : {&fixed.low_end, &fixed.high_start}) {
+    Result<Surface> finer_rest = with_edge_knot(mapping.rest_, *edge);
+    if (!finer_rest.ok()) return finer_rest.error();
+    Result<Surface> finer = with_edge_knot(mapping.current_, *edge);
+    if (!finer.ok()) return finer.error();
+    mapping.rest_ = std::move(finer_rest).value();
+    mapping.current_ = std::move(finer).value();
+  }
+  mapping.base_ = mapping.current_;
+  Result<NestedGrid> nested = make_nested_grid(mapping.rest_.u, mapping.rest_.v, refit_levels);
+  if (!nested.ok()) return nested.error();
+  mapping.nested_ = std::make_shared<NestedGrid>(std::move(nested).value());
+  RefitConstraints constraints{columns_to_hold(mapping.rest_.v, fixed), true};
+  mapping.held_columns_ = constraints.held_columns;
+  Result<DisplacementRefit> refit = DisplacementRefit::make(mapping.nested_->grid, constraints, set);
+  if (!refit.ok()) return refit.error();
+  mapping.refit_.push_back(std::move(refit).value());
+  mapping.embed(lattice);
+  return mapping;
+}
+
+void BodyMapping::embed(const SpringLattice& lattice) {
+  const Grid& grid = nested_->grid;
+  const std::size_t samples = static_cast<std::size_t>(grid.rows()) * static_cast<std::size_t>(grid.columns());
+  embedding_.reserve(samples);
+  for (int i = 0; i < grid.rows(); ++i) {
+    for (int j = 0; j < grid.columns(); ++j) {
+      // The seam and the poles are one place, and must have one embedding to the last bit to stay so.
+      const bool pole = j == 0 || j == grid.columns() - 1;
+      const int twin_row = pole || i == grid.rows() - 1 ? 0 : i;
+      if (twin_row != i) {
+        embedding_.push_back(embedding_[static_cast<std::size_t>(twin_row * grid.columns() + j)]);
+        continue;
+      }
+      embedding_.push_back(embed_point(
+          lattice.mesh(), evaluate(rest_, grid.u.parameters[i], grid.v.parameters[j]).position_m));
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    sample_[axis].assign(samples, 0.0f);
+    base_sample_[axis].assign(samples, 0.0f);
+    control_[axis].assign(rest_.net.size(), 0.0f);
+  }
+  sample_displacements(lattice);
+  for (int axis = 0; axis < 3; ++axis) base_sample_[axis] = sample_[axis];
+}
+
+void BodyMapping::sample_displacements(const SpringLattice& lattice) {
+  const float* displacement[3] = {lattice.displacements(0), lattice.displacements(1), lattice.displacements(2)};
+  for (std::size_t s = 0; s < embedding_.size(); ++s) {
+    const EmbeddedPoint& point = embedding_[s];
+    float sum[3] = {0.0f, 0.0f, 0.0f};
+    for (int c = 0; c < point.count; ++c) {
+      for (int axis = 0; axis < 3; ++axis) sum[axis] += point.weight[c] * displacement[axis][point.node[c]];
+    }
+    // The base last, so that what did not move is exactly zero.
+    for (int axis = 0; axis < 3; ++axis) sample_[axis][s] = sum[axis] - base_sample_[axis][s];
+  }
+}
+
+void BodyMapping::update(const SpringLattice& lattice) {
+  sample_displacements(lattice);
+  std::vector<double>* net[3] = {&current_.net.x, &current_.net.y, &current_.net.z};
+  const std::vector<double>* base[3] = {&base_.net.x, &base_.net.y, &base_.net.z};
+  for (int axis = 0; axis < 3; ++axis) {
+    refit_.front().control_displacement(sample_[axis].data(), control_[axis].data());
+    for (std::size_t p = 0; p < net[axis]->size(); ++p) {
+      (*net[axis])[p] = (*base[axis])[p] + static_cast<double>(control_[axis][p]);
+    }
+  }
+}
+
+EmbeddedPoint BodyMapping::at(double u, double v) const {
+  const auto cell = [](const std::vector<double>& parameters, double value) {
+    const auto upper = std::upper_bound(parameters.begin(), parameters.end(), value);
+    const auto at = std::clamp<std::ptrdiff_t>(upper - parameters.begin() - 1, 0,
+                                               static_cast<std::ptrdiff_t>(parameters.size()) - 2);
+    return static_cast<int>(at);
+  };
+  const Grid& grid = nested_->grid;
+  const int i = cell(grid.u.parameters, u), j = cell(grid.v.parameters, v);
+  const double a = (u - grid.u.parameters[i]) / (grid.u.parameters[i + 1] - grid.u.parameters[i]);
+  const double b = (v - grid.v.parameters[j]) / (grid.v.parameters[j + 1] - grid.v.parameters[j]);
+  const int first = i * grid.columns() + j;
+  EmbeddedPoint point;
+  point.add(embedding_[first], static_cast<float>((1 - a) * (1 - b)));
+  point.add(embedding_[first + 1], static_cast<float>((1 - a) * b));
+  point.add(embedding_[first + grid.columns()], static_cast<float>(a * (1 - b)));
+  point.add(embedding_[first + grid.columns() + 1], static_cast<float>(a * b));
+  return point;
+}
+
+}  // namespace spoonbill

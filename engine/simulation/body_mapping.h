@@ -1,0 +1,59 @@
+// From lattice to surface: grid samples are embedded in the lattice's cells by fixed trilinear weights, follow the
+// nodes, and carry the control points with them through the displacement refit.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/bspline/refit.h"
+#include "engine/bspline/surface.h"
+#include "engine/collision/surface_collider.h"
+#include "engine/instruction_set.h"
+#include "engine/material/contact_constraints.h"
+#include "engine/material/spring_lattice.h"
+#include "engine/result.h"
+#include "engine/simulation/scene.h"
+
+namespace spoonbill {
+
+// One owner, the simulation; update() allocates nothing.
+class BodyMapping {
+ public:
+  // `rest` is the surface that the lattice's rest shape was filled from, `current` the surface as it is now, with
+  // the same knots; the lattice's present displacements belong to `current`. Behind each plane the part of the
+  // surface that lies wholly there stays exactly: knots are inserted at its edge (which changes no shape), and the
+  // control points that reach into it are held.
+  static Result<BodyMapping> make(const Surface& rest, const Surface& current, const SpringLattice& lattice,
+                                  const std::vector<FixingPlane>& planes, InstructionSet set);
+
+  const Surface& rest() const { return rest_; }
+  const Surface& current() const { return current_; }
+  const NestedGrid& nested() const { return *nested_; }
+
+  // Moves current() by what the nodes moved since make().
+  void update(const SpringLattice& lattice);
+
+  // The embedding of a grid sample, and of any point by blending the samples around it.
+  const EmbeddedPoint& sample(int index) const { return embedding_[index]; }
+  EmbeddedPoint at(double u, double v) const;
+
+  // The control points of v (columns) that are held, for tests and the panel.
+  const std::vector<std::uint8_t>& held_columns() const { return held_columns_; }
+
+ private:
+  BodyMapping(Surface rest, Surface current)
+      : rest_(std::move(rest)), base_(current), current_(std::move(current)) {}
+  void embed(const SpringLattice& lattice);
+  // What each sample moved since make().
+  void sample_displacements(const SpringLattice& lattice);
+
+  Surface rest_, base_, current_;
+  // By pointer, because the collider keeps the grid's address when the mapping moves.
+  std::shared_ptr<NestedGrid> nested_;
+  std::vector<EmbeddedPoint> embedding_;
+  std::vector<float> base_sample_[3], sample_[3], control_[3];
+  std::vector<std::uint8_t> held_columns_;
+  std::vector<DisplacementRefit> refit_;  // one, once made
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,29 @@
+// Commands: what the panel, a script or a recording asks of a simulation between two ticks.
+#pragma once
+
+#include <variant>
+
+#include "engine/simulation/scene.h"
+
+namespace spoonbill {
+
+// Adds a fixing plane. Knots are inserted where it cuts the surface, so that the fixed part of the surface stays.
+struct PlacePlane {
+  FixingPlane plane;
+};
+struct RemovePlanes {};
+struct SetTool {
+  Tool tool;
+};
+struct SetMaterial {
+  Material material;
+};
+struct SetSculpting {
+  Sculpting sculpting;
+};
+// Makes the current shape the rest shape.
+struct KeepShape {};
+
+using Command = std::variant<PlacePlane, RemovePlanes, SetTool, SetMaterial, SetSculpting, KeepShape>;
+
+}  // namespace spoonbill

@@ -1,0 +1,71 @@
+// A scene: what a simulation is built from. Plain data; lengths in metres.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/bspline/surface.h"
+#include "engine/material/material.h"
+#include "engine/material/tube_lattice.h"
+#include "engine/range.h"
+#include "engine/result.h"
+#include "engine/simulation/snapshot.h"
+
+namespace spoonbill {
+
+// A fixing plane: every node on its far side (opposite to the normal) is held.
+struct FixingPlane {
+  Vector3 point_m = Vector3::Zero();
+  Vector3 normal = Vector3::UnitX();  // unit
+};
+
+// A solid body bounded by one tube: periodic in u, closed by a pole at both ends of v.
+struct Body {
+  std::string name;
+  Surface surface;
+  Material material;
+  LatticeRequest lattice;
+};
+
+struct Tool {
+  ToolKind kind = ToolKind::sphere;
+  ToolAction action = ToolAction::push;
+  double radius_m = 0.008;  // 0 for a point
+  int iterations = 6;       // relaxation steps a tick: few act locally, many globally (1 to 8)
+};
+
+// How sculpting differs from the real thing: no gravity by default, damped, with a capped stiffness.
+struct Sculpting {
+  double damping_per_s = 4.0;  // mass-proportional
+  Vector3 gravity_m_per_s2 = Vector3::Zero();
+  double force_scale = 1.0;  // newtons at the hand for each newton of contact
+};
+
+struct Scene {
+  Body body;
+  std::vector<FixingPlane> planes;
+  Tool tool;
+  Sculpting sculpting;
+};
+
+// What files, commands and the panel's sliders accept: wide enough for any concept, finite for every solver.
+inline constexpr Range<double> position_range_m{-100.0, 100.0};  // each coordinate
+inline constexpr Range<int> control_point_count_range{2, 200};   // in each direction
+inline constexpr Range<int> node_budget_range{50, 40000};
+inline constexpr Range<int> node_count_range{2, 64};  // in each direction
+inline constexpr Range<int> fixing_plane_count_range{0, 64};
+inline constexpr Range<double> tool_radius_range_m{0.0, 0.5};
+inline constexpr Range<int> tool_iterations_range{1, 8};
+inline constexpr Range<double> sculpting_damping_range_per_s{0.0, 1000.0};
+inline constexpr double gravity_limit_m_per_s2 = 100.0;  // of the vector's length
+inline constexpr Range<double> force_scale_range{0.0, 1e6};
+
+// Each names the field, the value and the range of the first thing that is not within it.
+Status check_fixing_plane(const FixingPlane& plane);
+Status check_lattice_request(const LatticeRequest& lattice);
+Status check_tool(const Tool& tool);
+Status check_sculpting(const Sculpting& sculpting);
+
+}  // namespace spoonbill

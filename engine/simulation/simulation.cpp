@@ -1,0 +1,302 @@
+#include "engine/simulation/simulation.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/denormals.h"
+#include "engine/material/lattice_solver.h"
+#include "engine/material/tube_lattice.h"
+#include "engine/simulation/body_mapping.h"
+#include "engine/simulation/state_hash.h"
+#include "engine/simulation/tool_contact.h"
+
+namespace spoonbill {
+
+// The contact keeps the address of the mapping's grid, which the mapping holds by pointer: both move freely.
+struct Simulation::State {
+  Scene scene;
+  InstructionSet set;
+  SpringLattice lattice;
+  BodyMapping mapping;
+  ToolContact contact;
+  std::vector<std::uint8_t> held, touched;
+  std::uint64_t tick = 0;
+  std::uint32_t structure = 1;
+  Pose tool_pose{};
+  bool tool_placed = false;
+  RelaxReport relaxed{};
+  Reaction reaction{};
+};
+
+namespace {
+
+// The lattice of a body at the stiffness that sculpting can hold.
+Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material& material, InstructionSet set) {
+  // Measured at 1 Pa: frequencies scale with the root of the modulus, the springs with the modulus.
+  Result<SpringLattice> unit = SpringLattice::make(mesh, material, 1.0, set);
+  if (!unit.ok()) return unit;
+  const double unit_limit = felt_modulus_limit_pa(unit->fastest_frequency(), material.damping_ratio);
+  return SpringLattice::make(mesh, material, std::min(material.youngs_modulus_pa, unit_limit), set);
+}
+
+std::vector<std::uint8_t> nodes_behind(const SpringLattice& lattice, const std::vector<FixingPlane>& planes) {
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(lattice.mesh().node_count()), 0);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    for (const FixingPlane& plane : planes) {
+      if (plane.normal.dot(lattice.position(n) - plane.point_m) <= 0.0) held[static_cast<std::size_t>(n)] = 1;
+    }
+  }
+  return held;
+}
+
+Status check_scene(const Scene& scene) {
+  if (Status status = check_tool(scene.tool); !status.ok()) return status;
+  if (Status status = check_sculpting(scene.sculpting); !status.ok()) return status;
+  if (Status status = check_lattice_request(scene.body.lattice); !status.ok()) return status;
+  for (const FixingPlane& plane : scene.planes) {
+    if (Status status = check_fixing_plane(plane); !status.ok()) return status;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
+  if (const Status status = check_scene(scene); !status.ok()) return status.error();
+  Result<LatticeMesh> mesh = tube_lattice(scene.body.surface, scene.body.lattice);
+  if (!mesh.ok()) return mesh.error();
+  Result<SpringLattice> lattice = sculpting_lattice(mesh.value(), scene.body.material, set);
+  if (!lattice.ok()) return lattice.error();
+  std::vector<std::uint8_t> held = nodes_behind(lattice.value(), scene.planes);
+  lattice->hold(held);
+  const Surface& surface = scene.body.surface;
+  Result<BodyMapping> mapping = BodyMapping::make(surface, surface, lattice.value(), scene.planes, set);
+  if (!mapping.ok()) return mapping.error();
+  ToolContact contact(mapping.value());
+  std::vector<std::uint8_t> touched(held.size(), 0);
+  return Simulation(std::make_unique<State>(State{std::move(scene), set, std::move(lattice).value(),
+                                                  std::move(mapping).value(), std::move(contact), std::move(held),
+                                                  std::move(touched)}));
+}
+
+Simulation::Simulation(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+// One apply() a command: each makes everything new first, and changes the state only when all of it succeeded.
+struct CommandApplier {
+  Simulation::State& state;
+
+  Status operator()(const PlacePlane& command) {
+    if (Status status = check_fixing_plane(command.plane); !status.ok()) return status;
+    std::vector<FixingPlane> planes = state.scene.planes;
+    planes.push_back(command.plane);
+    if (Status status = check_range("fixing planes", static_cast<int>(planes.size()), fixing_plane_count_range);
+        !status.ok()) {
+      return status;
+    }
+    return set_planes(std::move(planes));
+  }
+  Status operator()(const RemovePlanes&) { return set_planes({}); }
+  Status operator()(const SetTool& command) {
+    if (Status status = check_tool(command.tool); !status.ok()) return status;
+    state.scene.tool = command.tool;
+    state.contact.release();
+    return {};
+  }
+  Status operator()(const SetSculpting& command) {
+    if (Status status = check_sculpting(command.sculpting); !status.ok()) return status;
+    state.scene.sculpting = command.sculpting;
+    return {};
+  }
+  Status operator()(const SetMaterial& command) {
+    Result<SpringLattice> lattice = sculpting_lattice(state.lattice.mesh(), command.material, state.set);
+    if (!lattice.ok()) return lattice.error();
+    lattice->set_shape(state.lattice.shape());
+    lattice->hold(state.held);
+    state.lattice = std::move(lattice).value();
+    state.scene.body.material = command.material;
+    state.contact.release();
+    return {};
+  }
+  Status operator()(const KeepShape&) {
+    LatticeMesh mesh = state.lattice.mesh();
+    for (int n = 0; n < mesh.node_count(); ++n) mesh.nodes[n] = state.lattice.position(n);
+    Result<SpringLattice> lattice = sculpting_lattice(mesh, state.scene.body.material, state.set);
+    if (!lattice.ok()) return lattice.error();
+    lattice->hold(state.held);
+    const Surface& surface = state.mapping.current();
+    Result<BodyMapping> mapping =
+        BodyMapping::make(surface, surface, lattice.value(), state.scene.planes, state.set);
+    if (!mapping.ok()) return mapping.error();
+    state.lattice = std::move(lattice).value();
+    set_mapping(std::move(mapping).value());
+    return {};
+  }
+
+ private:
+  Status set_planes(std::vector<FixingPlane> planes) {
+    std::vector<std::uint8_t> held = nodes_behind(state.lattice, planes);
+    Result<BodyMapping> mapping =
+        BodyMapping::make(state.mapping.rest(), state.mapping.current(), state.lattice, planes, state.set);
+    if (!mapping.ok()) return mapping.error();
+    state.lattice.hold(held);
+    state.held = std::move(held);
+    state.scene.planes = std::move(planes);
+    set_mapping(std::move(mapping).value());
+    return {};
+  }
+
+  void set_mapping(BodyMapping mapping) {
+    state.mapping = std::move(mapping);
+    state.contact = ToolContact(state.mapping);
+    state.scene.body.surface = state.mapping.current();
+    ++state.structure;
+  }
+};
+
+Status Simulation::apply(const Command& command) { return std::visit(CommandApplier{*state_}, command); }
+
+Reaction Simulation::advance(const Pose& tool_pose, bool gripping) {
+  const DenormalsFlushed flushed;
+  State& s = *state_;
+  if (!s.tool_placed) s.tool_pose = tool_pose;
+  s.tool_placed = true;
+  const Tool& tool = s.scene.tool;
+  s.contact.prepare(s.mapping, s.lattice, tool, tool_pose, gripping);
+  ToolMotion motion;
+  motion.start_m = s.tool_pose.position_m;
+  motion.end_m = tool_pose.position_m;
+  motion.start_orientation = s.tool_pose.orientation;
+  motion.end_orientation = tool_pose.orientation;
+  motion.radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
+  const RelaxSettings settings{tool.iterations, tick_s, s.scene.sculpting.damping_per_s,
+                               s.scene.sculpting.gravity_m_per_s2};
+  s.relaxed = relax(s.lattice, settings, motion, s.contact.constraints());
+  s.mapping.update(s.lattice);
+  s.tool_pose = tool_pose;
+  ++s.tick;
+
+  const ContactConstraints& constraints = s.contact.constraints();
+  const double real_over_felt = s.scene.body.material.youngs_modulus_pa / s.lattice.youngs_modulus_pa();
+  s.reaction = {};
+  s.reaction.force_n = constraints.tool_impulse() * (real_over_felt / s.relaxed.material_time_s);
+  const SurfaceContact& nearest = s.contact.collision().nearest;
+  s.reaction.touching = constraints.acted() || (s.contact.collision().found && nearest.depth_m > 0.0);
+  if (s.contact.blocked() && nearest.depth_m > 0.0) {
+    s.reaction.blocked_depth_m = nearest.depth_m;
+    s.reaction.blocked_normal = nearest.normal;
+  }
+  if (s.relaxed.time_slowed) s.reaction.flags |= tick_flag_time_slowed;
+  if (s.relaxed.speed_capped) s.reaction.flags |= tick_flag_speed_capped;
+  if (s.contact.overflow()) s.reaction.flags |= tick_flag_contact_overflow;
+  std::fill(s.touched.begin(), s.touched.end(), std::uint8_t{0});
+  constraints.mark_touched(s.touched.data());
+  return s.reaction;
+}
+
+const Scene& Simulation::scene() const { return state_->scene; }
+std::uint64_t Simulation::tick() const { return state_->tick; }
+const SpringLattice& Simulation::lattice() const { return state_->lattice; }
+const Surface& Simulation::surface() const { return state_->mapping.current(); }
+
+std::uint64_t Simulation::state_hash() const {
+  const State& s = *state_;
+  StateHash hash;
+  hash.add(s.tick);
+  s.lattice.visit_state([&](const float* data, std::size_t count) { hash.add(data, count); });
+  const ControlNet& net = s.mapping.current().net;
+  for (const std::vector<double>* coordinate : {&net.x, &net.y, &net.z}) {
+    for (const double value : *coordinate) hash.add(value);
+  }
+  for (int axis = 0; axis < 3; ++axis) hash.add(s.tool_pose.position_m[axis]);
+  for (int c = 0; c < 4; ++c) hash.add(s.tool_pose.orientation.coeffs()[c]);
+  hash.add(static_cast<std::uint64_t>(s.contact.constraints().count()));
+  return hash.value();
+}
+
+ShapeState Simulation::shape() const { return {state_->lattice.shape()}; }
+
+Status Simulation::restore(const ShapeState& shape) {
+  if (!state_->lattice.set_shape(shape.lattice)) return Error{"shape: it belongs to another lattice"};
+  state_->contact.release();
+  state_->mapping.update(state_->lattice);
+  return {};
+}
+
+namespace {
+
+void write_surface(const Surface& surface, std::uint32_t structure, std::vector<SurfaceSnapshot>& out) {
+  if (out.size() != 1 || out[0].structure != structure) {
+    out.clear();
+    out.push_back({surface.u, surface.v, structure, {}, {}, {}});
+  }
+  const auto copy = [](const std::vector<double>& from, std::vector<float>& to) { to.assign(from.begin(), from.end()); };
+  copy(surface.net.x, out[0].x);
+  copy(surface.net.y, out[0].y);
+  copy(surface.net.z, out[0].z);
+}
+
+void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>& held,
+                   const std::vector<std::uint8_t>& touched, LatticeSnapshot& out) {
+  const LatticeMesh& mesh = lattice.mesh();
+  const std::size_t count = static_cast<std::size_t>(mesh.node_count());
+  for (std::vector<float>* values : {&out.x, &out.y, &out.z}) values->resize(count);
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    const Vector3 position = lattice.position(n);
+    out.x[static_cast<std::size_t>(n)] = static_cast<float>(position.x());
+    out.y[static_cast<std::size_t>(n)] = static_cast<float>(position.y());
+    out.z[static_cast<std::size_t>(n)] = static_cast<float>(position.z());
+  }
+  out.fixed = held;
+  out.touched = touched;
+  if (std::equal(mesh.count.begin(), mesh.count.end(), out.count)) return;
+  std::copy(mesh.count.begin(), mesh.count.end(), out.count);
+  out.on_shell.clear();
+  for (int i = 0; i < mesh.count[0]; ++i) {
+    for (int j = 0; j < mesh.count[1]; ++j) {
+      for (int k = 0; k < mesh.count[2]; ++k) out.on_shell.push_back(mesh.is_shell(i, j, k));
+    }
+  }
+}
+
+void write_material(const Scene& scene, const SpringLattice& lattice, MaterialSnapshot& out) {
+  const Material& material = scene.body.material;
+  out.name = material.name;
+  out.youngs_modulus_pa = material.youngs_modulus_pa;
+  out.felt_youngs_modulus_pa = lattice.youngs_modulus_pa();
+  out.poissons_ratio = material.poissons_ratio;
+  out.density_kg_per_m3 = material.density_kg_per_m3;
+  out.damping_per_s = scene.sculpting.damping_per_s;
+  out.plastic = material.plastic;
+  out.mass_kg = lattice.mass_kg();
+}
+
+}  // namespace
+
+void Simulation::write_snapshot(Snapshot& snapshot) const {
+  const State& s = *state_;
+  snapshot.tick = s.tick;
+  write_surface(s.mapping.current(), s.structure, snapshot.surfaces);
+  write_lattice(s.lattice, s.held, s.touched, snapshot.lattice);
+  snapshot.tool.kind = s.scene.tool.kind;
+  snapshot.tool.action = s.scene.tool.action;
+  snapshot.tool.iterations = s.scene.tool.iterations;
+  snapshot.tool.radius_m = s.scene.tool.kind == ToolKind::point ? 0.0 : s.scene.tool.radius_m;
+  snapshot.tool.proxy = s.tool_pose;
+  snapshot.planes.clear();
+  for (const FixingPlane& plane : s.scene.planes) snapshot.planes.push_back({plane.point_m, plane.normal});
+  snapshot.contacts.clear();
+  const CollisionResult& collision = s.contact.collision();
+  if (s.reaction.touching && collision.found) {
+    const SurfaceContact& nearest = collision.nearest;
+    snapshot.contacts.push_back({nearest.point_m, nearest.normal, nearest.depth_m, nearest.u, nearest.v});
+  }
+  write_material(s.scene, s.lattice, snapshot.material);
+  snapshot.device.force_scale = s.scene.sculpting.force_scale;
+  snapshot.substeps = s.relaxed.substeps * s.scene.tool.iterations;
+  snapshot.flags = s.reaction.flags;
+}
+
+}  // namespace spoonbill

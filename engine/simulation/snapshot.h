@@ -1,0 +1,99 @@
+// A snapshot: everything that drawing and the panel need of one tick, as plain data. Sized when the simulation
+// is built; copying one snapshot onto another of the same sizes allocates nothing.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/bspline/knot_vector.h"
+#include "engine/pose.h"
+
+namespace spoonbill {
+
+enum class ToolKind { point, sphere };
+enum class ToolAction { push, pull };
+
+struct SurfaceSnapshot {
+  KnotVector u, v;
+  std::uint32_t structure = 0;  // changes whenever the knot vectors do, so that a Grid can be kept until then
+  std::vector<float> x, y, z;   // control points in metres, as in ControlNet
+};
+
+// The nodes of a body's lattice, k fastest: node (i, j, k) at (i * count[1] + j) * count[2] + k, with k along
+// the body. Edges join neighbours along each of the three directions.
+struct LatticeSnapshot {
+  int count[3] = {0, 0, 0};
+  std::vector<float> x, y, z;           // metres
+  std::vector<std::uint8_t> fixed;      // 1 where the node is held
+  std::vector<std::uint8_t> touched;    // 1 where a tool acts on the node in this tick
+  std::vector<std::uint8_t> on_shell;   // 1 where the node lies on the surface
+};
+
+struct ToolSnapshot {
+  ToolKind kind = ToolKind::sphere;
+  ToolAction action = ToolAction::push;
+  int iterations = 0;
+  double radius_m = 0.0;
+  Pose device;  // where the hand holds it
+  Pose proxy;   // where the material stops it; this one is drawn
+  bool button = false;
+};
+
+// A fixing plane: everything behind it (opposite to the normal) is held.
+struct PlaneSnapshot {
+  Vector3 point_m = Vector3::Zero();
+  Vector3 normal = Vector3::UnitX();
+};
+
+struct ContactSnapshot {
+  Vector3 point_m = Vector3::Zero();  // on the surface
+  Vector3 normal = Vector3::UnitY();  // outward from the body
+  double depth_m = 0.0;
+  double u = 0.0, v = 0.0;
+};
+
+struct MaterialSnapshot {
+  std::string name;
+  double youngs_modulus_pa = 0.0;       // of the material
+  double felt_youngs_modulus_pa = 0.0;  // what the sculpting lattice holds at 1 kHz
+  double poissons_ratio = 0.0;
+  double density_kg_per_m3 = 0.0;
+  double damping_per_s = 0.0;  // mass-proportional
+  bool plastic = false;
+  double mass_kg = 0.0;  // of the body
+};
+
+struct DeviceSnapshot {
+  std::string name;
+  double force_limit_n = 0.0;
+  double force_scale = 0.0;
+  double nominal_rate_hz = 1000.0;
+};
+
+// What a tick reports besides its result; each bit names its remedy.
+enum TickFlag : std::uint32_t {
+  tick_flag_none = 0,
+  tick_flag_time_slowed = 1u << 0,       // the substep ceiling was met: material time ran slower; use a softer E
+  tick_flag_speed_capped = 1u << 1,      // a node met the speed cap: move the tool more slowly
+  tick_flag_contact_overflow = 1u << 2,  // more contact points than the workspace holds: use a smaller tool
+  tick_flag_force_limited = 1u << 3,     // the device's force limit was met: lower the force scale
+};
+
+struct Snapshot {
+  std::uint64_t tick = 0;
+  std::vector<SurfaceSnapshot> surfaces;
+  LatticeSnapshot lattice;
+  ToolSnapshot tool;
+  std::vector<PlaneSnapshot> planes;
+  std::vector<ContactSnapshot> contacts;
+  Vector3 force_n = Vector3::Zero();  // on the hand, after scale and limit
+  MaterialSnapshot material;
+  DeviceSnapshot device;
+  int substeps = 0;  // of the last tick
+  std::uint32_t flags = tick_flag_none;
+
+  double time_s() const { return static_cast<double>(tick) * 1e-3; }
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,44 @@
+// The tool on the body: finds where it touches the surface and turns that into constraints on the lattice.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/collision/surface_collider.h"
+#include "engine/material/contact_constraints.h"
+#include "engine/simulation/body_mapping.h"
+#include "engine/simulation/scene.h"
+
+namespace spoonbill {
+
+// One owner, the simulation; rebuilt with the body's mapping. prepare() allocates nothing.
+class ToolContact {
+ public:
+  explicit ToolContact(const BodyMapping& mapping);
+
+  // Finds the contact of the tool at `pose` and sets the constraints of this tick. A push lets go as the tool
+  // leaves; a pull grips what it first touches while `gripping` and holds it until the button is released.
+  void prepare(const BodyMapping& mapping, const SpringLattice& lattice, const Tool& tool, const Pose& pose,
+               bool gripping);
+  void release();
+
+  ContactConstraints& constraints() { return constraints_; }
+  const ContactConstraints& constraints() const { return constraints_; }
+  const CollisionResult& collision() const { return collision_; }
+  bool overflow() const { return overflow_; }
+  // Whether the tool meets the body where nothing can give way.
+  bool blocked() const { return blocked_; }
+
+ private:
+  void add_pushes(const BodyMapping& mapping, const SpringLattice& lattice);
+  void add_grips(const BodyMapping& mapping, const SpringLattice& lattice, const Pose& pose);
+
+  SurfaceCollider collider_;
+  ContactConstraints constraints_;
+  CollisionResult collision_;
+  bool gripped_ = false;
+  bool overflow_ = false;
+  bool blocked_ = false;
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,53 @@
+#include "haptic/device.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spoonbill {
+
+namespace {
+
+constexpr double nanometres_per_metre = 1e9;
+constexpr double billion = 1e9;
+
+// A sum of the four squares below this means that there is no orientation to speak of.
+constexpr double smallest_square = 1e-12;
+
+std::int64_t whole_nanometres(double metres) {
+  if (!std::isfinite(metres)) return 0;
+  const double limit = static_cast<double>(reading_limit_nm);
+  return static_cast<std::int64_t>(std::round(std::clamp(metres * nanometres_per_metre, -limit, limit)));
+}
+
+}  // namespace
+
+Pose DeviceReading::pose() const {
+  Pose pose;
+  for (int axis = 0; axis < 3; ++axis) {
+    pose.position_m[axis] = static_cast<double>(position_nm[axis]) / nanometres_per_metre;
+  }
+  Eigen::Vector4d q;
+  for (int k = 0; k < 4; ++k) q[k] = static_cast<double>(orientation_e9[k]) / billion;
+  const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  if (square < smallest_square) return pose;
+  const double length = std::sqrt(square);
+  pose.orientation = Quaternion(q[3] / length, q[0] / length, q[1] / length, q[2] / length);
+  return pose;
+}
+
+DeviceReading DeviceReading::from(const Pose& pose, std::uint32_t buttons) {
+  DeviceReading reading;
+  reading.buttons = buttons;
+  for (int axis = 0; axis < 3; ++axis) reading.position_nm[axis] = whole_nanometres(pose.position_m[axis]);
+  const double q[4] = {pose.orientation.x(), pose.orientation.y(), pose.orientation.z(),
+                       pose.orientation.w()};
+  const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  if (!std::isfinite(square) || square < smallest_square) return reading;
+  const double length = std::sqrt(square);
+  for (int k = 0; k < 4; ++k) {
+    reading.orientation_e9[k] = static_cast<std::int64_t>(std::round(q[k] / length * billion));
+  }
+  return reading;
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,60 @@
+// The device interface: where the hand is, and the force it is given. One owner: the haptic thread (or the
+// lock-step loop). Frame: x right, y up, z toward the person, metres, newtons.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/pose.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+// What a device can do; every limit of the force comes from here.
+struct DeviceSpecification {
+  std::string name;
+  double maximum_force_n = 3.3;
+  double maximum_stiffness_n_per_m = 700.0;
+  double maximum_damping_n_s_per_m = 5.0;
+  double workspace_radius_m = 0.15;
+  double position_resolution_m = 1e-9;
+  bool senses_orientation = true;
+  bool actuates_torque = false;
+};
+
+inline constexpr std::uint32_t button_main = 1u;  // grips in pull
+
+// Farther from the origin than any device reaches.
+inline constexpr std::int64_t reading_limit_nm = 10'000'000'000;
+
+// One reading. Positions are whole nanometres and orientations whole billionths, so that a recording holds
+// exactly what the tick was given.
+struct DeviceReading {
+  std::int64_t position_nm[3] = {0, 0, 0};
+  std::int64_t orientation_e9[4] = {0, 0, 0, 1'000'000'000};  // x, y, z, w
+  std::uint32_t buttons = 0;
+
+  // With the orientation brought back to unit length, or none where all four are zero.
+  Pose pose() const;
+
+  // Rounded to the nearest; a coordinate beyond 10 m stops there. What is not finite becomes 0, and a
+  // quaternion without a direction the identity: a driver's garbage must not reach the simulation.
+  static DeviceReading from(const Pose& pose, std::uint32_t buttons);
+
+  friend bool operator==(const DeviceReading&, const DeviceReading&) = default;
+};
+
+class Device {
+ public:
+  virtual ~Device() = default;
+
+  virtual const DeviceSpecification& specification() const = 0;
+
+  // The reading for this tick; called once a tick.
+  virtual DeviceReading read() = 0;
+
+  // The force on the hand until the next tick. Never above the specification's maximum.
+  virtual void set_force(const Vector3& force_n) = 0;
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,18 @@
+#include "haptic/playback_device.h"
+
+#include <utility>
+
+namespace spoonbill {
+
+PlaybackDevice::PlaybackDevice(DeviceSpecification specification, std::span<const DeviceReading> readings)
+    : specification_(std::move(specification)), readings_(readings) {}
+
+DeviceReading PlaybackDevice::read() {
+  if (readings_.empty()) return {};
+  if (finished()) return readings_.back();
+  return readings_[next_++];
+}
+
+void PlaybackDevice::set_force(const Vector3&) {}
+
+}  // namespace spoonbill

@@ -1,0 +1,35 @@
+// One tick of touch: reading in, simulation advanced, force out. A pure function of its arguments: it
+// allocates nothing, locks nothing, reads no clock and never throws, so that the 1 kHz thread and the
+// lock-step replay call the same code and get the same bits.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/simulation/simulation.h"
+#include "engine/simulation/state_hash.h"
+#include "haptic/device.h"
+
+namespace spoonbill {
+
+// The virtual coupling: a spring of the device's highest stiffness joins the device and the proxy, the place where
+// the tool meets the material. The spring's force is the material's reaction times the force scale, low-pass filtered
+// and limited, so the proxy stands off the device by force / stiffness (after the proxy of Ruspini et al. 1997, with
+// the material's own answer in the place of a wall's). Plain data, owned with the simulation by whoever ticks.
+struct CouplingState {
+  Pose proxy;
+  Vector3 force_n = Vector3::Zero();  // on the hand
+};
+
+struct TickResult {
+  Vector3 force_n = Vector3::Zero();  // on the hand, within the specification's limit
+  bool touching = false;
+  std::uint32_t flags = 0;  // TickFlag bits
+};
+
+TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpecification& specification,
+                const DeviceReading& reading);
+
+// The coupling's part of the state hash.
+void add_to_hash(const CouplingState& coupling, StateHash& hash);
+
+}  // namespace spoonbill

@@ -1,0 +1,179 @@
+#include "render/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace spoonbill {
+namespace {
+
+constexpr double filled_share = 2.0 / 3.0;
+
+// Depth range relative to the distance: wide enough for a tool near the eye and the ground far behind, and
+// still below a micrometre a step at a hand's distance.
+constexpr double near_share = 0.05;
+constexpr double far_share = 20.0;
+
+double focal_px(const Camera& camera, const Viewport& viewport) {
+  return 0.5 * viewport.height_px / std::tan(0.5 * camera.vertical_field_of_view_rad);
+}
+
+Eigen::Vector2d free_centre(const Viewport& viewport) {
+  const Rectangle& r = viewport.free_px;
+  return {r.x + 0.5 * r.width, r.y + 0.5 * r.height};
+}
+
+// The distance at which every corner lies within the share of the free rectangle around its middle.
+double fitting_distance(const Camera& camera, const BoundingBox& box, const Viewport& viewport) {
+  const Eigen::Matrix3d axes = eye_axes(camera);
+  const double focal = focal_px(camera, viewport);
+  const double half_width = 0.5 * filled_share * viewport.free_px.width;
+  const double half_height = 0.5 * filled_share * viewport.free_px.height;
+  double distance = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    const Vector3 local = axes.transpose() * (box.corner(i) - camera.target_m);
+    const double needed =
+        focal * std::max(std::abs(local.x()) / half_width, std::abs(local.y()) / half_height);
+    distance = std::max(distance, local.z() + needed);
+  }
+  return distance;
+}
+
+// How far the middle of the projected corners lies from the free rectangle's, in pixels.
+Eigen::Vector2d projected_offset(const Camera& camera, const BoundingBox& box, const Viewport& viewport) {
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e30), high = -low;
+  for (int i = 0; i < 8; ++i) {
+    if (const auto pixel = project(camera, viewport, box.corner(i))) {
+      low = low.cwiseMin(*pixel);
+      high = high.cwiseMax(*pixel);
+    }
+  }
+  return 0.5 * (low + high) - free_centre(viewport);
+}
+
+}  // namespace
+
+Viewport make_viewport(int width_px, int height_px, const Rectangle& panel_px) {
+  Viewport viewport{width_px, height_px, {0.0, 0.0, double(width_px), double(height_px)}};
+  const bool has_panel = panel_px.width > 0.0 && panel_px.height > 0.0;
+  if (!has_panel) return viewport;
+  const double left = std::max(0.0, panel_px.x);
+  const double right = std::max(0.0, width_px - (panel_px.x + panel_px.width));
+  if (right >= left) {
+    viewport.free_px.x = width_px - right;
+    viewport.free_px.width = right;
+  } else {
+    viewport.free_px.width = left;
+  }
+  // A panel over the whole window leaves nothing to draw in; keep the projection defined.
+  viewport.free_px.width = std::max(viewport.free_px.width, 1.0);
+  return viewport;
+}
+
+Camera look_from(const Camera& camera, StandardView view) {
+  constexpr double quarter = 0.5 * std::numbers::pi;
+  Camera turned = camera;
+  turned.yaw_rad = 0.0;
+  turned.pitch_rad = 0.0;
+  switch (view) {
+    case StandardView::perspective:
+      turned.yaw_rad = 0.42;
+      turned.pitch_rad = 0.44;
+      break;
+    case StandardView::front:
+      break;
+    case StandardView::back:
+      turned.yaw_rad = 2.0 * quarter;
+      break;
+    case StandardView::left:
+      turned.yaw_rad = -quarter;
+      break;
+    case StandardView::right:
+      turned.yaw_rad = quarter;
+      break;
+    case StandardView::top:
+      turned.pitch_rad = quarter;
+      break;
+    case StandardView::bottom:
+      turned.pitch_rad = -quarter;
+      break;
+  }
+  return turned;
+}
+
+Camera frame(const Camera& camera, const BoundingBox& box, const Viewport& viewport) {
+  if (box.empty()) return camera;
+  Camera framed = camera;
+  framed.target_m = 0.5 * (box.low_m + box.high_m);
+  const double smallest_distance = 1e-3;
+  // Perspective shows the near side larger, so the middle moves a little with the distance: a few rounds
+  // settle both below a hundredth of a pixel.
+  for (int round = 0; round < 12; ++round) {
+    framed.distance_m = std::max(smallest_distance, fitting_distance(framed, box, viewport));
+    const Eigen::Vector2d offset =
+        projected_offset(framed, box, viewport) / pixels_per_metre(framed, viewport);
+    const Eigen::Matrix3d axes = eye_axes(framed);
+    framed.target_m += axes.col(0) * offset.x() - axes.col(1) * offset.y();
+  }
+  framed.distance_m = std::max(smallest_distance, fitting_distance(framed, box, viewport));
+  return framed;
+}
+
+Eigen::Matrix3d eye_axes(const Camera& camera) {
+  return (Eigen::AngleAxisd(camera.yaw_rad, Vector3::UnitY()) *
+          Eigen::AngleAxisd(-camera.pitch_rad, Vector3::UnitX()))
+      .toRotationMatrix();
+}
+
+Vector3 eye_position(const Camera& camera) {
+  return camera.target_m + camera.distance_m * eye_axes(camera).col(2);
+}
+
+Eigen::Matrix4d view_matrix(const Camera& camera) {
+  const Eigen::Matrix3d turn = eye_axes(camera).transpose();
+  Eigen::Matrix4d view = Eigen::Matrix4d::Identity();
+  view.topLeftCorner<3, 3>() = turn;
+  view.topRightCorner<3, 1>() = -turn * eye_position(camera);
+  return view;
+}
+
+Eigen::Matrix4d projection_matrix(const Camera& camera, const Viewport& viewport) {
+  const double focal = focal_px(camera, viewport);
+  const Eigen::Vector2d centre = free_centre(viewport);
+  const double near_m = near_share * camera.distance_m;
+  const double far_m = far_share * camera.distance_m;
+  Eigen::Matrix4d projection = Eigen::Matrix4d::Zero();
+  projection(0, 0) = 2.0 * focal / viewport.width_px;
+  projection(1, 1) = 2.0 * focal / viewport.height_px;
+  projection(0, 2) = -(2.0 * centre.x() / viewport.width_px - 1.0);
+  projection(1, 2) = -(1.0 - 2.0 * centre.y() / viewport.height_px);
+  projection(2, 2) = -(far_m + near_m) / (far_m - near_m);
+  projection(2, 3) = -2.0 * far_m * near_m / (far_m - near_m);
+  projection(3, 2) = -1.0;
+  return projection;
+}
+
+double pixels_per_metre(const Camera& camera, const Viewport& viewport) {
+  return focal_px(camera, viewport) / camera.distance_m;
+}
+
+std::optional<Eigen::Vector2d> project(const Camera& camera, const Viewport& viewport,
+                                       const Vector3& point_m) {
+  const Vector3 local = eye_axes(camera).transpose() * (point_m - eye_position(camera));
+  const double depth = -local.z();
+  if (depth <= 1e-9) return std::nullopt;
+  const double scale = focal_px(camera, viewport) / depth;
+  return free_centre(viewport) + Eigen::Vector2d(scale * local.x(), -scale * local.y());
+}
+
+std::optional<Vector3> point_on_height(const Camera& camera, const Viewport& viewport,
+                                       const Eigen::Vector2d& pixel, double height_m) {
+  const Eigen::Vector2d offset = (pixel - free_centre(viewport)) / focal_px(camera, viewport);
+  const Vector3 direction = eye_axes(camera) * Vector3(offset.x(), -offset.y(), -1.0);
+  const Vector3 eye = eye_position(camera);
+  const double rise = height_m - eye.y();
+  if (std::abs(direction.y()) < 1e-9 || rise / direction.y() <= 0.0) return std::nullopt;
+  return Vector3(eye + direction * (rise / direction.y()));
+}
+
+}  // namespace spoonbill

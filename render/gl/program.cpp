@@ -1,0 +1,69 @@
+#include "render/gl/program.h"
+
+#include <array>
+
+namespace spoonbill {
+namespace {
+
+constexpr const char* version_line = "#version 330 core\n";
+
+Result<GlHandle> compile(const GlFunctions& gl, const char* name, GLenum stage, const std::string& source) {
+  GlHandle shader(gl, gl.CreateShader(stage), [](const GlFunctions& f, GLuint i) { f.DeleteShader(i); });
+  const std::array<const GLchar*, 2> parts = {version_line, source.c_str()};
+  gl.ShaderSource(shader.id(), static_cast<GLsizei>(parts.size()), parts.data(), nullptr);
+  gl.CompileShader(shader.id());
+  GLint compiled = GL_FALSE;
+  gl.GetShaderiv(shader.id(), GL_COMPILE_STATUS, &compiled);
+  if (compiled == GL_TRUE) return shader;
+  std::array<GLchar, 2048> log{};
+  gl.GetShaderInfoLog(shader.id(), static_cast<GLsizei>(log.size()), nullptr, log.data());
+  const char* stage_name = stage == GL_VERTEX_SHADER ? "vertex" : "fragment";
+  return Error{std::string("shader ") + name + ", " + stage_name + " stage: " + log.data()};
+}
+
+}  // namespace
+
+Result<Program> Program::make(const GlFunctions& gl, const char* name, const std::string& vertex_source,
+                              const std::string& fragment_source) {
+  const auto vertex = compile(gl, name, GL_VERTEX_SHADER, vertex_source);
+  if (!vertex) return vertex.error();
+  const auto fragment = compile(gl, name, GL_FRAGMENT_SHADER, fragment_source);
+  if (!fragment) return fragment.error();
+
+  GlHandle program(gl, gl.CreateProgram(), [](const GlFunctions& f, GLuint i) { f.DeleteProgram(i); });
+  gl.AttachShader(program.id(), vertex.value().id());
+  gl.AttachShader(program.id(), fragment.value().id());
+  gl.LinkProgram(program.id());
+  GLint linked = GL_FALSE;
+  gl.GetProgramiv(program.id(), GL_LINK_STATUS, &linked);
+  if (linked == GL_TRUE) return Program(gl, std::move(program));
+  std::array<GLchar, 2048> log{};
+  gl.GetProgramInfoLog(program.id(), static_cast<GLsizei>(log.size()), nullptr, log.data());
+  return Error{std::string("shader ") + name + ", linking: " + log.data()};
+}
+
+void Program::set(const char* name, int value) const {
+  gl_->Uniform1i(gl_->GetUniformLocation(handle_.id(), name), value);
+}
+
+void Program::set(const char* name, float value) const {
+  gl_->Uniform1f(gl_->GetUniformLocation(handle_.id(), name), value);
+}
+
+void Program::set(const char* name, const Eigen::Vector2f& value) const {
+  gl_->Uniform2f(gl_->GetUniformLocation(handle_.id(), name), value.x(), value.y());
+}
+
+void Program::set(const char* name, const Eigen::Vector3f& value) const {
+  gl_->Uniform3f(gl_->GetUniformLocation(handle_.id(), name), value.x(), value.y(), value.z());
+}
+
+void Program::set(const char* name, const Eigen::Vector4f& value) const {
+  gl_->Uniform4f(gl_->GetUniformLocation(handle_.id(), name), value.x(), value.y(), value.z(), value.w());
+}
+
+void Program::set(const char* name, const Eigen::Matrix4f& value) const {
+  gl_->UniformMatrix4fv(gl_->GetUniformLocation(handle_.id(), name), 1, GL_FALSE, value.data());
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,87 @@
+#include "render/gl/render_target.h"
+
+#include <string>
+
+namespace spoonbill {
+
+RenderTarget::RenderTarget(const GlFunctions& gl, int width_px, int height_px, int samples)
+    : gl_(&gl),
+      width_px_(width_px),
+      height_px_(height_px),
+      samples_(samples),
+      scene_colour_(make_texture(gl)),
+      scene_depth_(make_renderbuffer(gl)),
+      scene_(make_framebuffer(gl)),
+      frame_colour_(make_renderbuffer(gl)),
+      frame_(make_framebuffer(gl)) {
+  const GLenum kind = scene_texture_kind();
+  gl.BindTexture(kind, scene_colour_.id());
+  if (samples > 0) {
+    gl.TexImage2DMultisample(kind, samples, GL_RGBA8, width_px, height_px, GL_TRUE);
+  } else {
+    gl.TexImage2D(kind, 0, GL_RGBA8, width_px, height_px, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    gl.TexParameteri(kind, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl.TexParameteri(kind, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  }
+  gl.BindRenderbuffer(GL_RENDERBUFFER, scene_depth_.id());
+  gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, width_px, height_px);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, scene_.id());
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, kind, scene_colour_.id(), 0);
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, scene_depth_.id());
+
+  gl.BindRenderbuffer(GL_RENDERBUFFER, frame_colour_.id());
+  gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, 0, GL_RGBA8, width_px, height_px);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, frame_.id());
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, frame_colour_.id());
+}
+
+Result<RenderTarget> RenderTarget::make(const GlFunctions& gl, int width_px, int height_px, int samples) {
+  if (samples != 0 && samples != 4) {
+    return Error{"view setting samples = " + std::to_string(samples) + ": choose 0 or 4"};
+  }
+  RenderTarget target(gl, width_px, height_px, samples);
+  for (const GlHandle* framebuffer : {&target.scene_, &target.frame_}) {
+    if (Status status = target.check(framebuffer->id()); !status) return status.error();
+  }
+  return target;
+}
+
+Status RenderTarget::check(GLuint framebuffer) const {
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  if (gl_->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return {};
+  return Error{"no framebuffer of " + std::to_string(width_px_) + "x" + std::to_string(height_px_) +
+               " pixels with " + std::to_string(samples_) + " samples: choose a smaller size or samples = 0"};
+}
+
+void RenderTarget::begin_scene(const PixelArea& area) const {
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, scene_.id());
+  gl_->Viewport(0, 0, width_px_, height_px_);
+  gl_->Enable(GL_SCISSOR_TEST);
+  gl_->Scissor(area.x, area.y, area.width, area.height);
+  gl_->DepthMask(GL_TRUE);
+  gl_->ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+  gl_->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+void RenderTarget::begin_frame() const {
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, frame_.id());
+  gl_->Disable(GL_SCISSOR_TEST);
+  gl_->Viewport(0, 0, width_px_, height_px_);
+}
+
+void RenderTarget::read(Image& image) const {
+  image.resize(width_px_, height_px_);
+  gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, frame_.id());
+  gl_->PixelStorei(GL_PACK_ALIGNMENT, 1);
+  gl_->ReadPixels(0, 0, width_px_, height_px_, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
+  flip_rows(image);
+}
+
+void RenderTarget::copy_to_window() const {
+  gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, frame_.id());
+  gl_->BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  gl_->BlitFramebuffer(0, 0, width_px_, height_px_, 0, 0, width_px_, height_px_, GL_COLOR_BUFFER_BIT,
+                       GL_NEAREST);
+}
+
+}  // namespace spoonbill

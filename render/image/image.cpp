@@ -1,0 +1,13 @@
+#include "render/image/image.h"
+
+#include <algorithm>
+
+namespace spoonbill {
+
+void flip_rows(Image& image) {
+  for (int top = 0, bottom = image.height - 1; top < bottom; ++top, --bottom) {
+    std::swap_ranges(image.pixel(0, top), image.pixel(0, top) + image.row_bytes(), image.pixel(0, bottom));
+  }
+}
+
+}  // namespace spoonbill

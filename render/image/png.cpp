@@ -1,0 +1,144 @@
+#include "render/image/png.h"
+
+#include <libdeflate.h>
+#include <stb_image.h>
+
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <system_error>
+
+#include "render/read_bytes.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr std::array<std::uint8_t, 8> signature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+constexpr int largest_side_px = 16384;
+constexpr std::uint8_t filter_none = 0;
+constexpr std::uint8_t filter_up = 2;
+
+void append_u32(std::vector<std::uint8_t>& bytes, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+}
+
+bool is_opaque(const Image& image) {
+  std::uint8_t all = 0xff;
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) all &= image.rgba[i];
+  return all == 0xff;
+}
+
+Status write_bytes(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  const std::filesystem::path unfinished = path.string() + ".part";
+  std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
+  stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  stream.close();
+  std::error_code failure;
+  if (!stream) {
+    std::filesystem::remove(unfinished, failure);
+    return Error{path.string() + ": cannot be written; check that the folder exists and has room"};
+  }
+  std::filesystem::rename(unfinished, path, failure);
+  if (failure) return Error{path.string() + ": cannot be put in its place: " + failure.message()};
+  return {};
+}
+
+}  // namespace
+
+void PngEncoder::Free::operator()(libdeflate_compressor* compressor) const {
+  libdeflate_free_compressor(compressor);
+}
+
+PngEncoder::PngEncoder(PngEffort effort)
+    : effort_(effort), compressor_(libdeflate_alloc_compressor(effort == PngEffort::sequence ? 1 : 9)) {}
+
+// The Up filter alone: it vectorises, and suits a picture whose background is a vertical gradient.
+void PngEncoder::filter(const Image& image, int channels) {
+  const std::size_t stride = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(channels);
+  filtered_.resize((stride + 1) * static_cast<std::size_t>(image.height));
+  std::vector<std::uint8_t> rows[2] = {std::vector<std::uint8_t>(stride), std::vector<std::uint8_t>(stride)};
+  std::uint8_t* out = filtered_.data();
+  for (int y = 0; y < image.height; ++y) {
+    std::uint8_t* row = rows[y & 1].data();
+    const std::uint8_t* above = rows[(y + 1) & 1].data();
+    const std::uint8_t* in = image.pixel(0, y);
+    if (channels == 4) {
+      std::memcpy(row, in, stride);
+    } else {
+      for (int x = 0; x < image.width; ++x) {
+        row[3 * x] = in[4 * x];
+        row[3 * x + 1] = in[4 * x + 1];
+        row[3 * x + 2] = in[4 * x + 2];
+      }
+    }
+    *out++ = y == 0 ? filter_none : filter_up;
+    for (std::size_t i = 0; i < stride; ++i) out[i] = static_cast<std::uint8_t>(row[i] - above[i]);
+    out += stride;
+  }
+}
+
+void PngEncoder::append_chunk(const char* type, std::span<const std::uint8_t> data) {
+  append_u32(file_, static_cast<std::uint32_t>(data.size()));
+  const std::size_t start = file_.size();
+  file_.insert(file_.end(), type, type + 4);
+  file_.insert(file_.end(), data.begin(), data.end());
+  append_u32(file_, libdeflate_crc32(0, file_.data() + start, file_.size() - start));
+}
+
+Result<std::span<const std::uint8_t>> PngEncoder::encode(const Image& image) {
+  if (image.width < 1 || image.height < 1) return Error{"an empty picture cannot be a PNG file"};
+  const int channels = is_opaque(image) ? 3 : 4;
+  filter(image, channels);
+  compressed_.resize(libdeflate_zlib_compress_bound(compressor_.get(), filtered_.size()));
+  const std::size_t size = libdeflate_zlib_compress(compressor_.get(), filtered_.data(), filtered_.size(),
+                                                    compressed_.data(), compressed_.size());
+  file_.assign(signature.begin(), signature.end());
+  std::vector<std::uint8_t> header;
+  append_u32(header, static_cast<std::uint32_t>(image.width));
+  append_u32(header, static_cast<std::uint32_t>(image.height));
+  const std::uint8_t colour_type = channels == 3 ? 2 : 6;
+  header.insert(header.end(), {8, colour_type, 0, 0, 0});
+  append_chunk("IHDR", header);
+  constexpr std::array<std::uint8_t, 1> perceptual = {0};
+  append_chunk("sRGB", perceptual);
+  append_chunk("IDAT", {compressed_.data(), size});
+  append_chunk("IEND", {});
+  return std::span<const std::uint8_t>(file_);
+}
+
+Status write_png(const std::filesystem::path& path, const Image& image, PngEncoder& encoder) {
+  const auto bytes = encoder.encode(image);
+  if (!bytes) return Error{path.string() + ": " + bytes.error().message};
+  return write_bytes(path, bytes.value());
+}
+
+Status write_png(const std::filesystem::path& path, const Image& image) {
+  PngEncoder encoder(PngEffort::single);
+  return write_png(path, image, encoder);
+}
+
+Result<Image> read_png(const std::filesystem::path& path) {
+  const auto bytes = read_bytes(path);
+  if (!bytes) return bytes.error();
+  const stbi_uc* data = bytes->data();
+  if (bytes->size() < signature.size() || std::memcmp(data, signature.data(), signature.size()) != 0) {
+    return Error{path.string() + ": not a PNG file"};
+  }
+  const int length = static_cast<int>(bytes->size());
+  int width = 0, height = 0, channels = 0;
+  if (stbi_info_from_memory(data, length, &width, &height, &channels) == 0 || width > largest_side_px ||
+      height > largest_side_px) {
+    return Error{path.string() + ": broken PNG header, or a side above " + std::to_string(largest_side_px) +
+                 " pixels"};
+  }
+  const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+      stbi_load_from_memory(data, length, &width, &height, &channels, 4), &stbi_image_free);
+  if (!pixels) return Error{path.string() + ": broken PNG file: " + stbi_failure_reason()};
+  Image image;
+  image.resize(width, height);
+  std::memcpy(image.rgba.data(), pixels.get(), image.rgba.size());
+  return image;
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,187 @@
+#include "render/overlay/labels.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "render/overlay/force_arrow.h"
+#include "render/overlay/ground_grid.h"
+
+namespace spoonbill {
+namespace {
+
+std::string newtons_text(double newtons) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), newtons < 10.0 ? "%.2f N" : "%.1f N", newtons);
+  return text.data();
+}
+
+std::string count_text(const char* what, std::size_t count) {
+  return what + (" " + std::to_string(count));
+}
+
+std::size_t count_set(const std::vector<std::uint8_t>& flags) {
+  return static_cast<std::size_t>(std::count_if(flags.begin(), flags.end(), [](auto f) { return f != 0; }));
+}
+
+void add_force(const Snapshot& snapshot, const ViewSettings& settings, const Viewport& viewport,
+               std::vector<Label>& labels) {
+  const auto arrow = force_arrow(snapshot, settings);
+  if (!arrow) return;
+  const auto tip = project(settings.camera, viewport, arrow->tip_m);
+  const auto start = project(settings.camera, viewport, arrow->start_m);
+  if (!tip || !start) return;
+  const double gap_px = 7.0 * settings.interface_scale;
+  const bool upward = tip->y() <= start->y();
+  Label label;
+  label.text = newtons_text(arrow->newtons);
+  label.position_px = *tip + Eigen::Vector2d(0.0, upward ? -gap_px : gap_px);
+  label.anchor = Eigen::Vector2d(0.5, upward ? 1.0 : 0.0);
+  labels.push_back(label);
+}
+
+void add_scale_bar(const ViewSettings& settings, const Viewport& viewport, std::vector<Label>& labels) {
+  if (!settings.overlays.scale_bar) return;
+  const auto bar = ground_scale_bar(settings.camera, viewport, settings.ground_y_m);
+  if (!bar) return;
+  const auto middle = project(settings.camera, viewport, 0.5 * (bar->start_m + bar->end_m));
+  if (!middle) return;
+  Label label;
+  label.text = bar->text();
+  label.position_px = *middle + Eigen::Vector2d(0.0, 9.0 * settings.interface_scale);
+  label.anchor = Eigen::Vector2d(0.5, 0.0);
+  labels.push_back(label);
+}
+
+std::vector<Label> legend_of(const Snapshot& snapshot, const ViewSettings& settings) {
+  const Overlays& on = settings.overlays;
+  std::vector<Label> legend;
+  const auto add = [&](std::string text, LabelSymbol symbol, Colour colour) {
+    colour.a = 255;
+    legend.push_back({std::move(text), {}, {}, symbol, colour});
+  };
+  const std::size_t fixed = count_set(snapshot.lattice.fixed);
+  const std::size_t touched = count_set(snapshot.lattice.touched);
+  if (on.tool) {
+    const bool sphere = snapshot.tool.kind == ToolKind::sphere;
+    const bool push = snapshot.tool.action == ToolAction::push;
+    add(std::string(sphere ? "sphere tool" : "point tool") + (push ? ", push" : ", pull"),
+        LabelSymbol::sphere, palette::tool);
+  }
+  if (force_arrow(snapshot, settings)) add("force on the hand", LabelSymbol::arrow, palette::force);
+  if (on.touched_nodes && touched > 0) {
+    add(count_text("touched nodes", touched), LabelSymbol::disc, palette::touched_node);
+  }
+  if (on.fixed_nodes && fixed > 0) {
+    add(count_text("fixed nodes", fixed), LabelSymbol::square, palette::fixed_node);
+  }
+  if (on.fixing_planes && !snapshot.planes.empty()) {
+    add("fixing plane", LabelSymbol::plane, palette::fixing_plane_border);
+  }
+  if (on.control_net) add("control net", LabelSymbol::diamond, palette::control_net);
+  if (on.lattice) add("lattice", LabelSymbol::line, palette::lattice);
+  if (on.contact_normals && !snapshot.contacts.empty()) {
+    add("contact normals", LabelSymbol::line, palette::contact_normal);
+  }
+  return legend;
+}
+
+ImU32 packed(Colour colour) {
+  return IM_COL32(colour.r, colour.g, colour.b, colour.a);
+}
+
+void draw_symbol(ImDrawList& list, LabelSymbol symbol, Colour colour, ImVec2 c, float r) {
+  const ImU32 ink = packed(colour);
+  Colour pale = colour;
+  pale.a = 60;
+  switch (symbol) {
+    case LabelSymbol::none:
+      break;
+    case LabelSymbol::square:
+      list.AddRectFilled({c.x - 0.8f * r, c.y - 0.8f * r}, {c.x + 0.8f * r, c.y + 0.8f * r}, ink);
+      break;
+    case LabelSymbol::disc:
+      list.AddCircleFilled(c, 0.9f * r, ink);
+      break;
+    case LabelSymbol::diamond:
+      list.AddNgonFilled(c, r, ink, 4);
+      break;
+    case LabelSymbol::line:
+      list.AddLine({c.x - 1.2f * r, c.y}, {c.x + 1.2f * r, c.y}, ink, 0.3f * r);
+      break;
+    case LabelSymbol::sphere:
+      list.AddCircleFilled(c, r, packed({colour.r, colour.g, colour.b, 130}));
+      list.AddCircle(c, r, ink, 0, 0.25f * r);
+      break;
+    case LabelSymbol::plane:
+      list.AddRectFilled({c.x - r, c.y - r}, {c.x + r, c.y + r}, packed(pale));
+      list.AddRect({c.x - r, c.y - r}, {c.x + r, c.y + r}, ink, 0.0f, 0, 0.25f * r);
+      break;
+    case LabelSymbol::arrow:
+      list.AddLine({c.x, c.y + 1.1f * r}, {c.x, c.y - 0.2f * r}, ink, 0.5f * r);
+      list.AddTriangleFilled({c.x - 0.75f * r, c.y}, {c.x + 0.75f * r, c.y}, {c.x, c.y - 1.2f * r}, ink);
+      break;
+  }
+}
+
+ImVec2 text_size(ImFont& font, const std::string& text) {
+  return font.CalcTextSizeA(font.FontSize, 10000.0f, 0.0f, text.c_str());
+}
+
+// A pale plate keeps words legible over whatever lies behind them.
+void draw_in_scene(const Label& label, ImFont& font, float scale, ImDrawList& list) {
+  const ImVec2 size = text_size(font, label.text);
+  const ImVec2 at(static_cast<float>(label.position_px.x() - label.anchor.x() * size.x),
+                  static_cast<float>(label.position_px.y() - label.anchor.y() * size.y));
+  const ImVec2 margin(5.0f * scale, 1.0f * scale);
+  list.AddRectFilled({at.x - margin.x, at.y - margin.y}, {at.x + size.x + margin.x, at.y + size.y + margin.y},
+                     packed({255, 255, 255, 150}), 3.0f * scale);
+  list.AddText(&font, font.FontSize, at, packed(palette::text), label.text.c_str());
+}
+
+void draw_legend(const std::vector<Label>& legend, const Rectangle& free, ImFont& font, float scale,
+                 ImDrawList& list) {
+  if (legend.empty()) return;
+  const float line_height = font.FontSize * 1.35f, symbol_radius = 0.3f * font.FontSize;
+  const float symbol_width = 1.5f * font.FontSize, margin = 0.7f * font.FontSize;
+  float text_width = 0.0f;
+  for (const Label& label : legend) text_width = std::max(text_width, text_size(font, label.text).x);
+  const float width = symbol_width + text_width + 2.0f * margin;
+  const float height = line_height * static_cast<float>(legend.size()) + 2.0f * margin;
+  const float edge = 16.0f * scale;
+  const ImVec2 high(static_cast<float>(free.x + free.width) - edge,
+                    static_cast<float>(free.y + free.height) - edge);
+  const ImVec2 low(high.x - width, high.y - height);
+  list.AddRectFilled(low, high, packed({255, 255, 255, 165}), 5.0f * scale);
+  float y = low.y + margin;
+  for (const Label& label : legend) {
+    const ImVec2 centre(low.x + margin + 0.45f * font.FontSize, y + 0.5f * line_height);
+    draw_symbol(list, label.symbol, label.colour, centre, symbol_radius);
+    list.AddText(&font, font.FontSize,
+                 {low.x + margin + symbol_width, y + 0.5f * (line_height - font.FontSize)},
+                 packed(palette::text), label.text.c_str());
+    y += line_height;
+  }
+}
+
+}  // namespace
+
+OverlayLabels overlay_labels(const Snapshot& snapshot, const ViewSettings& settings, int width_px,
+                             int height_px) {
+  const Viewport viewport = make_viewport(width_px, height_px, settings.panel_px);
+  OverlayLabels labels;
+  add_force(snapshot, settings, viewport, labels.in_scene);
+  add_scale_bar(settings, viewport, labels.in_scene);
+  if (settings.overlays.legend) labels.legend = legend_of(snapshot, settings);
+  return labels;
+}
+
+void draw_labels(const OverlayLabels& labels, const ViewSettings& settings, int width_px, int height_px,
+                 ImFont& font, ImDrawList& list) {
+  const Viewport viewport = make_viewport(width_px, height_px, settings.panel_px);
+  const auto scale = static_cast<float>(settings.interface_scale);
+  for (const Label& label : labels.in_scene) draw_in_scene(label, font, scale, list);
+  draw_legend(labels.legend, viewport.free_px, font, scale, list);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,29 @@
+// The colours with a meaning, in sRGB, shared by the marks in the scene and by the legend. Every meaning also
+// has a shape of its own, so that nothing rests on telling red from green.
+#pragma once
+
+#include <cstdint>
+
+namespace spoonbill {
+
+struct Colour {
+  std::uint8_t r = 0, g = 0, b = 0, a = 255;
+};
+
+namespace palette {
+
+inline constexpr Colour fixed_node{28, 150, 84};        // squares
+inline constexpr Colour touched_node{214, 40, 46};      // discs
+inline constexpr Colour lattice{52, 62, 74, 150};       // the thinnest lines
+inline constexpr Colour control_net{38, 66, 128, 190};  // thin lines and diamonds
+inline constexpr Colour force{226, 116, 14};            // the arrow
+inline constexpr Colour contact_normal{112, 46, 134};   // short lines
+inline constexpr Colour fixing_plane{28, 150, 84, 40};
+inline constexpr Colour fixing_plane_border{22, 122, 70, 210};
+inline constexpr Colour tool{52, 118, 204};
+inline constexpr Colour ground_line{70, 78, 88};
+inline constexpr Colour scale_bar{48, 54, 62};
+inline constexpr Colour text{38, 43, 50};
+
+}  // namespace palette
+}  // namespace spoonbill

@@ -1,0 +1,24 @@
+#include "render/passes/body_meshes.h"
+
+namespace spoonbill {
+
+Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre) {
+  surfaces_.resize(snapshot.surfaces.size());
+  while (buffers_.size() > surfaces_.size()) buffers_.pop_back();
+  while (buffers_.size() < surfaces_.size()) buffers_.emplace_back(*gl_);
+  bounds_ = {};
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    const SurfaceSnapshot& surface = snapshot.surfaces[i];
+    if (Status net = check_net(surface); !net) return net;
+    const SamplingLevel level = choose_sampling_level(surface, pixels_per_metre, surfaces_[i].level());
+    if (Status updated = surfaces_[i].update(surface, level); !updated) return updated;
+    buffers_[i].upload(surfaces_[i]);
+    const BoundingBox one = surfaces_[i].bounds();
+    if (one.empty()) continue;
+    bounds_.include(one.low_m);
+    bounds_.include(one.high_m);
+  }
+  return {};
+}
+
+}  // namespace spoonbill

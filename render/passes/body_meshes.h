@@ -1,0 +1,30 @@
+// The snapshot's surfaces, tessellated for the screen and held in GL buffers from frame to frame.
+#pragma once
+
+#include <vector>
+
+#include "engine/result.h"
+#include "engine/simulation/snapshot.h"
+#include "render/passes/surface_buffers.h"
+#include "render/tessellation/tessellated_surface.h"
+
+namespace spoonbill {
+
+class BodyMeshes {
+ public:
+  explicit BodyMeshes(const GlFunctions& gl) : gl_(&gl) {}
+
+  // Follows the snapshot. The error is that of the first surface that cannot be tessellated.
+  Status update(const Snapshot& snapshot, double pixels_per_metre);
+
+  const std::vector<SurfaceBuffers>& buffers() const { return buffers_; }
+  const BoundingBox& bounds() const { return bounds_; }
+
+ private:
+  const GlFunctions* gl_;
+  std::vector<TessellatedSurface> surfaces_;
+  std::vector<SurfaceBuffers> buffers_;
+  BoundingBox bounds_;
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,188 @@
+#include "render/passes/scene_passes.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "render/overlay/contact_normals.h"
+#include "render/overlay/control_net.h"
+#include "render/overlay/fixing_plane.h"
+#include "render/overlay/force_arrow.h"
+#include "render/overlay/ground_grid.h"
+#include "render/overlay/node_marks.h"
+#include "render/passes/scene_area.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr float arrow_width_px = 5.0f;
+constexpr float smallest_tool_px = 5.0f;
+constexpr float ghost_translucency = 0.85f;
+
+// Marks on the surface are lifted by this share of a lattice cell, so that chords over a curve show and what
+// lies on the far side does not.
+constexpr float lift_share_of_cell = 0.4f;
+constexpr float lift_without_lattice_m = 0.0002f;
+
+float lift_m(const LatticeSnapshot& lattice) {
+  const float cell = mean_edge_m(lattice);
+  return cell > 0.0f ? lift_share_of_cell * cell : lift_without_lattice_m;
+}
+
+// A length of that many pixels at a point.
+float pixels_at(const FrameView& view, const Eigen::Vector3f& point_m, float pixels) {
+  const float depth = (point_m - view.eye_m).norm();
+  return pixels * view.interface_scale * depth / view.pixel_depth_ratio;
+}
+
+ToolSphere tool_sphere(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) {
+  if (!settings.overlays.tool) return {};
+  const Eigen::Vector3f centre = snapshot.tool.proxy.position_m.cast<float>();
+  if (snapshot.tool.kind == ToolKind::sphere) return {centre, static_cast<float>(snapshot.tool.radius_m)};
+  return {centre, pixels_at(view, centre, smallest_tool_px)};
+}
+
+SurfaceLook look_of(const Snapshot& snapshot, const ViewSettings& settings) {
+  SurfaceLook look = look_of_material(snapshot.material.name);
+  if (settings.see_through_body) {
+    look.translucency = ghost_translucency;
+    look.metalness = 0.0f;
+  }
+  return look;
+}
+
+BoundingBox box_of(const ToolSphere& tool) {
+  BoundingBox box;
+  if (tool.radius_m <= 0.0f) return box;
+  box.include((tool.centre_m.array() - tool.radius_m).matrix().cast<double>());
+  box.include((tool.centre_m.array() + tool.radius_m).matrix().cast<double>());
+  return box;
+}
+
+}  // namespace
+
+Result<ScenePasses> ScenePasses::make(const GlFunctions& gl) {
+  auto ground = GroundPass::make(gl);
+  if (!ground) return ground.error();
+  auto shadow = ShadowPass::make(gl);
+  if (!shadow) return shadow.error();
+  auto surface = SurfacePass::make(gl);
+  if (!surface) return surface.error();
+  auto solid = SolidPass::make(gl);
+  if (!solid) return solid.error();
+  auto line = LinePass::make(gl);
+  if (!line) return line.error();
+  auto mark = MarkPass::make(gl);
+  if (!mark) return mark.error();
+  auto resolve = ResolvePass::make(gl);
+  if (!resolve) return resolve.error();
+  return ScenePasses(Passes{BackgroundPass(gl), std::move(ground).value(), std::move(shadow).value(),
+                            std::move(surface).value(), std::move(solid).value(), std::move(line).value(),
+                            std::move(mark).value(), std::move(resolve).value()});
+}
+
+void ScenePasses::draw_shadows(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
+                               const BodyMeshes& bodies) {
+  if (!settings.shadow) return;
+  const ToolSphere tool = tool_sphere(view, snapshot, settings);
+  passes_.shadow.draw(view, bodies.buffers(), bodies.bounds(), box_of(tool), tool);
+}
+
+void ScenePasses::draw(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
+                       const BodyMeshes& bodies, const RenderTarget& target) {
+  const PixelArea area = scene_area(snapshot, settings, view.viewport, bodies.bounds());
+  target.begin_scene(area);
+  draw_scene(view, snapshot, settings, bodies);
+  passes_.background.draw(target);
+  draw_ground(view, settings);
+  passes_.resolve.draw(target, area);
+}
+
+void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
+                             const BodyMeshes& bodies) {
+  const ToolSphere tool = tool_sphere(view, snapshot, settings);
+  const SurfaceLook look = look_of(snapshot, settings);
+  const ShadowPass* shadow = settings.shadow ? &passes_.shadow : nullptr;
+  const auto draw_body = [&] { passes_.surface.draw(view, bodies.buffers(), look, tool, shadow); };
+  const bool translucent = look.translucency > 0.0f;
+
+  if (!translucent) draw_body();
+  draw_force(view, snapshot, settings);
+  if (translucent) draw_body();
+  draw_overlays(view, snapshot, settings);
+  if (settings.overlays.fixing_planes) draw_planes(view, snapshot, bodies.bounds());
+  if (settings.overlays.tool) draw_tool(view, snapshot);
+  if (settings.overlays.touched_nodes) draw_touched(view, snapshot);
+}
+
+void ScenePasses::draw_ground(const FrameView& view, const ViewSettings& settings) {
+  lines_.clear();
+  if (settings.overlays.ground_grid) {
+    append_ground_grid(settings.camera, view.viewport, settings.ground_y_m, lines_);
+  }
+  passes_.line.draw(view, lines_, 0.0f);
+  if (settings.shadow) passes_.ground.draw_shadow(view, passes_.shadow);
+  lines_.clear();
+  if (settings.overlays.scale_bar) {
+    if (const auto bar = ground_scale_bar(settings.camera, view.viewport, settings.ground_y_m)) {
+      append_scale_bar(*bar, settings.camera, lines_);
+    }
+  }
+  passes_.line.draw(view, lines_, 0.0f);
+}
+
+void ScenePasses::draw_force(const FrameView& view, const Snapshot& snapshot,
+                             const ViewSettings& settings) const {
+  const auto arrow = force_arrow(snapshot, settings);
+  if (!arrow) return;
+  const Eigen::Vector3f start = arrow->start_m.cast<float>();
+  passes_.solid.draw_arrow(view, start, arrow->tip_m.cast<float>(), pixels_at(view, start, arrow_width_px),
+                           palette::force);
+}
+
+void ScenePasses::draw_overlays(const FrameView& view, const Snapshot& snapshot,
+                                const ViewSettings& settings) {
+  const Overlays& on = settings.overlays;
+  lines_.clear();
+  marks_.clear();
+  if (on.lattice) append_lattice_lines(snapshot.lattice, settings.see_through_body, lines_);
+  if (on.control_net) {
+    for (const SurfaceSnapshot& surface : snapshot.surfaces) append_control_net(surface, lines_, marks_);
+  }
+  if (on.contact_normals) {
+    append_contact_normals(snapshot.contacts, contact_normal_length_m(snapshot.tool), lines_);
+  }
+  if (on.fixed_nodes) append_fixed_marks(snapshot.lattice, settings.see_through_body, marks_);
+  const float lift = lift_m(snapshot.lattice);
+  passes_.line.draw(view, lines_, lift);
+  passes_.mark.draw(view, marks_, lift);
+}
+
+void ScenePasses::draw_planes(const FrameView& view, const Snapshot& snapshot, const BoundingBox& body) {
+  lines_.clear();
+  for (const PlaneSnapshot& plane : snapshot.planes) {
+    const PlaneCorners corners = fixing_plane_corners(plane, snapshot.lattice, body);
+    std::array<Eigen::Vector3f, 4> pane;
+    for (std::size_t i = 0; i < pane.size(); ++i) pane[i] = corners[i].cast<float>();
+    passes_.solid.draw_pane(view, pane, palette::fixing_plane);
+    append_plane_border(corners, plane, lines_);
+  }
+  passes_.line.draw(view, lines_, 0.0f);
+}
+
+void ScenePasses::draw_tool(const FrameView& view, const Snapshot& snapshot) const {
+  const Eigen::Vector3f centre = snapshot.tool.proxy.position_m.cast<float>();
+  if (snapshot.tool.kind == ToolKind::sphere) {
+    passes_.solid.draw_glass_sphere(view, centre, static_cast<float>(snapshot.tool.radius_m), palette::tool);
+  } else {
+    passes_.solid.draw_sphere(view, centre, pixels_at(view, centre, smallest_tool_px), palette::tool);
+  }
+}
+
+// After the tool, which would otherwise tint the nodes under it.
+void ScenePasses::draw_touched(const FrameView& view, const Snapshot& snapshot) {
+  marks_.clear();
+  append_touched_marks(snapshot.lattice, marks_);
+  passes_.mark.draw(view, marks_, lift_m(snapshot.lattice));
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,53 @@
+// Draws simple solids (the tool's sphere, the force arrow) and flat translucent panes (fixing planes).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "engine/result.h"
+#include "render/gl/functions.h"
+#include "render/gl/handle.h"
+#include "render/gl/program.h"
+#include "render/overlay/palette.h"
+#include "render/passes/frame_view.h"
+
+namespace spoonbill {
+
+class SolidPass {
+ public:
+  static Result<SolidPass> make(const GlFunctions& gl);
+
+  // A glassy sphere: what lies inside and behind shows, most in the middle. After everything opaque.
+  void draw_glass_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,
+                         Colour colour) const;
+
+  void draw_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,
+                   Colour colour) const;
+
+  // A shaft with a cone for a head, `width_m` across the shaft.
+  void draw_arrow(const FrameView& view, const Eigen::Vector3f& start_m, const Eigen::Vector3f& tip_m,
+                  float width_m, Colour colour) const;
+
+  // A flat quadrilateral, the colour's alpha its opacity; unlit, seen from both sides.
+  void draw_pane(const FrameView& view, const std::array<Eigen::Vector3f, 4>& corners_m, Colour colour) const;
+
+ private:
+  // A range of the shared vertex buffer.
+  struct Shape {
+    GLint first = 0;
+    GLsizei count = 0;
+  };
+  enum class Finish { solid, glass, pane };
+
+  SolidPass(const GlFunctions& gl, Program program);
+  void draw_shape(const FrameView& view, const Shape& shape, const Eigen::Matrix4f& model, Colour colour,
+                  Finish finish) const;
+
+  const GlFunctions* gl_;
+  Program program_;
+  GlHandle vertex_array_;
+  GlHandle vertices_;
+  Shape sphere_, shaft_, head_, pane_;
+};
+
+}  // namespace spoonbill

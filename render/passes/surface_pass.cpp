@@ -1,0 +1,122 @@
+#include "render/passes/surface_pass.h"
+
+#include <string>
+
+#include "render/gl/pipeline_state.h"
+#include "render/passes/lighting_glsl.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr const char* vertex_source = R"(
+uniform mat4 world_to_clip;
+layout(location = 0) in float x;
+layout(location = 1) in float y;
+layout(location = 2) in float z;
+layout(location = 3) in float nx;
+layout(location = 4) in float ny;
+layout(location = 5) in float nz;
+out vec3 position;
+out vec3 normal;
+void main() {
+  position = vec3(x, y, z);
+  normal = vec3(nx, ny, nz);
+  gl_Position = world_to_clip * vec4(position, 1.0);
+}
+)";
+
+// Nine bilinear comparisons two texels apart blur the edge over about a millimetre; the offset along the
+// normal keeps the surface from shadowing itself.
+constexpr const char* fragment_source = R"(
+uniform sampler2DShadow key_map;
+uniform mat4 key_to_clip;
+uniform float texel;
+uniform float texel_m;
+uniform int shadowed;
+uniform int two_sided;
+uniform vec3 base_colour;
+uniform float roughness;
+uniform float metalness;
+uniform float translucency;
+in vec3 position;
+in vec3 normal;
+out vec4 result;
+
+float key_past_body(vec3 n) {
+  vec3 at = (key_to_clip * vec4(position + n * (4.0 * texel_m), 1.0)).xyz * 0.5 + 0.5;
+  float lit = 0.0;
+  for (int i = 0; i < 9; ++i) {
+    vec2 offset = vec2(float(i % 3) - 1.0, float(i / 3) - 1.0) * 2.0 * texel;
+    lit += texture(key_map, vec3(at.xy + offset, at.z));
+  }
+  return lit / 9.0;
+}
+
+void main() {
+  vec3 n = normalize(normal);
+  if (two_sided != 0 && !gl_FrontFacing) n = -n;
+  float key = 1.0;
+  float sky = 1.0;
+  if (shadowed != 0) {
+    key = key_past_sphere(position);
+    sky = sky_past_sphere(position, n);
+    if (dot(n, toward_key) > 0.0) key *= mix(key_past_body(n), 1.0, 0.6 * translucency);
+  }
+  Look look = Look(base_colour, roughness, metalness, translucency);
+  Lit lit = studio_light(look, position, n, key, sky);
+  float grazing = 1.0 - clamp(abs(dot(n, normalize(eye - position))), 0.0, 1.0);
+  float opacity = mix(1.0, 0.26 + 0.56 * grazing * grazing, translucency);
+  result = picture_colour(lit, opacity);
+}
+)";
+
+}  // namespace
+
+Result<SurfacePass> SurfacePass::make(const GlFunctions& gl) {
+  auto program =
+      Program::make(gl, "surface", vertex_source,
+                    std::string(key_light_glsl) + sphere_shadow_glsl + studio_light_glsl + fragment_source);
+  if (!program) return program.error();
+  return SurfacePass(gl, std::move(program).value());
+}
+
+void SurfacePass::set_uniforms(const FrameView& view, const SurfaceLook& look, const ToolSphere& tool,
+                               const ShadowPass* shadow) const {
+  program_.use();
+  set_frame_uniforms(program_, view);
+  set_tool_uniforms(program_, tool);
+  program_.set("base_colour", look.base_colour);
+  program_.set("roughness", look.roughness);
+  program_.set("metalness", look.metalness);
+  program_.set("translucency", look.translucency);
+  program_.set("key_map", 0);
+  program_.set("shadowed", shadow != nullptr ? 1 : 0);
+  if (shadow == nullptr) return;
+  const auto side_px = static_cast<float>(ShadowPass::key_map_side_px());
+  program_.set("key_to_clip", shadow->area().key_to_clip);
+  program_.set("texel", 1.0f / side_px);
+  program_.set("texel_m", shadow->area().side_m / side_px);
+  gl_->ActiveTexture(GL_TEXTURE0);
+  gl_->BindTexture(GL_TEXTURE_2D, shadow->key_map());
+}
+
+void SurfacePass::draw(const FrameView& view, const std::vector<SurfaceBuffers>& surfaces,
+                       const SurfaceLook& look, const ToolSphere& tool, const ShadowPass* shadow) const {
+  set_uniforms(view, look, tool, shadow);
+  if (look.translucency > 0.0f) {
+    program_.set("two_sided", 1);
+    for (const Cull cull : {Cull::front, Cull::back}) {
+      set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, cull});
+      for (const SurfaceBuffers& surface : surfaces) surface.draw();
+    }
+    return;
+  }
+  for (const SurfaceBuffers& surface : surfaces) {
+    const bool closed = surface.is_closed();
+    program_.set("two_sided", closed ? 0 : 1);
+    set_pipeline_state(*gl_, {Depth::test_and_write, Blend::off, closed ? Cull::back : Cull::off});
+    surface.draw();
+  }
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,38 @@
+// How finely a surface is cut for the screen: pieces for each polynomial span, powers of two, so that the
+// grid changes seldom and every span's ends are drawn.
+#pragma once
+
+#include <vector>
+
+#include "engine/simulation/snapshot.h"
+
+namespace spoonbill {
+
+struct SamplingLevel {
+  // Pieces of each span between the breakpoints of a direction; empty before the first choice.
+  std::vector<int> u_pieces;
+  std::vector<int> v_pieces;
+
+  friend bool operator==(const SamplingLevel&, const SamplingLevel&) = default;
+};
+
+// The same number of pieces in every span.
+SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces);
+
+struct SamplingTarget {
+  double longest_edge_px = 24.0;
+  double largest_sagitta_px = 0.12;  // between a chord and its arc: below what antialiasing shows
+};
+
+// The level at which no edge is longer and no chord farther from the surface than the target allows, judged
+// by the control points of the derivatives. `previous` is kept, span by span, while it is neither too coarse
+// nor more than about twice too fine, so that a slowly changing shape does not flicker between levels. The
+// net must fit the knots.
+SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixels_per_metre,
+                                    const SamplingLevel& previous, const SamplingTarget& target = {});
+
+// The parameters of a direction, aligned with the knots; a periodic direction's seam appears once. `pieces`
+// has one entry a span.
+std::vector<double> drawing_parameters(const KnotVector& knots, const std::vector<int>& pieces);
+
+}  // namespace spoonbill

@@ -1,0 +1,46 @@
+// How a snapshot is shown: plain data, set by the panel, by a recording and by tests. Nothing here changes
+// the simulation.
+#pragma once
+
+#include "engine/pose.h"
+#include "render/camera.h"
+
+namespace spoonbill {
+
+// What is drawn over the bare scene; each has one meaning and can be switched off.
+struct Overlays {
+  bool fixed_nodes = true;       // green squares
+  bool touched_nodes = true;     // red discs
+  bool lattice = false;          // the thinnest lines
+  bool control_net = false;      // thin lines with points
+  bool force = true;             // the force on the hand: an arrow with its newtons
+  bool contact_normals = false;  // short lines out of the contact points
+  bool fixing_planes = true;
+  bool tool = true;
+  bool ground_grid = true;
+  bool scale_bar = true;
+  bool legend = true;  // names what is on
+};
+
+struct ViewSettings {
+  Camera camera;
+  Rectangle panel_px;            // covered by the panel at the left or right edge; empty without one
+  double interface_scale = 1.0;  // widths of lines and sizes of marks: 1 at 720 pixels of height
+
+  Overlays overlays;
+  bool see_through_body = false;  // draws the body as a ghost, so that nodes inside it show
+
+  Vector3 toward_key_light = Vector3(-0.42, 0.80, 0.43);  // any length; kept above the horizon when drawn
+  bool shadow = true;
+  int samples = 4;          // 0 or 4 samples a pixel
+  double ground_y_m = 0.0;  // see ground_below()
+  double arrow_m_per_n = 0.012;
+};
+
+// The interface scale that keeps sizes legible: 1 up to 720 pixels of height, 2 at 1440.
+double interface_scale_for(int height_px);
+
+// The ground's height just below a model: its lowest point, less a gap that keeps it from touching.
+double ground_below(const BoundingBox& model);
+
+}  // namespace spoonbill

@@ -1,0 +1,50 @@
+#include <gtest/gtest.h>
+
+#include "engine/exchange/document.h"
+#include "tests/engine/exchange/sample_document.h"
+
+namespace spoonbill {
+namespace {
+
+std::string refusal(const char* text) {
+  const auto command = command_from_json(parse_json(text, "text").value(), "bend.jsonl: line 4");
+  return command.ok() ? "accepted" : command.error().message;
+}
+
+TEST(Command, ReadsWhatItWrites) {
+  const Scene scene = deformed_document(3).scene;
+  const Command commands[] = {
+      PlacePlane{scene.planes.front()}, RemovePlanes{}, SetTool{scene.tool}, SetMaterial{scene.body.material},
+      SetSculpting{scene.sculpting},    KeepShape{}};
+  for (const Command& command : commands) {
+    const Json json = command_to_json(command);
+    EXPECT_TRUE(is_simulation_command(json)) << json_to_line(json);
+    const auto read = command_from_json(json, "text");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->index(), command.index());
+    EXPECT_EQ(command_to_json(read.value()), json);
+  }
+}
+
+TEST(Command, KnowsItsNames) {
+  EXPECT_FALSE(is_simulation_command(Json{{"command", "set_camera"}}));
+  EXPECT_FALSE(is_simulation_command(Json{{"command", 4}}));
+  EXPECT_FALSE(is_simulation_command(Json::object()));
+  EXPECT_FALSE(is_simulation_command(Json(5)));
+}
+
+TEST(Command, NamesWhatIsWrong) {
+  EXPECT_EQ(refusal("{\"command\": \"fly\"}"),
+            "bend.jsonl: line 4: command is \"fly\", must be one of place_plane, remove_planes, set_tool, "
+            "set_material, set_sculpting, keep_shape");
+  EXPECT_EQ(refusal("{}"), "bend.jsonl: line 4: command is missing");
+  EXPECT_EQ(refusal("{\"command\": 3}"), "bend.jsonl: line 4: command is 3, must be a text in quotes");
+  EXPECT_EQ(refusal("[]"), "bend.jsonl: line 4: is a list of 0, must be an object");
+  EXPECT_EQ(refusal("{\"command\": \"keep_shape\", \"now\": true}"),
+            "bend.jsonl: line 4: has an unknown field \"now\"; known: command");
+  EXPECT_EQ(refusal("{\"command\": \"place_plane\", \"point_mm\": [1, 2, \"x\"], \"normal\": [1, 0, 0]}"),
+            "bend.jsonl: line 4: point_mm[2] is \"x\", must be a number");
+}
+
+}  // namespace
+}  // namespace spoonbill

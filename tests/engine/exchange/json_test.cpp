@@ -1,0 +1,72 @@
+#include "engine/exchange/json.h"
+
+#include <gtest/gtest.h>
+
+namespace spoonbill {
+namespace {
+
+std::string refusal(std::string_view text) {
+  const auto json = parse_json(text, "x.json");
+  return json.ok() ? "accepted" : json.error().message;
+}
+
+TEST(Json, SaysWhereTheTextIsWrong) {
+  EXPECT_EQ(refusal("{\"a\": 1,\n \"b\": nan}"),
+            "x.json: line 2, column 8: parsing value - invalid literal; last read: '\"b\": na'");
+  EXPECT_EQ(refusal("{\"a\": 1"), "x.json: column 8: parsing object - unexpected end of input; expected '}'");
+  EXPECT_EQ(refusal("hello"), "x.json: column 1: parsing value - invalid literal; last read: 'h'");
+}
+
+TEST(Json, RefusesWhatIsNotStrict) {
+  for (const char* text :
+       {"", " ", "NaN", "[Infinity]", "[-Infinity]", "[1e999]", "{\"a\":1}x", "{'a':1}", "[1,]", "// c",
+        "[01]", "[.5]", "[1.]", "\"\x01\"", "\"\xff\"", "[+1]", "{\"a\" 1}"}) {
+    const std::string message = refusal(text);
+    EXPECT_TRUE(message.starts_with("x.json: column ")) << text << " -> " << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+}
+
+TEST(Json, RefusesAFieldGivenTwice) {
+  EXPECT_EQ(refusal("{\"a\": 1, \"b\": {\"c\": 1, \"c\": 2}}"),
+            "x.json: column 26: field \"c\" is given twice");
+}
+
+TEST(Json, LimitsNestingAndSize) {
+  EXPECT_EQ(refusal(std::string(64, '[') + std::string(64, ']')), "accepted");
+  EXPECT_EQ(refusal(std::string(65, '[') + std::string(65, ']')),
+            "x.json: column 65: nested deeper than 64 levels");
+  EXPECT_NE(refusal(std::string(5'000'000, '[')).find("nested deeper"), std::string::npos);
+  std::string many = "[0";
+  for (int i = 0; i < 1'000'000; ++i) many += ",0";
+  EXPECT_NE(refusal(many + "]").find("more than 1000000 values"), std::string::npos);
+  std::string wide = "{\"f\":0";
+  for (int i = 0; i < 1'000; ++i) wide += ",\"f" + std::to_string(i) + "\":0";
+  EXPECT_NE(refusal(wide + "}").find("more than 1000 fields"), std::string::npos);
+}
+
+TEST(Json, WritesPagesThatReadBack) {
+  const Json json = {{"short", {1, 2, {{"a", "b"}}}},
+                     {"long", Json::array()},
+                     {"empty", Json::object()},
+                     {"quote\"d", "line\nbreak"},
+                     {"numbers", std::vector<double>(60, 0.125)}};
+  const std::string page = json_to_page(json);
+  EXPECT_EQ(parse_json(page, "page").value(), json);
+  EXPECT_NE(page.find("  \"short\": [1, 2, {\"a\": \"b\"}],\n"), std::string::npos) << page;
+  EXPECT_NE(page.find("    0.125,\n"), std::string::npos) << page;
+}
+
+TEST(Json, ReplacesBytesThatAreNotText) {
+  EXPECT_EQ(json_to_line(Json("\xff")), "\"\xef\xbf\xbd\"");
+}
+
+TEST(Json, WritesWholeNumbersWithoutFraction) {
+  EXPECT_EQ(json_to_line(number_to_json(8.0)), "8");
+  EXPECT_EQ(json_to_line(number_to_json(-0.0)), "-0.0");
+  EXPECT_EQ(json_to_line(number_to_json(0.1)), "0.1");
+  EXPECT_EQ(json_to_line(number_to_json(1e300)), "1e+300");
+}
+
+}  // namespace
+}  // namespace spoonbill

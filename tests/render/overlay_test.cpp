@@ -1,0 +1,160 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "render/overlay/fixing_plane.h"
+#include "render/overlay/force_arrow.h"
+#include "render/overlay/ground_grid.h"
+#include "render/overlay/labels.h"
+#include "render/overlay/node_marks.h"
+#include "render/passes/shadow_area.h"
+#include "render/surface_look.h"
+#include "render/tessellation/tessellated_surface.h"
+#include "tests/render/sample_scene.h"
+
+namespace spoonbill {
+namespace {
+
+ViewSettings framed(const Snapshot& snapshot) {
+  ViewSettings settings;
+  settings.panel_px = {0, 0, 300, 720};
+  const BoundingBox box = drawn_bounds(snapshot);
+  settings.ground_y_m = ground_below(box);
+  settings.camera =
+      frame(look_from({}, StandardView::perspective), box, make_viewport(1280, 720, settings.panel_px));
+  return settings;
+}
+
+bool has_line(const std::vector<Label>& labels, const std::string& start) {
+  return std::any_of(labels.begin(), labels.end(), [&](const Label& l) { return l.text.starts_with(start); });
+}
+
+TEST(Labels, NameTheForceAndTheScale) {
+  const Snapshot snapshot = sample_scene();
+  const ViewSettings settings = framed(snapshot);
+  const OverlayLabels labels = overlay_labels(snapshot, settings, 1280, 720);
+  EXPECT_TRUE(has_line(labels.in_scene, "1.84 N"));
+  const auto bar =
+      ground_scale_bar(settings.camera, make_viewport(1280, 720, settings.panel_px), settings.ground_y_m);
+  ASSERT_TRUE(bar);
+  EXPECT_TRUE(has_line(labels.in_scene, bar->text()));
+  for (const Label& label : labels.in_scene) EXPECT_GT(label.position_px.x(), 300.0);
+}
+
+TEST(Labels, TheLegendSaysWhatIsOnAndThere) {
+  Snapshot snapshot = sample_scene();
+  ViewSettings settings = framed(snapshot);
+  OverlayLabels labels = overlay_labels(snapshot, settings, 1280, 720);
+  EXPECT_TRUE(has_line(labels.legend, "fixed nodes 640"));
+  EXPECT_TRUE(has_line(labels.legend, "touched nodes"));
+  EXPECT_TRUE(has_line(labels.legend, "sphere tool, push"));
+  EXPECT_FALSE(has_line(labels.legend, "control net"));
+
+  settings.overlays.control_net = true;
+  settings.overlays.fixed_nodes = false;
+  std::fill(snapshot.lattice.touched.begin(), snapshot.lattice.touched.end(), std::uint8_t{0});
+  labels = overlay_labels(snapshot, settings, 1280, 720);
+  EXPECT_TRUE(has_line(labels.legend, "control net"));
+  EXPECT_FALSE(has_line(labels.legend, "fixed nodes"));
+  EXPECT_FALSE(has_line(labels.legend, "touched nodes"));
+
+  settings.overlays.legend = false;
+  EXPECT_TRUE(overlay_labels(snapshot, settings, 1280, 720).legend.empty());
+}
+
+TEST(ForceArrow, IsAsLongAsTheForceWithinBounds) {
+  Snapshot snapshot = sample_scene();
+  const ViewSettings settings;
+  const auto length = [&](double newtons) {
+    snapshot.force_n = {0.0, newtons, 0.0};
+    const auto arrow = force_arrow(snapshot, settings);
+    return arrow ? (arrow->tip_m - arrow->start_m).norm() : 0.0;
+  };
+  EXPECT_NEAR(length(2.0), 2.0 * settings.arrow_m_per_n, 1e-12);
+  EXPECT_EQ(length(0.001), 0.0);
+  EXPECT_NEAR(length(1000.0), 0.060, 1e-12);
+}
+
+TEST(ScaleBar, IsOfARoundLengthAndStaysInTheFreeRectangle) {
+  EXPECT_DOUBLE_EQ(round_length_below(0.0199), 0.01);
+  EXPECT_DOUBLE_EQ(round_length_below(0.02), 0.02);
+  EXPECT_DOUBLE_EQ(round_length_below(0.09), 0.05);
+  EXPECT_EQ((ScaleBar{Vector3::Zero(), Vector3::Zero(), 0.02}).text(), "20 mm");
+  EXPECT_EQ((ScaleBar{Vector3::Zero(), Vector3::Zero(), 0.0005}).text(), "0.5 mm");
+  const ViewSettings settings = framed(sample_scene());
+  const Viewport viewport = make_viewport(1280, 720, settings.panel_px);
+  const auto bar = ground_scale_bar(settings.camera, viewport, settings.ground_y_m);
+  ASSERT_TRUE(bar);
+  EXPECT_NEAR((bar->end_m - bar->start_m).norm(), bar->length_m, 1e-12);
+  const auto start = project(settings.camera, viewport, bar->start_m);
+  const auto end = project(settings.camera, viewport, bar->end_m);
+  ASSERT_TRUE(start && end);
+  EXPECT_GT(start->x(), 300.0);
+  EXPECT_LT(end->x(), 1280.0);
+  EXPECT_NEAR(start->y(), end->y(), 1e-6) << "level in the picture";
+
+  const Camera level = look_from(settings.camera, StandardView::front);
+  Camera from_below = look_from(settings.camera, StandardView::bottom);
+  from_below.pitch_rad = -0.3;
+  EXPECT_TRUE(ground_scale_bar(level, viewport, settings.ground_y_m) ||
+              !ground_scale_bar(from_below, viewport, settings.ground_y_m));
+}
+
+TEST(NodeMarks, FixedAreSquaresTouchedAreDiscs) {
+  const Snapshot snapshot = sample_scene();
+  std::vector<OverlayMark> marks;
+  append_fixed_marks(snapshot.lattice, false, marks);
+  ASSERT_FALSE(marks.empty());
+  for (const OverlayMark& mark : marks) EXPECT_EQ(mark.shape, static_cast<float>(MarkShape::square));
+  const std::size_t on_shell = marks.size();
+  marks.clear();
+  append_fixed_marks(snapshot.lattice, true, marks);
+  EXPECT_GT(marks.size(), on_shell);
+  marks.clear();
+  append_touched_marks(snapshot.lattice, marks);
+  ASSERT_FALSE(marks.empty());
+  for (const OverlayMark& mark : marks) EXPECT_EQ(mark.shape, static_cast<float>(MarkShape::disc));
+}
+
+TEST(FixingPlane, LiesInItsPlaneAroundTheFixedNodes) {
+  const Snapshot snapshot = sample_scene();
+  const PlaneCorners corners =
+      fixing_plane_corners(snapshot.planes[0], snapshot.lattice, drawn_bounds(snapshot));
+  BoundingBox box;
+  for (const Vector3& corner : corners) {
+    EXPECT_NEAR((corner - snapshot.planes[0].point_m).dot(snapshot.planes[0].normal), 0.0, 1e-12);
+    box.include(corner);
+  }
+  EXPECT_GT(box.high_m.z() - box.low_m.z(), 0.012);
+  EXPECT_LT(box.high_m.z() - box.low_m.z(), 0.040);
+}
+
+TEST(ShadowArea, HoldsWhatTheLightCarriesToTheGround) {
+  BoundingBox body;
+  body.include({0.0, 0.01, -0.006});
+  body.include({0.1, 0.03, 0.006});
+  const Eigen::Vector3f toward_key = Eigen::Vector3f(-0.4f, 0.8f, 0.4f).normalized();
+  const ShadowArea area = shadow_area(body, {}, 0.0f, toward_key, 1024);
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector4f clip = area.key_to_clip * body.corner(i).cast<float>().homogeneous();
+    EXPECT_LT(clip.head<3>().cwiseAbs().maxCoeff(), 1.0f);
+    // A point and its shadow on the ground fall on one texel.
+    const Eigen::Vector3f top = body.corner(i).cast<float>();
+    const Eigen::Vector3f shadow = top - toward_key * (top.y() / toward_key.y());
+    const Eigen::Vector4f shadow_clip = area.key_to_clip * shadow.homogeneous();
+    EXPECT_NEAR(clip.x(), shadow_clip.x(), 1e-4f);
+    EXPECT_NEAR(clip.y(), shadow_clip.y(), 1e-4f);
+    EXPECT_LT(clip.z(), shadow_clip.z()) << "the higher point is nearer to the light";
+  }
+}
+
+TEST(SurfaceLook, MaterialsLookLikeThemselves) {
+  EXPECT_GT(look_of_material("modelling-clay").roughness, 0.6f);
+  EXPECT_EQ(look_of_material("Steel 304").metalness, 1.0f);
+  EXPECT_GT(look_of_material("jelly").translucency, 0.3f);
+  EXPECT_EQ(look_of_material("unobtainium").translucency, 0.0f);
+}
+
+}  // namespace
+}  // namespace spoonbill

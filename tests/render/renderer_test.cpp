@@ -1,0 +1,221 @@
+#include "render/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "render/gl/osmesa_context.h"
+#include "render/image/compare.h"
+#include "render/image/png.h"
+#include "render/interface_fonts.h"
+#include "render/tessellation/tessellated_surface.h"
+#include "tests/render/sample_scene.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr int width_px = 640, height_px = 360;
+
+// Two renderings of the same view agree within this in every block; see worst_block_difference().
+constexpr double tolerance = 2.0;
+
+constexpr const char* font_path = "/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf";
+
+class Rendering : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    auto context = OsmesaContext::make(width_px, height_px);
+    ASSERT_TRUE(context) << context.error().message;
+    context_ = std::move(context).value();
+    auto renderer = Renderer::make(*context_);
+    ASSERT_TRUE(renderer) << renderer.error().message;
+    renderer_ = std::make_unique<Renderer>(std::move(renderer).value());
+    snapshot_ = sample_scene({.bend_rad = 0.4});
+    const BoundingBox box = drawn_bounds(snapshot_);
+    settings_.ground_y_m = ground_below(box);
+    settings_.camera =
+        frame(look_from({}, StandardView::perspective), box, make_viewport(width_px, height_px, {}));
+  }
+
+  Image picture() { return picture(snapshot_, settings_); }
+
+  Image picture(const Snapshot& snapshot, const ViewSettings& settings,
+                const ImDrawData* interface = nullptr) {
+    Image image;
+    const Status drawn = renderer_->draw(snapshot, settings, interface);
+    EXPECT_TRUE(drawn.ok()) << drawn.error().message;
+    renderer_->read_pixels(image);
+    return image;
+  }
+
+  double change(const std::function<void(ViewSettings&)>& edit) {
+    ViewSettings edited = settings_;
+    edit(edited);
+    return worst_block_difference(picture(), picture(snapshot_, edited))->worst;
+  }
+
+  std::unique_ptr<OsmesaContext> context_;
+  std::unique_ptr<Renderer> renderer_;
+  Snapshot snapshot_;
+  ViewSettings settings_;
+};
+
+TEST_F(Rendering, ShowsALitBodyOverTheBackground) {
+  const Image image = picture();
+  EXPECT_EQ(image.width, width_px);
+  EXPECT_EQ(image.height, height_px);
+  std::set<int> shades;
+  for (int y = 0; y < height_px; ++y) {
+    for (int x = 0; x < width_px; ++x) {
+      const std::uint8_t* p = image.pixel(x, y);
+      EXPECT_EQ(p[3], 255);
+      if (p[0] > p[2] + 25) shades.insert(p[0]);
+    }
+  }
+  EXPECT_GT(shades.size(), 40u) << "clay is warm, and shaded rather than flat";
+}
+
+TEST_F(Rendering, TheTopRowComesFirst) {
+  Snapshot nothing;
+  settings_.overlays = {};
+  settings_.overlays.tool = settings_.overlays.ground_grid = settings_.overlays.scale_bar = false;
+  const Image image = picture(nothing, settings_);
+  EXPECT_LT(image.pixel(10, 2)[0] + 20, image.pixel(10, height_px - 3)[0]) << "the floor is the brighter end";
+}
+
+TEST_F(Rendering, TheSameSnapshotGivesTheSamePixels) {
+  const Image first = picture();
+  EXPECT_EQ(first, picture());
+
+  auto context = OsmesaContext::make(width_px, height_px);
+  ASSERT_TRUE(context);
+  auto other = Renderer::make(*context.value());
+  ASSERT_TRUE(other);
+  ASSERT_TRUE(other->draw(snapshot_, settings_, nullptr).ok());
+  Image image;
+  other->read_pixels(image);
+  EXPECT_EQ(first, image);
+}
+
+TEST_F(Rendering, ALightMovedByFiveDegreesIsNoticed) {
+  const Eigen::AngleAxisd turn(5.0 * M_PI / 180.0, Vector3::UnitY());
+  const double moved = change([&](ViewSettings& s) { s.toward_key_light = turn * s.toward_key_light; });
+  EXPECT_GT(moved, tolerance);
+}
+
+TEST_F(Rendering, EveryOverlayShows) {
+  snapshot_.lattice.touched[0] = 1;
+  const std::vector<std::pair<const char*, bool Overlays::*>> switches = {
+      {"fixed nodes", &Overlays::fixed_nodes},
+      {"touched nodes", &Overlays::touched_nodes},
+      {"lattice", &Overlays::lattice},
+      {"control net", &Overlays::control_net},
+      {"force", &Overlays::force},
+      {"contact normals", &Overlays::contact_normals},
+      {"fixing planes", &Overlays::fixing_planes},
+      {"tool", &Overlays::tool},
+      {"ground grid", &Overlays::ground_grid},
+      {"scale bar", &Overlays::scale_bar}};
+  for (const auto& [name, overlay] : switches) {
+    EXPECT_GT(change([&](ViewSettings& s) { s.overlays.*overlay = !(s.overlays.*overlay); }), tolerance)
+        << name;
+  }
+}
+
+TEST_F(Rendering, ShadowSamplesAndGhostShow) {
+  EXPECT_GT(change([](ViewSettings& s) { s.shadow = false; }), tolerance);
+  EXPECT_GT(change([](ViewSettings& s) { s.samples = 0; }), tolerance);
+  EXPECT_GT(change([](ViewSettings& s) { s.see_through_body = true; }), tolerance);
+}
+
+TEST_F(Rendering, MaterialsDiffer) {
+  const Image clay = picture();
+  for (const char* material : {"steel-304", "jelly"}) {
+    snapshot_.material.name = material;
+    EXPECT_GT(worst_block_difference(clay, picture())->worst, 10.0) << material;
+  }
+}
+
+// The silhouette is smooth: between background and body lie pixels of neither colour.
+TEST_F(Rendering, FourSamplesSmoothTheEdges) {
+  settings_.overlays = {};
+  settings_.overlays.fixed_nodes = settings_.overlays.fixing_planes = settings_.overlays.ground_grid = false;
+  ViewSettings rough = settings_;
+  rough.samples = 0;
+  const Image smooth_image = picture(), rough_image = picture(snapshot_, rough);
+  const auto steepest_row_steps = [](const Image& image) {
+    int steps = 0;
+    for (int x = 250; x < 300; ++x) {
+      int largest = 0;
+      for (int y = 1; y < height_px; ++y) {
+        largest = std::max(largest, std::abs(image.pixel(x, y)[2] - image.pixel(x, y - 1)[2]));
+      }
+      steps += largest;
+    }
+    return steps;
+  };
+  EXPECT_LT(steepest_row_steps(smooth_image), 0.95 * steepest_row_steps(rough_image));
+}
+
+TEST_F(Rendering, ABrokenSurfaceOrSettingIsAnErrorNotACrash) {
+  ViewSettings odd = settings_;
+  odd.samples = 3;
+  EXPECT_FALSE(renderer_->draw(snapshot_, odd, nullptr).ok());
+  snapshot_.surfaces[0].y.clear();
+  EXPECT_FALSE(renderer_->draw(snapshot_, settings_, nullptr).ok());
+  snapshot_.surfaces.clear();
+  EXPECT_TRUE(renderer_->draw(snapshot_, settings_, nullptr).ok());
+}
+
+TEST_F(Rendering, AWildPoseDrawsNothingButEndsNothing) {
+  for (float& x : snapshot_.surfaces[0].x) x = std::numeric_limits<float>::quiet_NaN();
+  snapshot_.tool.proxy.position_m = Vector3::Constant(1e9);
+  EXPECT_TRUE(renderer_->draw(snapshot_, settings_, nullptr).ok());
+}
+
+TEST_F(Rendering, TheInterfaceDrawsText) {
+  if (!std::filesystem::exists(font_path)) GTEST_SKIP() << "needs fonts-roboto-unhinted";
+  ImGuiContext* interface = ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.DisplaySize = {width_px, height_px};
+  const auto fonts = add_interface_fonts(*io.Fonts, font_path, 15.0f, 19.0f);
+  ASSERT_TRUE(fonts);
+  renderer_->upload_fonts(*io.Fonts);
+  ImGui::NewFrame();
+  ImGui::GetForegroundDrawList()->AddRectFilled({0, 0}, {200, 60}, IM_COL32(255, 255, 255, 255));
+  ImGui::GetForegroundDrawList()->AddText(fonts->heading, 19.0f, {10, 10}, IM_COL32(0, 0, 0, 255),
+                                          "Spoonbill");
+  ImGui::Render();
+  const Image image = picture(snapshot_, settings_, ImGui::GetDrawData());
+  ImGui::DestroyContext(interface);
+  int dark = 0;
+  for (int y = 8; y < 30; ++y) {
+    for (int x = 8; x < 100; ++x) dark += image.pixel(x, y)[0] < 64 ? 1 : 0;
+  }
+  EXPECT_GT(dark, 100);
+  EXPECT_LT(dark, 1000);
+  EXPECT_EQ(image.pixel(150, 50)[0], 255) << "the plate is opaque white";
+}
+
+TEST(InterfaceFonts, AMissingFileIsAnError) {
+  ImFontAtlas atlas;
+  const auto fonts = add_interface_fonts(atlas, "/nonexistent/font.ttf", 15.0f, 19.0f);
+  ASSERT_FALSE(fonts);
+  EXPECT_NE(fonts.error().message.find("/nonexistent/font.ttf"), std::string::npos);
+}
+
+TEST(OsmesaContext, ImpossibleSizesAreRefused) {
+  EXPECT_FALSE(OsmesaContext::make(0, 10));
+  EXPECT_FALSE(OsmesaContext::make(10, 100000));
+}
+
+}  // namespace
+}  // namespace spoonbill

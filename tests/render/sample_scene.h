@@ -1,0 +1,20 @@
+// A snapshot made up for pictures: a handle-like tube, straight or bent, with a lattice, a fixing plane, a
+// sphere on its free end, and a force. No physics ran.
+#pragma once
+
+#include <string>
+
+#include "engine/simulation/snapshot.h"
+
+namespace spoonbill {
+
+struct SampleSceneOptions {
+  double bend_rad = 0.0;  // how far the free end is turned down
+  std::string material = "modelling-clay";
+  int along = 60, across = 8, through = 4;  // lattice nodes
+};
+
+// 100 x 12 x 5 mm, its lower side at y = 0, its axis along x, the first third fixed.
+Snapshot sample_scene(const SampleSceneOptions& options = {});
+
+}  // namespace spoonbill
