@@ -7,16 +7,17 @@ namespace spoonbill {
 InterruptWatch::InterruptWatch() {
   sigemptyset(&watched_);
   sigaddset(&watched_, SIGINT);
-  sigaddset(&watched_, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &watched_, &before_);
 }
 
-InterruptWatch::~InterruptWatch() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+InterruptWatch::~InterruptWatch() {
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
 
 bool InterruptWatch::requested() const {
   sigset_t pending;
   sigpending(&pending);
-  return sigismember(&pending, SIGINT) == 1 || sigismember(&pending, SIGTERM) == 1;
+  return sigismember(&pending, SIGINT) == 1;
 }
 
 void InterruptWatch::answer() {

@@ -1,5 +1,6 @@
-// Ctrl+C and requests to end, asked for instead of suffered: while one of these lives, SIGINT and SIGTERM wait
-// until the work reaches a place where it can stop. Make it before other threads start; they inherit the waiting.
+// Ctrl+C, asked for instead of suffered: while one of these lives, SIGINT waits until the work reaches a
+// place where it can stop. Make it before other threads start; they inherit the waiting. SIGTERM still ends
+// the process at once.
 #pragma once
 
 #include <csignal>

@@ -1,10 +1,10 @@
+#include <unistd.h>
+
 #include <csignal>
 #include <exception>
 #include <iostream>
 #include <string>
 #include <vector>
-
-#include <unistd.h>
 
 #include "app/program.h"
 

@@ -15,7 +15,9 @@ const char* const description =
     "Spoonbill: shape B-spline surfaces by touch.\n"
     "`spoonbill COMMAND --help` tells all about a command.";
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
 
 int explain_wrong_use(const CLI::App& root, const CLI::ParseError& error, Console& console) {
   const auto chosen = root.get_subcommands();

@@ -75,8 +75,9 @@ class LineTaker {
   Status add_command(const Json& json, FieldReader& reader, std::size_t bytes, std::size_t line_number) {
     check_tick(reader);
     command_bytes_ += bytes;
-    if (command_bytes_ > command_bytes_limit)
+    if (command_bytes_ > command_bytes_limit) {
       reader.refuse("is too much: all commands together exceed 64 MiB");
+    }
     if (!reader.status().ok()) return reader.status();
     TimedCommand command{next_tick(), json, source_ + ": line " + std::to_string(line_number)};
     command.command.erase("tick");
@@ -93,8 +94,9 @@ class LineTaker {
 Result<RecordingHeader> read_header(const Line& line, const std::string& source) {
   const std::string where = source + ": line 1";
   auto json = parse_json(line.text, where);
-  if (!json.ok() && !line.terminated)
+  if (!json.ok() && !line.terminated) {
     return Error{where + ": is cut or not a recording: " + json.error().message};
+  }
   if (!json.ok()) return json.error();
   return header_from_json(json.value(), where);
 }

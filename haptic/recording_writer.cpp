@@ -59,8 +59,9 @@ Status check_header(const Json& header, const std::string& name) {
 // Also catches what JSON cannot hold: numbers that are not finite, nesting that no reader accepts.
 Status check_line(const Json& line, const std::string& source) {
   const std::string text = json_to_line(line);
-  if (text.size() + 1 >= recording_line_bytes_limit)
+  if (text.size() + 1 >= recording_line_bytes_limit) {
     return Error{source + ": the command is longer than 64 KiB"};
+  }
   auto read_back = parse_json(text, source);
   if (!read_back.ok()) return read_back.error();
   if (read_back.value() != line) return Error{source + ": the command holds what JSON cannot keep"};

@@ -11,12 +11,11 @@
 
 namespace spoonbill {
 
-// The virtual coupling: a spring of the device's highest stiffness joins the device and the proxy, the place where
-// the tool meets the material. The spring's force is the material's reaction times the force scale, low-pass filtered
-// and limited, so the proxy stands off the device by force / stiffness (after the proxy of Ruspini et al. 1997, with
-// the material's own answer in the place of a wall's). Plain data, owned with the simulation by whoever ticks.
+// The virtual coupling: a critically damped spring of the device's highest stiffness joins the device and the
+// proxy, the tool as the material lets it move (after the proxy of Ruspini et al. 1997). Its force goes to
+// the hand, filtered and limited; its opposite, divided by the force scale, presses the tool on the material.
+// Plain data, owned with the simulation by whoever ticks.
 struct CouplingState {
-  Pose proxy;
   Vector3 force_n = Vector3::Zero();  // on the hand
 };
 

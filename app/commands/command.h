@@ -1,5 +1,5 @@
-// The commands of the program. Each add_ function declares its command's options at the root parser; the entry's
-// act() does the work once they have been read.
+// The commands of the program. Each add_ function declares its command's options at the root parser; the
+// entry's act() does the work once they have been read.
 #pragma once
 
 #include <functional>

@@ -22,12 +22,13 @@ void add_instruction_set_option(CLI::App& parser, InstructionSet& set) {
       set = available;
       return;
     }
-    throw CLI::ValidationError("--instruction-set", "'" + name + "' is not one that this processor has: " + names);
+    throw CLI::ValidationError("--instruction-set",
+                               "'" + name + "' is not one that this processor has: " + names);
   };
   parser
-      .add_option_function<std::string>(
-          "--instruction-set", choose,
-          "Vector instructions to compute with (" + names + "); the widest unless told. The result is the same")
+      .add_option_function<std::string>("--instruction-set", choose,
+                                        "Vector instructions to compute with (" + names +
+                                            "); the widest unless told. The result is the same")
       ->type_name("NAME");
 }
 

@@ -34,7 +34,8 @@ void add_duration(FactSheet& facts, std::uint64_t ticks) {
 
 Status add_simulated(FactSheet& facts, const Document& document, const std::string& source) {
   add_document_facts(facts, document);
-  auto session = Session::make(document, source, VirtualDevice::default_specification(), best_instruction_set());
+  auto session =
+      Session::make(document, source, VirtualDevice::default_specification(), best_instruction_set());
   if (!session) return session.error();
   Snapshot snapshot;
   write_snapshot(session.value(), snapshot);
@@ -117,10 +118,12 @@ CommandEntry add_info(CLI::App& root) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* parser = root.add_subcommand("info", "Tell what a model, recording, script or material holds");
   parser->footer(
-      "A model is reported with its size, its surfaces' degrees, control points and knots, and the lattice that a\n"
+      "A model is reported with its size, its surfaces' degrees, control points and knots, and the lattice "
+      "that a\n"
       "simulation would have: nodes, mass, and the Young's modulus felt while sculpting.\n"
       "Example: spoonbill info assets/models/spoon-handle.json");
-  parser->add_option("FILE", options->file, "A document, script or material (.json), or a recording")->required();
+  parser->add_option("FILE", options->file, "A document, script or material (.json), or a recording")
+      ->required();
   add_json_option(*parser, options->json);
   return {parser, [options](Console& console) { return info(*options, console); }};
 }

@@ -37,7 +37,8 @@ Status run(Lockstep& lockstep, Console& console) {
     progress.show(lockstep.tick(), lockstep.tick_count());
     if (!interrupt.requested()) continue;
     interrupt.answer();
-    return Error{"stopped after " + std::to_string(lockstep.tick()) + " ticks; the recording replays up to there"};
+    return Error{"stopped after " + std::to_string(lockstep.tick()) +
+                 " ticks; the recording replays up to there"};
   }
   return lockstep.finish();
 }
@@ -78,7 +79,8 @@ Status record_script(const RecordOptions& options, Console& console) {
   input.tick_count = script->tick_count();
   input.commands = script->commands;
   input.source = options.source.string();
-  return record_input(options, {device->specification(), std::move(document).value()}, std::move(input), console);
+  return record_input(options, {device->specification(), std::move(document).value()}, std::move(input),
+                      console);
 }
 
 // The readings stay as they were; states and hashes are this version's.
@@ -111,11 +113,13 @@ Status record(const RecordOptions& options, Console& console) {
 
 CommandEntry add_record(CLI::App& root) {
   auto options = std::make_shared<RecordOptions>();
-  CLI::App* parser =
-      root.add_subcommand("record", "Play a script of tool motions on the model that it names, and record it");
+  CLI::App* parser = root.add_subcommand(
+      "record", "Play a script of tool motions on the model that it names, and record it");
   parser->footer(
-      "An imitated hand of known mass and stiffness follows the script and feels the material's force; the path\n"
-      "that results is recorded, tick by tick, with the model. A recording as the source keeps its path and gets\n"
+      "An imitated hand of known mass and stiffness follows the script and feels the material's force; the "
+      "path\n"
+      "that results is recorded, tick by tick, with the model. A recording as the source keeps its path and "
+      "gets\n"
       "this version's states: do that when `replay` says that another version made it.\n"
       "Example: spoonbill record assets/recordings/spoon-handle-bend.script.json --out bend.recording.jsonl");
   parser->add_option("SOURCE", options->source, "A script (.json), or a recording")->required();

@@ -12,6 +12,7 @@
 #include "app/frames/frame_painter.h"
 #include "app/frames/replay_pictures.h"
 #include "app/interrupt.h"
+#include "app/panel/session_panel.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/hash_text.h"
 #include "app/report/progress_bar.h"
@@ -46,8 +47,8 @@ struct Replay {
 
 Error stopped(const Lockstep& lockstep, InterruptWatch& interrupt) {
   interrupt.answer();
-  return Error{"stopped after " + std::to_string(lockstep.tick()) + " of " + std::to_string(lockstep.tick_count()) +
-               " ticks; the frames that are there are whole"};
+  return Error{"stopped after " + std::to_string(lockstep.tick()) + " of " +
+               std::to_string(lockstep.tick_count()) + " ticks; the frames that are there are whole"};
 }
 
 Status run_without_pictures(const Replay& replay) {
@@ -87,11 +88,14 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
   if (!painter) return painter.error();
   ProgressBar progress(replay.console, "Drawing", replay.options.progress);
   Image picture;
-  for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested(); frame += request.every) {
+  for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested();
+       frame += request.every) {
     if (Status ran = replay.lockstep.run_to(tick_of_frame(frame)); !ran) return ran;
     write_snapshot(replay.session, snapshot);
     replay.session.flags = tick_flag_none;
-    if (Status painted = painter->paint(replay.session, snapshot, picture); !painted) return painted;
+    const ViewSettings view = painter->view_of(replay.session.view);
+    const PanelModel panel = panel_of(replay.session, snapshot, view);
+    if (Status painted = painter->paint(snapshot, view, panel, picture); !painted) return painted;
     if (Status added = pictures.add(frame, snapshot.time_s(), picture); !added) return added;
     progress.show(frame + 1, request.frame_count);
   }
@@ -124,7 +128,8 @@ Status run_with_pictures(const Replay& replay, FactSheet& facts) {
 Status replay_recording(const ReplayOptions& options, const Recording& recording, Console& console) {
   if (Status checked = check_commands(recording.commands); !checked) return checked;
   const std::string source = options.recording.string();
-  auto session = Session::make(recording.header.document, source, recording.header.device, options.instruction_set);
+  auto session =
+      Session::make(recording.header.document, source, recording.header.device, options.instruction_set);
   if (!session) return session.error();
   std::optional<RecordingWriter> writer;
   if (!options.rerecord.empty()) {
@@ -181,7 +186,9 @@ void add_picture_options(CLI::App& parser, const std::shared_ptr<ReplayOptions>&
   parser.add_option("--every", options->every, "Draw only each N-th frame; 1 unless told")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}))
       ->type_name("N");
-  parser.add_option("--video", options->video, "Also make a video, when ffmpeg is installed; the ending tells the format")
+  parser
+      .add_option("--video", options->video,
+                  "Also make a video, when ffmpeg is installed; the ending tells the format")
       ->type_name("FILE");
   parser.add_flag("--no-frames", options->no_frames, "Draw nothing; only compute and compare");
 }
@@ -192,13 +199,17 @@ CommandEntry add_replay(CLI::App& root) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* parser = root.add_subcommand("replay", "Replay a recording and draw what happened");
   parser->footer(
-      "Frame k shows the state after floor(k * 1000 / 60) ticks of 1 ms, on any machine and load. The states are\n"
-      "compared with those in the recording; a difference is an error that names the tick. A recording that was\n"
+      "Frame k shows the state after floor(k * 1000 / 60) ticks of 1 ms, on any machine and load. The states "
+      "are\n"
+      "compared with those in the recording; a difference is an error that names the tick. A recording that "
+      "was\n"
       "cut replays up to the cut. Frames of an earlier replay in DIR are replaced.\n"
       "Example: spoonbill replay assets/recordings/spoon-handle-bend.recording.jsonl --out output/bend");
   parser->add_option("RECORDING", options->recording, "A recording (.recording.jsonl)")->required();
   add_picture_options(*parser, options);
-  parser->add_option("--rerecord", options->rerecord, "Write what was replayed as a recording, the same bytes again")
+  parser
+      ->add_option("--rerecord", options->rerecord,
+                   "Write what was replayed as a recording, the same bytes again")
       ->type_name("FILE");
   add_instruction_set_option(*parser, options->instruction_set);
   parser->add_flag("--progress", options->progress, "Show the progress even when nobody watches");

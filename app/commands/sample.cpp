@@ -94,7 +94,8 @@ Status sample(const SampleOptions& options, Console& console) {
 
 CommandEntry add_sample(CLI::App& root) {
   auto options = std::make_shared<SampleOptions>();
-  CLI::App* parser = root.add_subcommand("sample", "Write points and unit normals of a model's surfaces as CSV");
+  CLI::App* parser =
+      root.add_subcommand("sample", "Write points and unit normals of a model's surfaces as CSV");
   parser->footer(
       "The grid spans the whole knot domain of each surface, both ends included; the seam of a periodic\n"
       "direction therefore appears twice. Lengths are metres. Numbers read back to the same bits.\n"

@@ -1,11 +1,11 @@
 #include "app/files/output_file.h"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <string>
 #include <utility>
-
-#include <unistd.h>
 
 namespace spoonbill {
 

@@ -1,5 +1,5 @@
-// A file being written. A regular file appears under its name whole, at commit(), or not at all; a device or pipe
-// is written as it is. One owner, one thread. Errors name the file.
+// A file being written. A regular file appears under its name whole, at commit(), or not at all; a device or
+// pipe is written as it is. One owner, one thread. Errors name the file.
 #pragma once
 
 #include <cstdio>

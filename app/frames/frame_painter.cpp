@@ -32,24 +32,24 @@ Result<FramePainter> FramePainter::make(int width_px, int height_px, const Snaps
                       box_of(start));
 }
 
-Status FramePainter::paint(const Session& session, const Snapshot& snapshot, Image& image) {
+ViewSettings FramePainter::view_of(const ViewChoice& choice) const {
   const int width = context_->width_px();
   const int height = context_->height_px();
-  const ViewSettings view = settings_for(session.view, body_, width, height, panel_rectangle(width, height));
-  const ImDrawData* panel = view.panel_px.width > 0.0 ? &lay_out_panel(session, snapshot, view) : nullptr;
-  if (Status drawn = renderer_.draw(snapshot, view, panel); !drawn) return drawn;
+  return settings_for(choice, body_, width, height, panel_rectangle(width, height));
+}
+
+Status FramePainter::paint(const Snapshot& snapshot, const ViewSettings& view, const PanelModel& panel,
+                           Image& image) {
+  const ImDrawData* interface = view.panel_px.width > 0.0 ? &lay_out(panel, view.panel_px) : nullptr;
+  if (Status drawn = renderer_.draw(snapshot, view, interface); !drawn) return drawn;
   renderer_.read_pixels(image);
   return {};
 }
 
-const ImDrawData& FramePainter::lay_out_panel(const Session& session, const Snapshot& snapshot,
-                                             const ViewSettings& view) {
-  const PanelModel model = make_panel_model(
-      snapshot, {session.simulation.scene(), session.title, view, session.history.can_undo(),
-                         session.history.can_redo()});
+const ImDrawData& FramePainter::lay_out(const PanelModel& panel, const Rectangle& place_px) {
   interface_.begin_frame(context_->width_px(), context_->height_px());
   // Nobody can press anything in a picture.
-  draw_panel(model, interface_.theme(), view.panel_px);
+  draw_panel(panel, interface_.theme(), place_px);
   return interface_.end_frame();
 }
 

@@ -1,10 +1,11 @@
-// Paints a session's snapshots with the panel beside them, offscreen. One owner; the thread that made it.
+// Paints snapshots with the panel beside them, offscreen. One owner; the thread that made it.
 #pragma once
 
 #include <memory>
 
 #include "app/panel/interface_context.h"
-#include "app/session/session.h"
+#include "app/panel/panel_model.h"
+#include "app/view/view_choice.h"
 #include "render/gl/osmesa_context.h"
 #include "render/image/image.h"
 #include "render/renderer.h"
@@ -19,8 +20,11 @@ class FramePainter {
   FramePainter(FramePainter&&) noexcept = default;
   FramePainter& operator=(FramePainter&&) = delete;
 
-  // `snapshot` must be the session's.
-  Status paint(const Session& session, const Snapshot& snapshot, Image& image);
+  // How a frame of this size shows the choice, with room for the panel.
+  ViewSettings view_of(const ViewChoice& choice) const;
+
+  // The panel is left out where the frame is too small for it.
+  Status paint(const Snapshot& snapshot, const ViewSettings& view, const PanelModel& panel, Image& image);
 
  private:
   FramePainter(std::unique_ptr<OsmesaContext> context, InterfaceContext interface, Renderer renderer,
@@ -29,7 +33,7 @@ class FramePainter {
         interface_(std::move(interface)),
         renderer_(std::move(renderer)),
         body_(body) {}
-  const ImDrawData& lay_out_panel(const Session& session, const Snapshot& snapshot, const ViewSettings& view);
+  const ImDrawData& lay_out(const PanelModel& panel, const Rectangle& place_px);
 
   std::unique_ptr<OsmesaContext> context_;
   InterfaceContext interface_;

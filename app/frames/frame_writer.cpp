@@ -1,11 +1,11 @@
 #include "app/frames/frame_writer.h"
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <string>
 #include <system_error>
 #include <vector>
-
-#include <unistd.h>
 
 #include "render/image/png.h"
 
@@ -38,7 +38,8 @@ Status prepare_frame_folder(const std::filesystem::path& folder) {
   fs::create_directories(folder, error);
   if (error) return Error{folder.string() + ": the folder cannot be made: " + error.message()};
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    return Error{folder.string() + ": the folder cannot be written to: " + std::generic_category().message(errno)};
+    return Error{folder.string() +
+                 ": the folder cannot be written to: " + std::generic_category().message(errno)};
   }
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -54,7 +55,9 @@ Status prepare_frame_folder(const std::filesystem::path& folder) {
 FrameWriter::FrameWriter(std::filesystem::path folder)
     : folder_(std::move(folder)), thread_([this] { write_frames(); }) {}
 
-FrameWriter::~FrameWriter() { [[maybe_unused]] const Status finished = finish(); }
+FrameWriter::~FrameWriter() {
+  [[maybe_unused]] const Status finished = finish();
+}
 
 Status FrameWriter::add(int number, Image frame) {
   std::unique_lock lock(mutex_);

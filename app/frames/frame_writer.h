@@ -1,5 +1,5 @@
-// Writes numbered frames as PNG files on a thread of its own, so that encoding never holds up the drawing. The
-// owner adds frames from one thread; the queue is bounded and add() waits while it is full.
+// Writes numbered frames as PNG files on a thread of its own, so that encoding never holds up the drawing.
+// The owner adds frames from one thread; the queue is bounded and add() waits while it is full.
 #pragma once
 
 #include <condition_variable>
@@ -18,8 +18,8 @@ namespace spoonbill {
 // "frame-0042.png".
 std::string frame_file_name(int number);
 
-// Makes the folder, or empties it of the frames and the contact sheet of an earlier run; other files stay. Refused,
-// with the folder named, where it cannot be made or written to.
+// Makes the folder, or empties it of the frames and the contact sheet of an earlier run; other files stay.
+// Refused, with the folder named, where it cannot be made or written to.
 Status prepare_frame_folder(const std::filesystem::path& folder);
 
 class FrameWriter {

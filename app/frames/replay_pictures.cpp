@@ -65,9 +65,11 @@ bool ReplayPictures::belongs_on_sheet(std::uint64_t index) const {
   const std::uint64_t drawn = (request_.frame_count + request_.every - 1) / request_.every;
   if (drawn <= sheet_cells) return true;
   // The first, the last, and the others evenly between.
-  const std::uint64_t steps = sheet_cells - 1;
-  const std::uint64_t cell = (index * steps + (drawn - 1) / 2) / (drawn - 1);
-  return index == cell * (drawn - 1) / steps;
+  constexpr std::uint64_t steps = sheet_cells - 1;
+  for (std::uint64_t cell = 0; cell <= steps; ++cell) {
+    if (index == cell * (drawn - 1) / steps) return true;
+  }
+  return false;
 }
 
 Status ReplayPictures::finish() {

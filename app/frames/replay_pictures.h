@@ -1,5 +1,5 @@
-// What a replay leaves behind to look at: numbered frames and a contact sheet in a folder, and a video. One owner,
-// one thread.
+// What a replay leaves behind to look at: numbered frames and a contact sheet in a folder, and a video. One
+// owner, one thread.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,8 @@ namespace spoonbill {
 struct PictureRequest {
   int width_px = 0;
   int height_px = 0;
-  std::uint64_t frame_count = 0;  // of the whole replay, 60 for each second
-  std::uint64_t every = 1;        // only each so many-th of them is drawn
+  std::uint64_t frame_count = 0;                // of the whole replay, 60 for each second
+  std::uint64_t every = 1;                      // only each so many-th of them is drawn
   std::optional<std::filesystem::path> folder;  // of frames and contact sheet
   std::optional<std::filesystem::path> video;
 };

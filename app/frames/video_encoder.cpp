@@ -20,9 +20,25 @@ namespace {
 std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& file, const std::string& size,
                                           const std::string& rate) {
   // Most players want even sides.
-  return {"ffmpeg", "-y",  "-loglevel", "error", "-f",       "rawvideo", "-pix_fmt", "rgba",
-          "-s",     size,  "-r",        rate,    "-i",       "pipe:0",   "-vf",      "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-          "-pix_fmt", "yuv420p", "file:" + file.string()};
+  return {"ffmpeg",
+          "-y",
+          "-loglevel",
+          "error",
+          "-f",
+          "rawvideo",
+          "-pix_fmt",
+          "rgba",
+          "-s",
+          size,
+          "-r",
+          rate,
+          "-i",
+          "pipe:0",
+          "-vf",
+          "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+          "-pix_fmt",
+          "yuv420p",
+          "file:" + file.string()};
 }
 
 // Starts ffmpeg with `input` as its standard input and nothing else of ours; -1 when it does not start.
@@ -98,7 +114,8 @@ Status VideoEncoder::add(const Image& frame) {
   while (sent < frame.rgba.size()) {
     const ssize_t count = write(pipe_, frame.rgba.data() + sent, frame.rgba.size() - sent);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return Error{file_.string() + ": ffmpeg stopped; is the folder writable and the ending known?"};
+    if (count < 0)
+      return Error{file_.string() + ": ffmpeg stopped; is the folder writable and the ending known?"};
     sent += static_cast<std::size_t>(count);
   }
   return {};

@@ -1,5 +1,5 @@
-// A video file made by an ffmpeg process that is fed raw pictures. The file appears under its name at finish(), or
-// not at all. One owner, one thread. The process's SIGPIPE must be ignored (see main).
+// A video file made by an ffmpeg process that is fed raw pictures. The file appears under its name at
+// finish(), or not at all. One owner, one thread. The process's SIGPIPE must be ignored (see main).
 #pragma once
 
 #include <sys/types.h>

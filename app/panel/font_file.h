@@ -3,6 +3,7 @@
 
 namespace spoonbill {
 
-inline constexpr const char* font_file = "/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf";
+inline constexpr const char* font_file =
+    "/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf";
 
 }  // namespace spoonbill

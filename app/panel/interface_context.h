@@ -1,6 +1,6 @@
-// The Dear ImGui context of one picture or window: fonts, theme and frame clock. It writes no settings file, and
-// its clock advances 1/60 s a frame, so that the same frames always look the same. One owner; the thread that
-// draws.
+// The Dear ImGui context of one picture or window: fonts, theme and frame clock. It writes no settings file,
+// and its clock advances 1/60 s a frame, so that the same frames always look the same. One owner; the thread
+// that draws.
 #pragma once
 
 #include <imgui.h>
@@ -21,8 +21,8 @@ class InterfaceContext {
   // ImGui keeps the current context in a variable of its own: makes ours the current one.
   void make_current() const { ImGui::SetCurrentContext(context_.get()); }
 
-  // Between the two, ImGui calls lay out one frame. The fonts must have been uploaded before the first. The draw
-  // data is valid until the next begin_frame().
+  // Between the two, ImGui calls lay out one frame. The fonts must have been uploaded before the first. The
+  // draw data is valid until the next begin_frame().
   void begin_frame(int width_px, int height_px);
   const ImDrawData& end_frame();
 

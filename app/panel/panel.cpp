@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/report/quantity_text.h"
 #include "app/panel/rows.h"
+#include "app/report/quantity_text.h"
 
 namespace spoonbill {
 namespace {
@@ -98,8 +98,8 @@ void draw_material(const PanelModel& model, const Theme& theme, Requests& reques
                         rounded(material.poissons_ratio, 2, ""));
   changed |= slider_row("Density", material.density_kg_per_m3, density_slider_kg_per_m3,
                         SliderScale::logarithmic, density_text(material.density_kg_per_m3));
-  const bool damped = slider_row("Damping", sculpting.damping_per_s, damping_slider_per_s, SliderScale::linear,
-                                 rounded(sculpting.damping_per_s, 1, " /s"));
+  const bool damped = slider_row("Damping", sculpting.damping_per_s, damping_slider_per_s,
+                                 SliderScale::linear, rounded(sculpting.damping_per_s, 1, " /s"));
   fact_row("After touch", material.plastic ? "keeps its bend" : "springs back");
   fact_row("Mass", grams_text(model.mass_kg));
   if (changed) requests.emplace_back(Command(SetMaterial{material}));
@@ -110,8 +110,7 @@ void draw_fixtures(const PanelModel& model, const Theme& theme) {
   const RowGroup group("Fixtures", theme);
   if (!group) return;
   fact_row("Planes", std::to_string(model.plane_count));
-  fact_row("Fixed nodes",
-           std::to_string(model.fixed_node_count) + " of " + std::to_string(model.node_count));
+  fact_row("Fixed nodes", std::to_string(model.fixed_node_count) + " of " + std::to_string(model.node_count));
 }
 
 void draw_view(const PanelModel& model, const Theme& theme, Requests& requests) {
@@ -156,7 +155,9 @@ void draw_device(const PanelModel& model, const Theme& theme, Requests& requests
 
 }  // namespace
 
-double panel_scale(int height_px) { return std::max(1.0, std::round(2.0 * height_px / 720.0) / 2.0); }
+double panel_scale(int height_px) {
+  return std::max(1.0, std::round(2.0 * height_px / 720.0) / 2.0);
+}
 
 Rectangle panel_rectangle(int width_px, int height_px) {
   constexpr int smallest_height_px = 700;

@@ -9,15 +9,15 @@
 
 namespace spoonbill {
 
-// The panel's place in a frame of that size, at the left edge; empty where the frame is too small for a panel that
-// can be read.
+// The panel's place in a frame of that size, at the left edge; empty where the frame is too small for a panel
+// that can be read.
 Rectangle panel_rectangle(int width_px, int height_px);
 
 // The interface's scale for a frame of that height: 1 at 720 pixels, in steps of a half.
 double panel_scale(int height_px);
 
-// Lays the panel out, between InterfaceContext::begin_frame() and end_frame(), and returns what the person asked
-// for in this frame.
+// Lays the panel out, between InterfaceContext::begin_frame() and end_frame(), and returns what the person
+// asked for in this frame.
 std::vector<PanelRequest> draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px);
 
 }  // namespace spoonbill

@@ -1,5 +1,5 @@
-// What the panel shows, as plain data, and what a person asks for by it. Taken from a snapshot and the settings
-// once a frame; the panel never sees the simulation.
+// What the panel shows, as plain data, and what a person asks for by it. Taken from a snapshot and the
+// settings once a frame; the panel never sees the simulation.
 #pragma once
 
 #include <string>
@@ -40,17 +40,6 @@ struct PanelModel {
   int substeps = 0;
   std::uint32_t flags = tick_flag_none;
 };
-
-// The part of the settings that a snapshot does not hold.
-struct PanelSettings {
-  const Scene& scene;
-  const std::string& title;
-  const ViewSettings& view;
-  bool can_undo;
-  bool can_redo;
-};
-
-PanelModel make_panel_model(const Snapshot& snapshot, const PanelSettings& settings);
 
 struct UndoStroke {};
 struct RedoStroke {};

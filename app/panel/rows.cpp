@@ -15,7 +15,9 @@ void begin_row(const char* label) {
 }
 
 // The label stands in the left column; the widget needs it as a name only.
-std::string hidden_name(const char* label) { return std::string("##") + label; }
+std::string hidden_name(const char* label) {
+  return std::string("##") + label;
+}
 
 // ImGui takes a format, in which a percent sign means something.
 std::string as_format(const std::string& text) {
@@ -47,8 +49,8 @@ bool slider_row(const char* label, double& value, Range<double> range, SliderSca
   begin_row(label);
   const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat |
                                  (scale == SliderScale::logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
-  return ImGui::SliderScalar(hidden_name(label).c_str(), ImGuiDataType_Double, &value, &range.low, &range.high,
-                             as_format(text).c_str(), flags);
+  return ImGui::SliderScalar(hidden_name(label).c_str(), ImGuiDataType_Double, &value, &range.low,
+                             &range.high, as_format(text).c_str(), flags);
 }
 
 bool slider_row(const char* label, int& value, Range<int> range, const std::string& text) {

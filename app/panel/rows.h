@@ -1,5 +1,6 @@
-// The rows that the panel is made of: a label in the left column, a value or widget in the right one. To be called
-// between InterfaceContext::begin_frame() and end_frame(). Widgets return whether the person changed the value.
+// The rows that the panel is made of: a label in the left column, a value or widget in the right one. To be
+// called between InterfaceContext::begin_frame() and end_frame(). Widgets return whether the person changed
+// the value.
 #pragma once
 
 #include <initializer_list>

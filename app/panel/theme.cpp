@@ -3,9 +3,13 @@
 namespace spoonbill {
 namespace {
 
-ImVec4 grey(float light) { return {light, light + 0.005F, light + 0.012F, 1.0F}; }
+ImVec4 grey(float light) {
+  return {light, light + 0.005F, light + 0.012F, 1.0F};
+}
 
-ImVec4 see_through(ImVec4 base, float alpha) { return {base.x, base.y, base.z, alpha}; }
+ImVec4 see_through(ImVec4 base, float alpha) {
+  return {base.x, base.y, base.z, alpha};
+}
 
 void apply_colours(ImGuiStyle& style) {
   ImGui::StyleColorsLight(&style);
@@ -50,7 +54,7 @@ void apply_theme(ImGuiStyle& style, const Metrics& metrics) {
   style.GrabMinSize = 9.0F * unit;
   style.ItemSpacing = ImVec2(6.0F * unit, metrics.row_gap_px);
   style.ItemInnerSpacing = ImVec2(6.0F * unit, 4.0F * unit);
-  style.CellPadding = ImVec2(0.0F, 1.5F * unit);
+  style.CellPadding = ImVec2(0.0F, 1.75F * unit);
   style.ScrollbarSize = 10.0F * unit;
   style.ScrollbarRounding = 3.0F * unit;
 }

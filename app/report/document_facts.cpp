@@ -73,7 +73,8 @@ void add_document_facts(FactSheet& facts, const Document& document) {
 void add_material_facts(FactSheet& facts, const Material& material) {
   facts.add("Material",
             material.name + ": E " + modulus_text(material.youngs_modulus_pa) + ", Poisson " +
-                number_text(material.poissons_ratio) + ", density " + density_text(material.density_kg_per_m3),
+                number_text(material.poissons_ratio) + ", density " +
+                density_text(material.density_kg_per_m3),
             "material", material_to_json(material));
 }
 

@@ -12,7 +12,8 @@ namespace spoonbill {
 
 class FactSheet {
  public:
-  // `field` and `value` go to the JSON, `label` and `text` to the lines; an empty field or label leaves that form out.
+  // `field` and `value` go to the JSON, `label` and `text` to the lines; an empty field or label leaves that
+  // form out.
   void add(const std::string& label, const std::string& text, const std::string& field, Json value);
 
   void print(std::ostream& out, bool as_json) const;

@@ -1,5 +1,5 @@
-// A progress bar on the console's error stream: one line that is redrawn for a person who watches, a line for every
-// tenth otherwise, nothing when hidden.
+// A progress bar on the console's error stream: one line that is redrawn for a person who watches, a line for
+// every tenth otherwise, nothing when hidden.
 #pragma once
 
 #include <cstdint>

@@ -33,21 +33,31 @@ std::string modulus_text(double pascals) {
   return with_digits(pascals, "Pa");
 }
 
-std::string millimetres_text(double metres) { return with_decimals(1e3 * metres, 1, "mm"); }
+std::string millimetres_text(double metres) {
+  return with_decimals(1e3 * metres, 1, "mm");
+}
 
-std::string grams_text(double kilograms) { return with_digits(1e3 * kilograms, "g"); }
+std::string grams_text(double kilograms) {
+  return with_digits(1e3 * kilograms, "g");
+}
 
 std::string density_text(double kilograms_per_m3) {
   return with_decimals(1e-3 * kilograms_per_m3, 2, "g/cm\u00b3");
 }
 
-std::string newtons_text(double newtons) { return with_decimals(newtons, 2, "N"); }
+std::string newtons_text(double newtons) {
+  return with_decimals(newtons, 2, "N");
+}
 
-std::string percent_text(double share) { return with_decimals(100.0 * share, 0, "%"); }
+std::string percent_text(double share) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), share < 0.1 ? "%.2g %%" : "%.0f %%", 100.0 * share);
+  return text.data();
+}
 
 std::vector<std::string> flag_texts(std::uint32_t flags) {
   constexpr std::array<std::pair<std::uint32_t, const char*>, 4> meanings = {{
-      {tick_flag_time_slowed, "Too stiff for real time: soften E"},
+      {tick_flag_nodes_slowed, "Too stiff for real time: soften E"},
       {tick_flag_speed_capped, "Speed cap met: move more slowly"},
       {tick_flag_contact_overflow, "Contact too large: use a smaller tool"},
       {tick_flag_force_limited, "Force limit met: lower the force scale"},

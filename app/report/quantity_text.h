@@ -7,12 +7,12 @@
 
 namespace spoonbill {
 
-std::string modulus_text(double pascals);               // "1.20 MPa"
-std::string millimetres_text(double metres);            // "8.0 mm"
-std::string grams_text(double kilograms);               // "34.2 g"
-std::string density_text(double kilograms_per_m3);      // "1.80 g/cm³"
-std::string newtons_text(double newtons);               // "1.23 N"
-std::string percent_text(double share);                 // "12 %"
+std::string modulus_text(double pascals);           // "1.20 MPa"
+std::string millimetres_text(double metres);        // "8.0 mm"
+std::string grams_text(double kilograms);           // "34.2 g"
+std::string density_text(double kilograms_per_m3);  // "1.80 g/cm³"
+std::string newtons_text(double newtons);           // "1.23 N"
+std::string percent_text(double share);             // "12 %", "0.081 %"
 
 // What each set TickFlag means and what to do about it.
 std::vector<std::string> flag_texts(std::uint32_t flags);

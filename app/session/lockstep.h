@@ -1,5 +1,5 @@
-// The lock-step loop: ticks advance by the recording's own time, never by a clock, so that the same input gives the
-// same states on any load. One owner, one thread.
+// The lock-step loop: ticks advance by the recording's own time, never by a clock, so that the same input
+// gives the same states on any load. One owner, one thread.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,9 @@ namespace spoonbill {
 inline constexpr std::uint64_t frames_per_second = 60;
 
 // Frame k shows the state after this many ticks.
-constexpr std::uint64_t tick_of_frame(std::uint64_t frame) { return frame * 1000 / frames_per_second; }
+constexpr std::uint64_t tick_of_frame(std::uint64_t frame) {
+  return frame * 1000 / frames_per_second;
+}
 
 // How many frames there are for that many ticks: those whose state is reached.
 std::uint64_t frame_count(std::uint64_t tick_count);
@@ -24,7 +26,8 @@ struct LockstepInput {
   Device* device = nullptr;  // read once a tick
   std::uint64_t tick_count = 0;
   std::vector<TimedCommand> commands;  // in order
-  std::vector<Checkpoint> expected;    // states to compare with before a tick's commands, in order; may be empty
+  std::vector<Checkpoint>
+      expected;  // states to compare with before a tick's commands, in order; may be empty
   std::optional<Checkpoint> expected_end;
   std::string source;  // names the input in messages
 };
@@ -34,9 +37,9 @@ class Lockstep {
   // The session, the input's device and the writer (null for none) must outlive the loop.
   Lockstep(Session& session, LockstepInput input, RecordingWriter* writer);
 
-  // Runs until `tick` ticks are done and the commands that stand there have been applied. Refused, with tick and
-  // source named: a command that cannot be applied, a state that differs from an expected one, a recording that
-  // cannot be written.
+  // Runs until `tick` ticks are done and the commands that stand there have been applied. Refused, with tick
+  // and source named: a command that cannot be applied, a state that differs from an expected one, a
+  // recording that cannot be written.
   Status run_to(std::uint64_t tick);
 
   // Runs what is left, compares the last state and ends the written recording.

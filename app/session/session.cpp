@@ -38,14 +38,10 @@ Result<Session> Session::make(const Document& document, const std::string& sourc
   auto simulation = Simulation::make(document.scene, set);
   if (!simulation) return Error{source + ": " + simulation.error().message};
   StrokeHistory history(simulation.value());
-  return Session{document.name,
-                 std::move(simulation).value(),
-                 CouplingState(),
-                 std::move(history),
-                 view.value(),
-                 std::move(device),
-                 DeviceReading(),
-                 tick_flag_none};
+  return Session{document.name,   std::move(simulation).value(),
+                 CouplingState(), std::move(history),
+                 view.value(),    std::move(device),
+                 DeviceReading(), tick_flag_none};
 }
 
 TickResult advance(Session& session, const DeviceReading& reading) {
@@ -59,7 +55,7 @@ TickResult advance(Session& session, const DeviceReading& reading) {
 void write_snapshot(const Session& session, Snapshot& snapshot) {
   session.simulation.write_snapshot(snapshot);
   snapshot.tool.device = session.reading.pose();
-  // Before the first tick the tool is where the hand is.
+  // Before the first tick only the hand is known.
   if (session.simulation.tick() == 0) snapshot.tool.proxy = snapshot.tool.device;
   snapshot.tool.button = (session.reading.buttons & button_main) != 0;
   snapshot.device.name = session.device.name;

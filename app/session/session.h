@@ -1,5 +1,5 @@
-// A session: one simulation with what belongs to it while it is worked on. Plain struct with one owner, whoever
-// ticks it: the lock-step loop, later the haptic thread.
+// A session: one simulation with what belongs to it while it is worked on. Plain struct with one owner,
+// whoever ticks it: the lock-step loop, later the haptic thread.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct Session {
   ViewChoice view;
 
   DeviceSpecification device;
-  DeviceReading reading;                // of the last tick
+  DeviceReading reading;                 // of the last tick
   std::uint32_t flags = tick_flag_none;  // TickFlag bits, gathered until somebody clears them
 
   // `source` names the document's file in messages.

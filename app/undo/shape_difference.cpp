@@ -5,7 +5,9 @@
 namespace spoonbill {
 namespace {
 
-std::uint32_t bits_of(float number) { return std::bit_cast<std::uint32_t>(number); }
+std::uint32_t bits_of(float number) {
+  return std::bit_cast<std::uint32_t>(number);
+}
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// What differs between two shapes, kept bit for bit: the unit of undo. Memory follows what a stroke changed, not
-// the size of the body. Plain value, one owner.
+// What differs between two shapes, kept bit for bit: the unit of undo. Memory follows what a stroke changed,
+// not the size of the body. Plain value, one owner.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Undo by strokes. A stroke lasts from first touch to release; what moves on after the release, until the next
-// stroke, belongs to it. Shapes are kept bit for bit. One owner, one thread: whoever ticks.
+// Undo by strokes. A stroke lasts from first touch to release; what moves on after the release, until the
+// next stroke, belongs to it. Shapes are kept bit for bit. One owner, one thread: whoever ticks.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,8 @@ class StrokeHistory {
   Status undo(Simulation& simulation);
   Status redo(Simulation& simulation);
 
-  // To be called when a command has changed what a shape means (fixing planes, rest shape): no way back over it.
+  // To be called when a command has changed what a shape means (fixing planes, rest shape): no way back over
+  // it.
   void clear(const Simulation& simulation);
 
   bool can_undo() const { return open_stroke_ || !done_.empty(); }
@@ -34,8 +35,8 @@ class StrokeHistory {
   void begin_stroke();
   Status move_to(Simulation& simulation, ShapeState shape);
 
-  // The history is a row of shapes; neighbours are kept as differences, and one of them in full. When a stroke
-  // is open, base_ is the shape before it; otherwise it is the one that undo or redo went to.
+  // The history is a row of shapes; neighbours are kept as differences, and one of them in full. When a
+  // stroke is open, base_ is the shape before it; otherwise it is the one that undo or redo went to.
   std::optional<ShapeState> base_;
   std::vector<ShapeDifference> done_;    // up to base_, oldest first
   std::vector<ShapeDifference> undone_;  // from base_ on, the next one last

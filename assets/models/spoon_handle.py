@@ -78,8 +78,8 @@ def main():
             "lattice": {"node_budget": 2000},
         },
         "fixing_planes": [],
-        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8.0, "iterations": 6},
-        "sculpting": {"damping_per_s": 2.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 10.0},
+        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8.0, "iterations": 8},
+        "sculpting": {"damping_per_s": 2.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
         "view": {},
     }
     print(json.dumps(document, separators=(",", ":")))

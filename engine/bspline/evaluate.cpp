@@ -10,26 +10,28 @@ namespace spoonbill {
 namespace {
 
 template <class Real>
+const EvaluateKernels<Real>& in_precision(const EvaluateKernels<float>& single,
+                                          const EvaluateKernels<double>& exact) {
+  if constexpr (std::is_same_v<Real, float>) {
+    return single;
+  } else {
+    return exact;
+  }
+}
+
+template <class Real>
 const EvaluateKernels<Real>& kernels_for(InstructionSet set) {
-  constexpr bool single = std::is_same_v<Real, float>;
   switch (set) {
     case InstructionSet::avx512:
-      if constexpr (single)
-        return kernels_avx512::evaluate_kernels_float;
-      else
-        return kernels_avx512::evaluate_kernels_double;
+      return in_precision<Real>(kernels_avx512::evaluate_kernels_float,
+                                kernels_avx512::evaluate_kernels_double);
     case InstructionSet::avx2:
-      if constexpr (single)
-        return kernels_avx2::evaluate_kernels_float;
-      else
-        return kernels_avx2::evaluate_kernels_double;
+      return in_precision<Real>(kernels_avx2::evaluate_kernels_float, kernels_avx2::evaluate_kernels_double);
     case InstructionSet::baseline:
       break;
   }
-  if constexpr (single)
-    return kernels_baseline::evaluate_kernels_float;
-  else
-    return kernels_baseline::evaluate_kernels_double;
+  return in_precision<Real>(kernels_baseline::evaluate_kernels_float,
+                            kernels_baseline::evaluate_kernels_double);
 }
 
 int blocks_for(int samples) {
@@ -218,12 +220,14 @@ template <class Real>
 auto GridEvaluator<Real>::collapsed_edges(const NetView<Real>& net, Real reach) const -> CollapsedEdges {
   const int rows = grid_->u.knots.control_point_count(), columns = net.columns;
   const Real tolerance = Real(1e-6) * reach;
+  const auto collapsed = [&](int first, int step, int count) {
+    return coincide(net, first, step, count, tolerance);
+  };
   CollapsedEdges edges;
-  if (starts_on_edge(grid_->u) && coincide(net, 0, 1, columns, tolerance)) edges.first_row = 1;
-  if (ends_on_edge(grid_->u) && coincide(net, (rows - 1) * columns, 1, columns, tolerance))
-    edges.last_row = -1;
-  if (starts_on_edge(grid_->v) && coincide(net, 0, columns, rows, tolerance)) edges.first_column = 1;
-  if (ends_on_edge(grid_->v) && coincide(net, columns - 1, columns, rows, tolerance)) edges.last_column = -1;
+  if (starts_on_edge(grid_->u) && collapsed(0, 1, columns)) edges.first_row = 1;
+  if (ends_on_edge(grid_->u) && collapsed((rows - 1) * columns, 1, columns)) edges.last_row = -1;
+  if (starts_on_edge(grid_->v) && collapsed(0, columns, rows)) edges.first_column = 1;
+  if (ends_on_edge(grid_->v) && collapsed(columns - 1, columns, rows)) edges.last_column = -1;
   return edges;
 }
 
@@ -246,7 +250,7 @@ void GridEvaluator<Real>::set_up_limit_columns(const CollapsedEdges& edges) {
   const int edge_columns[] = {0, columns - 1};
   const int inward[] = {edges.first_column, edges.last_column};
   const auto place_of = [](int column) {
-    return static_cast<std::size_t>(column / evaluate_block * evaluate_block_size + column % evaluate_block);
+    return column / evaluate_block * evaluate_block_size + column % evaluate_block;
   };
   const std::size_t row_size = static_cast<std::size_t>(blocks_) * evaluate_block_size;
   for (int edge = 0; edge < 2; ++edge) {

@@ -1,5 +1,6 @@
 #include "engine/bspline/grid.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -54,6 +55,7 @@ Result<Grid> make_grid(const KnotVector& u, const KnotVector& v, std::vector<dou
 
 std::vector<double> uniform_parameters(const KnotVector& knots, int count) {
   std::vector<double> parameters;
+  parameters.reserve(static_cast<std::size_t>(std::max(count, 0)));
   for (int i = 0; i < count; ++i) {
     parameters.push_back(between(knots.domain_start(), knots.domain_end(), i, count - 1));
   }
@@ -62,6 +64,7 @@ std::vector<double> uniform_parameters(const KnotVector& knots, int count) {
 
 std::vector<double> uniform_parameters_without_seam(const KnotVector& knots, int count) {
   std::vector<double> parameters;
+  parameters.reserve(static_cast<std::size_t>(std::max(count, 0)));
   for (int i = 0; i < count; ++i) {
     parameters.push_back(between(knots.domain_start(), knots.domain_end(), i, count));
   }

@@ -81,7 +81,7 @@ std::vector<double> extend_periodic(const std::vector<double>& knots, int degree
   const int r = static_cast<int>(knots.size()) - 1;
   const double start = knots.front(), end = knots.back(), period = end - start;
   std::vector<double> extended;
-  extended.reserve(static_cast<std::size_t>(r + 1 + 2 * degree));
+  extended.reserve(knots.size() + 2 * static_cast<std::size_t>(degree));
   for (int i = -degree; i <= r + degree; ++i) {
     int wraps = 0;
     int within = i;
@@ -162,8 +162,9 @@ Result<KnotVector> KnotVector::periodic_uniform(int degree, int control_point_co
                  " control points are too few for a periodic direction; use at least 2"};
   }
   std::vector<double> knots;
-  for (int i = 0; i <= control_point_count; ++i)
+  for (int i = 0; i <= control_point_count; ++i) {
     knots.push_back(static_cast<double>(i) / control_point_count);
+  }
   return periodic(degree, std::move(knots));
 }
 

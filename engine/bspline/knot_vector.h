@@ -47,6 +47,7 @@ class KnotVector {
   std::vector<double> breakpoints() const;
 
   // u brought into the domain: wrapped when periodic (the end maps to the start), clamped to it when open.
+  // What is not a number maps to the start, so that no parameter whatever leads out of the knots.
   double into_domain(double u) const;
 
   // The index k into extended_knots() with extended[k] <= u < extended[k + 1], the last span closed.

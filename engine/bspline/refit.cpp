@@ -44,15 +44,17 @@ Result<Eigen::MatrixXd> constrained_inverse(const GridDirection& direction,
   }
   if (free.empty()) return inverse;
   Eigen::MatrixXd free_columns(samples, static_cast<Eigen::Index>(free.size()));
-  for (std::size_t f = 0; f < free.size(); ++f)
+  for (std::size_t f = 0; f < free.size(); ++f) {
     free_columns.col(static_cast<Eigen::Index>(f)) = a.col(free[f]);
+  }
   const std::optional<Eigen::MatrixXd> fit = least_squares_inverse(free_columns);
   if (!fit) return Error{"the samples do not determine the free control points; take more samples"};
   for (std::size_t f = 0; f < free.size(); ++f) {
     for (Eigen::Index sample = 0; sample < samples; ++sample) {
       double sum = 0.0;
-      for (Eigen::Index k = 0; k < samples; ++k)
+      for (Eigen::Index k = 0; k < samples; ++k) {
         sum += (*fit)(static_cast<Eigen::Index>(f), k) * left_over(k, sample);
+      }
       inverse(free[f], sample) = sum;
     }
   }
@@ -90,7 +92,7 @@ Result<DisplacementRefit> DisplacementRefit::make(const Grid& grid, const RefitC
       refit.v_inverse_transposed_.push_back(static_cast<float>(v_inverse.value()(j, k)));
     }
   }
-  refit.half_.resize(static_cast<std::size_t>(refit.control_rows_ * refit.sample_columns_));
+  refit.half_.resize(static_cast<std::size_t>(refit.control_rows_) * refit.sample_columns_);
   return refit;
 }
 

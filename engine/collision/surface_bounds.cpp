@@ -6,7 +6,9 @@
 namespace spoonbill {
 namespace {
 
-double reciprocal(double numerator, double denominator) { return denominator > 0.0 ? numerator / denominator : 0.0; }
+double reciprocal(double numerator, double denominator) {
+  return denominator > 0.0 ? numerator / denominator : 0.0;
+}
 
 struct Unrolled {
   std::vector<int> span, control;

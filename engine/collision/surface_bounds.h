@@ -7,12 +7,13 @@
 
 namespace spoonbill {
 
-// The largest norms of the second derivatives over each element (one polynomial piece in u by one in v), from the
-// control points of the derivative surfaces, whose convex hull they cannot leave:
-//   Q_i = p (P_{i+1} - P_i) / (u_{i+p+1} - u_{i+1}),  second_i = (p - 1) (Q_{i+1} - Q_i) / (u_{i+p+1} - u_{i+2}).
-// A cell of sides h_u, h_v inside one element then lies within (h_u^2 M_uu + h_v^2 M_vv) / 8 of the bilinear patch
-// through its corners (the error of linear interpolation, once for each direction). They must follow the moving
-// control points: a hull or a bound of the first shape is not one of the present shape.
+// The largest norms of the second derivatives over each element (one polynomial piece in u by one in v), from
+// the control points of the derivative surfaces, whose convex hull they cannot leave:
+//   Q_i = p (P_{i+1} - P_i) / (u_{i+p+1} - u_{i+1}),  second_i = (p - 1) (Q_{i+1} - Q_i) / (u_{i+p+1} -
+//   u_{i+2}).
+// A cell of sides h_u, h_v inside one element then lies within (h_u^2 M_uu + h_v^2 M_vv) / 8 of the bilinear
+// patch through its corners (the error of linear interpolation, once for each direction). They must follow
+// the moving control points: a hull or a bound of the first shape is not one of the present shape.
 //
 // Allocates only when made; one owner, one thread.
 class SurfaceBounds {
@@ -32,10 +33,10 @@ class SurfaceBounds {
   }
 
  private:
-  int rows_ = 0, columns_ = 0;             // of the unrolled net
+  int rows_ = 0, columns_ = 0;  // of the unrolled net
   int degree_u_ = 0, degree_v_ = 0;
-  std::vector<int> span_u_, span_v_;       // of each element
-  std::vector<int> control_u_, control_v_; // unrolled index to control index
+  std::vector<int> span_u_, span_v_;        // of each element
+  std::vector<int> control_u_, control_v_;  // unrolled index to control index
   std::vector<double> first_scale_u_, second_scale_u_, first_scale_v_, second_scale_v_;
   std::vector<double> norm_uu_, norm_vv_;  // squared, one an unrolled control point
   std::vector<double> second_uu_, second_vv_;

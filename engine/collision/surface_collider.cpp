@@ -12,9 +12,9 @@ constexpr std::size_t cell_capacity = 16384;
 constexpr std::size_t patch_capacity = 512;
 constexpr std::size_t near_capacity = 4096;
 constexpr int deepest_patch = 24;
-// Newton's method usually finds the nearest point to the last digit. That no other is nearer is proven to this, less
-// than a hand's device resolves (0.055 mm); a tighter bound costs most where surface and tool fit snugly and all points
-// are as near.
+// Newton's method usually finds the nearest point to the last digit. That no other is nearer is proven to
+// this, less than a hand's device resolves (0.055 mm); a tighter bound costs most where surface and tool fit
+// snugly and all points are as near.
 constexpr double nearest_tolerance_m = 2e-5;
 // Whether anything touches at all is decided to this.
 constexpr double touch_tolerance_m = 1e-6;
@@ -24,9 +24,10 @@ std::array<Vector3, 4> corners_of(const Surface& surface, double u0, double u1, 
           evaluate(surface, u1, v0).position_m, evaluate(surface, u1, v1).position_m};
 }
 
-// A lower bound of the tool's distance over a patch: the bilinear patch lies in the hull of its corners, the surface
-// within `bulge` of that, and no point of a hull is nearer than its foremost corner along any one direction. Unlike a
-// ball's, this bound is off by the square of the patch's size, so that few patches are cut again.
+// A lower bound of the tool's distance over a patch: the bilinear patch lies in the hull of its corners, the
+// surface within `bulge` of that, and no point of a hull is nearer than its foremost corner along any one
+// direction. Unlike a ball's, this bound is off by the square of the patch's size, so that few patches are
+// cut again.
 double lower_bound(const ToolShape& tool, const std::array<Vector3, 4>& corners, double bulge) {
   Vector3 direction = tool.normal;
   if (tool.kind == ToolShape::Kind::sphere) {
@@ -53,7 +54,8 @@ Result<NestedGrid> make_nested_grid(const KnotVector& u, const KnotVector& v, in
 
 SurfaceCollider::SurfaceCollider(const NestedGrid& nested)
     : nested_(&nested), bounds_(nested.grid.u.knots, nested.grid.v.knots) {
-  const std::size_t count = static_cast<std::size_t>(nested.grid.rows()) * static_cast<std::size_t>(nested.grid.columns());
+  const std::size_t count =
+      static_cast<std::size_t>(nested.grid.rows()) * static_cast<std::size_t>(nested.grid.columns());
   samples_.resize(count);
   sampled_at_.assign(count, 0);
   near_at_.assign(count, 0);
@@ -83,7 +85,9 @@ const Vector3& SurfaceCollider::sample(const Surface& surface, int index) {
   return samples_[index];
 }
 
-double SurfaceCollider::reach(double margin) const { return std::max(margin, best_distance_); }
+double SurfaceCollider::reach(double margin) const {
+  return std::max(margin, best_distance_);
+}
 
 void SurfaceCollider::offer(const ToolShape& tool, double u, double v, const Vector3& point) {
   const double distance = tool.distance(point);
@@ -94,7 +98,8 @@ void SurfaceCollider::offer(const ToolShape& tool, double u, double v, const Vec
   best_point_ = point;
 }
 
-CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape& tool, double margin_m, bool closed) {
+CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape& tool, double margin_m,
+                                         bool closed) {
   CollisionResult result;
   ++query_;
   near_.clear();
@@ -112,7 +117,8 @@ CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape
   return result;
 }
 
-void SurfaceCollider::descend(const Surface& surface, const ToolShape& tool, double margin, CollisionResult& result) {
+void SurfaceCollider::descend(const Surface& surface, const ToolShape& tool, double margin,
+                              CollisionResult& result) {
   const Grid& grid = nested_->grid;
   const int stride_u = 1 << nested_->levels_u, stride_v = 1 << nested_->levels_v;
   cells_.clear();
@@ -133,7 +139,8 @@ void SurfaceCollider::descend(const Surface& surface, const ToolShape& tool, dou
     }
   }
   // Breadth first: a coarse level's best distance prunes the finer ones.
-  for (std::size_t at = 0; at < cells_.size(); ++at) visit_cell(surface, tool, cells_[at], reach(margin), result);
+  for (std::size_t at = 0; at < cells_.size(); ++at)
+    visit_cell(surface, tool, cells_[at], reach(margin), result);
   for (std::uint32_t stamp : sampled_at_) result.samples_evaluated += stamp == query_;
   for (const Cell& cell : finest_) {
     for (int corner = 0; corner < 4; ++corner) {
@@ -153,7 +160,8 @@ void SurfaceCollider::descend(const Surface& surface, const ToolShape& tool, dou
 
 SurfaceCollider::Cover SurfaceCollider::cover(const Surface& surface, int i, int j, int level) {
   const Grid& grid = nested_->grid;
-  const int step_u = 1 << std::max(0, nested_->levels_u - level), step_v = 1 << std::max(0, nested_->levels_v - level);
+  const int step_u = 1 << std::max(0, nested_->levels_u - level),
+            step_v = 1 << std::max(0, nested_->levels_v - level);
   const int index = i * grid.columns() + j;
   const std::array<Vector3, 4> corners = {sample(surface, index), sample(surface, index + step_v),
                                           sample(surface, index + step_u * grid.columns()),
@@ -166,8 +174,8 @@ SurfaceCollider::Cover SurfaceCollider::cover(const Surface& surface, int i, int
   return {centre, radius + bounds_.bulge(i >> nested_->levels_u, j >> nested_->levels_v, h_u, h_v)};
 }
 
-void SurfaceCollider::visit_cell(const Surface& surface, const ToolShape& tool, const Cell& cell, double reach,
-                                 CollisionResult& result) {
+void SurfaceCollider::visit_cell(const Surface& surface, const ToolShape& tool, const Cell& cell,
+                                 double reach, CollisionResult& result) {
   const Cover sphere = cover(surface, cell.i, cell.j, cell.level);
   if (tool.distance(sphere.centre) - sphere.radius > reach) return;
   const Grid& grid = nested_->grid;
@@ -195,12 +203,14 @@ void SurfaceCollider::visit_cell(const Surface& surface, const ToolShape& tool, 
 }
 
 // Branch and bound below the finest samples, over the cells that could still hide a nearer point.
-void SurfaceCollider::search_between_samples(const Surface& surface, const ToolShape& tool, CollisionResult& result) {
+void SurfaceCollider::search_between_samples(const Surface& surface, const ToolShape& tool,
+                                             CollisionResult& result) {
   const Grid& grid = nested_->grid;
   for (const Cell& cell : finest_) {
     patches_.clear();
     patches_.push_back({grid.u.parameters[cell.i], grid.u.parameters[cell.i + 1], grid.v.parameters[cell.j],
-                        grid.v.parameters[cell.j + 1], cell.i >> nested_->levels_u, cell.j >> nested_->levels_v, 0});
+                        grid.v.parameters[cell.j + 1], cell.i >> nested_->levels_u,
+                        cell.j >> nested_->levels_v, 0});
     while (!patches_.empty()) {
       const Patch patch = patches_.back();
       patches_.pop_back();
@@ -226,8 +236,8 @@ void SurfaceCollider::search_between_samples(const Surface& surface, const ToolS
   }
 }
 
-// Newton's method on the parameters from the best point so far; a step that does not come nearer is halved, and the
-// gradient takes over where the curvature has the wrong sign.
+// Newton's method on the parameters from the best point so far; a step that does not come nearer is halved,
+// and the gradient takes over where the curvature has the wrong sign.
 void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
   const bool sphere = tool.kind == ToolShape::Kind::sphere;
   for (int step = 0; step < 20; ++step) {

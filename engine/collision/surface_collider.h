@@ -1,6 +1,6 @@
-// Contact of a tool with one B-spline surface, through levels of detail of its blending matrices (section 4.1 of
-// Pungotra et al. 2013): sparse samples, spheres that provably cover their patch, refinement where a sphere meets
-// the tool, then the nearest point polished on the true surface.
+// Contact of a tool with one B-spline surface, through levels of detail of its blending matrices (section 4.1
+// of Pungotra et al. 2013): sparse samples, spheres that provably cover their patch, refinement where a
+// sphere meets the tool, then the nearest point polished on the true surface.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,21 @@ namespace spoonbill {
 
 struct SurfaceContact {
   double u = 0.0, v = 0.0;
-  Vector3 point_m = Vector3::Zero();   // on the surface
-  Vector3 normal = Vector3::UnitY();   // unit, along du x dv
-  double depth_m = 0.0;                // of the tool in the surface's inside; negative where they are apart
+  Vector3 point_m = Vector3::Zero();  // on the surface
+  Vector3 normal = Vector3::UnitY();  // unit, along du x dv
+  double depth_m = 0.0;               // of the tool in the surface's inside; negative where they are apart
 };
 
 // A sample of the finest level within the margin of the tool.
 struct NearSample {
-  int index = 0;          // into the grid
+  int index = 0;            // into the grid
   double distance_m = 0.0;  // to the tool's surface, negative inside the tool
 };
 
 struct CollisionResult {
-  bool found = false;          // whether the surface comes within the margin (or encloses the tool), to 1e-6 m
-  SurfaceContact nearest;      // the deepest contact: none is deeper by 2e-5 m; valid when found
-  bool overflow = false;       // a capacity was met; `nearest` is still the best of what was searched
+  bool found = false;      // whether the surface comes within the margin (or encloses the tool), to 1e-6 m
+  SurfaceContact nearest;  // the deepest contact: none is deeper by 2e-5 m; valid when found
+  bool overflow = false;   // a capacity was met; `nearest` is still the best of what was searched
   int samples_evaluated = 0;
 };
 
@@ -47,14 +47,14 @@ class SurfaceCollider {
  public:
   explicit SurfaceCollider(const NestedGrid& nested);
 
-  // The surface must have the grid's knots. `closed` says that the surface bounds a body, so that a sphere's centre
-  // may be inside it. Samples nearer than `margin_m` are in near_samples() afterwards.
+  // The surface must have the grid's knots. `closed` says that the surface bounds a body, so that a sphere's
+  // centre may be inside it. Samples nearer than `margin_m` are in near_samples() afterwards.
   CollisionResult collide(const Surface& surface, const ToolShape& tool, double margin_m, bool closed);
 
   const std::vector<NearSample>& near_samples() const { return near_; }
 
-  // The sphere that covers a cell of the finest grid between samples (i, j) and (i + 1, j + 1) strides further, for
-  // tests and overlays. Call after collide().
+  // The sphere that covers a cell of the finest grid between samples (i, j) and (i + 1, j + 1) strides
+  // further, for tests and overlays. Call after collide().
   struct Cover {
     Vector3 centre;
     double radius;

@@ -5,8 +5,8 @@
 
 namespace spoonbill {
 
-// A sphere about `centre_m`; a point where the radius is 0; or the half-space behind a plane through `centre_m`
-// with the unit normal `normal`.
+// A sphere about `centre_m`; a point where the radius is 0; or the half-space behind a plane through
+// `centre_m` with the unit normal `normal`.
 struct ToolShape {
   enum class Kind { sphere, half_space };
   Kind kind = Kind::sphere;

@@ -21,8 +21,9 @@ Command read_named(std::string_view name, FieldReader& reader) {
   if (name == "set_sculpting") return SetSculpting{read_sculpting(reader)};
   if (name == "keep_shape") return KeepShape{};
   std::string known;
-  for (const std::string_view other : command_names)
+  for (const std::string_view other : command_names) {
     known += (known.empty() ? "" : ", ") + std::string(other);
+  }
   reader.refuse("command", "is " + json_excerpt(Json(name)) + ", must be one of " + known);
   return KeepShape{};
 }

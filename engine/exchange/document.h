@@ -1,5 +1,25 @@
-// Documents: a scene and how it is looked at, as JSON that a person can read (lengths in mm, said in each
-// name).
+// Documents: a scene and how it is looked at, as JSON that a person can read, lengths in mm.
+//
+//   {"spoonbill_document": 1,
+//    "name": "spoon handle",
+//    "body": {
+//      "name": "handle",
+//      "surface": {
+//        "u": {"degree": 3, "periodic": true, "knots": [...]},   one period, as KnotVector::periodic takes it
+//        "v": {"degree": 3, "periodic": false, "knots": [...]},
+//        "control_points_mm": [[[x, y, z], ...], ...]},          a list along v for each point along u
+//      "material": {"name": "clay", "source": "...", "youngs_modulus_pa": 2e5, "poissons_ratio": 0.45,
+//        "density_kg_per_m3": 1700, "damping_ratio": 0.1, "plastic": true, "yield_strain": 0.02,
+//        "flow_rate_per_s": 40},
+//      "lattice": {"node_budget": 2000}},                        or {"nodes": [4, 8, 60]}
+//    "fixing_planes": [{"point_mm": [20, 0, 0], "normal": [1, 0, 0]}],    may be left out
+//    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6},
+//    "sculpting": {"damping_per_s": 4, "gravity_m_per_s2": [0, 0, 0], "force_scale": 1},
+//    "view": {...}}                                              may be left out
+//
+// Version 1. The ranges stand in scene.h and material.h; knots lie within a million of zero and are equal or
+// at least a billionth of the domain apart. A length is a number, or a decimal in quotes where no double of
+// millimetres reads back to the same bits of metres (length.h). Normals of another length than 1 are scaled.
 #pragma once
 
 #include <filesystem>
@@ -25,7 +45,7 @@ struct Document {
 // silently ignored; numbers must be finite and within the ranges that the message states.
 Result<Document> document_from_json(const Json& json, const std::string& source);
 
-// Every number reads back to the same bits; what was read and not changed is written as the same bytes again.
+// Every number reads back to the same bits, so that writing what was read gives the same bytes again.
 Json document_to_json(const Document& document);
 
 // At most 64 MiB is read.

@@ -88,8 +88,9 @@ std::string FieldReader::text(std::string_view field) {
   const auto& text = value->get_ref<const std::string&>();
   const bool has_control =
       std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-  if (text.size() > text_limit)
+  if (text.size() > text_limit) {
     refuse(field, "is longer than " + std::to_string(text_limit) + " bytes, shorten it");
+  }
   if (has_control) refuse(field, "holds control characters, remove them");
   return text;
 }

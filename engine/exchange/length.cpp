@@ -57,8 +57,9 @@ std::string decimal_millimetres(double metres) {
     digits.insert(0, static_cast<std::size_t>(1 - point), '0');
     point = 1;
   }
-  if (static_cast<int>(digits.size()) < point)
+  if (static_cast<int>(digits.size()) < point) {
     digits.append(static_cast<std::size_t>(point) - digits.size(), '0');
+  }
   if (static_cast<int>(digits.size()) > point) digits.insert(static_cast<std::size_t>(point), 1, '.');
   return (std::signbit(metres) ? "-" : "") + digits;
 }

@@ -8,9 +8,9 @@ namespace spoonbill {
 
 // Corner bits: 0 = k, 1 = j, 2 = i.
 const std::array<std::array<int, 2>, cell_spring_count> cell_spring_corners = {{
-    {0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3}, {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7},
-    {0, 3}, {1, 2}, {4, 7}, {5, 6}, {0, 5}, {1, 4}, {2, 7}, {3, 6}, {0, 6}, {2, 4}, {1, 7}, {3, 5},
-    {0, 7}, {1, 6}, {2, 5}, {3, 4},
+    {0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3}, {4, 6}, {5, 7}, {0, 4}, {1, 5},
+    {2, 6}, {3, 7}, {0, 3}, {1, 2}, {4, 7}, {5, 6}, {0, 5}, {1, 4}, {2, 7}, {3, 6},
+    {0, 6}, {2, 4}, {1, 7}, {3, 5}, {0, 7}, {1, 6}, {2, 5}, {3, 4},
 }};
 
 namespace {
@@ -20,8 +20,8 @@ using Components = Eigen::Matrix<double, component_count, 1>;
 using ComponentMatrix = Eigen::Matrix<double, component_count, cell_spring_count>;
 using Stiffnesses = Eigen::Matrix<double, cell_spring_count, 1>;
 
-// The exponents of x, y, z in each component of a totally symmetric tensor of order four, and the root of how many
-// index permutations it stands for, so that the vector norm is the tensor norm.
+// The exponents of x, y, z in each component of a totally symmetric tensor of order four, and the root of how
+// many index permutations it stands for, so that the vector norm is the tensor norm.
 struct Component {
   int x, y, z;
   double root_count;
@@ -93,14 +93,15 @@ ComponentMatrix spring_components(const CellCorners& corners, double volume) {
   return matrix;
 }
 
-// No spring falls below this share of a cube's: a corner whose diagonals vanish can snap through its neighbours'
-// plane, and a cell without diagonals has zero-energy modes.
+// No spring falls below this share of a cube's: a corner whose diagonals vanish can snap through its
+// neighbours' plane, and a cell without diagonals has zero-energy modes.
 constexpr double least_share = 0.1;
 
-// The stiffnesses nearest to `start` that meet `matrix * k = wanted`; those that would fall below their least share are
-// set to it, round by round. A negligible ridge keeps the normal matrix regular where springs of a distorted cell depend
-// on each other.
-Stiffnesses nearest_admissible(const ComponentMatrix& matrix, const Components& wanted, const Stiffnesses& start) {
+// The stiffnesses nearest to `start` that meet `matrix * k = wanted`; those that would fall below their least
+// share are set to it, round by round. A negligible ridge keeps the normal matrix regular where springs of a
+// distorted cell depend on each other.
+Stiffnesses nearest_admissible(const ComponentMatrix& matrix, const Components& wanted,
+                               const Stiffnesses& start) {
   Stiffnesses weight = start, from = start;
   Stiffnesses result = start;
   for (int round = 0; round < cell_spring_count; ++round) {
@@ -154,7 +155,8 @@ double shear_modulus(double youngs_modulus_pa, double poissons_ratio) {
 }
 
 double bulk_stiffness(double youngs_modulus_pa, double poissons_ratio) {
-  return shear_modulus(youngs_modulus_pa, poissons_ratio) * (4.0 * poissons_ratio - 1.0) / (1.0 - 2.0 * poissons_ratio);
+  return shear_modulus(youngs_modulus_pa, poissons_ratio) * (4.0 * poissons_ratio - 1.0) /
+         (1.0 - 2.0 * poissons_ratio);
 }
 
 AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellSprings& springs,
@@ -166,7 +168,8 @@ AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellSpr
       int exponent[3] = {0, 0, 0};
       exponent[row] += 2;
       exponent[column] += 2;
-      normal(row, column) = tensor_component(tensor, exponent[0], exponent[1], exponent[2]) + bulk_stiffness_pa;
+      normal(row, column) =
+          tensor_component(tensor, exponent[0], exponent[1], exponent[2]) + bulk_stiffness_pa;
     }
   }
   const Eigen::Matrix3d compliance = normal.inverse();

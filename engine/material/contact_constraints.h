@@ -1,5 +1,5 @@
-// What a tool does to a lattice: velocity constraints on points of the body's surface, solved within each substep.
-// Stable for every stiffness, where a penalty force would need its own step limit.
+// What a tool does to a lattice: velocity constraints on points of the body's surface, solved within each
+// substep. Stable for every stiffness, where a penalty force would need its own step limit.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace spoonbill {
 
-// A surface point as a weighted sum of lattice nodes. Weights sum to 1; a few may be slightly negative where the
-// surface bulges out of its cells.
+// A surface point as a weighted sum of lattice nodes. Weights sum to 1; a few may be slightly negative where
+// the surface bulges out of its cells.
 struct EmbeddedPoint {
   static constexpr int capacity = 32;
   int count = 0;
@@ -21,13 +21,22 @@ struct EmbeddedPoint {
   bool add(const EmbeddedPoint& other, float share);
 };
 
-// A tool's motion through one tick, in the world frame.
+// Where the tool is and moves: the proxy, which the material holds off the hand. Plain data, kept from tick
+// to tick.
+struct ToolState {
+  Vector3 position_m = Vector3::Zero();
+  Vector3 velocity_m_per_s = Vector3::Zero();  // of material time
+};
+
+// What the hand does with the tool through one tick, in the world frame.
 struct ToolMotion {
   Vector3 start_m = Vector3::Zero();
   Vector3 end_m = Vector3::Zero();
-  Quaternion start_orientation = Quaternion::Identity();
-  Quaternion end_orientation = Quaternion::Identity();
+  Quaternion orientation = Quaternion::Identity();
   double radius_m = 0.0;
+  double friction = 0.0;  // Coulomb's coefficient between tool and body
+  // The spring by which the hand holds the tool, critically damped; 0 = held rigidly.
+  double coupling_n_per_m = 0.0;
 };
 
 // Working memory for the contacts of one tick. One owner, one thread; allocates only in its constructor.
@@ -38,9 +47,9 @@ class ContactConstraints {
   void clear();
   // A point that the tool's sphere may push outward but never pulls. False when full.
   bool add_push(const SpringLattice& lattice, const EmbeddedPoint& point);
-  // A point that must stay behind the tool's foremost tangent plane: `normal` is the surface's unit normal there, and
-  // the plane passes through the tool's centre less the radius along it. Serves tools smaller than a cell, a point
-  // among them. False when full.
+  // A point that must stay behind the tool's foremost tangent plane: `normal` is the surface's unit normal
+  // there, and the plane passes through the tool's centre less the radius along it. Serves tools smaller than
+  // a cell, a point among them. False when full.
   bool add_plane_push(const SpringLattice& lattice, const EmbeddedPoint& point, const Vector3& normal);
   // A point gripped by the tool at `offset_m` from its centre, in the tool's frame. False when full.
   bool add_grip(const SpringLattice& lattice, const EmbeddedPoint& point, const Vector3& offset_m);
@@ -48,12 +57,12 @@ class ContactConstraints {
   // Begins a tick of `material_time_s`.
   void begin(const ToolMotion& motion, double material_time_s);
 
-  // After the kick and before the drift of a substep of h_s that ends at `fraction` (0 to 1] of the tick.
-  void solve(const LatticeView& lattice, float h_s, float fraction, float push_speed_cap_m_per_s);
+  // After the kick and before the drift of a substep of h_s that begins at `fraction` [0 to 1) of the tick.
+  // Pushes on nodes and tool are equal and opposite; then the tool moves.
+  void solve(const LatticeView& lattice, ToolState& tool, float h_s, double fraction,
+             float push_speed_cap_m_per_s);
 
   int count() const { return count_; }
-  // Whether constraint i has no free node and so cannot give way.
-  bool is_blocked(int i) const { return constraints_[i].effective_mass == 0.0f; }
   // Over the ticks since begin(): the sum of the impulses on the tool, N s, and whether any acted.
   const Vector3& tool_impulse() const { return tool_impulse_; }
   bool acted() const { return acted_; }
@@ -65,20 +74,23 @@ class ContactConstraints {
   struct Constraint {
     Kind kind = Kind::sphere_push;
     EmbeddedPoint point;
-    Vector3 rest_m = Vector3::Zero();     // of the undeformed embedding
-    Vector3 direction = Vector3::Zero();  // plane push: the surface normal; grip: the offset in the tool's frame
-    float effective_mass = 0.0f;          // 0 when every node is held
+    Vector3 rest_m = Vector3::Zero();  // of the undeformed embedding
+    Vector3 direction =
+        Vector3::Zero();      // plane push: the surface normal; grip: the offset in the tool's frame
+    double compliance = 0.0;  // 1/kg of the point; 0 when every node is held
     bool acted = false;
   };
   bool add(const SpringLattice& lattice, const EmbeddedPoint& point, Kind kind, const Vector3& direction);
-  void solve_push(const LatticeView& lattice, Constraint& constraint, const Vector3& centre, float h, float cap);
-  void solve_grip(const LatticeView& lattice, Constraint& constraint, const Vector3& centre,
-                  const Quaternion& orientation, float h, float cap);
+  void follow_hand(ToolState& tool, double h, double fraction) const;
+  void solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
+  void solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
+  void exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool, const Vector3& impulse);
 
   std::vector<Constraint> constraints_;
   int count_ = 0;
   ToolMotion motion_;
-  Vector3 tool_velocity_ = Vector3::Zero();  // m/s of material time
+  Vector3 hand_velocity_ = Vector3::Zero();  // m/s of material time
+  double tool_compliance_ = 0.0;             // 1/kg; 0 where the hand holds it rigidly
   Vector3 tool_impulse_ = Vector3::Zero();
   bool acted_ = false;
 };

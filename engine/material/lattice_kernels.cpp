@@ -10,12 +10,17 @@ struct BlockForces {
   alignas(64) float x[block], y[block], z[block];
 };
 
-inline float min_of(float a, float b) { return a < b ? a : b; }
-inline float max_of(float a, float b) { return a > b ? a : b; }
+inline float min_of(float a, float b) {
+  return a < b ? a : b;
+}
+inline float max_of(float a, float b) {
+  return a > b ? a : b;
+}
 
-// Each spring pulls its two ends: the near end first, then the far one, so that overlapping offsets cannot clash.
-inline void scatter(const BlockForces& force, float* __restrict f_x, float* __restrict f_y, float* __restrict f_z,
-                    int start, int offset) {
+// Each spring pulls its two ends: the near end first, then the far one, so that overlapping offsets cannot
+// clash.
+inline void scatter(const BlockForces& force, float* __restrict f_x, float* __restrict f_y,
+                    float* __restrict f_z, int start, int offset) {
   for (int l = 0; l < block; ++l) f_x[start + l] += force.x[l];
   for (int l = 0; l < block; ++l) f_y[start + l] += force.y[l];
   for (int l = 0; l < block; ++l) f_z[start + l] += force.z[l];
@@ -42,10 +47,12 @@ void spring_block(const LatticeView& view, const SpringArrays& s, int start, flo
     const float ex = dx[l + o] - dx[l], ey = dy[l + o] - dy[l], ez = dz[l + o] - dz[l];
     const float ax = rx[l] + ex, ay = ry[l] + ey, az = rz[l] + ez;
     const float length = __builtin_sqrtf(ax * ax + ay * ay + az * az + tiny);
-    const float squares = 2.0f * (rx[l] * ex + ry[l] * ey + rz[l] * ez) + (ex * ex + ey * ey + ez * ez) + q[l];
+    const float squares =
+        2.0f * (rx[l] * ex + ry[l] * ey + rz[l] * ez) + (ex * ex + ey * ey + ez * ez) + q[l];
     const float extension = squares / (length + rest[l]);
     const float inverse = 1.0f / length;
-    const float rate = ((vx[l + o] - vx[l]) * ax + (vy[l + o] - vy[l]) * ay + (vz[l + o] - vz[l]) * az) * inverse;
+    const float rate =
+        ((vx[l + o] - vx[l]) * ax + (vy[l + o] - vy[l]) * ay + (vz[l + o] - vz[l]) * az) * inverse;
     const float scale = k[l] * (extension + tau * rate) * inverse;
     force.x[l] = scale * ax;
     force.y[l] = scale * ay;
@@ -66,16 +73,23 @@ void spring_forces(const LatticeView& view, float tau) {
 struct Vector {
   float x, y, z;
 };
-inline Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vector operator+(Vector a, Vector b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vector operator-(Vector a, Vector b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 inline Vector cross(Vector a, Vector b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline float dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline float dot(Vector a, Vector b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 
-// Twelve times the gradient of a trilinear cell's volume by its corners 1..7, for corner 0 at the origin (corner
-// 0's own is minus their sum). Each quad face a, b, c, d, seen from outside counter-clockwise, adds the mean of
-// its two triangulations: (a.(b x c) + a.(c x d) + a.(b x d) + b.(c x d)) / 12. Corner bits: 1 = k, 2 = j, 4 = i.
+// Twelve times the gradient of a trilinear cell's volume by its corners 1..7, for corner 0 at the origin
+// (corner 0's own is minus their sum). Each quad face a, b, c, d, seen from outside counter-clockwise, adds
+// the mean of its two triangulations: (a.(b x c) + a.(c x d) + a.(b x d) + b.(c x d)) / 12. Corner bits: 1 =
+// k, 2 = j, 4 = i.
 struct Gradient {
   Vector g[8];
 };
@@ -118,6 +132,13 @@ inline void cell_corners(const LatticeView& view, int n, Vector* p) {
   }
 }
 
+// 36 times the volume, by Euler's theorem for the homogeneous cubic V: 3 V = sum x . dV/dx.
+inline float volume_sum(const Vector* p, const Gradient& gradient) {
+  float sum = 0.0f;
+  for (int c = 1; c < 8; ++c) sum += dot(p[c], gradient.g[c]);
+  return sum;
+}
+
 // Corner-major results of one block of cells, scattered afterwards.
 struct BlockCells {
   alignas(64) float x[8][block], y[8][block], z[8][block];
@@ -130,21 +151,21 @@ void volume_block(const LatticeView& view, int start, float tau, BlockCells& out
     Vector p[8];
     cell_corners(view, n, p);
     const Gradient gradient = volume_gradient(p);
-    float volume = 0.0f, rate = 0.0f;
-    for (int c = 1; c < 8; ++c) volume += dot(p[c], gradient.g[c]);
+    float rate = 0.0f;
     for (int c = 0; c < 8; ++c) {
       const int m = n + view.corner_offset[c];
       rate += dot({view.vx[m], view.vy[m], view.vz[m]}, gradient.g[c]);
     }
-    const float dilation = volume * (1.0f / 36.0f) * view.inverse_volume[n];
-    const float strain = dilation - 1.0f + tau * (rate * (1.0f / 12.0f) * view.inverse_volume[n]);
+    const float dilation =
+        (volume_sum(p, gradient) - view.rest_volume_sum[n]) * (1.0f / 36.0f) * view.inverse_volume[n];
+    const float strain = dilation + tau * (rate * (1.0f / 12.0f) * view.inverse_volume[n]);
     const float scale = -view.bulk_stiffness[n] * view.inverse_volume[n] * strain * (1.0f / 12.0f);
     for (int c = 0; c < 8; ++c) {
       out.x[c][l] = scale * gradient.g[c].x;
       out.y[c][l] = scale * gradient.g[c].y;
       out.z[c][l] = scale * gradient.g[c].z;
     }
-    out.dilation[l] = dilation * view.has_cell[n];
+    out.dilation[l] = (1.0f + dilation) * view.has_cell[n];
   }
 }
 
@@ -167,6 +188,52 @@ void volume_forces(const LatticeView& view, float tau) {
   for (int i = 0; i < view.padded_count; ++i) view.node_dilation[i] *= view.inverse_cell_count[i];
 }
 
+void row_sums_volume(const LatticeView& view, float* sum) {
+  alignas(64) float share[8][block];
+  for (int start = 0; start < view.padded_count; start += block) {
+    for (int l = 0; l < block; ++l) {
+      const int n = start + l;
+      Vector p[8];
+      cell_corners(view, n, p);
+      const Gradient gradient = volume_gradient(p);
+      float length[8], total = 0.0f;
+      for (int c = 0; c < 8; ++c) {
+        length[c] = __builtin_sqrtf(dot(gradient.g[c], gradient.g[c]));
+        total += length[c];
+      }
+      const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
+      const float scale = view.bulk_stiffness[n] * inverse * inverse * total;
+      for (int c = 0; c < 8; ++c) share[c][l] = scale * length[c];
+    }
+    for (int c = 0; c < 8; ++c) {
+      float* __restrict to = sum + start + view.corner_offset[c];
+      for (int l = 0; l < block; ++l) to[l] += share[c][l];
+    }
+  }
+}
+
+void row_sums(const LatticeView& view, float* sum) {
+  for (int i = 0; i < view.padded_count; ++i) sum[i] = 0.0f;
+  for (const SpringArrays& s : view.springs) {
+    const float* __restrict k = s.stiffness;
+    for (int start = 0; start < view.padded_count; start += block) {
+      float* __restrict near = sum + start;
+      for (int l = 0; l < block; ++l) near[l] += 2.0f * k[start + l];
+      float* __restrict far = sum + start + s.offset;
+      for (int l = 0; l < block; ++l) far[l] += 2.0f * k[start + l];
+    }
+  }
+  row_sums_volume(view, sum);
+}
+
+void measure_rest_volumes(const LatticeView& view) {
+  for (int n = 0; n < view.padded_count; ++n) {
+    Vector p[8];
+    cell_corners(view, n, p);
+    view.rest_volume_sum[n] = volume_sum(p, volume_gradient(p));
+  }
+}
+
 void kick(const LatticeView& view, float h, float decay, float gx, float gy, float gz) {
   const float gravity[3] = {gx, gy, gz};
   float* velocity[3] = {view.vx, view.vy, view.vz};
@@ -182,8 +249,9 @@ void kick(const LatticeView& view, float h, float decay, float gx, float gy, flo
 }
 
 // Limits one block's velocities and returns the squared ratios of speed to cap.
-inline void cap_block(float* __restrict vx, float* __restrict vy, float* __restrict vz, const float* __restrict free,
-                      float* __restrict lanes, float inverse_square, float mx, float my, float mz) {
+inline void cap_block(float* __restrict vx, float* __restrict vy, float* __restrict vz,
+                      const float* __restrict free, float* __restrict lanes, float inverse_square, float mx,
+                      float my, float mz) {
   for (int l = 0; l < 16; ++l) {
     const float rx = vx[l] - mx, ry = vy[l] - my, rz = vz[l] - mz;
     const float ratio = (rx * rx + ry * ry + rz * rz) * inverse_square * free[l];
@@ -200,8 +268,8 @@ float drift(const LatticeView& view, float h, float cap, float mx, float my, flo
   alignas(64) float lanes[16] = {};
   const float inverse_square = 1.0f / (cap * cap);
   for (int start = 0; start < view.padded_count; start += 16) {
-    cap_block(view.vx + start, view.vy + start, view.vz + start, view.free_node + start, lanes, inverse_square, mx, my,
-              mz);
+    cap_block(view.vx + start, view.vy + start, view.vz + start, view.free_node + start, lanes,
+              inverse_square, mx, my, mz);
   }
   float* const displacement[3] = {view.dx, view.dy, view.dz};
   const float* const velocity[3] = {view.vx, view.vy, view.vz};
@@ -238,36 +306,40 @@ void momentum(const LatticeView& view, const float* mass, float sum[4]) {
   sum[3] = m[0];
 }
 
-// Two Newton steps from the tangent at 1: within 1e-4 for J from 0.5 to 2, exact at 1.
+// Two Newton steps from the tangent at 1: within 1e-4 for J from 0.5 to 2, exact at 1. 0 outside 0.3 to 3:
+// about a node whose cells are crushed or torn, flow would take the distortion for the new shape.
 inline float cube_root(float j) {
-  const float a = min_of(max_of(j, 0.125f), 8.0f);
+  const float a = min_of(max_of(j, 0.3f), 3.0f);
   float y = 1.0f + (a - 1.0f) * (1.0f / 3.0f);
   y = y - (y * y * y - a) / (3.0f * y * y);
   y = y - (y * y * y - a) / (3.0f * y * y);
-  return y;
+  return a == j ? y : 0.0f;
 }
 
 // The present length of each spring of a block.
-inline void length_block(const LatticeView& view, const SpringArrays& s, int start, float* __restrict length) {
+inline void length_block(const LatticeView& view, const SpringArrays& s, int start,
+                         float* __restrict length) {
   const int o = s.offset;
   const float *dx = view.dx + start, *dy = view.dy + start, *dz = view.dz + start;
   const float *rx = s.rest_x + start, *ry = s.rest_y + start, *rz = s.rest_z + start;
   for (int l = 0; l < block; ++l) {
-    const float ax = rx[l] + (dx[l + o] - dx[l]), ay = ry[l] + (dy[l + o] - dy[l]), az = rz[l] + (dz[l + o] - dz[l]);
+    const float ax = rx[l] + (dx[l + o] - dx[l]), ay = ry[l] + (dy[l + o] - dy[l]),
+                az = rz[l] + (dz[l + o] - dz[l]);
     length[l] = __builtin_sqrtf(ax * ax + ay * ay + az * az + tiny);
   }
 }
 
-inline void flow_block(const float* __restrict length, const float* __restrict root, const float* __restrict root_far,
-                       const float* __restrict stiffness, const float* __restrict first, float* __restrict rest_length,
+inline void flow_block(const float* __restrict length, const float* __restrict root,
+                       const float* __restrict root_far, const float* __restrict stiffness,
+                       const float* __restrict first, float* __restrict rest_length,
                        float* __restrict square_difference, float yield, float rate_step) {
   for (int l = 0; l < block; ++l) {
     const float rest = rest_length[l];
-    const float strain = length[l] / (rest * (0.5f * (root[l] + root_far[l]))) - 1.0f;
+    const float strain = length[l] / (rest * max_of(0.5f * (root[l] + root_far[l]), 0.1f)) - 1.0f;
     const float beyond = max_of(strain - yield, 0.0f) + min_of(strain + yield, 0.0f);
     const float limited = min_of(max_of(beyond * rate_step, -0.1f), 0.1f) * rest;
-    const float next = min_of(max_of(rest + limited, 0.25f * first[l]), 4.0f * first[l]);
-    const float change = stiffness[l] > 0.0f ? next - rest : 0.0f;
+    const float next = min_of(max_of(rest + limited, 0.5f * first[l]), 2.0f * first[l]);
+    const float change = stiffness[l] > 0.0f && root[l] > 0.0f && root_far[l] > 0.0f ? next - rest : 0.0f;
     square_difference[l] -= change * (2.0f * rest + change);
     rest_length[l] = rest + change;
   }
@@ -281,8 +353,9 @@ void flow(const LatticeView& view, float yield, float rate_step) {
   for (const SpringArrays& s : view.springs) {
     for (int start = 0; start < view.padded_count; start += block) {
       length_block(view, s, start, length);
-      flow_block(length, root + start, root + start + s.offset, s.stiffness + start, s.first_rest_length + start,
-                 s.rest_length + start, s.square_difference + start, yield, rate_step);
+      flow_block(length, root + start, root + start + s.offset, s.stiffness + start,
+                 s.first_rest_length + start, s.rest_length + start, s.square_difference + start, yield,
+                 rate_step);
     }
   }
 }
@@ -300,7 +373,8 @@ void stiffness_product_springs(const LatticeView& view) {
         const float wx = view.power_x[i + o] - view.power_x[i];
         const float wy = view.power_y[i + o] - view.power_y[i];
         const float wz = view.power_z[i + o] - view.power_z[i];
-        const float scale = s.stiffness[i] * (wx * ax + wy * ay + wz * az) / (ax * ax + ay * ay + az * az + tiny);
+        const float scale =
+            s.stiffness[i] * (wx * ax + wy * ay + wz * az) / (ax * ax + ay * ay + az * az + tiny);
         force.x[l] = -scale * ax;
         force.y[l] = -scale * ay;
         force.z[l] = -scale * az;
@@ -381,7 +455,8 @@ float power_step(const LatticeView& view, const float* mass) {
 }  // namespace
 
 const LatticeKernels lattice_kernels = {
-    clear_forces, spring_forces, volume_forces, kick, drift, momentum, flow, power_step,
+    clear_forces, spring_forces, volume_forces,        kick,       drift, momentum,
+    flow,         row_sums,      measure_rest_volumes, power_step,
 };
 
 }  // namespace spoonbill::SPOONBILL_KERNELS

@@ -1,49 +1,51 @@
-// The inner loops of the spring lattice, compiled once for each instruction set and chosen at start. Every set
-// gives the same bits: lanes run over nodes, sums run in a fixed order, nothing is contracted. This header and its
-// source use no standard library, as engine/bspline/evaluate_kernels.h explains.
+// The inner loops of the spring lattice, compiled once for each instruction set and chosen at start. Every
+// set gives the same bits: lanes run over nodes, sums run in a fixed order, nothing is contracted. This
+// header and its source use no standard library, as engine/bspline/evaluate_kernels.h explains.
 //
 // Arrays are structures of arrays over nodes, k fastest, padded with zeros so that every loop runs over whole
-// blocks and every neighbour offset stays inside. A spring is stored at its first node, once for each of the 13
-// directions of a regular lattice; a cell at its first corner. Where none exists its stiffness is zero.
+// blocks and every neighbour offset stays inside. A spring is stored at its first node, once for each of the
+// 13 directions of a regular lattice; a cell at its first corner. Where none exists its stiffness is zero.
 #pragma once
 
 namespace spoonbill {
 
-inline constexpr int lattice_block = 64;       // nodes a block; the order of sums depends on it, so it is fixed
+inline constexpr int lattice_block = 64;  // nodes a block; the order of sums depends on it, so it is fixed
 inline constexpr int lattice_direction_count = 13;
 
 // The springs of one direction.
 struct SpringArrays {
-  int offset = 0;                             // from a node to its neighbour, positive
-  const float* rest_x = nullptr;              // the vector to the neighbour in the rest shape, m
+  int offset = 0;                 // from a node to its neighbour, positive
+  const float* rest_x = nullptr;  // the vector to the neighbour in the rest shape, m
   const float* rest_y = nullptr;
   const float* rest_z = nullptr;
-  const float* stiffness = nullptr;           // N/m
-  float* rest_length = nullptr;               // m; flows where the material is plastic
-  float* square_difference = nullptr;         // |rest vector|^2 - rest_length^2, m^2; exactly 0 until flow
-  const float* first_rest_length = nullptr;   // before any flow, m
+  const float* stiffness = nullptr;          // N/m
+  float* rest_length = nullptr;              // m; flows where the material is plastic
+  float* square_difference = nullptr;        // |rest vector|^2 - rest_length^2, m^2; exactly 0 until flow
+  const float* first_rest_length = nullptr;  // before any flow, m
 };
 
 // Views of arrays that SpringLattice owns.
 struct LatticeView {
-  int padded_count = 0;                       // nodes, a whole number of blocks
+  int padded_count = 0;                               // nodes, a whole number of blocks
   float *dx = nullptr, *dy = nullptr, *dz = nullptr;  // displacement from the rest shape, m
   float *vx = nullptr, *vy = nullptr, *vz = nullptr;  // m/s
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
-  const float* inverse_mass = nullptr;        // 1/kg; 0 where held
-  const float* free_node = nullptr;           // 1 where free, 0 where held or padding
+  const float* inverse_mass = nullptr;                // 1/kg; 0 where held
+  const float* free_node = nullptr;                   // 1 where free, 0 where held or padding
   SpringArrays springs[lattice_direction_count];
-  int corner_offset[8] = {};                  // from a cell's first corner, bit 0 = k, bit 1 = j, bit 2 = i
-  int corner_direction[8] = {};               // the spring direction from the first corner to each; [0] unused
-  const float* bulk_stiffness = nullptr;      // K_v V0, J
-  const float* inverse_volume = nullptr;      // 1/V0, 1/m^3
-  const float* has_cell = nullptr;            // 1 or 0
+  int corner_offset[8] = {};              // from a cell's first corner, bit 0 = k, bit 1 = j, bit 2 = i
+  int corner_direction[8] = {};           // the spring direction from the first corner to each; [0] unused
+  const float* bulk_stiffness = nullptr;  // K_v V0, J
+  const float* inverse_volume = nullptr;  // 1/V0, 1/m^3
+  float* rest_volume_sum =
+      nullptr;                      // 36 V0 as volume_forces() computes it, so that rest has no strain at all
+  const float* has_cell = nullptr;  // 1 or 0
   const float* inverse_cell_count = nullptr;  // of the cells around a node
   float* node_dilation = nullptr;             // J averaged over those cells
   float* power_x = nullptr;                   // the vector of the running power iteration
   float* power_y = nullptr;
   float* power_z = nullptr;
-  const float* power_noise = nullptr;         // keeps every mode present in it
+  const float* power_noise = nullptr;  // keeps every mode present in it
 };
 
 struct LatticeKernels {
@@ -60,8 +62,14 @@ struct LatticeKernels {
   float (*drift)(const LatticeView&, float h_s, float cap_m_per_s, float mx, float my, float mz);
   // Mass-weighted sums of velocity over free nodes; masses enter as given. sum[4]: x, y, z, mass.
   void (*momentum)(const LatticeView&, const float* mass, float sum[4]);
-  // L0 += rate_step * (|e| - yield) sign(e) L0, e = L / (L0 J^(1/3)) - 1, L0 within 1/4 to 4 of its first value.
+  // L0 += rate_step * (|e| - yield) sign(e) L0, e = L / (L0 J^(1/3)) - 1, L0 within 1/2 to 2 of its first
+  // value; none about a node whose cells are crushed or torn (J outside 0.3 to 3).
   void (*flow)(const LatticeView&, float yield_strain, float rate_step);
+  // Gershgorin's bound on each node's share of the stiffness: 2 k a spring, K_v/V0 |g_i| sum |g_j| a cell.
+  // Never below the largest eigenvalue of its rows; 1.4 to 1.9 times too careful for a whole lattice.
+  void (*row_sums)(const LatticeView&, float* sum_n_per_m);
+  // Fills rest_volume_sum from the present shape.
+  void (*measure_rest_volumes)(const LatticeView&);
   // One step w <- M^-1 K w of the power iteration, normalised. Returns |M^-1 K w| / |w| in the mass norm, an
   // estimate of the largest omega^2. Uses the force arrays as working memory.
   float (*power_step)(const LatticeView&, const float* mass);

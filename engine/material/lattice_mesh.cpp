@@ -56,8 +56,7 @@ Eigen::Matrix3d trilinear_jacobian(const CellCorners& p, double a, double b, dou
 std::array<double, 8> trilinear_weights(double a, double b, double c) {
   std::array<double, 8> weights;
   for (int corner = 0; corner < 8; ++corner) {
-    weights[corner] =
-        (corner & 4 ? a : 1.0 - a) * (corner & 2 ? b : 1.0 - b) * (corner & 1 ? c : 1.0 - c);
+    weights[corner] = (corner & 4 ? a : 1.0 - a) * (corner & 2 ? b : 1.0 - b) * (corner & 1 ? c : 1.0 - c);
   }
   return weights;
 }

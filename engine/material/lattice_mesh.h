@@ -10,14 +10,16 @@
 
 namespace spoonbill {
 
-// Node (i, j, k) lies at index (i * count[1] + j) * count[2] + k: k runs along the body, fastest, i and j across.
+// Node (i, j, k) lies at index (i * count[1] + j) * count[2] + k: k runs along the body, fastest, i and j
+// across.
 struct LatticeMesh {
   std::array<int, 3> count{};
   std::vector<Vector3> nodes;  // m
 
   int index(int i, int j, int k) const { return (i * count[1] + j) * count[2] + k; }
   int node_count() const { return count[0] * count[1] * count[2]; }
-  // The corners of the cell whose first corner is (i, j, k): bit 0 of the corner adds to k, bit 1 to j, bit 2 to i.
+  // The corners of the cell whose first corner is (i, j, k): bit 0 of the corner adds to k, bit 1 to j, bit 2
+  // to i.
   std::array<Vector3, 8> cell(int i, int j, int k) const;
   bool is_shell(int i, int j, int k) const;
   // The mean edge length, m.
@@ -29,15 +31,15 @@ using CellCorners = std::array<Vector3, 8>;
 // The exact volume of a trilinear cell: each quad face counts as the mean of its two triangulations.
 double cell_volume(const CellCorners& corners);
 
-// The smallest Jacobian determinant over the corners, divided by the cell's volume: 1 for a box, at most 0 for
-// a cell that is folded over.
+// The smallest Jacobian determinant over the corners, divided by the cell's volume: 1 for a box, at most 0
+// for a cell that is folded over.
 double smallest_jacobian_ratio(const CellCorners& corners);
 
 // The point at (a, b, c), each 0 to 1 inside the cell, along i, j and k.
 Vector3 trilinear(const CellCorners& corners, double a, double b, double c);
 
-// Where `point` lies in a cell: the weights of its corners, and by how much (in units of the cell) the point lies
-// outside it. Newton's method on the trilinear map; `outside` is infinite where it does not converge.
+// Where `point` lies in a cell: the weights of its corners, and by how much (in units of the cell) the point
+// lies outside it. Newton's method on the trilinear map; `outside` is infinite where it does not converge.
 struct CellLocation {
   std::array<double, 8> weights{};
   double outside = 0.0;

@@ -19,7 +19,7 @@ Substeps choose_substeps(const SpringLattice& lattice, double step_s) {
   const double omega = lattice.fastest_frequency();
   const double limit = stability_share * stable_step_s(omega, 0.5 * lattice.damping_time_s() * omega);
   const double wanted = std::ceil(step_s / limit);
-  if (!(wanted <= substep_ceiling)) return {substep_ceiling, limit, true};
+  if (!(wanted <= substep_ceiling)) return {substep_ceiling, step_s / substep_ceiling, true};
   const int count = std::max(1, static_cast<int>(wanted));
   return {count, step_s / count, false};
 }
@@ -40,8 +40,8 @@ void follow_fastest_frequency(SpringLattice& lattice, const LatticeView& view) {
 }
 
 // Returns whether a node met the speed cap.
-bool substep(SpringLattice& lattice, const LatticeView& view, const RelaxSettings& settings, float h, float fraction,
-             ContactConstraints& contacts) {
+bool substep(SpringLattice& lattice, const LatticeView& view, const RelaxSettings& settings, float h,
+             double fraction, ToolState& tool, ContactConstraints& contacts) {
   const LatticeKernels& kernels = lattice.kernels();
   kernels.clear_forces(view);
   kernels.spring_forces(view, lattice.damping_time_s());
@@ -49,9 +49,10 @@ bool substep(SpringLattice& lattice, const LatticeView& view, const RelaxSetting
   apply_node_forces(lattice, view);
   const float decay = 1.0f / (1.0f + h * static_cast<float>(settings.damping_per_s));
   const Vector3& g = settings.gravity_m_per_s2;
-  kernels.kick(view, h, decay, static_cast<float>(g.x()), static_cast<float>(g.y()), static_cast<float>(g.z()));
+  kernels.kick(view, h, decay, static_cast<float>(g.x()), static_cast<float>(g.y()),
+               static_cast<float>(g.z()));
   const float cap = static_cast<float>(speed_cap_cells) * lattice.cell_size_m() / h;
-  contacts.solve(view, h, fraction, 0.5f * cap);
+  contacts.solve(view, tool, h, fraction, 0.5f * cap);
   float sum[4];
   kernels.momentum(view, lattice.free_mass(), sum);
   const float inverse = sum[3] > 0.0f ? 1.0f / sum[3] : 0.0f;
@@ -70,20 +71,22 @@ double felt_modulus_limit_pa(double unit_frequency, double damping_ratio) {
 }
 
 RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings, const ToolMotion& motion,
-                  ContactConstraints& contacts) {
-  const LatticeView view = lattice.view();
+                  ToolState& tool, ContactConstraints& contacts) {
+  LatticeView view = lattice.view();
   follow_fastest_frequency(lattice, view);
   const Substeps substeps = choose_substeps(lattice, settings.step_s);
   RelaxReport report;
   report.substeps = substeps.count;
-  report.time_slowed = substeps.slowed;
+  report.nodes_slowed = substeps.slowed;
   report.material_time_s = settings.iterations * substeps.count * substeps.h;
   contacts.begin(motion, report.material_time_s);
   const float h = static_cast<float>(substeps.h);
+  if (substeps.slowed)
+    view.inverse_mass = lattice.stable_inverse_mass(h, static_cast<float>(stability_share));
   const int total = settings.iterations * substeps.count;
   for (int s = 0; s < total; ++s) {
-    const float fraction = static_cast<float>(s + 1) / static_cast<float>(total);
-    report.speed_capped |= substep(lattice, view, settings, h, fraction, contacts);
+    const double fraction = static_cast<double>(s) / total;
+    report.speed_capped |= substep(lattice, view, settings, h, fraction, tool, contacts);
   }
   if (lattice.plastic()) {
     const double share = std::min(largest_flow_share, lattice.flow_rate_per_s() * report.material_time_s);

@@ -12,16 +12,17 @@ namespace spoonbill {
 // The material time of a relaxation step: a haptic tick's.
 inline constexpr double relaxation_step_s = 1e-3;
 
-// Substeps a relaxation step may take. Above it the material's time runs slower than the tick's, which sculpting
-// does not notice and which cannot blow up: the stated fallback.
+// Substeps a relaxation step may take. Where strain would ask for more, the strained nodes count as heavier,
+// just as much as keeps them stable: the stated fallback. They answer more slowly, which a damped,
+// quasi-static body hardly shows; the rest is as before.
 inline constexpr int substep_ceiling = 4;
 
-// The share of the measured stability limit that a substep takes. The running estimate of the fastest frequency
-// lags a sudden contact by some tens of ticks.
+// The share of the measured stability limit that a substep takes. The running estimate of the fastest
+// frequency lags a sudden contact by some tens of ticks.
 inline constexpr double stability_share = 0.85;
 
-// The share of it that a felt stiffness may take with one substep: strain and flow raise the fastest frequency
-// by 1.2 to 1.6 times, and stay below the limit so.
+// The share of it that a felt stiffness may take with one substep: strain and flow raise the fastest
+// frequency by 1.2 to 1.6 times, and stay below the limit so.
 inline constexpr double felt_stability_share = 0.75;
 
 // No node moves further than this share of a cell in a substep, relative to the body's mean velocity.
@@ -31,26 +32,26 @@ inline constexpr double speed_cap_cells = 0.1;
 // (sqrt(1 + z^2) - z), from |trace| <= 1 + determinant of the update matrix of x'' + 2 z w x' + w^2 x = 0.
 double stable_step_s(double angular_frequency, double damping_ratio);
 
-// The largest Young's modulus at which one relaxation step of tick_s takes one substep, for a lattice whose fastest
-// frequency is `unit_frequency` at 1 Pa: frequencies grow with the root of the modulus.
+// The largest Young's modulus at which one relaxation step of tick_s takes one substep, for a lattice whose
+// fastest frequency is `unit_frequency` at 1 Pa: frequencies grow with the root of the modulus.
 double felt_modulus_limit_pa(double unit_frequency, double damping_ratio);
 
 struct RelaxSettings {
-  int iterations = 1;                            // relaxation steps
-  double step_s = relaxation_step_s;             // material time of each
-  double damping_per_s = 0.0;                    // mass-proportional
+  int iterations = 1;                 // relaxation steps
+  double step_s = relaxation_step_s;  // material time of each
+  double damping_per_s = 0.0;         // mass-proportional
   Vector3 gravity_m_per_s2 = Vector3::Zero();
 };
 
 struct RelaxReport {
-  int substeps = 0;                              // of each relaxation step
-  double material_time_s = 0.0;                  // that passed
-  bool time_slowed = false;                      // the ceiling was met
+  int substeps = 0;              // of each relaxation step
+  double material_time_s = 0.0;  // that passed
+  bool nodes_slowed = false;     // the ceiling was met
   bool speed_capped = false;
 };
 
 // Advances the lattice. Denormals must be flushed by the caller for the speed's sake (see DenormalsFlushed).
 RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings, const ToolMotion& motion,
-                  ContactConstraints& contacts);
+                  ToolState& tool, ContactConstraints& contacts);
 
 }  // namespace spoonbill

@@ -11,7 +11,7 @@ namespace {
 
 // The 13 directions of a regular lattice as steps in i, j, k, each with a positive offset in memory.
 constexpr int direction_step[lattice_direction_count][3] = {
-    {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 1, 1},  {0, 1, -1}, {1, 0, 1}, {1, 0, -1},
+    {0, 0, 1}, {0, 1, 0},  {1, 0, 0}, {0, 1, 1},  {0, 1, -1}, {1, 0, 1},   {1, 0, -1},
     {1, 1, 0}, {1, -1, 0}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1},
 };
 
@@ -56,6 +56,7 @@ Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const Materia
   lattice.kernels_ = &kernels_for(set);
   lattice.lay_out(mesh);
   lattice.assemble(material, youngs_modulus_pa);
+  lattice.kernels_->measure_rest_volumes(lattice.view());
   lattice.hold(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
   lattice.measure_fastest_frequency();
   lattice.damping_time_ = static_cast<float>(2.0 * material.damping_ratio / lattice.fastest_frequency_);
@@ -76,14 +77,40 @@ void SpringLattice::lay_out(const LatticeMesh& mesh) {
   }
   padded_count_ = (mesh.node_count() + lattice_block - 1) / lattice_block * lattice_block;
   const std::size_t size = static_cast<std::size_t>(padded_count_ + reach + lattice_block);
-  for (Floats* a : {&dx_, &dy_, &dz_, &vx_, &vy_, &vz_, &fx_, &fy_, &fz_, &node_mass_, &free_mass_, &inverse_mass_,
-                    &free_node_, &applied_[0], &applied_[1], &applied_[2], &bulk_, &inverse_volume_, &has_cell_,
-                    &inverse_cell_count_, &node_dilation_, &power_x_, &power_y_, &power_z_, &power_noise_}) {
+  for (Floats* a : {&dx_,
+                    &dy_,
+                    &dz_,
+                    &vx_,
+                    &vy_,
+                    &vz_,
+                    &fx_,
+                    &fy_,
+                    &fz_,
+                    &node_mass_,
+                    &free_mass_,
+                    &inverse_mass_,
+                    &free_node_,
+                    &applied_[0],
+                    &applied_[1],
+                    &applied_[2],
+                    &bulk_,
+                    &inverse_volume_,
+                    &rest_volume_sum_,
+                    &has_cell_,
+                    &inverse_cell_count_,
+                    &node_dilation_,
+                    &row_sum_,
+                    &stable_inverse_mass_,
+                    &power_x_,
+                    &power_y_,
+                    &power_z_,
+                    &power_noise_}) {
     a->assign(size, 0.0f);
   }
   std::fill(inverse_volume_.begin(), inverse_volume_.end(), 1.0f);
   for (int d = 0; d < lattice_direction_count; ++d) {
-    for (Floats* a : {&rest_y_[d], &rest_z_[d], &stiffness_[d], &square_difference_[d]}) a->assign(size, 0.0f);
+    for (Floats* a : {&rest_y_[d], &rest_z_[d], &stiffness_[d], &square_difference_[d]})
+      a->assign(size, 0.0f);
     // Springs that do not exist have a length all the same, so that nothing divides by zero.
     for (Floats* a : {&rest_x_[d], &rest_length_[d], &first_rest_length_[d]}) a->assign(size, cell_size_);
   }
@@ -108,17 +135,20 @@ void SpringLattice::assemble(const Material& material, double youngs_modulus_pa)
         for (int s = 0; s < cell_spring_count; ++s) {
           const int low = cell_spring_corners[s][0], high = cell_spring_corners[s][1];
           int step[3];
-          for (int axis = 0; axis < 3; ++axis) step[axis] = (high >> (2 - axis) & 1) - (low >> (2 - axis) & 1);
+          for (int axis = 0; axis < 3; ++axis)
+            step[axis] = (high >> (2 - axis) & 1) - (low >> (2 - axis) & 1);
           int from = mesh_.index(i + (low >> 2 & 1), j + (low >> 1 & 1), k + (low & 1));
           int d = direction_of(step[0], step[1], step[2]);
           if (d < 0) {
             d = direction_of(-step[0], -step[1], -step[2]);
             from = mesh_.index(i + (high >> 2 & 1), j + (high >> 1 & 1), k + (high & 1));
           }
-          stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(from)] += springs.stiffness_n_per_m[s];
+          stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(from)] +=
+              springs.stiffness_n_per_m[s];
         }
         for (int c = 0; c < 8; ++c) {
-          const auto node = static_cast<std::size_t>(mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1)));
+          const auto node =
+              static_cast<std::size_t>(mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1)));
           mass[node] += material.density_kg_per_m3 * springs.volume_m3 / 8.0;
           cells[node] += 1.0;
         }
@@ -145,8 +175,8 @@ void SpringLattice::assemble(const Material& material, double youngs_modulus_pa)
   for (std::size_t n = 0; n < nodes; ++n) {
     node_mass_[n] = static_cast<float>(mass[n]);
     inverse_cell_count_[n] = static_cast<float>(1.0 / cells[n]);
-    power_noise_[n] = noise_share * mixed(static_cast<std::uint32_t>(n) + 1) /
-                      std::sqrt(static_cast<float>(total_mass_));
+    power_noise_[n] =
+        noise_share * mixed(static_cast<std::uint32_t>(n) + 1) / std::sqrt(static_cast<float>(total_mass_));
   }
   for (int d = 0; d < lattice_direction_count; ++d) {
     for (int i = 0; i < mesh_.count[0]; ++i) {
@@ -154,7 +184,8 @@ void SpringLattice::assemble(const Material& material, double youngs_modulus_pa)
         for (int k = 0; k < mesh_.count[2]; ++k) {
           const int to[3] = {i + direction_step[d][0], j + direction_step[d][1], k + direction_step[d][2]};
           bool inside = true;
-          for (int axis = 0; axis < 3; ++axis) inside = inside && to[axis] >= 0 && to[axis] < mesh_.count[axis];
+          for (int axis = 0; axis < 3; ++axis)
+            inside = inside && to[axis] >= 0 && to[axis] < mesh_.count[axis];
           if (!inside) continue;
           const int n = mesh_.index(i, j, k);
           const Vector3 rest = mesh_.nodes[n + offset_[d]] - mesh_.nodes[n];
@@ -163,7 +194,8 @@ void SpringLattice::assemble(const Material& material, double youngs_modulus_pa)
           rest_z_[d][n] = static_cast<float>(rest.z());
           rest_length_[d][n] = static_cast<float>(rest.norm());
           first_rest_length_[d][n] = rest_length_[d][n];
-          stiffness_[d][n] = static_cast<float>(stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(n)]);
+          stiffness_[d][n] =
+              static_cast<float>(stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(n)]);
         }
       }
     }
@@ -178,7 +210,8 @@ void SpringLattice::measure_fastest_frequency() {
     power_z_[n] = mixed(static_cast<std::uint32_t>(3 * n + 3));
   }
   float square = 0.0f;
-  for (int step = 0; step < frequency_steps; ++step) square = kernels_->power_step(lattice, node_mass_.data());
+  for (int step = 0; step < frequency_steps; ++step)
+    square = kernels_->power_step(lattice, node_mass_.data());
   fastest_frequency_ = std::sqrt(square);
 }
 
@@ -212,6 +245,7 @@ LatticeView SpringLattice::view() {
   }
   v.bulk_stiffness = bulk_.data();
   v.inverse_volume = inverse_volume_.data();
+  v.rest_volume_sum = rest_volume_sum_.data();
   v.has_cell = has_cell_.data();
   v.inverse_cell_count = inverse_cell_count_.data();
   v.node_dilation = node_dilation_.data();
@@ -263,6 +297,17 @@ void SpringLattice::set_velocity(int node, const Vector3& v) {
 void SpringLattice::set_node_force(int node, const Vector3& force_n) {
   for (int axis = 0; axis < 3; ++axis) applied_[axis][node] = static_cast<float>(force_n[axis]);
   has_applied_force_ = true;
+}
+
+const float* SpringLattice::stable_inverse_mass(float h_s, float share) {
+  kernels_->row_sums(view(), row_sum_.data());
+  // w^2 (h^2 + 2 tau h) <= 4 is h <= (2 / w) (sqrt(1 + z^2) - z) with z = tau w / 2.
+  const float limit = 4.0f * share * share / (h_s * h_s + 2.0f * damping_time_ * h_s);
+  for (int i = 0; i < padded_count_; ++i) {
+    const float stable = limit / std::max(row_sum_[i], 1e-30f);
+    stable_inverse_mass_[i] = std::min(inverse_mass_[i], stable);
+  }
+  return stable_inverse_mass_.data();
 }
 
 void SpringLattice::zero_velocities() {

@@ -1,5 +1,5 @@
-// The spring lattice of one body: masses, springs and volume forces on a LatticeMesh, and their state. One owner;
-// stepped by relax() (lattice_solver.h). Built outside the tick, allocates nothing afterwards.
+// The spring lattice of one body: masses, springs and volume forces on a LatticeMesh, and their state. One
+// owner; stepped by relax() (lattice_solver.h). Built outside the tick, allocates nothing afterwards.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +19,16 @@ namespace spoonbill {
 struct LatticeReport {
   double youngs_modulus_ratio[3] = {};  // achieved over wanted, along x, y, z
   double poissons_ratio[3] = {};
-  double worst_cell_misfit = 0.0;       // see CellSprings::misfit
-  double worst_jacobian = 0.0;          // see smallest_jacobian_ratio()
+  double worst_cell_misfit = 0.0;  // see CellSprings::misfit
+  double worst_jacobian = 0.0;     // see smallest_jacobian_ratio()
 };
 
 class SpringLattice {
  public:
   // `youngs_modulus_pa` replaces the material's own where sculpting softens it. Refused: fewer than 2 nodes a
   // direction, folded cells, a material outside its ranges.
-  static Result<SpringLattice> make(const LatticeMesh& mesh, const Material& material, double youngs_modulus_pa,
-                                    InstructionSet set);
+  static Result<SpringLattice> make(const LatticeMesh& mesh, const Material& material,
+                                    double youngs_modulus_pa, InstructionSet set);
 
   const LatticeMesh& mesh() const { return mesh_; }
   const LatticeReport& report() const { return report_; }
@@ -67,6 +67,9 @@ class SpringLattice {
   LatticeView view();
   const LatticeKernels& kernels() const { return *kernels_; }
   const float* free_mass() const { return free_mass_.data(); }
+  // Mobilities at which a substep of h_s is stable whatever the strain: where a node's own is too high for
+  // its stiffness now, it counts as heavier. Until the next call; `share` is of the stability limit.
+  const float* stable_inverse_mass(float h_s, float share);
   const float* applied_force(int axis) const { return applied_[axis].data(); }
   bool has_applied_force() const { return has_applied_force_; }
   void zero_velocities();
@@ -113,7 +116,8 @@ class SpringLattice {
   Floats rest_x_[lattice_direction_count], rest_y_[lattice_direction_count], rest_z_[lattice_direction_count];
   Floats stiffness_[lattice_direction_count], rest_length_[lattice_direction_count];
   Floats square_difference_[lattice_direction_count], first_rest_length_[lattice_direction_count];
-  Floats bulk_, inverse_volume_, has_cell_, inverse_cell_count_, node_dilation_;
+  Floats bulk_, inverse_volume_, rest_volume_sum_, has_cell_, inverse_cell_count_, node_dilation_;
+  Floats row_sum_, stable_inverse_mass_;
   Floats power_x_, power_y_, power_z_, power_noise_;
 };
 

@@ -68,8 +68,8 @@ Profile sample_profile(const Surface& surface) {
   return profile;
 }
 
-// Where a cap ends and the side begins, from one pole: the first station whose perimeter reaches the given share
-// of the largest one nearby (within a tenth of the length).
+// Where a cap ends and the side begins, from one pole: the first station whose perimeter reaches the given
+// share of the largest one nearby (within a tenth of the length).
 constexpr double rim_share = 0.85;
 
 std::size_t find_rim(const Profile& profile, bool from_end) {
@@ -85,13 +85,14 @@ std::size_t find_rim(const Profile& profile, bool from_end) {
   return station(s);
 }
 
-// The parameters u of the ring's four corners and of the nodes between them. Corner 0 lies between +e1 and +e2.
+// The parameters u of the ring's four corners and of the nodes between them. Corner 0 lies between +e1 and
+// +e2.
 struct RingParameters {
   std::vector<double> u;  // 2 (ni - 1) + 2 (nj - 1), from the corner (ni - 1, nj - 1) on, in the sense of u
 };
 
 struct CrossSection {
-  Vector3 e1, e2;              // the wide and the narrow axis
+  Vector3 e1, e2;  // the wide and the narrow axis
   double width = 0.0, thickness = 0.0;
 };
 
@@ -122,8 +123,9 @@ CrossSection principal_axes(const Ring& ring, const Vector3& axis) {
   return section;
 }
 
-// The ring's arc length as a table to u (unwrapped past the seam), and the arc lengths at which the ring crosses
-// +e1, +e2, -e1, -e2 and +e1 again. Found by signs alone: no library function whose bits differ among processors.
+// The ring's arc length as a table to u (unwrapped past the seam), and the arc lengths at which the ring
+// crosses +e1, +e2, -e1, -e2 and +e1 again. Found by signs alone: no library function whose bits differ among
+// processors.
 struct RingArc {
   Table arc_to_u;
   std::array<double, 5> crossing{};
@@ -131,7 +133,9 @@ struct RingArc {
 };
 
 RingArc ring_arc(const Surface& surface, const Ring& ring, const CrossSection& section) {
-  const auto point = [&](int s) -> const Vector3& { return ring.points[static_cast<std::size_t>(s % ring_samples)]; };
+  const auto point = [&](int s) -> const Vector3& {
+    return ring.points[static_cast<std::size_t>(s % ring_samples)];
+  };
   // Positive after the crossing number q, negative before it.
   const auto side = [&](int q, int s) {
     const Vector3 axes[4] = {section.e2, -section.e1, -section.e2, section.e1};
@@ -156,14 +160,17 @@ RingArc ring_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   return result;
 }
 
-RingParameters ring_parameters(const Surface& surface, const Ring& ring, const CrossSection& section, int ni, int nj) {
+RingParameters ring_parameters(const Surface& surface, const Ring& ring, const CrossSection& section, int ni,
+                               int nj) {
   const RingArc arc = ring_arc(surface, ring, section);
   const double along_narrow = nj - 1, along_wide = ni - 1;
   std::array<double, 5> corner{};
   for (int q = 0; q < 4; ++q) {
-    // From the crossing of a wide axis to a corner runs half a narrow side, from a narrow axis half a wide one.
+    // From the crossing of a wide axis to a corner runs half a narrow side, from a narrow axis half a wide
+    // one.
     const double first = q % 2 == 0 ? along_narrow : along_wide;
-    corner[q] = arc.crossing[q] + (arc.crossing[q + 1] - arc.crossing[q]) * first / (along_narrow + along_wide);
+    corner[q] =
+        arc.crossing[q] + (arc.crossing[q + 1] - arc.crossing[q]) * first / (along_narrow + along_wide);
   }
   corner[4] = corner[0] + arc.perimeter;
   RingParameters result;
@@ -178,7 +185,8 @@ RingParameters ring_parameters(const Surface& surface, const Ring& ring, const C
 
 // The ring position of the boundary node (i, j), or of a fractional place on the boundary of the unit square.
 double ring_position(double s, double t, int ni, int nj) {
-  // s, t in [-1, 1] with max(|s|, |t|) = 1; the ring starts at (+1, +1), runs to (-1, +1), (-1, -1), (+1, -1).
+  // s, t in [-1, 1] with max(|s|, |t|) = 1; the ring starts at (+1, +1), runs to (-1, +1), (-1, -1), (+1,
+  // -1).
   if (t == 1.0 && s > -1.0) return (1.0 - s) * 0.5 * (ni - 1);
   if (s == -1.0 && t > -1.0) return (ni - 1) + (1.0 - t) * 0.5 * (nj - 1);
   if (t == -1.0 && s < 1.0) return (ni - 1) + (nj - 1) + (1.0 + s) * 0.5 * (ni - 1);
@@ -267,7 +275,8 @@ std::array<int, 3> near_cubic_counts(double width, double thickness, double leng
 
 Status check_closed_tube(const Surface& surface) {
   if (!surface.u.is_periodic()) return Error{"surface: u must be periodic for a closed body"};
-  if (surface.v.is_periodic()) return Error{"surface: v must be open, with a pole at both ends, for a closed body"};
+  if (surface.v.is_periodic())
+    return Error{"surface: v must be open, with a pole at both ends, for a closed body"};
   const Ring first = sample_ring(surface, surface.v.domain_start());
   const Ring last = sample_ring(surface, surface.v.domain_end());
   const double size = (last.centre - first.centre).norm();
@@ -282,7 +291,8 @@ Status check_closed_tube(const Surface& surface) {
     const double u = along(surface.u, static_cast<double>(s) / ring_samples);
     outward += unit_normal(surface, u, middle).dot(ring.points[s] - ring.centre);
   }
-  if (!(outward > 0.0)) return Error{"surface: normals point inward; reverse the order of the control points in u"};
+  if (!(outward > 0.0))
+    return Error{"surface: normals point inward; reverse the order of the control points in u"};
   return {};
 }
 
@@ -300,8 +310,8 @@ Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& r
   const CrossSection section = principal_axes(middle, axis);
   LatticeMesh mesh;
   mesh.count = request.counts ? *request.counts
-                              : near_cubic_counts(section.width, section.thickness, last_distance - first_distance,
-                                                  request.node_budget);
+                              : near_cubic_counts(section.width, section.thickness,
+                                                  last_distance - first_distance, request.node_budget);
   for (int axis_index = 0; axis_index < 3; ++axis_index) {
     if (mesh.count[axis_index] < 2) return Error{"lattice: node counts must be at least 2 in each direction"};
   }

@@ -9,8 +9,8 @@
 namespace spoonbill {
 namespace {
 
-// Two cells for each element and direction: at least twice as many samples as control points, where the refit is
-// well conditioned.
+// Two cells for each element and direction: at least twice as many samples as control points, where the refit
+// is well conditioned.
 constexpr int refit_levels = 1;
 constexpr int edge_stations = 512;
 constexpr int edge_bisections = 40;
@@ -29,13 +29,15 @@ bool ring_behind(const Surface& surface, const FixingPlane& plane, double v) {
 double share_behind(const Surface& surface, const FixingPlane& plane, bool from_end) {
   const double start = surface.v.domain_start(), end = surface.v.domain_end();
   const auto behind = [&](double share) {
-    return ring_behind(surface, plane, from_end ? end - share * (end - start) : start + share * (end - start));
+    return ring_behind(surface, plane,
+                       from_end ? end - share * (end - start) : start + share * (end - start));
   };
   int station = 0;
   while (station <= edge_stations && behind(static_cast<double>(station) / edge_stations)) ++station;
   if (station == 0) return 0.0;
   if (station > edge_stations) return 1.0;
-  double low = static_cast<double>(station - 1) / edge_stations, high = static_cast<double>(station) / edge_stations;
+  double low = static_cast<double>(station - 1) / edge_stations,
+         high = static_cast<double>(station) / edge_stations;
   for (int b = 0; b < edge_bisections; ++b) {
     const double middle = 0.5 * (low + high);
     (behind(middle) ? low : high) = middle;
@@ -45,8 +47,8 @@ double share_behind(const Surface& surface, const FixingPlane& plane, bool from_
 
 // The stretch of v at each end that lies wholly behind some plane.
 struct FixedStretch {
-  double low_end;    // fixed from the domain's start to here
-  double high_start; // and from here to its end
+  double low_end;     // fixed from the domain's start to here
+  double high_start;  // and from here to its end
 };
 
 FixedStretch fixed_stretch(const Surface& surface, const std::vector<FixingPlane>& planes) {
@@ -59,8 +61,8 @@ FixedStretch fixed_stretch(const Surface& surface, const std::vector<FixingPlane
   return {start + low * length, start + (1.0 - high) * length};
 }
 
-// A knot of multiplicity degree - 1: the displacement may start there with a curvature of its own, the surface stays
-// smooth (C1). Near an existing knot that one is used, so that no sliver of an element arises.
+// A knot of multiplicity degree - 1: the displacement may start there with a curvature of its own, the
+// surface stays smooth (C1). Near an existing knot that one is used, so that no sliver of an element arises.
 Result<Surface> with_edge_knot(const Surface& surface, double& v) {
   const std::vector<double> breaks = surface.v.breakpoints();
   const double near = 1e-3 * (surface.v.domain_end() - surface.v.domain_start());
@@ -127,8 +129,9 @@ EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
 
 }  // namespace
 
-Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& current, const SpringLattice& lattice,
-                                      const std::vector<FixingPlane>& planes, InstructionSet set) {
+Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& current,
+                                      const SpringLattice& lattice, const std::vector<FixingPlane>& planes,
+                                      InstructionSet set) {
   BodyMapping mapping(rest, current);
   FixedStretch fixed = fixed_stretch(current, planes);
   for (double* edge : {&fixed.low_end, &fixed.high_start}) {
@@ -154,7 +157,8 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
 
 void BodyMapping::embed(const SpringLattice& lattice) {
   const Grid& grid = nested_->grid;
-  const std::size_t samples = static_cast<std::size_t>(grid.rows()) * static_cast<std::size_t>(grid.columns());
+  const std::size_t samples =
+      static_cast<std::size_t>(grid.rows()) * static_cast<std::size_t>(grid.columns());
   embedding_.reserve(samples);
   for (int i = 0; i < grid.rows(); ++i) {
     for (int j = 0; j < grid.columns(); ++j) {
@@ -179,7 +183,8 @@ void BodyMapping::embed(const SpringLattice& lattice) {
 }
 
 void BodyMapping::sample_displacements(const SpringLattice& lattice) {
-  const float* displacement[3] = {lattice.displacements(0), lattice.displacements(1), lattice.displacements(2)};
+  const float* displacement[3] = {lattice.displacements(0), lattice.displacements(1),
+                                  lattice.displacements(2)};
   for (std::size_t s = 0; s < embedding_.size(); ++s) {
     const EmbeddedPoint& point = embedding_[s];
     float sum[3] = {0.0f, 0.0f, 0.0f};

@@ -1,5 +1,5 @@
-// From lattice to surface: grid samples are embedded in the lattice's cells by fixed trilinear weights, follow the
-// nodes, and carry the control points with them through the displacement refit.
+// From lattice to surface: grid samples are embedded in the lattice's cells by fixed trilinear weights,
+// follow the nodes, and carry the control points with them through the displacement refit.
 #pragma once
 
 #include <memory>
@@ -19,10 +19,10 @@ namespace spoonbill {
 // One owner, the simulation; update() allocates nothing.
 class BodyMapping {
  public:
-  // `rest` is the surface that the lattice's rest shape was filled from, `current` the surface as it is now, with
-  // the same knots; the lattice's present displacements belong to `current`. Behind each plane the part of the
-  // surface that lies wholly there stays exactly: knots are inserted at its edge (which changes no shape), and the
-  // control points that reach into it are held.
+  // `rest` is the surface that the lattice's rest shape was filled from, `current` the surface as it is now,
+  // with the same knots; the lattice's present displacements belong to `current`. Behind each plane the part
+  // of the surface that lies wholly there stays exactly: knots are inserted at its edge (which changes no
+  // shape), and the control points that reach into it are held.
   static Result<BodyMapping> make(const Surface& rest, const Surface& current, const SpringLattice& lattice,
                                   const std::vector<FixingPlane>& planes, InstructionSet set);
 

@@ -7,7 +7,8 @@
 
 namespace spoonbill {
 
-// Adds a fixing plane. Knots are inserted where it cuts the surface, so that the fixed part of the surface stays.
+// Adds a fixing plane. Knots are inserted where it cuts the surface, so that the fixed part of the surface
+// stays.
 struct PlacePlane {
   FixingPlane plane;
 };

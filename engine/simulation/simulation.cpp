@@ -22,7 +22,8 @@ struct Simulation::State {
   std::vector<std::uint8_t> held, touched;
   std::uint64_t tick = 0;
   std::uint32_t structure = 1;
-  Pose tool_pose{};
+  Pose hand{};  // of the last tick
+  ToolState tool{};
   bool tool_placed = false;
   RelaxReport relaxed{};
   Reaction reaction{};
@@ -31,7 +32,8 @@ struct Simulation::State {
 namespace {
 
 // The lattice of a body at the stiffness that sculpting can hold.
-Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material& material, InstructionSet set) {
+Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material& material,
+                                        InstructionSet set) {
   // Measured at 1 Pa: frequencies scale with the root of the modulus, the springs with the modulus.
   Result<SpringLattice> unit = SpringLattice::make(mesh, material, 1.0, set);
   if (!unit.ok()) return unit;
@@ -75,8 +77,8 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
   ToolContact contact(mapping.value());
   std::vector<std::uint8_t> touched(held.size(), 0);
   return Simulation(std::make_unique<State>(State{std::move(scene), set, std::move(lattice).value(),
-                                                  std::move(mapping).value(), std::move(contact), std::move(held),
-                                                  std::move(touched)}));
+                                                  std::move(mapping).value(), std::move(contact),
+                                                  std::move(held), std::move(touched)}));
 }
 
 Simulation::Simulation(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -84,7 +86,8 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-// One apply() a command: each makes everything new first, and changes the state only when all of it succeeded.
+// One apply() a command: each makes everything new first, and changes the state only when all of it
+// succeeded.
 struct CommandApplier {
   Simulation::State& state;
 
@@ -92,7 +95,8 @@ struct CommandApplier {
     if (Status status = check_fixing_plane(command.plane); !status.ok()) return status;
     std::vector<FixingPlane> planes = state.scene.planes;
     planes.push_back(command.plane);
-    if (Status status = check_range("fixing planes", static_cast<int>(planes.size()), fixing_plane_count_range);
+    if (Status status =
+            check_range("fixing planes", static_cast<int>(planes.size()), fixing_plane_count_range);
         !status.ok()) {
       return status;
     }
@@ -156,50 +160,75 @@ struct CommandApplier {
   }
 };
 
-Status Simulation::apply(const Command& command) { return std::visit(CommandApplier{*state_}, command); }
+Status Simulation::apply(const Command& command) {
+  return std::visit(CommandApplier{*state_}, command);
+}
 
-Reaction Simulation::advance(const Pose& tool_pose, bool gripping) {
+namespace {
+
+ToolMotion motion_of(const Simulation::State& s, const ToolInput& input, double real_over_felt) {
+  const Tool& tool = s.scene.tool;
+  ToolMotion motion;
+  motion.start_m = s.hand.position_m;
+  motion.end_m = input.pose.position_m;
+  motion.orientation = input.pose.orientation;
+  motion.radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
+  motion.coupling_n_per_m = input.coupling_n_per_m / real_over_felt;
+  return motion;
+}
+
+std::uint32_t flags_of(const Simulation::State& s) {
+  std::uint32_t flags = tick_flag_none;
+  if (s.relaxed.nodes_slowed) flags |= tick_flag_nodes_slowed;
+  if (s.relaxed.speed_capped) flags |= tick_flag_speed_capped;
+  if (s.contact.overflow()) flags |= tick_flag_contact_overflow;
+  return flags;
+}
+
+}  // namespace
+
+Reaction Simulation::advance(const ToolInput& input) {
   const DenormalsFlushed flushed;
   State& s = *state_;
-  if (!s.tool_placed) s.tool_pose = tool_pose;
-  s.tool_placed = true;
+  if (!s.tool_placed) {
+    s.hand = input.pose;
+    s.tool.position_m = input.pose.position_m;
+    s.tool_placed = true;
+  }
   const Tool& tool = s.scene.tool;
-  s.contact.prepare(s.mapping, s.lattice, tool, tool_pose, gripping);
-  ToolMotion motion;
-  motion.start_m = s.tool_pose.position_m;
-  motion.end_m = tool_pose.position_m;
-  motion.start_orientation = s.tool_pose.orientation;
-  motion.end_orientation = tool_pose.orientation;
-  motion.radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
+  s.contact.prepare(s.mapping, s.lattice, tool, {s.tool.position_m, input.pose.orientation}, input.gripping);
+  const double real_over_felt = s.scene.body.material.youngs_modulus_pa / s.lattice.youngs_modulus_pa();
+  // What a body sags at rest is its weight over its stiffness: a softer one must weigh less to sag the same.
   const RelaxSettings settings{tool.iterations, tick_s, s.scene.sculpting.damping_per_s,
-                               s.scene.sculpting.gravity_m_per_s2};
-  s.relaxed = relax(s.lattice, settings, motion, s.contact.constraints());
+                               s.scene.sculpting.gravity_m_per_s2 / real_over_felt};
+  s.relaxed =
+      relax(s.lattice, settings, motion_of(s, input, real_over_felt), s.tool, s.contact.constraints());
   s.mapping.update(s.lattice);
-  s.tool_pose = tool_pose;
+  s.hand = input.pose;
   ++s.tick;
 
   const ContactConstraints& constraints = s.contact.constraints();
-  const double real_over_felt = s.scene.body.material.youngs_modulus_pa / s.lattice.youngs_modulus_pa();
-  s.reaction = {};
   s.reaction.force_n = constraints.tool_impulse() * (real_over_felt / s.relaxed.material_time_s);
-  const SurfaceContact& nearest = s.contact.collision().nearest;
-  s.reaction.touching = constraints.acted() || (s.contact.collision().found && nearest.depth_m > 0.0);
-  if (s.contact.blocked() && nearest.depth_m > 0.0) {
-    s.reaction.blocked_depth_m = nearest.depth_m;
-    s.reaction.blocked_normal = nearest.normal;
-  }
-  if (s.relaxed.time_slowed) s.reaction.flags |= tick_flag_time_slowed;
-  if (s.relaxed.speed_capped) s.reaction.flags |= tick_flag_speed_capped;
-  if (s.contact.overflow()) s.reaction.flags |= tick_flag_contact_overflow;
+  s.reaction.proxy = {s.tool.position_m, input.pose.orientation};
+  s.reaction.touching = constraints.acted();
+  s.reaction.flags = flags_of(s);
   std::fill(s.touched.begin(), s.touched.end(), std::uint8_t{0});
   constraints.mark_touched(s.touched.data());
   return s.reaction;
 }
 
-const Scene& Simulation::scene() const { return state_->scene; }
-std::uint64_t Simulation::tick() const { return state_->tick; }
-const SpringLattice& Simulation::lattice() const { return state_->lattice; }
-const Surface& Simulation::surface() const { return state_->mapping.current(); }
+const Scene& Simulation::scene() const {
+  return state_->scene;
+}
+std::uint64_t Simulation::tick() const {
+  return state_->tick;
+}
+const SpringLattice& Simulation::lattice() const {
+  return state_->lattice;
+}
+const Surface& Simulation::surface() const {
+  return state_->mapping.current();
+}
 
 std::uint64_t Simulation::state_hash() const {
   const State& s = *state_;
@@ -210,13 +239,17 @@ std::uint64_t Simulation::state_hash() const {
   for (const std::vector<double>* coordinate : {&net.x, &net.y, &net.z}) {
     for (const double value : *coordinate) hash.add(value);
   }
-  for (int axis = 0; axis < 3; ++axis) hash.add(s.tool_pose.position_m[axis]);
-  for (int c = 0; c < 4; ++c) hash.add(s.tool_pose.orientation.coeffs()[c]);
+  for (const Vector3& vector : {s.hand.position_m, s.tool.position_m, s.tool.velocity_m_per_s}) {
+    for (int axis = 0; axis < 3; ++axis) hash.add(vector[axis]);
+  }
+  for (int c = 0; c < 4; ++c) hash.add(s.hand.orientation.coeffs()[c]);
   hash.add(static_cast<std::uint64_t>(s.contact.constraints().count()));
   return hash.value();
 }
 
-ShapeState Simulation::shape() const { return {state_->lattice.shape()}; }
+ShapeState Simulation::shape() const {
+  return {state_->lattice.shape()};
+}
 
 Status Simulation::restore(const ShapeState& shape) {
   if (!state_->lattice.set_shape(shape.lattice)) return Error{"shape: it belongs to another lattice"};
@@ -232,7 +265,9 @@ void write_surface(const Surface& surface, std::uint32_t structure, std::vector<
     out.clear();
     out.push_back({surface.u, surface.v, structure, {}, {}, {}});
   }
-  const auto copy = [](const std::vector<double>& from, std::vector<float>& to) { to.assign(from.begin(), from.end()); };
+  const auto copy = [](const std::vector<double>& from, std::vector<float>& to) {
+    to.assign(from.begin(), from.end());
+  };
   copy(surface.net.x, out[0].x);
   copy(surface.net.y, out[0].y);
   copy(surface.net.z, out[0].z);
@@ -284,7 +319,8 @@ void Simulation::write_snapshot(Snapshot& snapshot) const {
   snapshot.tool.action = s.scene.tool.action;
   snapshot.tool.iterations = s.scene.tool.iterations;
   snapshot.tool.radius_m = s.scene.tool.kind == ToolKind::point ? 0.0 : s.scene.tool.radius_m;
-  snapshot.tool.proxy = s.tool_pose;
+  snapshot.tool.device = s.hand;
+  snapshot.tool.proxy = s.reaction.proxy;
   snapshot.planes.clear();
   for (const FixingPlane& plane : s.scene.planes) snapshot.planes.push_back({plane.point_m, plane.normal});
   snapshot.contacts.clear();

@@ -1,5 +1,5 @@
-// A snapshot: everything that drawing and the panel need of one tick, as plain data. Sized when the simulation
-// is built; copying one snapshot onto another of the same sizes allocates nothing.
+// A snapshot: everything that drawing and the panel need of one tick, as plain data. Sized when the
+// simulation is built; copying one snapshot onto another of the same sizes allocates nothing.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,10 @@ struct SurfaceSnapshot {
 // the body. Edges join neighbours along each of the three directions.
 struct LatticeSnapshot {
   int count[3] = {0, 0, 0};
-  std::vector<float> x, y, z;           // metres
-  std::vector<std::uint8_t> fixed;      // 1 where the node is held
-  std::vector<std::uint8_t> touched;    // 1 where a tool acts on the node in this tick
-  std::vector<std::uint8_t> on_shell;   // 1 where the node lies on the surface
+  std::vector<float> x, y, z;          // metres
+  std::vector<std::uint8_t> fixed;     // 1 where the node is held
+  std::vector<std::uint8_t> touched;   // 1 where a tool acts on the node in this tick
+  std::vector<std::uint8_t> on_shell;  // 1 where the node lies on the surface
 };
 
 struct ToolSnapshot {
@@ -74,7 +74,7 @@ struct DeviceSnapshot {
 // What a tick reports besides its result; each bit names its remedy.
 enum TickFlag : std::uint32_t {
   tick_flag_none = 0,
-  tick_flag_time_slowed = 1u << 0,       // the substep ceiling was met: material time ran slower; use a softer E
+  tick_flag_nodes_slowed = 1u << 0,      // the substep ceiling was met: strained nodes lag; move more slowly
   tick_flag_speed_capped = 1u << 1,      // a node met the speed cap: move the tool more slowly
   tick_flag_contact_overflow = 1u << 2,  // more contact points than the workspace holds: use a smaller tool
   tick_flag_force_limited = 1u << 3,     // the device's force limit was met: lower the force scale

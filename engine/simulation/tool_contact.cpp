@@ -5,8 +5,8 @@ namespace {
 
 constexpr int constraint_capacity = 1024;
 
-// How near a sample must be to become a constraint, in lattice cells: what the refit may leave between the surface
-// that collides and the lattice that gives way.
+// How near a sample must be to become a constraint, in lattice cells: what the refit may leave between the
+// surface that collides and the lattice that gives way.
 constexpr double margin_cells = 0.5;
 
 }  // namespace
@@ -25,7 +25,6 @@ void ToolContact::prepare(const BodyMapping& mapping, const SpringLattice& latti
   const double margin = margin_cells * static_cast<double>(lattice.cell_size_m());
   collision_ = collider_.collide(mapping.current(), ToolShape::sphere(pose.position_m, radius), margin, true);
   overflow_ = collision_.overflow;
-  blocked_ = false;
   if (tool.action == ToolAction::push) {
     constraints_.clear();
     if (collision_.found) add_pushes(mapping, lattice);
@@ -42,7 +41,6 @@ void ToolContact::prepare(const BodyMapping& mapping, const SpringLattice& latti
 void ToolContact::add_pushes(const BodyMapping& mapping, const SpringLattice& lattice) {
   const SurfaceContact& nearest = collision_.nearest;
   overflow_ |= !constraints_.add_plane_push(lattice, mapping.at(nearest.u, nearest.v), nearest.normal);
-  blocked_ = constraints_.is_blocked(0);
   for (const NearSample& sample : collider_.near_samples()) {
     overflow_ |= !constraints_.add_push(lattice, mapping.sample(sample.index));
   }

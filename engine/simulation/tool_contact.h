@@ -26,8 +26,6 @@ class ToolContact {
   const ContactConstraints& constraints() const { return constraints_; }
   const CollisionResult& collision() const { return collision_; }
   bool overflow() const { return overflow_; }
-  // Whether the tool meets the body where nothing can give way.
-  bool blocked() const { return blocked_; }
 
  private:
   void add_pushes(const BodyMapping& mapping, const SpringLattice& lattice);
@@ -38,7 +36,6 @@ class ToolContact {
   CollisionResult collision_;
   bool gripped_ = false;
   bool overflow_ = false;
-  bool blocked_ = false;
 };
 
 }  // namespace spoonbill

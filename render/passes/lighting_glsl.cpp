@@ -117,7 +117,7 @@ Lit studio_light(Look look, vec3 p, vec3 n, float key, float sky) {
   vec3 mirror = mirrored * (f0 * share.x + share.y);
   mirror += f0 * key_colour * highlight(n, v, toward_key, look.roughness) * max(nl, 0.0) * key * 0.5;
   mirror += f0 * rim_colour * highlight(n, v, rim_way, look.roughness) * max(dot(n, rim_way), 0.0) * 0.5;
-  return Lit(look.base * (1.0 - look.metalness) * light, mirror);
+  return Lit(look.base * (1.0 - look.metalness) * (1.0 - 0.4 * look.translucency) * light, mirror);
 }
 
 // The premultiplied colour for the picture. What shines through belongs to the background, what is mirrored to the

@@ -21,7 +21,7 @@ SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces)
 
 struct SamplingTarget {
   double longest_edge_px = 24.0;
-  double largest_sagitta_px = 0.12;  // between a chord and its arc: below what antialiasing shows
+  double largest_sagitta_px = 0.18;  // between a chord and its arc: below what antialiasing shows
 };
 
 // The level at which no edge is longer and no chord farther from the surface than the target allows, judged

@@ -116,7 +116,8 @@ TEST(Basis, UniformPeriodicFunctionsAreShiftedCopies) {
       return sum;
     };
     for (int control = 0; control < count; ++control) {
-      for (double u = 0.0; u < count; u += 0.125) {
+      for (int eighth = 0; eighth < 8 * count; ++eighth) {
+        const double u = eighth / 8.0;
         EXPECT_NEAR(function(control, u), function(0, std::fmod(u - control + count, count)),
                     unity_tolerance);
       }

@@ -223,10 +223,8 @@ TEST(SchoenbergWhitney, AgreesWithTheRank) {
   for (int repeat = 0; repeat < 400; ++repeat) {
     const KnotVector knots = random_knots(random, random.integer(1, 5), KnotKind(random.integer(0, 2)));
     const int controls = knots.control_point_count();
-    std::vector<double> parameters;
-    for (int i = 0; i < controls + random.integer(0, 3); ++i) {
-      parameters.push_back(random.uniform(knots.domain_start(), knots.domain_end()));
-    }
+    std::vector<double> parameters(static_cast<std::size_t>(controls) + random.integer(0, 3));
+    for (double& u : parameters) u = random.uniform(knots.domain_start(), knots.domain_end());
     const Eigen::MatrixXd matrix = blending_matrix(knots, parameters, 0).dense();
     const double smallest = Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues()(controls - 1);
     if (!check_schoenberg_whitney(knots, parameters).ok()) {

@@ -22,7 +22,7 @@ template <class Real>
 GridSamples<Real> samples_of(const Surface& surface, const Grid& grid, InstructionSet set) {
   GridEvaluator<Real> evaluator(grid, set);
   GridSamples<Real> samples;
-  samples.resize(static_cast<std::size_t>(grid.rows() * grid.columns()));
+  samples.resize(static_cast<std::size_t>(grid.rows()) * grid.columns());
   const auto x = in_precision<Real>(surface.net.x), y = in_precision<Real>(surface.net.y),
              z = in_precision<Real>(surface.net.z);
   evaluator.points_and_normals(x.data(), y.data(), z.data(), samples);
@@ -189,7 +189,7 @@ TEST(GridEvaluator, PolesThatARefitHasMovedKeepTheirNormals) {
 TEST(GridEvaluator, SamplesBesideAPoleAgreeWithSinglePoints) {
   const Surface tube = ellipsoid_tube(12, 9);
   std::vector<double> v{0.0};
-  for (double step = 1e-7; step < 0.5; step *= 3) v.push_back(step);
+  for (int power = 0; power < 15; ++power) v.push_back(1e-7 * std::pow(3.0, power));
   v.push_back(1.0);
   const Grid grid = make_grid(tube.u, tube.v, uniform_parameters(tube.u, 13), v).value();
   const auto single = samples_of<float>(tube, grid, best_instruction_set());
@@ -230,11 +230,14 @@ TEST(GridEvaluator, PointsAndLinesHaveNoNormals) {
   expect_no_normals<float>(line);
 }
 
-// A tube with poles whose surface at v = 1/2 is a single point.
+// A tube whose surface at v = 1/2 is a single point, and whose poles are as round as a refit leaves them.
 Surface pinched_tube() {
   Surface tube = ellipsoid_tube(12, 9);
   for (int j = 3; j < 6; ++j) {
     for (int i = 0; i < 12; ++i) tube.net.set_point(i, j, {0, 0, 0.01 * j});
+  }
+  for (int i = 0; i < 12; i += 2) {
+    for (const int j : {0, 8}) tube.net.set_point(i, j, tube.net.point(i, j) + Vector3(1e-9, 0, 0));
   }
   return tube;
 }
@@ -242,12 +245,30 @@ Surface pinched_tube() {
 TEST(GridEvaluator, APinchBetweenPolesHasTheNormalsBesideIt) {
   const Surface tube = pinched_tube();
   const Grid grid =
-      make_grid(tube.u, tube.v, uniform_parameters(tube.u, 13), uniform_parameters(tube.v, 25)).value();
+      make_grid(tube.u, tube.v, uniform_parameters(tube.u, 14), uniform_parameters(tube.v, 25)).value();
   const auto samples = samples_of<double>(tube, grid, best_instruction_set());
-  for (int i = 0; i < 13; ++i) {
+  for (int i = 0; i < 14; ++i) {
     const Vector3 normal = normal_of(samples, i * 25 + 12);
     EXPECT_NEAR(normal.norm(), 1.0, 1e-14);
     EXPECT_EQ(normal, unit_normal(tube, grid.u.parameters[i], 0.5));
+  }
+}
+
+// Only a clamped end passes through its control points.
+TEST(GridEvaluator, CoincidingControlPointsBeyondAnUnclampedEndAreNoPole) {
+  Random random(28);
+  const auto unclamped = KnotVector::open(3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}).value();
+  for (const int column : {0, 6}) {
+    Surface sheet = random_surface(random, unclamped, unclamped);
+    for (int i = 1; i < 7; ++i) sheet.net.set_point(i, column, sheet.net.point(0, column));
+    for (const Surface& surface : {sheet, transposed(sheet)}) {
+      const Grid grid = random_grid(random, surface, 9, 9);
+      const auto samples = samples_of<double>(surface, grid, best_instruction_set());
+      for (int k = 0; k < 9 * 9; ++k) {
+        const Vector3 normal = unit_normal(surface, grid.u.parameters[k / 9], grid.v.parameters[k % 9]);
+        EXPECT_LT((normal_of(samples, k) - normal).norm(), 1e-11);
+      }
+    }
   }
 }
 

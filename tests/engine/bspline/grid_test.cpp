@@ -63,8 +63,10 @@ TEST(Grid, NestedLevelsAreRowsOfTheFinest) {
     const BlendingMatrix finest = blending_matrix(knots, nested.parameters, 0);
     for (int level = 0; level <= nested.levels; ++level) {
       std::vector<double> coarse;
-      for (int i = 0; i < nested.count(level); ++i)
+      coarse.reserve(static_cast<std::size_t>(nested.count(level)));
+      for (int i = 0; i < nested.count(level); ++i) {
         coarse.push_back(nested.parameters[i * nested.stride(level)]);
+      }
       EXPECT_EQ(coarse.front(), knots.domain_start());
       EXPECT_EQ(coarse.back(), knots.domain_end());
       const BlendingMatrix matrix = blending_matrix(knots, coarse, 0);

@@ -145,7 +145,7 @@ void expect_same_grid(const Surface& surface, const Grid& grid, const Geom_BSpli
   const std::vector<Real> z(surface.net.z.begin(), surface.net.z.end());
   GridEvaluator<Real> evaluator(grid, set);
   GridSamples<Real> samples;
-  samples.resize(static_cast<std::size_t>(grid.rows() * grid.columns()));
+  samples.resize(static_cast<std::size_t>(grid.rows()) * grid.columns());
   evaluator.points_and_normals(x.data(), y.data(), z.data(), samples);
   for (int i = 0; i < grid.rows(); ++i) {
     for (int j = 0; j < grid.columns(); ++j) {

@@ -27,6 +27,7 @@ Grid usual_grid() {
 
 std::vector<float> random_numbers(Random& random, int count, double size) {
   std::vector<float> numbers;
+  numbers.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) numbers.push_back(static_cast<float>(random.uniform(-size, size)));
   return numbers;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/bspline/grid.h"
 #include "engine/bspline/surface.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
@@ -34,7 +35,8 @@ TEST(UnitNormal, SmoothPolesHaveOneNormal) {
   for (const Surface& surface : {tube, transposed(tube)}) {
     const bool poles_in_v = surface.u.is_periodic();
     const double sign = poles_in_v ? 1.0 : -1.0;
-    for (double t = 0.0; t < 1.0; t += 0.03) {
+    for (int step = 0; step < 33; ++step) {
+      const double t = (step + 0.2) / 33;
       const Vector3 start = poles_in_v ? unit_normal(surface, t, 0.0) : unit_normal(surface, 0.0, t);
       const Vector3 end = poles_in_v ? unit_normal(surface, t, 1.0) : unit_normal(surface, 1.0, t);
       // Exact but for rounding: the ring beside the pole lies in one plane.
@@ -47,7 +49,8 @@ TEST(UnitNormal, SmoothPolesHaveOneNormal) {
 // Any net: the two normals differ by the curvature along a millionth of the domain.
 void expect_limits(const Surface& surface, bool poles_in_v) {
   constexpr double inside = 1e-6, tolerance = 1e-4;
-  for (double t = 0.01; t < 1.0; t += 0.07) {
+  for (int step = 0; step < 15; ++step) {
+    const double t = (step + 0.2) / 15;
     const Vector3 start = poles_in_v ? unit_normal(surface, t, 0.0) : unit_normal(surface, 0.0, t);
     const Vector3 near_start = poles_in_v ? unit_normal(surface, t, inside) : unit_normal(surface, inside, t);
     const Vector3 end = poles_in_v ? unit_normal(surface, t, 1.0) : unit_normal(surface, 1.0, t);
@@ -84,7 +87,8 @@ TEST(UnitNormal, RingsThatCoincideToSinglePrecisionArePoles) {
       tube.net.set_point(i, j, tube.net.point(i, j) + 1e-9 * jitter);
     }
   }
-  for (double u = 0.0; u < 1.0; u += 0.05) {
+  for (int step = 0; step < 20; ++step) {
+    const double u = (step + 0.2) / 20;
     // The jitter over the ring's size, a few times.
     EXPECT_LT(angle_between(unit_normal(tube, u, 0.0), Vector3(0, 0, -1)), 1e-5);
     EXPECT_LT(angle_between(unit_normal(tube, u, 1.0), Vector3(0, 0, 1)), 1e-5);
@@ -94,7 +98,8 @@ TEST(UnitNormal, RingsThatCoincideToSinglePrecisionArePoles) {
 TEST(UnitNormal, PolesWhereTwoRingsCoincideAreStillPoles) {
   Surface tube = ellipsoid_tube(around, along);
   for (int i = 0; i < around; ++i) tube.net.set_point(i, 1, tube.net.point(0, 0));
-  for (double u = 0.0; u < 1.0; u += 0.05) {
+  for (int step = 0; step < 20; ++step) {
+    const double u = (step + 0.2) / 20;
     const Vector3 normal = unit_normal(tube, u, 0.0);
     EXPECT_NEAR(normal.norm(), 1.0, 1e-14);
     EXPECT_LT(angle_between(normal, unit_normal(tube, u, 1e-4)), 0.02);
@@ -137,7 +142,8 @@ TEST(UnitNormal, AnApexHasOneNormalForEachDirection) {
     net.set_point(i, 1, {std::cos(angle), std::sin(angle), 1.0});
   }
   const Surface cone = make_surface(u, v, net).value();
-  for (double t = 0.0; t < 1.0; t += 0.1) {
+  for (int step = 0; step < 10; ++step) {
+    const double t = (step + 0.2) / 10;
     EXPECT_LT((unit_normal(cone, t, 0.0) - unit_normal(cone, t, 0.5)).norm(), 1e-12);
   }
 }
@@ -153,8 +159,8 @@ TEST(UnitNormal, PointsAndLinesHaveNone) {
   }
   const Surface point_surface = make_surface(knots, knots, point).value();
   const Surface line_surface = make_surface(knots, knots, line).value();
-  for (double u = 0.0; u <= 1.0; u += 0.125) {
-    for (double v = 0.0; v <= 1.0; v += 0.125) {
+  for (const double u : uniform_parameters(knots, 9)) {
+    for (const double v : uniform_parameters(knots, 9)) {
       EXPECT_EQ(unit_normal(point_surface, u, v), Vector3::Zero());
       EXPECT_EQ(unit_normal(line_surface, u, v), Vector3::Zero());
     }

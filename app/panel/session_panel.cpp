@@ -1,19 +1,20 @@
-#include "app/panel/panel_model.h"
+#include "app/panel/session_panel.h"
 
 #include <algorithm>
 
 namespace spoonbill {
 
-PanelModel make_panel_model(const Snapshot& snapshot, const PanelSettings& settings) {
+PanelModel panel_of(const Session& session, const Snapshot& snapshot, const ViewSettings& view) {
+  const Scene& scene = session.simulation.scene();
   PanelModel model;
-  model.title = settings.title;
+  model.title = session.title;
   model.time_s = snapshot.time_s();
-  model.can_undo = settings.can_undo;
-  model.can_redo = settings.can_redo;
+  model.can_undo = session.history.can_undo();
+  model.can_redo = session.history.can_redo();
 
-  model.tool = settings.scene.tool;
-  model.sculpting = settings.scene.sculpting;
-  model.material = settings.scene.body.material;
+  model.tool = scene.tool;
+  model.sculpting = scene.sculpting;
+  model.material = scene.body.material;
   model.felt_youngs_modulus_pa = snapshot.material.felt_youngs_modulus_pa;
   model.mass_kg = snapshot.material.mass_kg;
 
@@ -22,8 +23,8 @@ PanelModel make_panel_model(const Snapshot& snapshot, const PanelSettings& setti
   model.fixed_node_count = static_cast<int>(std::count(fixed.begin(), fixed.end(), std::uint8_t{1}));
   model.node_count = static_cast<int>(fixed.size());
 
-  model.overlays = settings.view.overlays;
-  model.see_through_body = settings.view.see_through_body;
+  model.overlays = view.overlays;
+  model.see_through_body = view.see_through_body;
 
   model.device = snapshot.device.name;
   model.force_n = snapshot.force_n.norm();

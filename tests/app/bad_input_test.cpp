@@ -1,0 +1,129 @@
+// Whatever a file or folder holds, the program answers with one line and lives on.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "app/program.h"
+#include "tests/app/workplace.h"
+
+namespace spoonbill {
+namespace {
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  const std::size_t place = text.find(what);
+  EXPECT_NE(place, std::string::npos) << what;
+  return place == std::string::npos ? text : text.replace(place, what.size(), with);
+}
+
+// How each command fails on the file.
+void expect_refusals(const Workplace& place, const std::string& file) {
+  const std::vector<std::vector<std::string>> uses = {
+      {"info", file},
+      {"sample", file, "--grid", "3x3", "--out", place.text("points.csv")},
+      {"record", file, "--out", place.text("out.jsonl")},
+      {"replay", file, "--out", place.text("pictures")},
+  };
+  for (const auto& arguments : uses) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, exit_failed) << testing::PrintToString(arguments);
+    EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+    EXPECT_NE(outcome.err.find(std::filesystem::path(file).filename().string()), std::string::npos)
+        << outcome.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(place.path("points.csv")));
+}
+
+TEST(BadInput, FilesThatHoldNothingOfOurs) {
+  const Workplace place;
+  expect_refusals(place, place.text("missing.json"));
+  expect_refusals(place, place.path("").string());
+  expect_refusals(place, place.write("empty.json", "").string());
+  expect_refusals(place, place.write("noise.json", std::string("\0\x01\xff{\"", 5)).string());
+  expect_refusals(place, place.write("other.json", "{\"a\": 1}").string());
+  expect_refusals(place, place.write("deep.json", std::string(100000, '[')).string());
+  expect_refusals(place, place.write("list.json", "[1, 2]").string());
+  expect_refusals(place, "/dev/null");
+}
+
+TEST(BadInput, DamagedModels) {
+  const Workplace place;
+  const std::string model = content_of(place.path("model.json"));
+  const std::string start = model.substr(0, model.find(':'));
+  ASSERT_NE(start.find("spoonbill_document"), std::string::npos);
+  for (const std::string& damaged :
+       {model.substr(0, model.size() / 2), replaced(model, start + ": 1", start + ": 99"),
+        replaced(model, "\"degree\": 3", "\"degree\": 42"),
+        replaced(model, "\"degree\": 3", "\"degree\": NaN"),
+        replaced(model, "\"degree\": 3", "\"degree\": 1e999"), replaced(model, "\"degree\"", "\"degre\"")}) {
+    expect_refusals(place, place.write("damaged.json", damaged).string());
+  }
+}
+
+TEST(BadInput, DamagedRecordings) {
+  const Workplace place;
+  const std::string recording = content_of(place.record("good.jsonl"));
+  for (const std::string& damaged :
+       {recording.substr(0, 40),
+        replaced(recording, "\"spoonbill_recording\":1", "\"spoonbill_recording\":2"),
+        replaced(recording, "\"ticks\":100", "\"ticks\":1000000000000"),
+        replaced(recording, "\"command\":\"place_plane\"", "\"command\":\"explode\""),
+        replaced(recording, "\"lattice\":true", "\"lattice\":\"yes\""),
+        replaced(recording, "\"lattice\":true", "\"latice\":true"),
+        replaced(recording, "\"tick\":0,\"ticks\"", "\"tick\":7,\"ticks\"")}) {
+    const std::string file = place.write("damaged.jsonl", damaged).string();
+    for (const auto& arguments :
+         std::vector<std::vector<std::string>>{{"info", file},
+                                               {"replay", file, "--no-frames"},
+                                               {"record", file, "--out", place.text("o.jsonl")}}) {
+      const Outcome outcome = run(arguments);
+      EXPECT_EQ(outcome.code, exit_failed) << damaged.substr(0, 100);
+      EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+    }
+  }
+}
+
+TEST(BadInput, DamagedScripts) {
+  const Workplace place;
+  const std::string script = content_of(place.path("script.json"));
+  for (const std::string& damaged :
+       {script.substr(0, script.size() / 2), replaced(script, "script\": 1", "script\": 2"),
+        replaced(script, "model.json", "missing-model.json"), replaced(script, "0.1", "1e9"),
+        replaced(script, "0.1", "-1"), replaced(script, "\"undo\"", "\"undoo\""),
+        replaced(script, "\"lattice\"", "\"latice\""), replaced(script, "start_mm", "begin_mm")}) {
+    const std::string file = place.write("damaged-script.json", damaged).string();
+    const Outcome outcome = run({"record", file, "--out", place.text("out.jsonl")});
+    EXPECT_EQ(outcome.code, exit_failed) << damaged;
+    EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(place.path("out.jsonl")));
+  }
+}
+
+TEST(BadInput, PlacesThatCannotBeWritten) {
+  const Workplace place;
+  const std::string recording = place.record("good.jsonl").string();
+  const std::string blocked = place.write("file", "in the way").string();
+  const std::vector<std::vector<std::string>> uses = {
+      {"replay", recording, "--out", blocked + "/pictures"},
+      {"replay", recording, "--out", blocked},
+      {"replay", recording, "--out", "/proc/pictures"},
+      {"replay", recording, "--no-frames", "--rerecord", blocked + "/again.jsonl"},
+      {"replay", recording, "--no-frames", "--rerecord", "/dev/full"},
+      {"replay", recording, "--no-frames", "--rerecord", recording},
+      {"record", place.text("script.json"), "--out", "/dev/full"},
+      {"record", place.text("script.json"), "--out", blocked + "/out.jsonl"},
+      {"record", recording, "--out", recording},
+      {"sample", place.text("model.json"), "--grid", "40x40", "--out", "/dev/full"},
+      {"sample", place.text("model.json"), "--grid", "4x4", "--out", place.path("").string()},
+      {"sample", place.text("model.json"), "--grid", "4x4", "--out", blocked + "/points.csv"},
+  };
+  const std::string before = content_of(recording);
+  for (const auto& arguments : uses) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, exit_failed) << testing::PrintToString(arguments);
+    EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+  }
+  EXPECT_EQ(content_of(recording), before);
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "app/program.h"
+#include "engine/bspline/surface.h"
+#include "engine/exchange/document.h"
+#include "tests/app/workplace.h"
+
+namespace spoonbill {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+TEST(Info, TellsOfAModel) {
+  const Workplace place;
+  const Outcome outcome = run({"info", place.text("model.json"), "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const Json facts = json_of(outcome.out);
+  EXPECT_EQ(facts["kind"], "document");
+  EXPECT_EQ(facts["unit"], "mm");
+  EXPECT_NEAR(facts["size_mm"][0], 60.0, 0.01);
+  EXPECT_EQ(facts["surfaces"][0]["v"]["degree"], 3);
+  EXPECT_EQ(facts["surfaces"][0]["u"]["periodic"], true);
+  EXPECT_GT(facts["lattice"]["node_count"], 100);
+  EXPECT_GT(facts["mass_kg"], 0.0);
+  EXPECT_GT(facts["felt_youngs_modulus_pa"], 0.0);
+  EXPECT_NE(run({"info", place.text("model.json")}).out.find("Size"), std::string::npos);
+}
+
+TEST(Info, TellsOfRecordingScriptAndMaterial) {
+  const Workplace place;
+  const Json recording = json_of(run({"info", place.record("bend.jsonl").string(), "--json"}).out);
+  EXPECT_EQ(recording["kind"], "recording");
+  EXPECT_EQ(recording["ticks"], 600);
+  EXPECT_EQ(recording["duration_s"], 0.6);
+  EXPECT_EQ(recording["commands"], 3);
+  EXPECT_EQ(recording["complete"], true);
+  EXPECT_EQ(recording["state_hash"].get<std::string>().size(), 16U);
+
+  const Json script = json_of(run({"info", place.text("script.json"), "--json"}).out);
+  EXPECT_EQ(script["kind"], "script");
+  EXPECT_EQ(script["ticks"], 600);
+
+  const auto document = read_document(place.path("model.json"));
+  ASSERT_TRUE(document);
+  place.write("material.json", json_to_page(material_to_json(document->scene.body.material)));
+  const Json material = json_of(run({"info", place.text("material.json"), "--json"}).out);
+  EXPECT_EQ(material["kind"], "material");
+  EXPECT_EQ(material["material"]["youngs_modulus_pa"], document->scene.body.material.youngs_modulus_pa);
+}
+
+TEST(Sample, WritesPointsOfTheSurfaceWithBothEnds) {
+  const Workplace place;
+  const auto document = read_document(place.path("model.json"));
+  ASSERT_TRUE(document);
+  const Surface& surface = document->scene.body.surface;
+  const Outcome outcome = run({"sample", place.text("model.json"), "--grid", "7x5", "--out", "-"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const auto lines = split(outcome.out, '\n');
+  ASSERT_EQ(lines.size(), 36U);
+  EXPECT_EQ(lines[0], "body,surface,u,v,x_m,y_m,z_m,nx,ny,nz");
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const auto fields = split(lines[i], ',');
+    ASSERT_EQ(fields.size(), 10U);
+    EXPECT_EQ(fields[0], document->scene.body.name);
+    const double u = std::stod(fields[2]);
+    const double v = std::stod(fields[3]);
+    const Vector3 point(std::stod(fields[4]), std::stod(fields[5]), std::stod(fields[6]));
+    const Vector3 normal(std::stod(fields[7]), std::stod(fields[8]), std::stod(fields[9]));
+    EXPECT_LT((point - evaluate(surface, u, v).position_m).norm(), 1e-15) << lines[i];
+    EXPECT_LT((normal - unit_normal(surface, u, v)).norm(), 1e-9) << lines[i];
+  }
+  const auto first = split(lines[1], ',');
+  const auto last = split(lines[35], ',');
+  EXPECT_EQ(std::stod(first[2]), surface.u.domain_start());
+  EXPECT_EQ(std::stod(last[2]), surface.u.domain_end());
+  EXPECT_EQ(std::stod(last[3]), surface.v.domain_end());
+}
+
+TEST(Sample, WritesTheSameIntoAFile) {
+  const Workplace place;
+  const Outcome outcome = run({"sample", place.text("model.json"), "--out", place.text("points.csv")});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(content_of(place.path("points.csv")),
+            run({"sample", place.text("model.json"), "--out", "-"}).out);
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,123 @@
+#include "app/panel/panel.h"
+
+#include <gtest/gtest.h>
+#include <imgui_internal.h>
+
+#include "app/panel/font_file.h"
+#include "app/panel/interface_context.h"
+#include "app/report/quantity_text.h"
+
+namespace spoonbill {
+namespace {
+
+PanelModel full_model() {
+  PanelModel model;
+  model.title = "A spoon handle with a long name";
+  model.time_s = 123.45;
+  model.can_undo = model.can_redo = true;
+  model.material = {"modelling-clay", "test", 2e5, 0.45, 1700.0, 0.1, true, 0.01, 50.0};
+  model.presets = {model.material};
+  model.felt_youngs_modulus_pa = 163.0;
+  model.mass_kg = 1.2345;
+  model.fixed_node_count = 39999;
+  model.node_count = 40000;
+  model.device = "virtual";
+  model.force_n = 3.3;
+  model.force_limit_n = 3.3;
+  model.rate_hz = 1000.0;
+  model.substeps = 24;
+  model.flags =
+      tick_flag_nodes_slowed | tick_flag_speed_capped | tick_flag_contact_overflow | tick_flag_force_limited;
+  return model;
+}
+
+// One frame of the panel, without a picture.
+class Frame {
+ public:
+  Frame(int width_px, int height_px)
+      : width_px_(width_px),
+        height_px_(height_px),
+        context_(InterfaceContext::make(font_file, panel_scale(height_px)).value()) {
+    unsigned char* pixels = nullptr;
+    int width = 0;
+    int height = 0;
+    context_.fonts().GetTexDataAsAlpha8(&pixels, &width, &height);
+  }
+
+  std::vector<PanelRequest> draw(const PanelModel& model) {
+    context_.begin_frame(width_px_, height_px_);
+    auto requests = draw_panel(model, context_.theme(), panel_rectangle(width_px_, height_px_));
+    context_.end_frame();
+    return requests;
+  }
+
+  void press_at(float x, float y) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.MousePos = ImVec2(x, y);
+    io.MouseDown[0] = true;
+  }
+
+  void release() { ImGui::GetIO().MouseDown[0] = false; }
+
+ private:
+  int width_px_;
+  int height_px_;
+  InterfaceContext context_;
+};
+
+TEST(Panel, ClipsNothingAtTheUsualSizes) {
+  for (const auto& [width, height] :
+       {std::pair{1280, 720}, {1366, 768}, {1920, 1080}, {2560, 1440}, {3840, 2160}}) {
+    Frame frame(width, height);
+    frame.draw(full_model());
+    frame.draw(full_model());
+    const ImGuiWindow* window = ImGui::FindWindowByName("Panel");
+    ASSERT_NE(window, nullptr);
+    EXPECT_LE(window->ContentSize.y + 2.0F * window->WindowPadding.y, window->Size.y)
+        << width << "x" << height;
+    EXPECT_LE(window->ContentSize.x + 2.0F * window->WindowPadding.x, window->Size.x)
+        << width << "x" << height;
+  }
+}
+
+TEST(Panel, AsksForNothingWhenNobodyTouchesIt) {
+  Frame frame(1280, 720);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(frame.draw(full_model()).empty());
+}
+
+TEST(Panel, UndoButtonAsksForUndo) {
+  Frame frame(1280, 720);
+  frame.draw(full_model());
+  frame.draw(full_model());
+  const float x = 220.0F;
+  const float y = 38.0F;
+  ImGui::GetIO().MousePos = ImVec2(x, y);
+  frame.draw(full_model());
+  frame.press_at(x, y);
+  frame.draw(full_model());
+  frame.release();
+  const auto requests = frame.draw(full_model());
+  ASSERT_EQ(requests.size(), 1U);
+  EXPECT_TRUE(std::holds_alternative<UndoStroke>(requests[0]));
+}
+
+TEST(Panel, LeavesSmallPicturesAlone) {
+  EXPECT_EQ(panel_rectangle(640, 480).width, 0.0);
+  EXPECT_EQ(panel_rectangle(1280, 720).width, 300.0);
+  EXPECT_EQ(panel_rectangle(2560, 1440).width, 600.0);
+}
+
+TEST(QuantityText, HasThreeDigitsAndAUnit) {
+  EXPECT_EQ(modulus_text(163.2), "163 Pa");
+  EXPECT_EQ(modulus_text(2e5), "200 kPa");
+  EXPECT_EQ(modulus_text(1.234e6), "1.23 MPa");
+  EXPECT_EQ(modulus_text(999.9), "1.00 kPa");
+  EXPECT_EQ(modulus_text(2.1e11), "210 GPa");
+  EXPECT_EQ(millimetres_text(0.008), "8.0 mm");
+  EXPECT_EQ(grams_text(0.0342), "34.2 g");
+  EXPECT_EQ(percent_text(0.25), "25 %");
+  EXPECT_EQ(percent_text(0.00081), "0.081 %");
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,93 @@
+// What only the built program can show: the same state in every build and with any number of drawing threads,
+// a recording that survives a kill, a standard output that is full.
+#include "app/program.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "engine/instruction_set.h"
+#include "tests/app/process.h"
+
+namespace spoonbill {
+namespace {
+
+const std::string program = SPOONBILL_PROGRAM;
+const std::string bend_recording = SPOONBILL_ASSETS "/recordings/spoon-handle-bend.recording.jsonl";
+
+std::string hash_of(const std::string& of_program, const std::string& recording,
+                    std::vector<std::string> more, const std::string& settings = "") {
+  std::vector<std::string> arguments = {"replay", recording, "--json"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Outcome outcome = run_process(of_program, arguments, settings);
+  EXPECT_EQ(outcome.code, exit_done) << outcome.err;
+  return outcome.code == exit_done ? json_of(outcome.out)["state_hash"].get<std::string>() : "none";
+}
+
+TEST(StateHash, IsTheSameWithEveryInstructionSet) {
+  const Workplace place;
+  const std::string recording = place.record("bend.jsonl").string();
+  const std::string hash = hash_of(program, recording, {"--no-frames"});
+  for (const InstructionSet set : available_instruction_sets()) {
+    EXPECT_EQ(hash_of(program, recording, {"--no-frames", "--instruction-set", std::string(name_of(set))}),
+              hash);
+    EXPECT_EQ(
+        hash_of(program, bend_recording, {"--no-frames", "--instruction-set", std::string(name_of(set))}),
+        hash_of(program, bend_recording, {"--no-frames"}));
+  }
+}
+
+TEST(StateHash, AndTheFramesAreTheSameWithOneAndFourDrawingThreads) {
+  const Workplace place;
+  const std::string recording = place.record("bend.jsonl").string();
+  const auto draw = [&](const std::string& folder, const std::string& threads) {
+    return hash_of(program, recording, {"--out", place.text(folder), "--every", "18", "--size", "1280x720"},
+                   "LP_NUM_THREADS=" + threads);
+  };
+  EXPECT_EQ(draw("one", "1"), draw("four", "4"));
+  for (const char* frame : {"frame-0000.png", "frame-0018.png", "frame-0036.png"}) {
+    EXPECT_EQ(content_of(place.path("one") / frame), content_of(place.path("four") / frame)) << frame;
+  }
+}
+
+TEST(StateHash, IsTheSameInTheDebugBuild) {
+  const char* debug_program = std::getenv("SPOONBILL_DEBUG_PROGRAM");
+  if (debug_program == nullptr) GTEST_SKIP() << "SPOONBILL_DEBUG_PROGRAM is not set";
+  const Workplace place;
+  const std::string recording = place.record("bend.jsonl").string();
+  EXPECT_EQ(hash_of(debug_program, recording, {"--no-frames"}), hash_of(program, recording, {"--no-frames"}));
+  EXPECT_EQ(hash_of(debug_program, bend_recording, {"--no-frames"}),
+            hash_of(program, bend_recording, {"--no-frames"}));
+}
+
+TEST(Program, AKilledRecordingReplaysUpToTheCut) {
+  const Workplace place;
+  std::string script = content_of(place.path("script.json"));
+  script.replace(script.rfind("\"hold_s\": 0.1"), 13, "\"hold_s\": 500");
+  place.write("long.json", script);
+  const auto recording = place.path("killed.jsonl");
+  std::filesystem::remove(recording);
+  const Outcome whole =
+      run_process(program, {"record", place.text("script.json"), "--out", place.text("whole.jsonl")});
+  ASSERT_EQ(whole.code, exit_done) << whole.err;
+  const auto header = content_of(place.path("whole.jsonl")).find('\n');
+  run_and_kill(program, {"record", place.text("long.json"), "--out", recording.string()}, recording,
+               header + 2000);
+  const Outcome outcome = run_process(program, {"replay", recording.string(), "--no-frames", "--json"});
+  EXPECT_EQ(outcome.code, exit_done) << outcome.err;
+  const Json facts = json_of(outcome.out);
+  EXPECT_EQ(facts["complete"], false);
+  EXPECT_GT(facts["ticks"], 0);
+  EXPECT_EQ(facts["ticks"].get<int>() % 100, 0);
+}
+
+TEST(Program, AFullStandardOutputIsAFailure) {
+  const Workplace place;
+  const Outcome outcome = run_process(
+      "/bin/sh", {"-c", "\"$0\" sample \"$1\" --out - >/dev/full", program, place.text("model.json")});
+  EXPECT_EQ(outcome.code, exit_failed);
+  EXPECT_EQ(outcome.err, "spoonbill: standard output could not be written\n");
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "app/program.h"
+#include "app/session/lockstep.h"
+#include "render/image/png.h"
+#include "tests/app/workplace.h"
+
+namespace spoonbill {
+namespace {
+
+std::set<std::string> names_in(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.insert(entry.path().filename().string());
+  }
+  return names;
+}
+
+TEST(Frames, ShowTheStateAfterWholeTicks) {
+  EXPECT_EQ(tick_of_frame(0), 0U);
+  EXPECT_EQ(tick_of_frame(1), 16U);
+  EXPECT_EQ(tick_of_frame(2), 33U);
+  EXPECT_EQ(tick_of_frame(60), 1000U);
+  EXPECT_EQ(frame_count(0), 1U);
+  EXPECT_EQ(frame_count(15), 1U);
+  EXPECT_EQ(frame_count(16), 2U);
+  EXPECT_EQ(frame_count(999), 60U);
+  EXPECT_EQ(frame_count(1000), 61U);
+}
+
+TEST(Replay, LeavesFramesAndContactSheet) {
+  const Workplace place;
+  const std::string recording = place.record("bend.jsonl").string();
+  std::filesystem::create_directory(place.path("pictures"));
+  place.write("pictures/frame-9999.png", "of an earlier run");
+  place.write("pictures/frame-notes.png", "the person's own");
+  const Outcome outcome = run(
+      {"replay", recording, "--out", place.text("pictures"), "--size", "96x64", "--every", "12", "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const Json facts = json_of(outcome.out);
+  EXPECT_EQ(facts["ticks"], 600);
+  EXPECT_EQ(facts["frames"], 4);
+  EXPECT_EQ(facts["complete"], true);
+  EXPECT_EQ(names_in(place.path("pictures")),
+            (std::set<std::string>{"frame-0000.png", "frame-0012.png", "frame-0024.png", "frame-0036.png",
+                                   "frame-notes.png", "contact-sheet.png"}));
+  const auto frame = read_png(place.path("pictures/frame-0036.png"));
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->width, 96);
+  EXPECT_EQ(frame->height, 64);
+}
+
+TEST(Replay, RerecordsTheSameBytes) {
+  const Workplace place;
+  const auto recording = place.record("bend.jsonl");
+  const Outcome outcome =
+      run({"replay", recording.string(), "--no-frames", "--rerecord", place.text("again.jsonl"), "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_EQ(content_of(place.path("again.jsonl")), content_of(recording));
+}
+
+TEST(Replay, NamesTheTickWhereTheStateDiffers) {
+  const Workplace place;
+  std::string text = content_of(place.record("bend.jsonl"));
+  const std::size_t end = text.find("\"state_hash\":\"", text.find("\"end\"")) + 14;
+  text[end] = text[end] == '0' ? '1' : '0';
+  const std::string changed = place.write("changed.jsonl", text).string();
+  const Outcome outcome = run({"replay", changed, "--no-frames"});
+  EXPECT_EQ(outcome.code, exit_failed);
+  EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+  EXPECT_NE(outcome.err.find("after 600 ticks"), std::string::npos) << outcome.err;
+
+  const Outcome again = run({"record", changed, "--out", place.text("again.jsonl")});
+  EXPECT_EQ(again.code, exit_done) << again.err;
+  EXPECT_EQ(content_of(place.path("again.jsonl")), content_of(place.path("bend.jsonl")));
+}
+
+TEST(Replay, GoesUpToTheCut) {
+  const Workplace place;
+  const std::string text = content_of(place.record("bend.jsonl"));
+  const std::size_t line = text.find("{\"tick\":400");
+  ASSERT_NE(line, std::string::npos);
+  const std::string cut = place.write("cut.jsonl", text.substr(0, line + 20)).string();
+  const Outcome outcome = run({"replay", cut, "--no-frames", "--json"});
+  EXPECT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_EQ(json_of(outcome.out)["ticks"], 400);
+  EXPECT_EQ(json_of(outcome.out)["complete"], false);
+  EXPECT_TRUE(outcome.err.starts_with("spoonbill: ")) << outcome.err;
+}
+
+TEST(Replay, UndoTakesTheSecondStrokeBack) {
+  const Workplace place;
+  const std::string script = content_of(place.path("script.json"));
+  const auto hash_of = [&](const std::string& name, const std::string& text) {
+    place.write(name, text);
+    const Outcome outcome = run({"record", place.text(name), "--out", place.text(name + "l"), "--json"});
+    EXPECT_EQ(outcome.code, exit_done) << outcome.err;
+    return json_of(outcome.out)["state_hash"];
+  };
+  std::string without = script;
+  const std::string command = "{\"command\": \"undo\"},";
+  without.erase(without.find(command), command.size());
+  EXPECT_NE(hash_of("with.json", script), hash_of("without.json", without));
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,61 @@
+#include "app/view/view_choice.h"
+
+#include <gtest/gtest.h>
+
+namespace spoonbill {
+namespace {
+
+Json parsed(const std::string& text) {
+  return parse_json(text, "test").value();
+}
+
+TEST(ViewChoice, DefaultsShowTheWholeBody) {
+  const auto view = view_from_json(Json::object(), "test");
+  ASSERT_TRUE(view);
+  EXPECT_TRUE(view->shows_whole_body);
+  EXPECT_TRUE(view->overlays.fixed_nodes);
+  EXPECT_FALSE(view->overlays.lattice);
+}
+
+TEST(ViewChoice, ReadsCameraAndOverlays) {
+  const auto view =
+      view_from_json(parsed(R"({"camera": {"yaw_deg": 90, "target_mm": [10, 0, 0], "distance_mm": 400},
+                 "overlays": {"lattice": true, "tool": false}, "see_through_body": true})"),
+                     "test");
+  ASSERT_TRUE(view);
+  EXPECT_FALSE(view->shows_whole_body);
+  EXPECT_DOUBLE_EQ(view->camera.target_m.x(), 0.01);
+  EXPECT_DOUBLE_EQ(view->camera.distance_m, 0.4);
+  EXPECT_NEAR(view->camera.yaw_rad, 1.5707963, 1e-6);
+  EXPECT_TRUE(view->overlays.lattice);
+  EXPECT_FALSE(view->overlays.tool);
+  EXPECT_TRUE(view->overlays.fixed_nodes);
+  EXPECT_TRUE(view->see_through_body);
+}
+
+TEST(ViewChoice, CommandsChangeWhatTheyName) {
+  ViewChoice choice;
+  ASSERT_TRUE(
+      apply_view_command(parsed(R"({"command": "set_overlays", "control_net": true})"), "test", choice));
+  EXPECT_TRUE(choice.overlays.control_net);
+  EXPECT_TRUE(choice.overlays.force);
+  ASSERT_TRUE(apply_view_command(
+      parsed(R"({"command": "set_camera", "target_mm": [0, 0, 0], "distance_mm": 100})"), "test", choice));
+  EXPECT_FALSE(choice.shows_whole_body);
+}
+
+TEST(ViewChoice, RefusesByName) {
+  for (const char* text :
+       {R"({"camera": {"yaw": 1}})", R"({"camera": {"pitch_deg": 95}})", R"({"camera": 3})",
+        R"({"camera": {"distance_mm": 100}})", R"({"overlays": {"lattices": true}})",
+        R"({"overlays": {"lattice": 1}})", R"({"light": 1})", R"([])"}) {
+    EXPECT_FALSE(view_from_json(parsed(text), "test")) << text;
+  }
+  ViewChoice choice;
+  EXPECT_FALSE(apply_view_command(parsed(R"({"command": "set_overlays", "tool": false, "net": true})"),
+                                  "test", choice));
+  EXPECT_TRUE(choice.overlays.tool);
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,37 @@
+#include "tests/engine/material/block.h"
+
+#include <gtest/gtest.h>
+
+namespace spoonbill {
+
+Material elastic_material(double youngs_modulus_pa, double poissons_ratio, double density_kg_per_m3) {
+  Material material;
+  material.name = "test";
+  material.source = "test";
+  material.youngs_modulus_pa = youngs_modulus_pa;
+  material.poissons_ratio = poissons_ratio;
+  material.density_kg_per_m3 = density_kg_per_m3;
+  material.yield_strain = 0.01;
+  return material;
+}
+
+SpringLattice block(const Vector3& size_m, std::array<int, 3> counts, const Material& material,
+                    InstructionSet set) {
+  Result<SpringLattice> lattice =
+      SpringLattice::make(box_mesh(size_m, counts), material, material.youngs_modulus_pa, set);
+  EXPECT_TRUE(lattice.ok()) << lattice.error().message;
+  return std::move(lattice).value();
+}
+
+void plain_substep(SpringLattice& lattice, float h_s, const Vector3& g) {
+  const LatticeView view = lattice.view();
+  const LatticeKernels& kernels = lattice.kernels();
+  kernels.clear_forces(view);
+  kernels.spring_forces(view, lattice.damping_time_s());
+  kernels.volume_forces(view, lattice.damping_time_s());
+  kernels.kick(view, h_s, 1.0f, static_cast<float>(g.x()), static_cast<float>(g.y()),
+               static_cast<float>(g.z()));
+  kernels.drift(view, h_s, 1e6f, 0.0f, 0.0f, 0.0f);
+}
+
+}  // namespace spoonbill

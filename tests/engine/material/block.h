@@ -1,0 +1,18 @@
+// Blocks of material for the lattice's tests.
+#pragma once
+
+#include "engine/material/spring_lattice.h"
+
+namespace spoonbill {
+
+// An elastic, undamped material.
+Material elastic_material(double youngs_modulus_pa, double poissons_ratio, double density_kg_per_m3);
+
+// A box of that material, its corner at the origin.
+SpringLattice block(const Vector3& size_m, std::array<int, 3> counts, const Material& material,
+                    InstructionSet set = InstructionSet::baseline);
+
+// One substep without any tool: forces, kick, drift.
+void plain_substep(SpringLattice& lattice, float h_s, const Vector3& gravity_m_per_s2 = Vector3::Zero());
+
+}  // namespace spoonbill

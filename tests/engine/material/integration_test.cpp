@@ -1,0 +1,282 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/material/lattice_solver.h"
+#include "tests/engine/material/block.h"
+
+namespace spoonbill {
+namespace {
+
+// The lattice's fastest mode, normalised by mass, and its frequency.
+struct Mode {
+  std::vector<Vector3> shape;
+  double omega = 0.0;
+};
+
+Mode fastest_mode(SpringLattice& lattice) {
+  const LatticeView view = lattice.view();
+  Mode mode;
+  double square = 0.0;
+  for (int step = 0; step < 2000; ++step) square = lattice.kernels().power_step(view, lattice.free_mass());
+  mode.omega = std::sqrt(square);
+  double norm = 0.0;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    mode.shape.emplace_back(view.power_x[n], view.power_y[n], view.power_z[n]);
+    norm += lattice.mass(n) * mode.shape.back().squaredNorm();
+  }
+  for (Vector3& node : mode.shape) node /= std::sqrt(norm);
+  return mode;
+}
+
+double amplitude(const SpringLattice& lattice, const Mode& mode, bool of_velocity) {
+  double sum = 0.0;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    sum += lattice.mass(n) * mode.shape[n].dot(of_velocity ? lattice.velocity(n) : lattice.displacement(n));
+  }
+  return sum;
+}
+
+SpringLattice one_cell(double damping_ratio) {
+  Material material = elastic_material(5000.0, 0.25, 1000.0);
+  material.damping_ratio = damping_ratio;
+  return block({2e-3, 2e-3, 2e-3}, {2, 2, 2}, material);
+}
+
+// Small enough for the springs to be linear to 1e-5.
+void excite(SpringLattice& lattice, const Mode& mode) {
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) lattice.set_displacement(n, 2e-11 * mode.shape[n]);
+}
+
+// Symplectic Euler's limit flips between 0.999 and 1.001 of h = (2 / w) (sqrt(1 + z^2) - z).
+TEST(Integration, StabilityFlipsAtTheLimit) {
+  for (const double z : {0.0, 0.05, 0.2, 0.5, 1.0, 2.0}) {
+    for (const double share : {0.999, 1.001}) {
+      SpringLattice lattice = one_cell(z);
+      const Mode mode = fastest_mode(lattice);
+      excite(lattice, mode);
+      const double ratio = 0.5 * lattice.damping_time_s() * mode.omega;
+      const auto h = static_cast<float>(share * stable_step_s(mode.omega, ratio));
+      double first = 0.0, last = 0.0;
+      for (int step = 0; step < 6000; ++step) {
+        plain_substep(lattice, h);
+        const double energy =
+            std::abs(amplitude(lattice, mode, false)) + std::abs(amplitude(lattice, mode, true)) / mode.omega;
+        if (step < 100) first = std::max(first, energy);
+        if (step >= 5900) last = std::max(last, energy);
+        if (last > 0.0 || energy > 1e3 * first) last = std::max(last, energy);
+        if (last > 10.0 * first) break;
+      }
+      EXPECT_EQ(last > 3.0 * first, share > 1.0)
+          << "z " << z << " share " << share << " first " << first << " last " << last;
+    }
+  }
+}
+
+// Kick, then drift, conserves v^2 + w^2 x^2 - h w^2 x v: in double for the scheme, and in the lattice.
+TEST(Integration, KickDriftConservesItsOwnEnergy) {
+  const double omega = 7.0, h = 0.02;
+  double x = 1.0, v = 0.5;
+  const double start = v * v + omega * omega * x * x - h * omega * omega * x * v;
+  for (int step = 0; step < 100000; ++step) {
+    v -= h * omega * omega * x;
+    x += h * v;
+  }
+  EXPECT_NEAR((v * v + omega * omega * x * x - h * omega * omega * x * v) / start, 1.0, 1e-11);
+
+  SpringLattice lattice = one_cell(0.0);
+  const Mode mode = fastest_mode(lattice);
+  excite(lattice, mode);
+  const double step_s = 0.2 / mode.omega;
+  const auto conserved = [&] {
+    const double q = amplitude(lattice, mode, false), p = amplitude(lattice, mode, true),
+                 w2 = mode.omega * mode.omega;
+    return p * p + w2 * q * q - static_cast<double>(static_cast<float>(step_s)) * w2 * q * p;
+  };
+  const double before = conserved();
+  for (int step = 0; step < 10000; ++step) {
+    plain_substep(lattice, static_cast<float>(step_s));
+    // 1e-3: single precision over ten thousand steps.
+    ASSERT_NEAR(conserved() / before, 1.0, 1e-3) << step;
+  }
+}
+
+TEST(Integration, FreeFallIsTheSumOfItsSteps) {
+  SpringLattice lattice = block({8e-3, 8e-3, 8e-3}, {5, 5, 5}, elastic_material(100.0, 0.25, 1000.0));
+  ContactConstraints none(1);
+  ToolState tool;
+  RelaxSettings settings;
+  settings.gravity_m_per_s2 = {0.0, -9.81, 0.0};
+  for (int tick = 0; tick < 1000; ++tick) {
+    const RelaxReport report = relax(lattice, settings, ToolMotion{}, tool, none);
+    ASSERT_EQ(report.substeps, 1);
+    ASSERT_FALSE(report.speed_capped);
+  }
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    // -g h^2 n (n + 1) / 2, to the rounding of a thousand single precision sums.
+    EXPECT_NEAR(lattice.displacement(n).y(), -4.909905, 5e-5);
+  }
+}
+
+// Supports nodes at y = 0 without friction, from below.
+void support_from_below(SpringLattice& lattice, ContactConstraints& contacts) {
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    if (lattice.mesh().nodes[n].y() > 1e-9) continue;
+    EmbeddedPoint point;
+    point.count = 1;
+    point.node[0] = n;
+    point.weight[0] = 1.0f;
+    contacts.add_plane_push(lattice, point, -Vector3::UnitY());
+  }
+}
+
+// The share of the top's area that belongs to a node of a rectangular face.
+double area_share(const LatticeMesh& mesh, int i, int k) {
+  const double across = i == 0 || i == mesh.count[0] - 1 ? 0.5 : 1.0;
+  const double along = k == 0 || k == mesh.count[2] - 1 ? 0.5 : 1.0;
+  return across * along / ((mesh.count[0] - 1) * (mesh.count[2] - 1));
+}
+
+// The area-weighted mean drop of the top on a slipping base is rho g H^2 / 2 E at any resolution and
+// Poisson's ratio.
+TEST(Integration, SelfWeightOnASlippingBase) {
+  const double height = 0.02, modulus = 5000.0, density = 1050.0, gravity = 9.81e-3;
+  const double expected = density * gravity * height * height / (2.0 * modulus);
+  for (const int count : {5, 9}) {
+    for (const double nu : {0.25, 0.45}) {
+      SpringLattice lattice =
+          block({height, height, height}, {count, count, count}, elastic_material(modulus, nu, density));
+      ContactConstraints contacts(count * count);
+      support_from_below(lattice, contacts);
+      ToolState tool;
+      RelaxSettings settings;
+      settings.step_s = 2e-4;
+      settings.damping_per_s = 300.0;
+      settings.gravity_m_per_s2 = {0.0, -gravity, 0.0};
+      for (int tick = 0; tick < 1500; ++tick) relax(lattice, settings, ToolMotion{}, tool, contacts);
+      double drop = 0.0;
+      const LatticeMesh& mesh = lattice.mesh();
+      for (int i = 0; i < count; ++i) {
+        for (int k = 0; k < count; ++k) {
+          drop -= area_share(mesh, i, k) * lattice.displacement(mesh.index(i, count - 1, k)).y();
+        }
+      }
+      // 1 %: volume strains of 1e-6 are near the rounding of single precision.
+      EXPECT_NEAR(drop / expected, 1.0, 0.01) << count << " nodes, nu " << nu;
+    }
+  }
+}
+
+// 10 g on 50 N/m hang 1.962 mm lower: a bar of stiffness E A / L = 50 N/m, carried at its top without
+// friction.
+TEST(Integration, HangingWeight) {
+  const double length = 1.0, side = 0.02, stiffness = 50.0;
+  SpringLattice lattice = block({side, length, side}, {2, 51, 2},
+                                elastic_material(stiffness * length / (side * side), 0.25, 100.0));
+  ContactConstraints contacts(4);
+  const LatticeMesh& mesh = lattice.mesh();
+  for (const int corner :
+       {mesh.index(0, 50, 0), mesh.index(1, 50, 0), mesh.index(0, 50, 1), mesh.index(1, 50, 1)}) {
+    EmbeddedPoint point;
+    point.count = 1;
+    point.node[0] = corner;
+    point.weight[0] = 1.0f;
+    contacts.add_plane_push(lattice, point, -Vector3::UnitY());
+  }
+  for (const int corner :
+       {mesh.index(0, 0, 0), mesh.index(1, 0, 0), mesh.index(0, 0, 1), mesh.index(1, 0, 1)}) {
+    lattice.set_node_force(corner, {0.0, -0.25 * 0.010 * 9.81, 0.0});
+  }
+  ToolState tool;
+  RelaxSettings settings;
+  settings.step_s = 3e-4;
+  settings.damping_per_s = 60.0;
+  ToolMotion at_top;
+  at_top.start_m = at_top.end_m = {0.0, length, 0.0};
+  for (int tick = 0; tick < 4000; ++tick) relax(lattice, settings, at_top, tool, contacts);
+  EXPECT_NEAR(lattice.displacement(mesh.index(0, 0, 0)).y(), -1.962e-3,
+              0.01e-3);  // 0.2 % strain, squared terms
+}
+
+// a = g (sin t - mu cos t) down an incline.
+TEST(Integration, BlockSlidesDownAnIncline) {
+  for (const double friction : {0.0, 0.1, 0.3}) {
+    const double tilt = 0.35, g = 9.81;
+    Material material = elastic_material(2e4, 0.3, 1000.0);
+    material.damping_ratio = 0.1;
+    SpringLattice lattice = block({0.02, 0.01, 0.02}, {5, 3, 5}, material);
+    ContactConstraints contacts(25);
+    support_from_below(lattice, contacts);
+    ToolState tool;
+    RelaxSettings settings;
+    settings.gravity_m_per_s2 = {g * std::sin(tilt), -g * std::cos(tilt), 0.0};
+    ToolMotion ground;
+    ground.friction = friction;
+    const auto speed = [&] {
+      double sum = 0.0, mass = 0.0;
+      for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+        sum += lattice.mass(n) * lattice.velocity(n).x();
+        mass += lattice.mass(n);
+      }
+      return sum / mass;
+    };
+    for (int tick = 0; tick < 200; ++tick) relax(lattice, settings, ground, tool, contacts);
+    const double before = speed();
+    for (int tick = 0; tick < 500; ++tick) relax(lattice, settings, ground, tool, contacts);
+    const double expected = g * (std::sin(tilt) - friction * std::cos(tilt));
+    EXPECT_NEAR((speed() - before) / 0.5, expected, 0.02 * g)
+        << "friction " << friction;  // the block still quivers
+  }
+}
+
+TEST(Integration, HeldNodesDoNotMoveAtAll) {
+  SpringLattice lattice = block({0.02, 0.01, 0.02}, {5, 3, 5}, elastic_material(500.0, 0.45, 1000.0));
+  std::vector<std::uint8_t> held(75, 0);
+  for (int n = 0; n < 15; ++n) held[static_cast<std::size_t>(n)] = 1;
+  lattice.hold(held);
+  ContactConstraints none(1);
+  ToolState tool;
+  RelaxSettings settings;
+  settings.gravity_m_per_s2 = {3.0, -9.81, 2.0};
+  for (int tick = 0; tick < 500; ++tick) relax(lattice, settings, ToolMotion{}, tool, none);
+  for (int n = 0; n < 15; ++n) EXPECT_EQ(lattice.displacement(n), Vector3::Zero());
+  EXPECT_LT(lattice.displacement(74).y(), -1e-5);
+}
+
+// What flows stays, what is elastic comes back: a block stretched by 8 %, held, and let go.
+TEST(Integration, ClayKeepsAStretchAndRubberDoesNot) {
+  for (const bool plastic : {false, true}) {
+    Material material = elastic_material(500.0, 0.45, 1500.0);
+    material.plastic = plastic;
+    material.yield_strain = 0.005;
+    material.flow_rate_per_s = 50.0;
+    SpringLattice lattice = block({0.008, 0.008, 0.016}, {5, 5, 9}, material);
+    const LatticeMesh& mesh = lattice.mesh();
+    std::vector<std::uint8_t> ends(static_cast<std::size_t>(mesh.node_count()), 0);
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      const double z = mesh.nodes[n].z();
+      if (z < 1e-6 || z > 0.016 - 1e-6) ends[static_cast<std::size_t>(n)] = 1;
+      lattice.set_displacement(n, {0.0, 0.0, 0.08 * z});
+    }
+    lattice.hold(ends);
+    ContactConstraints none(1);
+    ToolState tool;
+    RelaxSettings settings;
+    settings.damping_per_s = 60.0;
+    for (int tick = 0; tick < 1000; ++tick) relax(lattice, settings, ToolMotion{}, tool, none);
+    lattice.hold(std::vector<std::uint8_t>(ends.size(), 0));
+    for (int tick = 0; tick < 1500; ++tick) relax(lattice, settings, ToolMotion{}, tool, none);
+    const double length =
+        (lattice.position(mesh.index(2, 2, 8)) - lattice.position(mesh.index(2, 2, 0))).norm();
+    const double kept = (length / 0.016 - 1.0) / 0.08;
+    if (plastic) {
+      EXPECT_GT(kept, 0.75);
+      EXPECT_NEAR(lattice.volume_m3() / lattice.rest_volume_m3(), 1.0, 0.002);
+    } else {
+      EXPECT_LT(std::abs(kept), 0.01);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill

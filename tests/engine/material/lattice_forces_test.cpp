@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/material/cell_springs.h"
+#include "engine/material/lattice_solver.h"
+#include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/material/block.h"
+
+namespace spoonbill {
+namespace {
+
+void displace_at_random(SpringLattice& lattice, double amplitude_m, std::uint64_t seed) {
+  Random random(seed);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    lattice.set_displacement(
+        n, amplitude_m * Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+  }
+}
+
+double volume_energy(const SpringLattice& lattice, double bulk_pa) {
+  CellCorners corners;
+  for (int c = 0; c < 8; ++c) corners[c] = lattice.position(c);
+  const double rest = lattice.rest_volume_m3();
+  const double strain = cell_volume(corners) / rest - 1.0;
+  return 0.5 * bulk_pa * strain * strain * rest;
+}
+
+TEST(LatticeForces, VolumeForceIsTheGradientOfItsEnergy) {
+  const double bulk = bulk_stiffness(5000.0, 0.45);
+  SpringLattice lattice = block({1e-3, 1.1e-3, 0.9e-3}, {2, 2, 2}, elastic_material(5000.0, 0.45, 1000.0));
+  displace_at_random(lattice, 1e-4, 7);
+  const LatticeView view = lattice.view();
+  lattice.kernels().clear_forces(view);
+  lattice.kernels().volume_forces(view, 0.0f);
+  const float* force[3] = {view.fx, view.fy, view.fz};
+  double largest = 0.0;
+  for (int n = 0; n < 8; ++n) largest = std::max(largest, static_cast<double>(std::abs(view.fx[n])));
+  for (int n = 0; n < 8; ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3 at = lattice.displacement(n);
+      Vector3 step = Vector3::Zero();
+      step[axis] = 1e-7;
+      SpringLattice moved = lattice;
+      moved.set_displacement(n, at + step);
+      const double up = volume_energy(moved, bulk);
+      moved.set_displacement(n, at - step);
+      const double gradient = (up - volume_energy(moved, bulk)) / 2e-7;
+      // 1e-3: single precision of the displaced nodes over the difference step.
+      EXPECT_NEAR(force[axis][n], -gradient, 1e-3 * largest);
+    }
+  }
+}
+
+TEST(LatticeForces, ForcesOfAFreeBodySumToNothing) {
+  SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.49, 1000.0));
+  displace_at_random(lattice, 2e-4, 11);
+  const LatticeView view = lattice.view();
+  lattice.kernels().clear_forces(view);
+  lattice.kernels().spring_forces(view, 0.0f);
+  lattice.kernels().volume_forces(view, 0.0f);
+  double sum = 0.0, magnitude = 0.0;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    sum += view.fx[n];
+    magnitude += std::abs(view.fx[n]);
+  }
+  EXPECT_LT(std::abs(sum), 1e-5 * magnitude);  // rounding of single precision sums
+}
+
+TEST(LatticeForces, RestShapeFeelsExactlyNothing) {
+  SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.25, 1000.0));
+  const LatticeView view = lattice.view();
+  lattice.kernels().clear_forces(view);
+  lattice.kernels().spring_forces(view, 1e-4f);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    EXPECT_EQ(view.fx[n], 0.0f);
+    EXPECT_EQ(view.fy[n], 0.0f);
+    EXPECT_EQ(view.fz[n], 0.0f);
+  }
+}
+
+// A damper along the spring's axis does not resist a rigid rotation; one on the whole velocity would.
+TEST(LatticeForces, RigidRotationProducesNoDamping) {
+  SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.45, 1000.0));
+  const Vector3 spin(3.0, -2.0, 5.0);
+  const Eigen::AngleAxisd turned(0.8, Vector3(1, 2, 3).normalized());
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const Vector3 position = turned * lattice.mesh().nodes[n];
+    lattice.set_displacement(n, position - lattice.mesh().nodes[n]);
+    lattice.set_velocity(n, spin.cross(position));
+  }
+  const LatticeView view = lattice.view();
+  const auto largest_force = [&](float tau) {
+    lattice.kernels().clear_forces(view);
+    lattice.kernels().spring_forces(view, tau);
+    lattice.kernels().volume_forces(view, tau);
+    float largest = 0.0f;
+    for (int n = 0; n < lattice.mesh().node_count(); ++n) largest = std::max(largest, std::abs(view.fx[n]));
+    return largest;
+  };
+  // The scale: the damping force of one spring that its ends pull apart at the speed of the rotation.
+  const double scale = view.springs[0].stiffness[0] * 0.01 * spin.norm() * 1e-3;
+  EXPECT_LT(largest_force(0.01f) - largest_force(0.0f), 1e-4 * scale);
+}
+
+TEST(LatticeForces, EveryInstructionSetGivesTheSameBits) {
+  const Material material = elastic_material(5000.0, 0.45, 1000.0);
+  SpringLattice reference = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, material, InstructionSet::baseline);
+  displace_at_random(reference, 2e-4, 3);
+  for (int step = 0; step < 50; ++step) {
+    plain_substep(reference, 1e-4f);
+    reference.kernels().flow(reference.view(), 0.005f, 0.05f);
+  }
+  for (const InstructionSet set : available_instruction_sets()) {
+    SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, material, set);
+    EXPECT_EQ(lattice.fastest_frequency(),
+              block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, material).fastest_frequency());
+    displace_at_random(lattice, 2e-4, 3);
+    for (int step = 0; step < 50; ++step) {
+      plain_substep(lattice, 1e-4f);
+      lattice.kernels().flow(lattice.view(), 0.005f, 0.05f);
+    }
+    EXPECT_EQ(lattice.shape(), reference.shape()) << name_of(set);
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill

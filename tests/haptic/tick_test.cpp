@@ -1,0 +1,87 @@
+#include "haptic/tick.h"
+
+#include <gtest/gtest.h>
+
+#include "haptic/virtual_device.h"
+#include "tests/engine/allocations.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+DeviceReading reading_at(double x, double y) {
+  return DeviceReading::from({Vector3(x, y, 0), Quaternion::Identity()}, 0);
+}
+
+Simulation held_handle(double force_scale) {
+  Scene scene = small_handle();
+  scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+  scene.sculpting.force_scale = force_scale;
+  return Simulation::make(scene, best_instruction_set()).value();
+}
+
+TEST(Tick, NoContactNoForce) {
+  Simulation simulation = held_handle(100.0);
+  CouplingState coupling;
+  for (int k = 0; k < 100; ++k) {
+    const TickResult result =
+        tick(simulation, coupling, VirtualDevice::default_specification(), reading_at(0.05, 0.05));
+    EXPECT_EQ(result.force_n, Vector3::Zero());
+    EXPECT_FALSE(result.touching);
+  }
+}
+
+TEST(Tick, PushedMaterialPushesBackAndTheForceScalesIt) {
+  double force[2];
+  for (const int which : {0, 1}) {
+    Simulation simulation = held_handle(which == 0 ? 5.0 : 10.0);
+    CouplingState coupling;
+    TickResult result;
+    for (int k = 0; k < 400; ++k) {
+      result = tick(simulation, coupling, VirtualDevice::default_specification(),
+                    reading_at(0.05, 0.009 - 1e-5 * k));
+    }
+    EXPECT_TRUE(result.touching);
+    force[which] = result.force_n.y();
+  }
+  EXPECT_GT(force[0], 1e-4);
+  EXPECT_NEAR(force[1] / force[0], 2.0, 0.3);  // the proxy stands off a little further
+}
+
+TEST(Tick, HeldPartIsAWallOfTheDevicesStiffness) {
+  Simulation simulation = held_handle(1.0);
+  CouplingState coupling;
+  const DeviceSpecification specification = VirtualDevice::default_specification();
+  const double surface = 0.0025 + 0.006, depth = 0.002;
+  TickResult result;
+  for (int k = 0; k < 600; ++k)
+    result = tick(simulation, coupling, specification, reading_at(0.01, surface - depth));
+  EXPECT_NEAR(result.force_n.y(), depth * specification.maximum_stiffness_n_per_m, 0.15);
+}
+
+TEST(Tick, ForceStaysWithinTheDevicesLimit) {
+  Simulation simulation = held_handle(1e6);
+  CouplingState coupling;
+  const DeviceSpecification specification = VirtualDevice::default_specification();
+  bool limited = false;
+  for (int k = 0; k < 600; ++k) {
+    const TickResult result =
+        tick(simulation, coupling, specification, reading_at(k % 2 == 0 ? 0.05 : 0.01, 0.01 - 2e-5 * k));
+    ASSERT_LE(result.force_n.norm(), specification.maximum_force_n * (1.0 + 1e-12));
+    limited |= (result.flags & tick_flag_force_limited) != 0;
+  }
+  EXPECT_TRUE(limited);
+}
+
+TEST(Tick, AllocatesNothing) {
+  Simulation simulation = held_handle(20.0);
+  CouplingState coupling;
+  const DeviceSpecification specification = VirtualDevice::default_specification();
+  tick(simulation, coupling, specification, reading_at(0.05, 0.02));
+  const std::size_t before = allocation_count();
+  for (int k = 0; k < 500; ++k) tick(simulation, coupling, specification, reading_at(0.05, 0.012 - 2e-5 * k));
+  EXPECT_EQ(allocation_count(), before);
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,142 @@
+// The bend as a designer sees it, compared with the approved pictures in screenshots/ by their worst 16 x 16
+// block. A picture that differs leaves itself, the approved one and their difference in picture-failures/ of
+// the build folder. tests/approve makes what the program draws now the approved pictures.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cstdlib>
+#include <functional>
+#include <numbers>
+
+#include "app/frames/frame_painter.h"
+#include "app/panel/session_panel.h"
+#include "app/session/lockstep.h"
+#include "haptic/playback_device.h"
+#include "render/image/compare.h"
+#include "render/image/png.h"
+
+namespace spoonbill {
+namespace {
+
+// Mean difference of a block's channels, in 8-bit steps. Rasterisers on other processors stay below a third
+// of it; the smallest change that must show is above twice of it.
+constexpr double tolerance = 2.0;
+
+const std::filesystem::path recording_file = SPOONBILL_ASSETS "/recordings/spoon-handle-bend.recording.jsonl";
+const std::filesystem::path approved_folder = SPOONBILL_SCREENSHOTS;
+const std::filesystem::path failure_folder = SPOONBILL_PICTURE_FAILURES;
+
+using Edit = std::function<void(ViewSettings&, PanelModel&)>;
+
+// The replay at three moments, each of which can be painted with something changed.
+class BendPictures : public ::testing::Test {
+ protected:
+  struct Moment {
+    const char* name;
+    double share;  // of the recording's time
+  };
+  static constexpr Moment before{"bend-before", 0.0};
+  static constexpr Moment pushed{"bend-pushed", 0.72};
+  static constexpr Moment settled{"bend-settled", 1.0};
+
+  static Image picture(const Moment& moment, const Edit& edit = {}) {
+    auto recording = read_recording(recording_file);
+    EXPECT_TRUE(recording) << recording.error().message;
+    auto session = Session::make(recording->header.document, "recording", recording->header.device,
+                                 best_instruction_set());
+    EXPECT_TRUE(session) << session.error().message;
+    session->reading = recording->readings.front();
+    Snapshot snapshot;
+    write_snapshot(session.value(), snapshot);
+    auto painter = FramePainter::make(1280, 720, snapshot);
+    EXPECT_TRUE(painter) << painter.error().message;
+
+    PlaybackDevice device(recording->header.device, recording->readings);
+    const std::uint64_t ticks = recording->readings.size();
+    Lockstep lockstep(session.value(), {&device, ticks, recording->commands, {}, {}, "recording"}, nullptr);
+    const auto frame = static_cast<std::uint64_t>(moment.share * static_cast<double>(frame_count(ticks) - 1));
+    EXPECT_TRUE(lockstep.run_to(tick_of_frame(frame)));
+    session->flags = tick_flag_none;  // of many frames at once
+    write_snapshot(session.value(), snapshot);
+
+    ViewSettings view = painter->view_of(session->view);
+    PanelModel panel = panel_of(session.value(), snapshot, view);
+    if (edit) edit(view, panel);
+    Image image;
+    EXPECT_TRUE(painter->paint(snapshot, view, panel, image));
+    return image;
+  }
+
+  static void compare(const std::string& name, const Image& actual) {
+    const auto approved_file = approved_folder / (name + ".png");
+    if (std::getenv("SPOONBILL_APPROVE") != nullptr) {
+      ASSERT_TRUE(write_png(approved_file, actual));
+      return;
+    }
+    const auto approved = read_png(approved_file);
+    ASSERT_TRUE(approved) << approved.error().message << "; look at the picture, then run tests/approve";
+    const auto difference = worst_block_difference(approved.value(), actual);
+    ASSERT_TRUE(difference) << difference.error().message;
+    if (difference->worst <= tolerance) return;
+    std::filesystem::create_directories(failure_folder);
+    ASSERT_TRUE(write_png(failure_folder / (name + ".expected.png"), approved.value()));
+    ASSERT_TRUE(write_png(failure_folder / (name + ".actual.png"), actual));
+    ASSERT_TRUE(write_png(failure_folder / (name + ".difference.png"),
+                          difference_picture(approved.value(), actual).value()));
+    FAIL() << name << " differs by " << difference->worst << " in the block at " << difference->x_px << ", "
+           << difference->y_px << "; see " << failure_folder.string();
+  }
+
+  static double change(const Edit& edit) {
+    static const Image unchanged = picture(pushed);
+    return worst_block_difference(unchanged, picture(pushed, edit)).value().worst;
+  }
+};
+
+TEST_F(BendPictures, Before) {
+  compare(before.name, picture(before));
+}
+
+TEST_F(BendPictures, Pushed) {
+  compare(pushed.name, picture(pushed));
+}
+
+TEST_F(BendPictures, Settled) {
+  compare(settled.name, picture(settled));
+}
+
+TEST_F(BendPictures, SettledWithLatticeAndControlNet) {
+  compare("bend-lattice", picture(settled, [](ViewSettings& view, PanelModel& panel) {
+            view.overlays.lattice = view.overlays.control_net = true;
+            view.see_through_body = true;
+            panel.overlays = view.overlays;
+            panel.see_through_body = true;
+          }));
+}
+
+TEST_F(BendPictures, TheSamePictureAgainIsTheSame) {
+  EXPECT_EQ(change([](ViewSettings&, PanelModel&) {}), 0.0);
+}
+
+TEST_F(BendPictures, ALightMovedByFiveDegreesShows) {
+  EXPECT_GT(change([](ViewSettings& view, PanelModel&) {
+              const Eigen::AngleAxisd turn(5.0 * std::numbers::pi / 180.0, Vector3::UnitY());
+              view.toward_key_light = turn * view.toward_key_light;
+            }),
+            tolerance);
+}
+
+TEST_F(BendPictures, EachMissingOverlayShows) {
+  for (bool Overlays::*overlay : {&Overlays::fixed_nodes, &Overlays::touched_nodes, &Overlays::force,
+                                  &Overlays::fixing_planes, &Overlays::tool}) {
+    EXPECT_GT(change([overlay](ViewSettings& view, PanelModel&) { view.overlays.*overlay = false; }),
+              tolerance);
+  }
+}
+
+TEST_F(BendPictures, OneChangedLabelShows) {
+  EXPECT_GT(change([](ViewSettings&, PanelModel& panel) { panel.device += "s"; }), tolerance);
+}
+
+}  // namespace
+}  // namespace spoonbill
