@@ -83,6 +83,7 @@ Result<ViewChoice> view_from_json(const Json& view, const std::string& source) {
     overlays.finish();
   }
   read_see_through(reader, choice);
+  if (reader.has("ground_mm")) choice.ground_y_m = reader.length_m("ground_mm", position_range_m);
   reader.finish();
   if (!reader.status()) return reader.status().error();
   return choice;
@@ -120,7 +121,7 @@ ViewSettings settings_for(const ViewChoice& choice, const BoundingBox& body, int
   settings.interface_scale = interface_scale_for(height_px);
   settings.overlays = choice.overlays;
   settings.see_through_body = choice.see_through_body;
-  settings.ground_y_m = ground_below(body);
+  settings.ground_y_m = choice.ground_y_m.value_or(ground_below(body));
   return settings;
 }
 

@@ -1,11 +1,13 @@
 // How a document or a recording wants its scene looked at, and the JSON for it:
-//   "view": {"camera": {...}, "overlays": {"lattice": true, ...}, "see_through_body": false}
+//   "view": {"camera": {...}, "overlays": {"lattice": true, ...}, "see_through_body": false, "ground_mm": -40}
 //   {"command": "set_camera", ...}   {"command": "set_overlays", "lattice": true, ...}
 // Camera fields, all optional: "yaw_deg", "pitch_deg", "field_of_view_deg", and "target_mm": [x, y, z] with
 // "distance_mm"; without these two the whole body is shown. Overlays that are not named stay as they are.
+// The ground lies just below the body unless its height is given, for bodies that will be bent further down.
 // Unknown fields and values out of range are refused by name.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "engine/exchange/json.h"
@@ -19,6 +21,7 @@ struct ViewChoice {
   bool shows_whole_body = true;  // the camera's target and distance follow from the body
   Overlays overlays;
   bool see_through_body = false;
+  std::optional<double> ground_y_m;  // none: just below the body
 };
 
 // `source` names the file in messages. An empty object gives the defaults.

@@ -30,13 +30,18 @@ struct Touched {
     return touched;
   }
 
-  // Comes down until it touches, presses a little further and goes.
-  void stroke() {
+  // Comes down until it touches, presses a little further and goes. Returns the shape before the touch.
+  ShapeState stroke() {
+    ShapeState before = simulation.shape();
     double height_m = 0.03;
-    while (height_m > -0.05 && !hold(height_m, 1)) height_m -= 1e-4;
-    ASSERT_GT(height_m, -0.05);
+    while (height_m > -0.05 && !hold(height_m, 1)) {
+      height_m -= 1e-4;
+      before = simulation.shape();
+    }
+    EXPECT_GT(height_m, -0.05);
     hold(height_m - 0.001, 40);
     hold(0.03, 200);
+    return before;
   }
 };
 
@@ -44,9 +49,7 @@ TEST(StrokeHistory, UndoGivesTheShapeBeforeTheStrokeBitForBit) {
   Touched touched;
   touched.history.clear(touched.simulation);
   EXPECT_FALSE(touched.history.can_undo());
-  touched.hold(0.03, 100);
-  const ShapeState before = touched.simulation.shape();
-  touched.stroke();
+  const ShapeState before = touched.stroke();
   EXPECT_NE(touched.simulation.shape(), before);
   ASSERT_TRUE(touched.history.can_undo());
   ASSERT_TRUE(touched.history.undo(touched.simulation));
@@ -59,9 +62,7 @@ TEST(StrokeHistory, WalksBackAndForthOverSeveralStrokes) {
   touched.history.clear(touched.simulation);
   std::vector<ShapeState> shapes;
   for (int i = 0; i < 3; ++i) {
-    touched.hold(0.03, 20);
-    shapes.push_back(touched.simulation.shape());
-    touched.stroke();
+    shapes.push_back(touched.stroke());
   }
   const ShapeState last = touched.simulation.shape();
   for (int i = 2; i >= 0; --i) {
@@ -84,9 +85,7 @@ TEST(StrokeHistory, ANewStrokeAfterUndoForgetsWhatWasUndone) {
   touched.stroke();
   touched.stroke();
   ASSERT_TRUE(touched.history.undo(touched.simulation));
-  touched.hold(0.03, 20);
-  const ShapeState before = touched.simulation.shape();
-  touched.stroke();
+  const ShapeState before = touched.stroke();
   EXPECT_FALSE(touched.history.can_redo());
   ASSERT_TRUE(touched.history.undo(touched.simulation));
   EXPECT_EQ(touched.simulation.shape(), before);
