@@ -4,6 +4,7 @@
 
 #include "app/panel/font_file.h"
 #include "app/panel/panel.h"
+#include "render/overlay/labels.h"
 
 namespace spoonbill {
 namespace {
@@ -40,16 +41,20 @@ ViewSettings FramePainter::view_of(const ViewChoice& choice) const {
 
 Status FramePainter::paint(const Snapshot& snapshot, const ViewSettings& view, const PanelModel& panel,
                            Image& image) {
-  const ImDrawData* interface = view.panel_px.width > 0.0 ? &lay_out(panel, view.panel_px) : nullptr;
-  if (Status drawn = renderer_.draw(snapshot, view, interface); !drawn) return drawn;
+  if (Status drawn = renderer_.draw(snapshot, view, &lay_out(snapshot, view, panel)); !drawn) return drawn;
   renderer_.read_pixels(image);
   return {};
 }
 
-const ImDrawData& FramePainter::lay_out(const PanelModel& panel, const Rectangle& place_px) {
-  interface_.begin_frame(context_->width_px(), context_->height_px());
+const ImDrawData& FramePainter::lay_out(const Snapshot& snapshot, const ViewSettings& view,
+                                        const PanelModel& panel) {
+  const int width = context_->width_px();
+  const int height = context_->height_px();
+  interface_.begin_frame(width, height);
+  draw_labels(overlay_labels(snapshot, view, width, height), view, width, height, *interface_.theme().fonts.body,
+              *ImGui::GetBackgroundDrawList());
   // Nobody can press anything in a picture.
-  draw_panel(panel, interface_.theme(), place_px);
+  if (view.panel_px.width > 0.0) draw_panel(panel, interface_.theme(), view.panel_px);
   return interface_.end_frame();
 }
 

@@ -33,7 +33,7 @@ class FramePainter {
         interface_(std::move(interface)),
         renderer_(std::move(renderer)),
         body_(body) {}
-  const ImDrawData& lay_out(const PanelModel& panel, const Rectangle& place_px);
+  const ImDrawData& lay_out(const Snapshot& snapshot, const ViewSettings& view, const PanelModel& panel);
 
   std::unique_ptr<OsmesaContext> context_;
   InterfaceContext interface_;
