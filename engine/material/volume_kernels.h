@@ -1,0 +1,26 @@
+// The volume force of lattice cells, one part of the lattice's kernels: functions of each instruction set's
+// own namespace, for lattice_kernels.cpp alone. Uses no standard library, as
+// engine/bspline/evaluate_kernels.h explains.
+#pragma once
+
+#include "engine/material/lattice_kernels.h"
+
+#ifndef SPOONBILL_KERNELS
+#define SPOONBILL_KERNELS kernels_baseline
+#endif
+
+namespace spoonbill::SPOONBILL_KERNELS {
+
+// See LatticeKernels::volume_forces.
+void volume_forces(const LatticeView& view, float tau_s);
+
+// Adds each cell's share to the row sums, N/m.
+void add_volume_row_sums(const LatticeView& view, float* sum_n_per_m);
+
+// Adds the product of the volume stiffness and the power vector to the forces.
+void add_volume_stiffness(const LatticeView& view);
+
+// See LatticeKernels::measure_rest_volumes.
+void measure_rest_volumes(const LatticeView& view);
+
+}  // namespace spoonbill::SPOONBILL_KERNELS
