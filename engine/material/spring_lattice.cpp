@@ -1,8 +1,9 @@
 #include "engine/material/spring_lattice.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <string>
+#include <utility>
 
 #include "engine/material/cell_springs.h"
 
@@ -116,55 +117,30 @@ void SpringLattice::lay_out(const LatticeMesh& mesh) {
   }
 }
 
+// What the cells add up to, in double, before it is stored in single precision.
+struct SpringLattice::Assembly {
+  double shear_pa, bulk_pa, density_kg_per_m3;
+  std::vector<double> mass, cell_count;  // one a node
+  std::array<std::vector<double>, lattice_direction_count>
+      stiffness;  // one a node: of the spring that starts there
+};
+
 void SpringLattice::assemble(const Material& material, double youngs_modulus_pa) {
   youngs_modulus_ = youngs_modulus_pa;
-  const double shear = shear_modulus(youngs_modulus_pa, material.poissons_ratio);
-  const double bulk = bulk_stiffness(youngs_modulus_pa, material.poissons_ratio);
-  const std::size_t nodes = static_cast<std::size_t>(mesh_.node_count());
-  std::vector<double> mass(nodes, 0.0), cells(nodes, 0.0);
-  std::vector<std::vector<double>> stiffness(lattice_direction_count, std::vector<double>(nodes, 0.0));
   rest_volume_ = 0.0;
   report_ = {};
   report_.worst_jacobian = 1.0;
+  const auto nodes = static_cast<std::size_t>(mesh_.node_count());
+  Assembly sum{shear_modulus(youngs_modulus_pa, material.poissons_ratio),
+               bulk_stiffness(youngs_modulus_pa, material.poissons_ratio),
+               material.density_kg_per_m3,
+               std::vector<double>(nodes, 0.0),
+               std::vector<double>(nodes, 0.0),
+               {}};
+  sum.stiffness.fill(std::vector<double>(nodes, 0.0));
   for (int i = 0; i + 1 < mesh_.count[0]; ++i) {
     for (int j = 0; j + 1 < mesh_.count[1]; ++j) {
-      for (int k = 0; k + 1 < mesh_.count[2]; ++k) {
-        const CellCorners corners = mesh_.cell(i, j, k);
-        const CellSprings springs = cell_springs(corners, shear);
-        const int first = mesh_.index(i, j, k);
-        for (int s = 0; s < cell_spring_count; ++s) {
-          const int low = cell_spring_corners[s][0], high = cell_spring_corners[s][1];
-          int step[3];
-          for (int axis = 0; axis < 3; ++axis)
-            step[axis] = (high >> (2 - axis) & 1) - (low >> (2 - axis) & 1);
-          int from = mesh_.index(i + (low >> 2 & 1), j + (low >> 1 & 1), k + (low & 1));
-          int d = direction_of(step[0], step[1], step[2]);
-          if (d < 0) {
-            d = direction_of(-step[0], -step[1], -step[2]);
-            from = mesh_.index(i + (high >> 2 & 1), j + (high >> 1 & 1), k + (high & 1));
-          }
-          stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(from)] +=
-              springs.stiffness_n_per_m[s];
-        }
-        for (int c = 0; c < 8; ++c) {
-          const auto node =
-              static_cast<std::size_t>(mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1)));
-          mass[node] += material.density_kg_per_m3 * springs.volume_m3 / 8.0;
-          cells[node] += 1.0;
-        }
-        bulk_[first] = static_cast<float>(bulk * springs.volume_m3);
-        inverse_volume_[first] = static_cast<float>(1.0 / springs.volume_m3);
-        has_cell_[first] = 1.0f;
-        rest_volume_ += springs.volume_m3;
-        const AchievedElasticity achieved = achieved_elasticity(corners, springs, bulk);
-        for (int axis = 0; axis < 3; ++axis) {
-          report_.youngs_modulus_ratio[axis] +=
-              springs.volume_m3 * achieved.youngs_modulus_pa[axis] / youngs_modulus_pa;
-          report_.poissons_ratio[axis] += springs.volume_m3 * achieved.poissons_ratio[axis];
-        }
-        report_.worst_cell_misfit = std::max(report_.worst_cell_misfit, springs.misfit);
-        report_.worst_jacobian = std::min(report_.worst_jacobian, smallest_jacobian_ratio(corners));
-      }
+      for (int k = 0; k + 1 < mesh_.count[2]; ++k) add_cell(i, j, k, sum);
     }
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -172,33 +148,74 @@ void SpringLattice::assemble(const Material& material, double youngs_modulus_pa)
     report_.poissons_ratio[axis] /= rest_volume_;
   }
   total_mass_ = material.density_kg_per_m3 * rest_volume_;
-  for (std::size_t n = 0; n < nodes; ++n) {
-    node_mass_[n] = static_cast<float>(mass[n]);
-    inverse_cell_count_[n] = static_cast<float>(1.0 / cells[n]);
+  store_nodes(sum);
+  for (int d = 0; d < lattice_direction_count; ++d) store_springs(d, sum);
+}
+
+void SpringLattice::add_cell(int i, int j, int k, Assembly& sum) {
+  const CellCorners corners = mesh_.cell(i, j, k);
+  const CellSprings springs = cell_springs(corners, sum.shear_pa);
+  const auto node_of = [&](int corner) {
+    return mesh_.index(i + (corner >> 2 & 1), j + (corner >> 1 & 1), k + (corner & 1));
+  };
+  for (int s = 0; s < cell_spring_count; ++s) {
+    int from = cell_spring_corners[s][0], to = cell_spring_corners[s][1];
+    const auto step = [&](int bit) { return (to >> bit & 1) - (from >> bit & 1); };
+    int d = direction_of(step(2), step(1), step(0));
+    if (d < 0) {
+      std::swap(from, to);
+      d = direction_of(step(2), step(1), step(0));
+    }
+    sum.stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(node_of(from))] +=
+        springs.stiffness_n_per_m[s];
+  }
+  for (int c = 0; c < 8; ++c) {
+    const auto node = static_cast<std::size_t>(node_of(c));
+    sum.mass[node] += sum.density_kg_per_m3 * springs.volume_m3 / 8.0;
+    sum.cell_count[node] += 1.0;
+  }
+  const int first = node_of(0);
+  bulk_[first] = static_cast<float>(sum.bulk_pa * springs.volume_m3);
+  inverse_volume_[first] = static_cast<float>(1.0 / springs.volume_m3);
+  has_cell_[first] = 1.0f;
+  rest_volume_ += springs.volume_m3;
+  const AchievedElasticity achieved = achieved_elasticity(corners, springs, sum.bulk_pa);
+  for (int axis = 0; axis < 3; ++axis) {
+    report_.youngs_modulus_ratio[axis] +=
+        springs.volume_m3 * achieved.youngs_modulus_pa[axis] / youngs_modulus_;
+    report_.poissons_ratio[axis] += springs.volume_m3 * achieved.poissons_ratio[axis];
+  }
+  report_.worst_cell_misfit = std::max(report_.worst_cell_misfit, springs.misfit);
+  report_.worst_jacobian = std::min(report_.worst_jacobian, smallest_jacobian_ratio(corners));
+}
+
+void SpringLattice::store_nodes(const Assembly& sum) {
+  for (std::size_t n = 0; n < sum.mass.size(); ++n) {
+    node_mass_[n] = static_cast<float>(sum.mass[n]);
+    inverse_cell_count_[n] = static_cast<float>(1.0 / sum.cell_count[n]);
     power_noise_[n] =
         noise_share * mixed(static_cast<std::uint32_t>(n) + 1) / std::sqrt(static_cast<float>(total_mass_));
   }
-  for (int d = 0; d < lattice_direction_count; ++d) {
-    for (int i = 0; i < mesh_.count[0]; ++i) {
-      for (int j = 0; j < mesh_.count[1]; ++j) {
-        for (int k = 0; k < mesh_.count[2]; ++k) {
-          const int to[3] = {i + direction_step[d][0], j + direction_step[d][1], k + direction_step[d][2]};
-          bool inside = true;
-          for (int axis = 0; axis < 3; ++axis)
-            inside = inside && to[axis] >= 0 && to[axis] < mesh_.count[axis];
-          if (!inside) continue;
-          const int n = mesh_.index(i, j, k);
-          const Vector3 rest = mesh_.nodes[n + offset_[d]] - mesh_.nodes[n];
-          rest_x_[d][n] = static_cast<float>(rest.x());
-          rest_y_[d][n] = static_cast<float>(rest.y());
-          rest_z_[d][n] = static_cast<float>(rest.z());
-          rest_length_[d][n] = static_cast<float>(rest.norm());
-          first_rest_length_[d][n] = rest_length_[d][n];
-          stiffness_[d][n] =
-              static_cast<float>(stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(n)]);
-        }
-      }
+}
+
+void SpringLattice::store_springs(int d, const Assembly& sum) {
+  for (int n = 0; n < mesh_.node_count(); ++n) {
+    const int at[3] = {n / (mesh_.count[1] * mesh_.count[2]), n / mesh_.count[2] % mesh_.count[1],
+                       n % mesh_.count[2]};
+    bool inside = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int to = at[axis] + direction_step[d][axis];
+      inside = inside && to >= 0 && to < mesh_.count[axis];
     }
+    if (!inside) continue;
+    const Vector3 rest = mesh_.nodes[n + offset_[d]] - mesh_.nodes[n];
+    rest_x_[d][n] = static_cast<float>(rest.x());
+    rest_y_[d][n] = static_cast<float>(rest.y());
+    rest_z_[d][n] = static_cast<float>(rest.z());
+    rest_length_[d][n] = static_cast<float>(rest.norm());
+    first_rest_length_[d][n] = rest_length_[d][n];
+    stiffness_[d][n] =
+        static_cast<float>(sum.stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(n)]);
   }
 }
 
@@ -308,10 +325,6 @@ const float* SpringLattice::stable_inverse_mass(float h_s, float share) {
     stable_inverse_mass_[i] = std::min(inverse_mass_[i], stable);
   }
   return stable_inverse_mass_.data();
-}
-
-void SpringLattice::zero_velocities() {
-  for (Floats* a : {&vx_, &vy_, &vz_}) std::fill(a->begin(), a->end(), 0.0f);
 }
 
 std::vector<float> SpringLattice::shape() const {

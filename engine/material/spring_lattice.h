@@ -72,7 +72,6 @@ class SpringLattice {
   const float* stable_inverse_mass(float h_s, float share);
   const float* applied_force(int axis) const { return applied_[axis].data(); }
   bool has_applied_force() const { return has_applied_force_; }
-  void zero_velocities();
 
   // Calls visit(const float*, count) on each array of the shape: displacements, velocities, rest lengths.
   template <class Visitor>
@@ -95,7 +94,11 @@ class SpringLattice {
  private:
   SpringLattice() = default;
   void lay_out(const LatticeMesh& mesh);
+  struct Assembly;
   void assemble(const Material& material, double youngs_modulus_pa);
+  void add_cell(int i, int j, int k, Assembly& sum);
+  void store_nodes(const Assembly& sum);
+  void store_springs(int direction, const Assembly& sum);
   void measure_fastest_frequency();
 
   using Floats = AlignedVector<float>;

@@ -1,0 +1,55 @@
+#include "engine/simulation/snapshot_parts.h"
+
+#include <algorithm>
+
+namespace spoonbill {
+
+void write_surface(const Surface& surface, std::uint32_t structure, std::vector<SurfaceSnapshot>& out) {
+  if (out.size() != 1 || out[0].structure != structure) {
+    out.clear();
+    out.push_back({surface.u, surface.v, structure, {}, {}, {}});
+  }
+  const auto copy = [](const std::vector<double>& from, std::vector<float>& to) {
+    to.assign(from.begin(), from.end());
+  };
+  copy(surface.net.x, out[0].x);
+  copy(surface.net.y, out[0].y);
+  copy(surface.net.z, out[0].z);
+}
+
+void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>& held,
+                   const std::vector<std::uint8_t>& touched, LatticeSnapshot& out) {
+  const LatticeMesh& mesh = lattice.mesh();
+  const std::size_t count = static_cast<std::size_t>(mesh.node_count());
+  for (std::vector<float>* values : {&out.x, &out.y, &out.z}) values->resize(count);
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    const Vector3 position = lattice.position(n);
+    out.x[static_cast<std::size_t>(n)] = static_cast<float>(position.x());
+    out.y[static_cast<std::size_t>(n)] = static_cast<float>(position.y());
+    out.z[static_cast<std::size_t>(n)] = static_cast<float>(position.z());
+  }
+  out.fixed = held;
+  out.touched = touched;
+  if (std::equal(mesh.count.begin(), mesh.count.end(), out.count)) return;
+  std::copy(mesh.count.begin(), mesh.count.end(), out.count);
+  out.on_shell.clear();
+  for (int i = 0; i < mesh.count[0]; ++i) {
+    for (int j = 0; j < mesh.count[1]; ++j) {
+      for (int k = 0; k < mesh.count[2]; ++k) out.on_shell.push_back(mesh.is_shell(i, j, k));
+    }
+  }
+}
+
+void write_material(const Scene& scene, const SpringLattice& lattice, MaterialSnapshot& out) {
+  const Material& material = scene.body.material;
+  out.name = material.name;
+  out.youngs_modulus_pa = material.youngs_modulus_pa;
+  out.felt_youngs_modulus_pa = lattice.youngs_modulus_pa();
+  out.poissons_ratio = material.poissons_ratio;
+  out.density_kg_per_m3 = material.density_kg_per_m3;
+  out.damping_per_s = scene.sculpting.damping_per_s;
+  out.plastic = material.plastic;
+  out.mass_kg = lattice.mass_kg();
+}
+
+}  // namespace spoonbill
