@@ -51,8 +51,8 @@ const ImDrawData& FramePainter::lay_out(const Snapshot& snapshot, const ViewSett
   const int width = context_->width_px();
   const int height = context_->height_px();
   interface_.begin_frame(width, height);
-  draw_labels(overlay_labels(snapshot, view, width, height), view, width, height, *interface_.theme().fonts.body,
-              *ImGui::GetBackgroundDrawList());
+  draw_labels(overlay_labels(snapshot, view, width, height), view, width, height,
+              *interface_.theme().fonts.body, *ImGui::GetBackgroundDrawList());
   // Nobody can press anything in a picture.
   if (view.panel_px.width > 0.0) draw_panel(panel, interface_.theme(), view.panel_px);
   return interface_.end_frame();

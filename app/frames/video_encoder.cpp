@@ -44,6 +44,7 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& file, con
 // Starts ffmpeg with `input` as its standard input and nothing else of ours; -1 when it does not start.
 pid_t spawn(const std::vector<std::string>& arguments, int input) {
   std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
   pointers.push_back(nullptr);
   posix_spawn_file_actions_t actions;
@@ -114,8 +115,9 @@ Status VideoEncoder::add(const Image& frame) {
   while (sent < frame.rgba.size()) {
     const ssize_t count = write(pipe_, frame.rgba.data() + sent, frame.rgba.size() - sent);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0)
+    if (count < 0) {
       return Error{file_.string() + ": ffmpeg stopped; is the folder writable and the ending known?"};
+    }
     sent += static_cast<std::size_t>(count);
   }
   return {};

@@ -45,7 +45,7 @@ Result<Session> Session::make(const Document& document, const std::string& sourc
 }
 
 TickResult advance(Session& session, const DeviceReading& reading) {
-  const TickResult result = tick(session.simulation, session.coupling, session.device, reading);
+  TickResult result = tick(session.simulation, session.coupling, session.device, reading);
   session.reading = reading;
   session.flags |= result.flags;
   session.history.after_tick(session.simulation, result.touching);

@@ -1,5 +1,6 @@
 // How a document or a recording wants its scene looked at, and the JSON for it:
-//   "view": {"camera": {...}, "overlays": {"lattice": true, ...}, "see_through_body": false, "ground_mm": -40}
+//   "view": {"camera": {...}, "overlays": {"lattice": true, ...}, "see_through_body": false, "ground_mm":
+//   -40}
 //   {"command": "set_camera", ...}   {"command": "set_overlays", "lattice": true, ...}
 // Camera fields, all optional: "yaw_deg", "pitch_deg", "field_of_view_deg", and "target_mm": [x, y, z] with
 // "distance_mm"; without these two the whole body is shown. Overlays that are not named stay as they are.

@@ -146,8 +146,9 @@ TEST_F(BendPictures, WhatMustShowShows) {
       },
       [](ViewSettings&, PanelModel& panel) { panel.device += "s"; },
   };
-  for (bool Overlays::*overlay : {&Overlays::fixed_nodes, &Overlays::touched_nodes, &Overlays::force,
-                                  &Overlays::fixing_planes, &Overlays::tool, &Overlays::scale_bar, &Overlays::legend}) {
+  for (bool Overlays::*overlay :
+       {&Overlays::fixed_nodes, &Overlays::touched_nodes, &Overlays::force, &Overlays::fixing_planes,
+        &Overlays::tool, &Overlays::scale_bar, &Overlays::legend}) {
     edits.emplace_back([overlay](ViewSettings& view, PanelModel&) { view.overlays.*overlay = false; });
   }
   const std::vector<double> change = changes(edits);
