@@ -80,6 +80,17 @@ struct BlockCells {
   alignas(64) float dilation[block];
 };
 
+inline void add_corner_forces(const LatticeView& view, int start, const BlockCells& cells) {
+  for (int c = 0; c < 8; ++c) {
+    float* __restrict fx = view.fx + start + view.corner_offset[c];
+    float* __restrict fy = view.fy + start + view.corner_offset[c];
+    float* __restrict fz = view.fz + start + view.corner_offset[c];
+    for (int l = 0; l < block; ++l) fx[l] += cells.x[c][l];
+    for (int l = 0; l < block; ++l) fy[l] += cells.y[c][l];
+    for (int l = 0; l < block; ++l) fz[l] += cells.z[c][l];
+  }
+}
+
 void volume_block(const LatticeView& view, int start, float tau, BlockCells& out) {
   for (int l = 0; l < block; ++l) {
     const int n = start + l;
@@ -111,14 +122,9 @@ void volume_forces(const LatticeView& view, float tau) {
   for (int i = 0; i < view.padded_count; ++i) view.node_dilation[i] = 0.0f;
   for (int start = 0; start < view.padded_count; start += block) {
     volume_block(view, start, tau, cells);
+    add_corner_forces(view, start, cells);
     for (int c = 0; c < 8; ++c) {
-      float* __restrict fx = view.fx + start + view.corner_offset[c];
-      float* __restrict fy = view.fy + start + view.corner_offset[c];
-      float* __restrict fz = view.fz + start + view.corner_offset[c];
       float* __restrict j = view.node_dilation + start + view.corner_offset[c];
-      for (int l = 0; l < block; ++l) fx[l] += cells.x[c][l];
-      for (int l = 0; l < block; ++l) fy[l] += cells.y[c][l];
-      for (int l = 0; l < block; ++l) fz[l] += cells.z[c][l];
       for (int l = 0; l < block; ++l) j[l] += cells.dilation[l];
     }
   }
@@ -170,12 +176,7 @@ void add_volume_stiffness(const LatticeView& view) {
         cells.z[c][l] = scale * gradient.g[c].z;
       }
     }
-    for (int c = 0; c < 8; ++c) {
-      const int to = start + view.corner_offset[c];
-      for (int l = 0; l < block; ++l) view.fx[to + l] += cells.x[c][l];
-      for (int l = 0; l < block; ++l) view.fy[to + l] += cells.y[c][l];
-      for (int l = 0; l < block; ++l) view.fz[to + l] += cells.z[c][l];
-    }
+    add_corner_forces(view, start, cells);
   }
 }
 
