@@ -21,8 +21,8 @@ inline constexpr int substep_ceiling = 4;
 // frequency lags a sudden contact by some tens of ticks.
 inline constexpr double stability_share = 0.85;
 
-// The share of it that a felt stiffness may take with one substep: strain and flow raise the fastest
-// frequency by 1.2 to 1.6 times, and stay below the limit so.
+// The share of it that a felt stiffness may take with one substep. Strain and flow raise the fastest
+// frequency by 1.2 to 1.6 times; where they do, a relaxation step takes a second substep.
 inline constexpr double felt_stability_share = 0.75;
 
 // No node moves further than this share of a cell in a substep, relative to the body's mean velocity.
