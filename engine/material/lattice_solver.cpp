@@ -82,7 +82,7 @@ RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings, const T
   contacts.begin(motion, report.material_time_s);
   const float h = static_cast<float>(substeps.h);
   if (substeps.slowed)
-    view.inverse_mass = lattice.stable_inverse_mass(h, static_cast<float>(stability_share));
+    view.inverse_mass = lattice.steady_strained_nodes(h, static_cast<float>(stability_share));
   const int total = settings.iterations * substeps.count;
   for (int s = 0; s < total; ++s) {
     const double fraction = static_cast<double>(s) / total;

@@ -316,13 +316,18 @@ void SpringLattice::set_node_force(int node, const Vector3& force_n) {
   has_applied_force_ = true;
 }
 
-const float* SpringLattice::stable_inverse_mass(float h_s, float share) {
+const float* SpringLattice::steady_strained_nodes(float h_s, float share) {
   kernels_->row_sums(view(), row_sum_.data());
   // w^2 (h^2 + 2 tau h) <= 4 is h <= (2 / w) (sqrt(1 + z^2) - z) with z = tau w / 2.
   const float limit = 4.0f * share * share / (h_s * h_s + 2.0f * damping_time_ * h_s);
   for (int i = 0; i < padded_count_; ++i) {
     const float stable = limit / std::max(row_sum_[i], 1e-30f);
     stable_inverse_mass_[i] = std::min(inverse_mass_[i], stable);
+    if (!(stable < inverse_mass_[i])) continue;
+    // Heavier at the same momentum: otherwise forces that now act on more mass could not stop what they let
+    // loose.
+    const float slower = stable / inverse_mass_[i];
+    for (Floats* v : {&vx_, &vy_, &vz_}) (*v)[i] *= slower;
   }
   return stable_inverse_mass_.data();
 }

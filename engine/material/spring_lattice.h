@@ -67,9 +67,10 @@ class SpringLattice {
   LatticeView view();
   const LatticeKernels& kernels() const { return *kernels_; }
   const float* free_mass() const { return free_mass_.data(); }
-  // Mobilities at which a substep of h_s is stable whatever the strain: where a node's own is too high for
-  // its stiffness now, it counts as heavier. Until the next call; `share` is of the stability limit.
-  const float* stable_inverse_mass(float h_s, float share);
+  // Makes a substep of h_s stable whatever the strain: a node whose mass is too small for its stiffness now
+  // counts as heavier, at the momentum that it has. Returns the inverse masses to step with, valid until the
+  // next call; `share` is of the stability limit.
+  const float* steady_strained_nodes(float h_s, float share);
   const float* applied_force(int axis) const { return applied_[axis].data(); }
   bool has_applied_force() const { return has_applied_force_; }
 

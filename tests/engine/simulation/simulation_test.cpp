@@ -261,8 +261,9 @@ TEST(Simulation, NoSettingBlowsItUp) {
     for (int n = 0; n < simulation.lattice().mesh().node_count(); ++n) {
       const Vector3 d = simulation.lattice().displacement(n);
       ASSERT_TRUE(d.allFinite()) << "trial " << trial;
-      // An undamped, soft body let go from a 5 m/s pull swings, but is not thrown apart.
-      ASSERT_LT(d.norm(), 0.5) << "trial " << trial;
+      // Without any damping a body may fly and swing as far as the speed cap lets it; with some it stays
+      // near.
+      ASSERT_LT(d.norm(), scene.sculpting.damping_per_s > 0.0 ? 0.2 : 2.0) << "trial " << trial;
     }
   }
 }
