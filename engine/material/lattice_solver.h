@@ -32,7 +32,7 @@ inline constexpr double speed_cap_cells = 0.1;
 // (sqrt(1 + z^2) - z), from |trace| <= 1 + determinant of the update matrix of x'' + 2 z w x' + w^2 x = 0.
 double stable_step_s(double angular_frequency, double damping_ratio);
 
-// The largest Young's modulus at which one relaxation step of tick_s takes one substep, for a lattice whose
+// The largest Young's modulus at which one relaxation step takes one substep, for a lattice whose
 // fastest frequency is `unit_frequency` at 1 Pa: frequencies grow with the root of the modulus.
 double felt_modulus_limit_pa(double unit_frequency, double damping_ratio);
 

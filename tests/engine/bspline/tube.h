@@ -7,7 +7,7 @@
 namespace spoonbill {
 
 // Near an ellipsoid with half-axes 0.02, 0.01 and 0.05 m around `centre`, its poles at z = +-0.05. The
-// surface is smooth there: the rings beside the poles lie in the tangent plane. du x dv points inward.
+// surface is smooth there: the rings beside the poles lie in the tangent plane. du x dv points outward.
 Surface ellipsoid_tube(int around, int along, const Vector3& centre = Vector3::Zero());
 
 // The same surface with the directions exchanged: poles at the ends of u.
