@@ -24,7 +24,7 @@ TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpe
 
   TickResult result;
   result.flags = reaction.flags;
-  result.touching = reaction.touching;
+  result.touching = reaction.touching || reaction.mirror_touching;
   Vector3 wanted = Vector3::Zero();
   if (reaction.touching) wanted = stiffness * (reaction.proxy.position_m - input.pose.position_m);
   const double norm = wanted.norm();

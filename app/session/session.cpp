@@ -25,6 +25,12 @@ Status apply_simulation_command(Session& session, const TimedCommand& timed) {
   return {};
 }
 
+Status cancel_stroke(Session& session) {
+  if (!session.history.in_stroke()) return {};
+  if (Status cancelled = session.history.cancel(session.simulation); !cancelled) return cancelled;
+  return session.simulation.apply(LiftTool{});
+}
+
 Error unknown_command(const TimedCommand& timed) {
   return Error{timed.origin + ": unknown command " + json_excerpt(timed.command)};
 }
@@ -77,6 +83,7 @@ Status apply_command(Session& session, const TimedCommand& timed) {
   if (is_view_command(command)) return apply_view_command(command, timed.origin, session.view);
   if (is_history_command(command, "undo")) return session.history.undo(session.simulation);
   if (is_history_command(command, "redo")) return session.history.redo(session.simulation);
+  if (is_history_command(command, "cancel_stroke")) return cancel_stroke(session);
   return unknown_command(timed);
 }
 

@@ -1,8 +1,13 @@
 #include "app/undo/stroke_history.h"
 
-#include <utility>
+#include <algorithm>
 
 namespace spoonbill {
+
+StrokeHistory::StrokeHistory(const Simulation& simulation) : untouched_(simulation.shape()) {
+  const std::size_t bytes = std::max<std::size_t>(1, untouched_.lattice.size() * sizeof(float));
+  shapes_.assign(std::clamp<std::size_t>(memory_limit_bytes / bytes, 3, shape_limit), untouched_);
+}
 
 void StrokeHistory::after_tick(const Simulation& simulation, bool touching) {
   if (touching) {
@@ -13,62 +18,57 @@ void StrokeHistory::after_tick(const Simulation& simulation, bool touching) {
   }
   if (touching_ && ++ticks_since_touch_ < release_ticks) return;
   touching_ = false;
-  untouched_ = simulation.shape();
+  simulation.write_shape(untouched_);
 }
 
 void StrokeHistory::begin_stroke() {
-  undone_.clear();
-  if (base_ && open_stroke_) {
-    done_.push_back(difference(*base_, untouched_));
-  } else if (base_ && !done_.empty()) {
-    ShapeState before = *base_;
-    take_back(before, done_.back());
-    done_.back() = difference(before, untouched_);
+  if (open_stroke_) {
+    if (at_ + 1 == shapes_.size()) {
+      std::rotate(shapes_.begin(), shapes_.begin() + 1, shapes_.end());
+    } else {
+      ++at_;
+    }
   }
-  base_ = untouched_;
+  shapes_[at_] = untouched_;
+  count_ = at_ + 1;
   open_stroke_ = true;
 }
 
 Status StrokeHistory::undo(Simulation& simulation) {
   if (!can_undo()) return {};
-  if (open_stroke_) {
-    ShapeDifference change = difference(*base_, simulation.shape());
-    if (Status moved = move_to(simulation, *base_); !moved) return moved;
-    undone_.push_back(std::move(change));
-    open_stroke_ = false;
-    return {};
+  if (!open_stroke_) return go_to(at_ - 1, simulation);
+  if (at_ + 1 == shapes_.size()) {
+    std::rotate(shapes_.begin(), shapes_.begin() + 1, shapes_.end());
+    --at_;
   }
-  ShapeState shape = *base_;
-  take_back(shape, done_.back());
-  if (Status moved = move_to(simulation, std::move(shape)); !moved) return moved;
-  undone_.push_back(std::move(done_.back()));
-  done_.pop_back();
-  return {};
+  simulation.write_shape(shapes_[at_ + 1]);
+  count_ = at_ + 2;
+  return go_to(at_, simulation);
 }
 
 Status StrokeHistory::redo(Simulation& simulation) {
-  if (!can_redo()) return {};
-  ShapeState shape = *base_;
-  do_again(shape, undone_.back());
-  if (Status moved = move_to(simulation, std::move(shape)); !moved) return moved;
-  done_.push_back(std::move(undone_.back()));
-  undone_.pop_back();
-  return {};
+  return can_redo() ? go_to(at_ + 1, simulation) : Status();
+}
+
+Status StrokeHistory::cancel(Simulation& simulation) {
+  if (!in_stroke()) return {};
+  count_ = at_ + 1;
+  return go_to(at_, simulation);
 }
 
 void StrokeHistory::clear(const Simulation& simulation) {
-  base_.reset();
-  done_.clear();
-  undone_.clear();
+  at_ = 0;
+  count_ = 1;
   open_stroke_ = false;
   touching_ = false;
-  untouched_ = simulation.shape();
+  simulation.write_shape(untouched_);
 }
 
-Status StrokeHistory::move_to(Simulation& simulation, ShapeState shape) {
-  if (Status restored = simulation.restore(shape); !restored) return restored;
-  untouched_ = shape;
-  base_ = std::move(shape);
+Status StrokeHistory::go_to(std::size_t index, Simulation& simulation) {
+  if (Status restored = simulation.restore(shapes_[index]); !restored) return restored;
+  untouched_ = shapes_[index];
+  at_ = index;
+  open_stroke_ = false;
   touching_ = false;
   return {};
 }

@@ -2,19 +2,25 @@
 // next stroke, belongs to it. Shapes are kept bit for bit. One owner, one thread: whoever ticks.
 #pragma once
 
-#include <optional>
+#include <cstddef>
 #include <vector>
 
-#include "app/undo/shape_difference.h"
+#include "engine/simulation/simulation.h"
 
 namespace spoonbill {
 
+// All memory is taken when it is made, so that nothing is allocated while the haptic thread calls it. When it
+// is full the oldest shape goes.
 class StrokeHistory {
  public:
   // A release shorter than this is a bounce within the stroke.
   static constexpr int release_ticks = 50;
 
-  explicit StrokeHistory(const Simulation& simulation) : untouched_(simulation.shape()) {}
+  // Shapes that are kept: at most these, and fewer of a body so large that they would fill more memory.
+  static constexpr std::size_t shape_limit = 64;
+  static constexpr std::size_t memory_limit_bytes = std::size_t{64} << 20;
+
+  explicit StrokeHistory(const Simulation& simulation);
 
   // After every tick. `touching`: whether the tool acted on the body in that tick.
   void after_tick(const Simulation& simulation, bool touching);
@@ -24,22 +30,26 @@ class StrokeHistory {
   Status undo(Simulation& simulation);
   Status redo(Simulation& simulation);
 
+  // The shape before the stroke that is under way, which is forgotten. Without one, nothing happens.
+  Status cancel(Simulation& simulation);
+
   // To be called when a command has changed what a shape means (fixing planes, rest shape): no way back over
   // it.
   void clear(const Simulation& simulation);
 
-  bool can_undo() const { return open_stroke_ || !done_.empty(); }
-  bool can_redo() const { return !undone_.empty(); }
+  bool can_undo() const { return open_stroke_ || at_ > 0; }
+  bool can_redo() const { return !open_stroke_ && at_ + 1 < count_; }
+  bool in_stroke() const { return touching_; }
 
  private:
   void begin_stroke();
-  Status move_to(Simulation& simulation, ShapeState shape);
+  Status go_to(std::size_t index, Simulation& simulation);
 
-  // The history is a row of shapes; neighbours are kept as differences, and one of them in full. When a
-  // stroke is open, base_ is the shape before it; otherwise it is the one that undo or redo went to.
-  std::optional<ShapeState> base_;
-  std::vector<ShapeDifference> done_;    // up to base_, oldest first
-  std::vector<ShapeDifference> undone_;  // from base_ on, the next one last
+  // The row of shapes that undo and redo walk along: shapes_[0 .. count_ - 1]. The body has the shape at_,
+  // or, when a stroke is open, one beyond it that is not in the row yet.
+  std::vector<ShapeState> shapes_;
+  std::size_t count_ = 1;
+  std::size_t at_ = 0;
   bool open_stroke_ = false;
 
   bool touching_ = false;

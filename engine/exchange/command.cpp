@@ -10,8 +10,9 @@ namespace spoonbill {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> command_names = {"place_plane",  "remove_planes", "set_tool",
-                                                           "set_material", "set_sculpting", "keep_shape"};
+constexpr std::array<std::string_view, 9> command_names = {"place_plane",  "remove_planes", "set_tool",
+                                                           "set_material", "set_sculpting", "set_symmetry",
+                                                           "reset_proxy",  "lift_tool",     "keep_shape"};
 
 Command read_named(std::string_view name, FieldReader& reader) {
   if (name == "place_plane") return PlacePlane{read_fixing_plane(reader)};
@@ -19,6 +20,9 @@ Command read_named(std::string_view name, FieldReader& reader) {
   if (name == "set_tool") return SetTool{read_tool(reader)};
   if (name == "set_material") return SetMaterial{read_material_fields(reader)};
   if (name == "set_sculpting") return SetSculpting{read_sculpting(reader)};
+  if (name == "set_symmetry") return SetSymmetry{read_symmetry(reader)};
+  if (name == "reset_proxy") return ResetProxy{};
+  if (name == "lift_tool") return LiftTool{};
   if (name == "keep_shape") return KeepShape{};
   std::string known;
   for (const std::string_view other : command_names) {
@@ -50,6 +54,13 @@ struct FieldsOf {
     add_sculpting(command.sculpting, json);
     return json;
   }
+  Json operator()(const SetSymmetry& command) const {
+    Json json{{"command", "set_symmetry"}};
+    add_symmetry(command.symmetry, json);
+    return json;
+  }
+  Json operator()(const ResetProxy&) const { return {{"command", "reset_proxy"}}; }
+  Json operator()(const LiftTool&) const { return {{"command", "lift_tool"}}; }
   Json operator()(const KeepShape&) const { return {{"command", "keep_shape"}}; }
 };
 

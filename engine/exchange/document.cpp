@@ -43,6 +43,20 @@ std::vector<FixingPlane> read_planes(FieldReader& reader) {
   return planes;
 }
 
+Symmetry read_symmetry_of(FieldReader& reader) {
+  if (!reader.has("symmetry")) return {};
+  FieldReader symmetry_reader = reader.inner("symmetry");
+  const Symmetry symmetry = read_symmetry(symmetry_reader);
+  symmetry_reader.finish();
+  return symmetry;
+}
+
+// One that nobody has chosen is left out, so that documents without symmetry stay as they are.
+bool is_chosen(const Symmetry& symmetry) {
+  const Symmetry usual;
+  return symmetry.on || symmetry.point_m != usual.point_m || symmetry.normal != usual.normal;
+}
+
 Json body_to_json(const Body& body) {
   Json json;
   json["name"] = body.name;
@@ -72,11 +86,12 @@ Result<Document> document_from_json(const Json& json, const std::string& source)
   FieldReader sculpting_reader = reader.inner("sculpting");
   const Sculpting sculpting = read_sculpting(sculpting_reader);
   sculpting_reader.finish();
+  const Symmetry symmetry = read_symmetry_of(reader);
   Json view = reader.has("view") ? reader.object("view") : Json::object();
   reader.ignore("view");
   reader.finish();
   if (!body || !reader.status().ok()) return reader.status().error();
-  return Document{std::move(name), Scene{*std::move(body), std::move(planes), tool, sculpting},
+  return Document{std::move(name), Scene{*std::move(body), std::move(planes), tool, sculpting, symmetry},
                   std::move(view)};
 }
 
@@ -89,6 +104,7 @@ Json document_to_json(const Document& document) {
   for (const FixingPlane& plane : document.scene.planes) add_fixing_plane(plane, planes.emplace_back());
   add_tool(document.scene.tool, json["tool"]);
   add_sculpting(document.scene.sculpting, json["sculpting"]);
+  if (is_chosen(document.scene.symmetry)) add_symmetry(document.scene.symmetry, json["symmetry"]);
   json["view"] = document.view;
   return json;
 }

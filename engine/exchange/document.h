@@ -15,6 +15,7 @@
 //    "fixing_planes": [{"point_mm": [20, 0, 0], "normal": [1, 0, 0]}],    may be left out
 //    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6},
 //    "sculpting": {"damping_per_s": 4, "gravity_m_per_s2": [0, 0, 0], "force_scale": 1},
+//    "symmetry": {"on": true, "point_mm": [0, 0, 0], "normal": [0, 0, 1]},          may be left out
 //    "view": {...}}                                              may be left out
 //
 // Version 1. The ranges stand in scene.h and material.h; knots lie within a million of zero and are equal or
@@ -65,6 +66,8 @@ Result<Material> read_material(const std::filesystem::path& file);
 //   {"command": "set_tool", "kind", "action", "radius_mm", "iterations"}         {"command": "keep_shape"}
 //   {"command": "set_material", "name", "source", "youngs_modulus_pa", ...}
 //   {"command": "set_sculpting", "damping_per_s", "gravity_m_per_s2", "force_scale"}
+//   {"command": "set_symmetry", "on", "point_mm", "normal"}     {"command": "reset_proxy"}
+//   {"command": "lift_tool"}
 Result<Command> command_from_json(const Json& json, const std::string& source);
 Json command_to_json(const Command& command);
 

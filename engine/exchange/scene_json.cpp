@@ -25,6 +25,20 @@ void add_fixing_plane(const FixingPlane& plane, Json& json) {
   json["normal"] = vector_to_json(plane.normal);
 }
 
+Symmetry read_symmetry(FieldReader& reader) {
+  Symmetry symmetry;
+  symmetry.on = reader.boolean("on");
+  symmetry.point_m = reader.position_m("point_mm", position_range_m);
+  symmetry.normal = reader.direction("normal");
+  return symmetry;
+}
+
+void add_symmetry(const Symmetry& symmetry, Json& json) {
+  json["on"] = symmetry.on;
+  json["point_mm"] = position_to_json(symmetry.point_m);
+  json["normal"] = vector_to_json(symmetry.normal);
+}
+
 LatticeRequest read_lattice_request(FieldReader& reader) {
   LatticeRequest lattice;
   if (reader.has("nodes") == reader.has("node_budget")) {

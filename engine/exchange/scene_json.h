@@ -26,6 +26,9 @@ void add_tool(const Tool& tool, Json& json);
 Sculpting read_sculpting(FieldReader& reader);
 void add_sculpting(const Sculpting& sculpting, Json& json);
 
+Symmetry read_symmetry(FieldReader& reader);
+void add_symmetry(const Symmetry& symmetry, Json& json);
+
 // Nothing after a problem: a surface has no harmless value.
 std::optional<Surface> read_surface(FieldReader& reader);
 Json surface_to_json(const Surface& surface);

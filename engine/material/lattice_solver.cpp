@@ -41,7 +41,7 @@ void follow_fastest_frequency(SpringLattice& lattice, const LatticeView& view) {
 
 // Returns whether a node met the speed cap.
 bool substep(SpringLattice& lattice, const LatticeView& view, const RelaxSettings& settings, float h,
-             double fraction, ToolState& tool, ContactConstraints& contacts) {
+             double fraction, std::span<const TouchingTool> tools) {
   const LatticeKernels& kernels = lattice.kernels();
   kernels.clear_forces(view);
   kernels.spring_forces(view, lattice.damping_time_s());
@@ -52,7 +52,9 @@ bool substep(SpringLattice& lattice, const LatticeView& view, const RelaxSetting
   kernels.kick(view, h, decay, static_cast<float>(g.x()), static_cast<float>(g.y()),
                static_cast<float>(g.z()));
   const float cap = static_cast<float>(speed_cap_cells) * lattice.cell_size_m() / h;
-  contacts.solve(view, tool, h, fraction, 0.5f * cap);
+  for (const TouchingTool& tool : tools) {
+    tool.contacts->solve(view, *tool.state, h, fraction, 0.5f * cap);
+  }
   float sum[4];
   kernels.momentum(view, lattice.free_mass(), sum);
   const float inverse = sum[3] > 0.0f ? 1.0f / sum[3] : 0.0f;
@@ -70,8 +72,8 @@ double felt_modulus_limit_pa(double unit_frequency, double damping_ratio) {
   return root * root;
 }
 
-RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings, const ToolMotion& motion,
-                  ToolState& tool, ContactConstraints& contacts) {
+RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings,
+                  std::span<const TouchingTool> tools) {
   LatticeView view = lattice.view();
   follow_fastest_frequency(lattice, view);
   const Substeps substeps = choose_substeps(lattice, settings.step_s);
@@ -79,14 +81,14 @@ RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings, const T
   report.substeps = substeps.count;
   report.nodes_slowed = substeps.slowed;
   report.material_time_s = settings.iterations * substeps.count * substeps.h;
-  contacts.begin(motion, report.material_time_s);
+  for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, report.material_time_s);
   const float h = static_cast<float>(substeps.h);
   if (substeps.slowed)
     view.inverse_mass = lattice.steady_strained_nodes(h, static_cast<float>(stability_share));
   const int total = settings.iterations * substeps.count;
   for (int s = 0; s < total; ++s) {
     const double fraction = static_cast<double>(s) / total;
-    report.speed_capped |= substep(lattice, view, settings, h, fraction, tool, contacts);
+    report.speed_capped |= substep(lattice, view, settings, h, fraction, tools);
   }
   if (lattice.plastic()) {
     const double share = std::min(largest_flow_share, lattice.flow_rate_per_s() * report.material_time_s);

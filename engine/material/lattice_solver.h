@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "engine/material/contact_constraints.h"
 #include "engine/material/spring_lattice.h"
@@ -50,8 +51,15 @@ struct RelaxReport {
   bool speed_capped = false;
 };
 
-// Advances the lattice. Denormals must be flushed by the caller for the speed's sake (see DenormalsFlushed).
-RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings, const ToolMotion& motion,
-                  ToolState& tool, ContactConstraints& contacts);
+// A tool that acts on the lattice: how the hand moves it, where it is, and its contacts of this tick.
+struct TouchingTool {
+  ToolMotion motion;
+  ToolState* state;
+  ContactConstraints* contacts;
+};
+
+// Advances the lattice; the tools act in their order. Denormals must be flushed by the caller for the speed's
+// sake (see DenormalsFlushed).
+RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings, std::span<const TouchingTool> tools);
 
 }  // namespace spoonbill

@@ -332,6 +332,11 @@ const float* SpringLattice::steady_strained_nodes(float h_s, float share) {
   return stable_inverse_mass_.data();
 }
 
+void SpringLattice::write_shape(std::vector<float>& shape) const {
+  shape.clear();
+  visit_shape([&](const float* data, std::size_t count) { shape.insert(shape.end(), data, data + count); });
+}
+
 std::vector<float> SpringLattice::shape() const {
   std::vector<float> all;
   visit_shape([&](const float* data, std::size_t count) { all.insert(all.end(), data, data + count); });

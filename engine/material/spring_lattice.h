@@ -89,6 +89,8 @@ class SpringLattice {
     visit(&fastest_frequency_, 1);
   }
   std::vector<float> shape() const;
+  // Allocates only where `shape` has not held one of this lattice before.
+  void write_shape(std::vector<float>& shape) const;
   // False, and nothing changed, when the sizes differ.
   bool set_shape(std::span<const float> shape);
 

@@ -22,9 +22,18 @@ struct SetMaterial {
 struct SetSculpting {
   Sculpting sculpting;
 };
+struct SetSymmetry {
+  Symmetry symmetry;
+};
+// Puts the tool where the hand is, without sweeping the way between: after the hand was not followed for a
+// while.
+struct ResetProxy {};
+// The tool acts on nothing until it has left the body.
+struct LiftTool {};
 // Makes the current shape the rest shape.
 struct KeepShape {};
 
-using Command = std::variant<PlacePlane, RemovePlanes, SetTool, SetMaterial, SetSculpting, KeepShape>;
+using Command = std::variant<PlacePlane, RemovePlanes, SetTool, SetMaterial, SetSculpting, SetSymmetry,
+                             ResetProxy, LiftTool, KeepShape>;
 
 }  // namespace spoonbill

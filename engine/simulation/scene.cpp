@@ -19,13 +19,22 @@ Status check_position(const char* field, const Vector3& position) {
   return {};
 }
 
+Status check_unit(const std::string& field, const Vector3& vector) {
+  const double length = vector.norm();
+  if (std::abs(length - 1.0) <= unit_tolerance) return {};
+  return Error{field + " has length " + number_text(length) + ", must be a unit vector"};
+}
+
 }  // namespace
 
 Status check_fixing_plane(const FixingPlane& plane) {
   if (Status status = check_position("fixing plane: point_m", plane.point_m); !status.ok()) return status;
-  const double length = plane.normal.norm();
-  if (std::abs(length - 1.0) <= unit_tolerance) return {};
-  return Error{"fixing plane: normal has length " + number_text(length) + ", must be a unit vector"};
+  return check_unit("fixing plane: normal", plane.normal);
+}
+
+Status check_symmetry(const Symmetry& symmetry) {
+  if (Status status = check_position("symmetry: point_m", symmetry.point_m); !status.ok()) return status;
+  return check_unit("symmetry: normal", symmetry.normal);
 }
 
 Status check_lattice_request(const LatticeRequest& lattice) {

@@ -43,11 +43,19 @@ struct Sculpting {
   double force_scale = 1.0;  // newtons at the hand for each newton of contact
 };
 
+// Sculpting both sides at once: what the hand does on one side of the plane, a second tool does mirrored.
+struct Symmetry {
+  bool on = false;
+  Vector3 point_m = Vector3::Zero();  // any of the plane
+  Vector3 normal = Vector3::UnitZ();  // unit
+};
+
 struct Scene {
   Body body;
   std::vector<FixingPlane> planes;
   Tool tool;
   Sculpting sculpting;
+  Symmetry symmetry = {};
 };
 
 // What files, commands and the panel's sliders accept: wide enough for any concept, finite for every solver.
@@ -67,5 +75,6 @@ Status check_fixing_plane(const FixingPlane& plane);
 Status check_lattice_request(const LatticeRequest& lattice);
 Status check_tool(const Tool& tool);
 Status check_sculpting(const Sculpting& sculpting);
+Status check_symmetry(const Symmetry& symmetry);
 
 }  // namespace spoonbill

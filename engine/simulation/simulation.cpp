@@ -1,6 +1,8 @@
 #include "engine/simulation/simulation.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 #include "engine/denormals.h"
@@ -9,23 +11,37 @@
 #include "engine/simulation/body_mapping.h"
 #include "engine/simulation/snapshot_parts.h"
 #include "engine/simulation/state_hash.h"
+#include "engine/simulation/symmetry.h"
 #include "engine/simulation/tool_contact.h"
 
 namespace spoonbill {
 
-// The contact keeps the address of the mapping's grid, which the mapping holds by pointer: both move freely.
+// A tool in a hand: the person's own, or its mirror image. The contact keeps the address of the mapping's
+// grid, which the mapping holds by pointer: both move freely.
+struct HeldTool {
+  ToolContact contact;
+  Pose hand{};  // of the last tick
+  ToolState state{};
+  bool placed = false;
+
+  void place(const Pose& pose) {
+    hand = pose;
+    state.position_m = pose.position_m;
+    state.velocity_m_per_s.setZero();
+    placed = true;
+  }
+};
+
 struct Simulation::State {
   Scene scene;
   InstructionSet set;
   SpringLattice lattice;
   BodyMapping mapping;
-  ToolContact contact;
+  HeldTool tool;
+  HeldTool mirrored;
   std::vector<std::uint8_t> held, touched;
   std::uint64_t tick = 0;
   std::uint32_t structure = 1;
-  Pose hand{};  // of the last tick
-  ToolState tool{};
-  bool tool_placed = false;
   RelaxReport relaxed{};
   Reaction reaction{};
 };
@@ -59,7 +75,7 @@ Status check_scene(const Scene& scene) {
   for (const FixingPlane& plane : scene.planes) {
     if (Status status = check_fixing_plane(plane); !status.ok()) return status;
   }
-  return {};
+  return check_symmetry(scene.symmetry);
 }
 
 }  // namespace
@@ -75,11 +91,12 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
   const Surface& surface = scene.body.surface;
   Result<BodyMapping> mapping = BodyMapping::make(surface, surface, lattice.value(), scene.planes, set);
   if (!mapping.ok()) return mapping.error();
-  ToolContact contact(mapping.value());
+  HeldTool tool{ToolContact(mapping.value())};
+  HeldTool mirrored{ToolContact(mapping.value())};
   std::vector<std::uint8_t> touched(held.size(), 0);
   return Simulation(std::make_unique<State>(State{std::move(scene), set, std::move(lattice).value(),
-                                                  std::move(mapping).value(), std::move(contact),
-                                                  std::move(held), std::move(touched)}));
+                                                  std::move(mapping).value(), std::move(tool),
+                                                  std::move(mirrored), std::move(held), std::move(touched)}));
 }
 
 Simulation::Simulation(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -107,7 +124,24 @@ struct CommandApplier {
   Status operator()(const SetTool& command) {
     if (Status status = check_tool(command.tool); !status.ok()) return status;
     state.scene.tool = command.tool;
-    state.contact.release();
+    release();
+    return {};
+  }
+  Status operator()(const SetSymmetry& command) {
+    if (Status status = check_symmetry(command.symmetry); !status.ok()) return status;
+    state.scene.symmetry = command.symmetry;
+    state.mirrored.contact.release();
+    state.mirrored.placed = false;
+    return {};
+  }
+  Status operator()(const ResetProxy&) {
+    release();
+    state.tool.placed = state.mirrored.placed = false;
+    return {};
+  }
+  Status operator()(const LiftTool&) {
+    state.tool.contact.lift();
+    state.mirrored.contact.lift();
     return {};
   }
   Status operator()(const SetSculpting& command) {
@@ -122,7 +156,7 @@ struct CommandApplier {
     lattice->hold(state.held);
     state.lattice = std::move(lattice).value();
     state.scene.body.material = command.material;
-    state.contact.release();
+    release();
     return {};
   }
   Status operator()(const KeepShape&) {
@@ -141,6 +175,11 @@ struct CommandApplier {
   }
 
  private:
+  void release() {
+    state.tool.contact.release();
+    state.mirrored.contact.release();
+  }
+
   Status set_planes(std::vector<FixingPlane> planes) {
     std::vector<std::uint8_t> held = nodes_behind(state.lattice, planes);
     Result<BodyMapping> mapping =
@@ -155,7 +194,8 @@ struct CommandApplier {
 
   void set_mapping(BodyMapping mapping) {
     state.mapping = std::move(mapping);
-    state.contact = ToolContact(state.mapping);
+    state.tool.contact = ToolContact(state.mapping);
+    state.mirrored.contact = ToolContact(state.mapping);
     state.scene.body.surface = state.mapping.current();
     ++state.structure;
   }
@@ -167,22 +207,42 @@ Status Simulation::apply(const Command& command) {
 
 namespace {
 
-ToolMotion motion_of(const Simulation::State& s, const ToolInput& input, double real_over_felt) {
+double real_over_felt(const Simulation::State& s) {
+  return s.scene.body.material.youngs_modulus_pa / s.lattice.youngs_modulus_pa();
+}
+
+ToolMotion motion_of(const Simulation::State& s, const Pose& from, const Pose& to, double coupling_n_per_m) {
   const Tool& tool = s.scene.tool;
   ToolMotion motion;
-  motion.start_m = s.hand.position_m;
-  motion.end_m = input.pose.position_m;
-  motion.orientation = input.pose.orientation;
+  motion.start_m = from.position_m;
+  motion.end_m = to.position_m;
+  motion.orientation = to.orientation;
   motion.radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
-  motion.coupling_n_per_m = input.coupling_n_per_m / real_over_felt;
+  motion.coupling_n_per_m = coupling_n_per_m / real_over_felt(s);
   return motion;
+}
+
+// Finds the contact of a tool and how the hand moves it from the last tick's pose to `pose`.
+TouchingTool touch(const Simulation::State& s, HeldTool& held, const Pose& pose, const ToolInput& input) {
+  if (!held.placed) held.place(pose);
+  held.contact.prepare(s.mapping, s.lattice, s.scene.tool, {held.state.position_m, pose.orientation},
+                       input.gripping);
+  const ToolMotion motion = motion_of(s, held.hand, pose, input.coupling_n_per_m);
+  held.hand = pose;
+  return {motion, &held.state, &held.contact.constraints()};
+}
+
+RelaxSettings relax_settings(const Simulation::State& s) {
+  // What a body sags at rest is its weight over its stiffness: a softer one must weigh less to sag the same.
+  return {s.scene.tool.iterations, tick_s, s.scene.sculpting.damping_per_s,
+          s.scene.sculpting.gravity_m_per_s2 / real_over_felt(s)};
 }
 
 std::uint32_t flags_of(const Simulation::State& s) {
   std::uint32_t flags = tick_flag_none;
   if (s.relaxed.nodes_slowed) flags |= tick_flag_nodes_slowed;
   if (s.relaxed.speed_capped) flags |= tick_flag_speed_capped;
-  if (s.contact.overflow()) flags |= tick_flag_contact_overflow;
+  if (s.tool.contact.overflow() || s.mirrored.contact.overflow()) flags |= tick_flag_contact_overflow;
   return flags;
 }
 
@@ -191,30 +251,24 @@ std::uint32_t flags_of(const Simulation::State& s) {
 Reaction Simulation::advance(const ToolInput& input) {
   const DenormalsFlushed flushed;
   State& s = *state_;
-  if (!s.tool_placed) {
-    s.hand = input.pose;
-    s.tool.position_m = input.pose.position_m;
-    s.tool_placed = true;
-  }
-  const Tool& tool = s.scene.tool;
-  s.contact.prepare(s.mapping, s.lattice, tool, {s.tool.position_m, input.pose.orientation}, input.gripping);
-  const double real_over_felt = s.scene.body.material.youngs_modulus_pa / s.lattice.youngs_modulus_pa();
-  // What a body sags at rest is its weight over its stiffness: a softer one must weigh less to sag the same.
-  const RelaxSettings settings{tool.iterations, tick_s, s.scene.sculpting.damping_per_s,
-                               s.scene.sculpting.gravity_m_per_s2 / real_over_felt};
-  s.relaxed =
-      relax(s.lattice, settings, motion_of(s, input, real_over_felt), s.tool, s.contact.constraints());
+  const bool both = s.scene.symmetry.on;
+  std::array<TouchingTool, 2> tools;
+  tools[0] = touch(s, s.tool, input.pose, input);
+  if (both) tools[1] = touch(s, s.mirrored, mirrored_pose(s.scene.symmetry, input.pose), input);
+  s.relaxed = relax(s.lattice, relax_settings(s), std::span<const TouchingTool>(tools.data(), both ? 2 : 1));
   s.mapping.update(s.lattice);
-  s.hand = input.pose;
   ++s.tick;
 
-  const ContactConstraints& constraints = s.contact.constraints();
-  s.reaction.force_n = constraints.tool_impulse() * (real_over_felt / s.relaxed.material_time_s);
-  s.reaction.proxy = {s.tool.position_m, input.pose.orientation};
+  const ContactConstraints& constraints = s.tool.contact.constraints();
+  const ContactConstraints& mirrored = s.mirrored.contact.constraints();
+  s.reaction.force_n = constraints.tool_impulse() * (real_over_felt(s) / s.relaxed.material_time_s);
+  s.reaction.proxy = {s.tool.state.position_m, input.pose.orientation};
   s.reaction.touching = constraints.acted();
+  s.reaction.mirror_touching = both && mirrored.acted();
   s.reaction.flags = flags_of(s);
   std::fill(s.touched.begin(), s.touched.end(), std::uint8_t{0});
   constraints.mark_touched(s.touched.data());
+  if (both) mirrored.mark_touched(s.touched.data());
   return s.reaction;
 }
 
@@ -231,6 +285,19 @@ const Surface& Simulation::surface() const {
   return state_->mapping.current();
 }
 
+namespace {
+
+void add_to_hash(const HeldTool& held, StateHash& hash) {
+  for (const Vector3& vector : {held.hand.position_m, held.state.position_m, held.state.velocity_m_per_s}) {
+    for (int axis = 0; axis < 3; ++axis) hash.add(vector[axis]);
+  }
+  for (int c = 0; c < 4; ++c) hash.add(held.hand.orientation.coeffs()[c]);
+  const std::uint64_t lifted = held.contact.lifted() ? std::uint64_t{1} << 32 : 0;
+  hash.add(lifted | static_cast<std::uint64_t>(held.contact.constraints().count()));
+}
+
+}  // namespace
+
 std::uint64_t Simulation::state_hash() const {
   const State& s = *state_;
   StateHash hash;
@@ -240,24 +307,38 @@ std::uint64_t Simulation::state_hash() const {
   for (const std::vector<double>* coordinate : {&net.x, &net.y, &net.z}) {
     for (const double value : *coordinate) hash.add(value);
   }
-  for (const Vector3& vector : {s.hand.position_m, s.tool.position_m, s.tool.velocity_m_per_s}) {
-    for (int axis = 0; axis < 3; ++axis) hash.add(vector[axis]);
-  }
-  for (int c = 0; c < 4; ++c) hash.add(s.hand.orientation.coeffs()[c]);
-  hash.add(static_cast<std::uint64_t>(s.contact.constraints().count()));
+  add_to_hash(s.tool, hash);
+  if (s.scene.symmetry.on) add_to_hash(s.mirrored, hash);
   return hash.value();
 }
 
 ShapeState Simulation::shape() const {
-  return {state_->lattice.shape()};
+  ShapeState shape;
+  write_shape(shape);
+  return shape;
+}
+
+void Simulation::write_shape(ShapeState& shape) const {
+  state_->lattice.write_shape(shape.lattice);
 }
 
 Status Simulation::restore(const ShapeState& shape) {
   if (!state_->lattice.set_shape(shape.lattice)) return Error{"shape: it belongs to another lattice"};
-  state_->contact.release();
+  state_->tool.contact.release();
+  state_->mirrored.contact.release();
   state_->mapping.update(state_->lattice);
   return {};
 }
+
+namespace {
+
+void write_symmetry(const Simulation::State& s, Snapshot& snapshot) {
+  snapshot.symmetric = s.scene.symmetry.on;
+  snapshot.symmetry = {s.scene.symmetry.point_m, s.scene.symmetry.normal};
+  snapshot.mirrored_proxy = {s.mirrored.state.position_m, s.mirrored.hand.orientation};
+}
+
+}  // namespace
 
 void Simulation::write_snapshot(Snapshot& snapshot) const {
   const State& s = *state_;
@@ -268,12 +349,13 @@ void Simulation::write_snapshot(Snapshot& snapshot) const {
   snapshot.tool.action = s.scene.tool.action;
   snapshot.tool.iterations = s.scene.tool.iterations;
   snapshot.tool.radius_m = s.scene.tool.kind == ToolKind::point ? 0.0 : s.scene.tool.radius_m;
-  snapshot.tool.device = s.hand;
+  snapshot.tool.device = s.tool.hand;
   snapshot.tool.proxy = s.reaction.proxy;
+  write_symmetry(s, snapshot);
   snapshot.planes.clear();
   for (const FixingPlane& plane : s.scene.planes) snapshot.planes.push_back({plane.point_m, plane.normal});
   snapshot.contacts.clear();
-  const CollisionResult& collision = s.contact.collision();
+  const CollisionResult& collision = s.tool.contact.collision();
   if (s.reaction.touching && collision.found) {
     const SurfaceContact& nearest = collision.nearest;
     snapshot.contacts.push_back({nearest.point_m, nearest.normal, nearest.depth_m, nearest.u, nearest.v});

@@ -31,6 +31,7 @@ struct Reaction {
   Vector3 force_n = Vector3::Zero();  // on the tool, averaged over the tick's material time
   Pose proxy;                         // where the material stops the tool
   bool touching = false;
+  bool mirror_touching = false;  // the mirrored tool of a symmetric stroke; its force is not felt
   std::uint32_t flags = tick_flag_none;
 };
 
@@ -69,6 +70,8 @@ class Simulation {
   void write_snapshot(Snapshot& snapshot) const;
 
   ShapeState shape() const;
+  // Allocates only where `shape` is of another size.
+  void write_shape(ShapeState& shape) const;
   // Refused when the state is of another lattice.
   Status restore(const ShapeState& shape);
 

@@ -86,6 +86,9 @@ struct Snapshot {
   LatticeSnapshot lattice;
   ToolSnapshot tool;
   std::vector<PlaneSnapshot> planes;
+  bool symmetric = false;  // a second tool mirrors the first
+  PlaneSnapshot symmetry;
+  Pose mirrored_proxy;  // of the second tool, when symmetric
   std::vector<ContactSnapshot> contacts;
   Vector3 force_n = Vector3::Zero();  // on the hand, after scale and limit
   MaterialSnapshot material;

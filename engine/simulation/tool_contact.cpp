@@ -19,12 +19,20 @@ void ToolContact::release() {
   gripped_ = false;
 }
 
+void ToolContact::lift() {
+  release();
+  lifted_ = true;
+}
+
 void ToolContact::prepare(const BodyMapping& mapping, const SpringLattice& lattice, const Tool& tool,
                           const Pose& pose, bool gripping) {
   const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
   const double margin = margin_cells * static_cast<double>(lattice.cell_size_m());
   collision_ = collider_.collide(mapping.current(), ToolShape::sphere(pose.position_m, radius), margin, true);
   overflow_ = collision_.overflow;
+  const bool inside = collision_.found && collision_.nearest.depth_m >= 0.0;
+  lifted_ = lifted_ && (inside || gripping);
+  if (lifted_) return release();
   if (tool.action == ToolAction::push) {
     constraints_.clear();
     if (collision_.found) add_pushes(mapping, lattice);
@@ -32,7 +40,7 @@ void ToolContact::prepare(const BodyMapping& mapping, const SpringLattice& latti
   }
   if (!gripping) {
     release();
-  } else if (!gripped_ && collision_.found && collision_.nearest.depth_m >= 0.0) {
+  } else if (!gripped_ && inside) {
     add_grips(mapping, lattice, pose);
     gripped_ = true;
   }

@@ -21,6 +21,9 @@ class ToolContact {
   void prepare(const BodyMapping& mapping, const SpringLattice& lattice, const Tool& tool, const Pose& pose,
                bool gripping);
   void release();
+  // Acts on nothing from the next prepare() on until the tool has left the body and the button is free.
+  void lift();
+  bool lifted() const { return lifted_; }
 
   ContactConstraints& constraints() { return constraints_; }
   const ContactConstraints& constraints() const { return constraints_; }
@@ -35,6 +38,7 @@ class ToolContact {
   ContactConstraints constraints_;
   CollisionResult collision_;
   bool gripped_ = false;
+  bool lifted_ = false;
   bool overflow_ = false;
 };
 

@@ -4,6 +4,7 @@
 
 #include "haptic/tick.h"
 #include "haptic/virtual_device.h"
+#include "tests/engine/allocations.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
@@ -30,16 +31,21 @@ struct Touched {
     return touched;
   }
 
-  // Comes down until it touches, presses a little further and goes. Returns the shape before the touch.
-  ShapeState stroke() {
+  // Comes down until it touches, and presses a little further. Returns the shape before the touch.
+  ShapeState press() {
     ShapeState before = simulation.shape();
-    double height_m = 0.03;
+    double height_m = 0.011;
     while (height_m > -0.05 && !hold(height_m, 1)) {
       height_m -= 1e-4;
       before = simulation.shape();
     }
     EXPECT_GT(height_m, -0.05);
     hold(height_m - 0.001, 40);
+    return before;
+  }
+
+  ShapeState stroke() {
+    ShapeState before = press();
     hold(0.03, 200);
     return before;
   }
@@ -112,16 +118,53 @@ TEST(StrokeHistory, WithoutStrokesNothingHappens) {
   EXPECT_EQ(touched.simulation.shape(), before);
 }
 
-TEST(ShapeDifference, KeepsOnlyWhatDiffersToTheLastBit) {
-  ShapeState before{{0.0F, 1.0F, 2.0F, 3.0F}};
-  ShapeState after{{-0.0F, 1.0F, 2.5F, 3.0F}};
-  const ShapeDifference change = difference(before, after);
-  ASSERT_EQ(change.size(), 2U);
-  ShapeState shape = after;
-  take_back(shape, change);
-  EXPECT_TRUE(difference(shape, before).empty());
-  do_again(shape, change);
-  EXPECT_TRUE(difference(shape, after).empty());
+TEST(StrokeHistory, CancelForgetsTheStrokeUnderWay) {
+  Touched touched;
+  touched.history.clear(touched.simulation);
+  touched.stroke();
+  const ShapeState before = touched.press();
+  ASSERT_TRUE(touched.history.in_stroke());
+  ASSERT_TRUE(touched.history.cancel(touched.simulation));
+  EXPECT_EQ(touched.simulation.shape(), before);
+  EXPECT_FALSE(touched.history.can_redo());
+  ASSERT_TRUE(touched.history.undo(touched.simulation));
+  EXPECT_NE(touched.simulation.shape(), before);
+}
+
+TEST(StrokeHistory, CancelWithoutAStrokeDoesNothing) {
+  Touched touched;
+  touched.history.clear(touched.simulation);
+  touched.stroke();
+  const ShapeState after = touched.simulation.shape();
+  ASSERT_TRUE(touched.history.cancel(touched.simulation));
+  EXPECT_EQ(touched.simulation.shape(), after);
+}
+
+TEST(StrokeHistory, KeepsTheNewestWhenItIsFull) {
+  Touched touched;
+  touched.history.clear(touched.simulation);
+  const int strokes = static_cast<int>(StrokeHistory::shape_limit) + 6;
+  std::vector<ShapeState> befores;
+  for (int i = 0; i < strokes; ++i) befores.push_back(touched.stroke());
+  const ShapeState last = touched.simulation.shape();
+  int undone = 0;
+  for (; touched.history.can_undo(); ++undone) ASSERT_TRUE(touched.history.undo(touched.simulation));
+  EXPECT_EQ(undone, static_cast<int>(StrokeHistory::shape_limit) - 1);
+  EXPECT_EQ(touched.simulation.shape(), befores[static_cast<std::size_t>(strokes - undone)]);
+  while (touched.history.can_redo()) ASSERT_TRUE(touched.history.redo(touched.simulation));
+  EXPECT_EQ(touched.simulation.shape(), last);
+}
+
+TEST(StrokeHistory, FollowsTheTicksWithoutAllocating) {
+  Touched touched;
+  touched.history.clear(touched.simulation);
+  touched.hold(0.03, 2);
+  const std::size_t before = allocation_count();
+  for (int i = 0; i < 5; ++i) {
+    touched.hold(0.0, 5);
+    touched.hold(0.03, StrokeHistory::release_ticks + 1);
+  }
+  EXPECT_EQ(allocation_count(), before);
 }
 
 }  // namespace
