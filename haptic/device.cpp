@@ -21,6 +21,31 @@ std::int64_t whole_nanometres(double metres) {
 
 }  // namespace
 
+Status check_specification(const DeviceSpecification& specification) {
+  struct Field {
+    const char* name;
+    double value;
+    Range<double> range;
+  };
+  const DeviceSpecification& of = specification;
+  const Field fields[] = {
+      {"maximum_force_n", of.maximum_force_n, device_force_range_n},
+      {"maximum_stiffness_n_per_m", of.maximum_stiffness_n_per_m, device_stiffness_range_n_per_m},
+      {"maximum_damping_n_s_per_m", of.maximum_damping_n_s_per_m, device_damping_range_n_s_per_m},
+      {"workspace_radius_m", of.workspace_radius_m, device_workspace_range_m},
+      {"position_resolution_m", of.position_resolution_m, device_resolution_range_m},
+      {"quiet_force_n", of.quiet_force_n, device_quiet_force_range_n},
+      {"ramp_time_s", of.ramp_time_s, device_ramp_time_range_s},
+      {"maximum_force_rate_n_per_s", of.maximum_force_rate_n_per_s, device_force_rate_range_n_per_s},
+      {"maximum_speed_m_per_s", of.maximum_speed_m_per_s, device_speed_range_m_per_s}};
+  for (const Field& field : fields) {
+    if (Status status = check_range(field.name, field.value, field.range); !status.ok()) {
+      return Error{"device " + of.name + ": " + status.error().message};
+    }
+  }
+  return {};
+}
+
 Pose DeviceReading::pose() const {
   Pose pose;
   for (int axis = 0; axis < 3; ++axis) {

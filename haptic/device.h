@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/pose.h"
+#include "engine/range.h"
 #include "engine/result.h"
 
 namespace spoonbill {
@@ -20,7 +21,30 @@ struct DeviceSpecification {
   double position_resolution_m = 1e-9;
   bool senses_orientation = true;
   bool actuates_torque = false;
+
+  // What the safety chain (haptic/safety.h) keeps to.
+  double quiet_force_n = 0.2;  // forces begin when what is wanted has stayed below this
+  // From no force to the whole of it. Short, as the virtual device hurts nobody; 2 s suits a real one.
+  double ramp_time_s = 0.2;
+  // What a hand at the highest speed asks of the highest stiffness is less (700 N/s), so that only jumps are
+  // held back.
+  double maximum_force_rate_n_per_s = 1000.0;
+  double maximum_speed_m_per_s = 1.0;  // faster hands get less force, none at twice this
+  std::uint32_t dead_man_buttons = 0;  // all of these must be held for any force; 0: none
 };
+
+inline constexpr Range<double> device_force_range_n{0.0, 1000.0};
+inline constexpr Range<double> device_stiffness_range_n_per_m{0.0, 1e6};
+inline constexpr Range<double> device_damping_range_n_s_per_m{0.0, 1e5};
+inline constexpr Range<double> device_workspace_range_m{1e-3, 10.0};
+inline constexpr Range<double> device_resolution_range_m{0.0, 0.1};
+inline constexpr Range<double> device_quiet_force_range_n{1e-3, 1000.0};
+inline constexpr Range<double> device_ramp_time_range_s{0.0, 60.0};
+inline constexpr Range<double> device_force_rate_range_n_per_s{1.0, 1e6};
+inline constexpr Range<double> device_speed_range_m_per_s{1e-2, 100.0};
+
+// Names the first field that is outside its range.
+Status check_specification(const DeviceSpecification& specification);
 
 inline constexpr std::uint32_t button_main = 1u;  // grips in pull
 

@@ -19,7 +19,9 @@
 // end is taken when all is done.
 //
 // device: name, maximum_force_n, maximum_stiffness_n_per_m, maximum_damping_n_s_per_m, workspace_radius_m,
-// position_resolution_m, senses_orientation, actuates_torque.
+// position_resolution_m, senses_orientation, actuates_torque; then quiet_force_n, ramp_time_s,
+// maximum_force_rate_n_per_s, maximum_speed_m_per_s, dead_man_buttons, each of which may be missing, as the
+// first recordings have none of them, and is then the default of DeviceSpecification.
 #pragma once
 
 #include <cstdint>

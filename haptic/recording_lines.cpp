@@ -145,19 +145,45 @@ Json device_to_json(const DeviceSpecification& device) {
   json["position_resolution_m"] = number_to_json(device.position_resolution_m);
   json["senses_orientation"] = device.senses_orientation;
   json["actuates_torque"] = device.actuates_torque;
+  json["quiet_force_n"] = number_to_json(device.quiet_force_n);
+  json["ramp_time_s"] = number_to_json(device.ramp_time_s);
+  json["maximum_force_rate_n_per_s"] = number_to_json(device.maximum_force_rate_n_per_s);
+  json["maximum_speed_m_per_s"] = number_to_json(device.maximum_speed_m_per_s);
+  json["dead_man_buttons"] = device.dead_man_buttons;
   return json;
+}
+
+void read_if_there(FieldReader& reader, const char* field, Range<double> range, double& value) {
+  if (reader.has(field)) value = reader.number(field, range);
+  reader.ignore(field);
+}
+
+void read_safety(FieldReader& reader, DeviceSpecification& device) {
+  read_if_there(reader, "quiet_force_n", device_quiet_force_range_n, device.quiet_force_n);
+  read_if_there(reader, "ramp_time_s", device_ramp_time_range_s, device.ramp_time_s);
+  read_if_there(reader, "maximum_force_rate_n_per_s", device_force_rate_range_n_per_s,
+                device.maximum_force_rate_n_per_s);
+  read_if_there(reader, "maximum_speed_m_per_s", device_speed_range_m_per_s, device.maximum_speed_m_per_s);
+  if (reader.has("dead_man_buttons")) {
+    device.dead_man_buttons =
+        static_cast<std::uint32_t>(reader.unsigned_integer("dead_man_buttons", 0xffffffffu));
+  }
+  reader.ignore("dead_man_buttons");
 }
 
 DeviceSpecification read_device(FieldReader reader) {
   DeviceSpecification device;
   device.name = reader.text("name");
-  device.maximum_force_n = reader.number("maximum_force_n", {0.0, 1000.0});
-  device.maximum_stiffness_n_per_m = reader.number("maximum_stiffness_n_per_m", {0.0, 1e6});
-  device.maximum_damping_n_s_per_m = reader.number("maximum_damping_n_s_per_m", {0.0, 1e5});
-  device.workspace_radius_m = reader.number("workspace_radius_m", {1e-3, 10.0});
-  device.position_resolution_m = reader.number("position_resolution_m", {0.0, 0.1});
+  device.maximum_force_n = reader.number("maximum_force_n", device_force_range_n);
+  device.maximum_stiffness_n_per_m =
+      reader.number("maximum_stiffness_n_per_m", device_stiffness_range_n_per_m);
+  device.maximum_damping_n_s_per_m =
+      reader.number("maximum_damping_n_s_per_m", device_damping_range_n_s_per_m);
+  device.workspace_radius_m = reader.number("workspace_radius_m", device_workspace_range_m);
+  device.position_resolution_m = reader.number("position_resolution_m", device_resolution_range_m);
   device.senses_orientation = reader.boolean("senses_orientation");
   device.actuates_torque = reader.boolean("actuates_torque");
+  read_safety(reader, device);
   reader.finish();
   return device;
 }

@@ -1,0 +1,56 @@
+#include "haptic/triple_buffer.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace spoonbill {
+namespace {
+
+TEST(TripleBuffer, StartsWithTheInitialValueAndNothingNew) {
+  TripleBuffer<std::string> buffer("first");
+  EXPECT_FALSE(buffer.take());
+  EXPECT_EQ(buffer.reading(), "first");
+  EXPECT_EQ(buffer.writing(), "first");
+}
+
+TEST(TripleBuffer, TheReaderSeesNothingBeforePublishAndNothingTwice) {
+  TripleBuffer<int> buffer(0);
+  buffer.writing() = 7;
+  EXPECT_FALSE(buffer.take());
+  buffer.publish();
+  EXPECT_EQ(buffer.reading(), 0);
+  EXPECT_TRUE(buffer.take());
+  EXPECT_EQ(buffer.reading(), 7);
+  EXPECT_FALSE(buffer.take());
+  EXPECT_EQ(buffer.reading(), 7);
+}
+
+TEST(TripleBuffer, TheNewestWins) {
+  TripleBuffer<int> buffer(0);
+  for (int value = 1; value <= 10; ++value) {
+    buffer.writing() = value;
+    buffer.publish();
+  }
+  EXPECT_TRUE(buffer.take());
+  EXPECT_EQ(buffer.reading(), 10);
+  EXPECT_FALSE(buffer.take());
+}
+
+TEST(TripleBuffer, WritingNeverTouchesWhatIsRead) {
+  TripleBuffer<int> buffer(0);
+  buffer.writing() = 1;
+  buffer.publish();
+  ASSERT_TRUE(buffer.take());
+  for (int value = 2; value < 20; ++value) {
+    buffer.writing() = value;
+    EXPECT_EQ(buffer.reading(), 1);
+    buffer.publish();
+    EXPECT_EQ(buffer.reading(), 1);
+  }
+  ASSERT_TRUE(buffer.take());
+  EXPECT_EQ(buffer.reading(), 19);
+}
+
+}  // namespace
+}  // namespace spoonbill
