@@ -94,7 +94,7 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
     write_snapshot(replay.session, snapshot);
     replay.session.flags = tick_flag_none;
     const ViewSettings view = painter->view_of(replay.session.view);
-    const PanelModel panel = panel_of(replay.session, snapshot, view);
+    const PanelModel panel = panel_of(facts, snapshot, view);
     if (Status painted = painter->paint(snapshot, view, panel, picture); !painted) return painted;
     if (Status added = pictures.add(frame, snapshot.time_s(), picture); !added) return added;
     progress.show(frame + 1, request.frame_count);

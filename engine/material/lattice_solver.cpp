@@ -39,6 +39,24 @@ void follow_fastest_frequency(SpringLattice& lattice, const LatticeView& view) {
   if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_frequency(std::sqrt(square));
 }
 
+// See speed_cap_cells.
+float speed_cap(const SpringLattice& lattice, float h) {
+  const auto longest = static_cast<float>(2.0 / lattice.fastest_frequency());
+  return static_cast<float>(speed_cap_cells) * lattice.cell_size_m() / std::max(h, longest);
+}
+
+// Caps speeds and moves the nodes. Returns whether one met the cap.
+bool drift(const SpringLattice& lattice, const LatticeView& view, float h, float cap) {
+  const LatticeKernels& kernels = lattice.kernels();
+  float mean[4] = {};
+  if (!lattice.has_held_nodes()) {
+    kernels.momentum(view, lattice.free_mass(), mean);
+    const float inverse = mean[3] > 0.0f ? 1.0f / mean[3] : 0.0f;
+    for (float& component : mean) component *= inverse;
+  }
+  return kernels.drift(view, h, cap, mean[0], mean[1], mean[2]) > 1.0f;
+}
+
 // Returns whether a node met the speed cap.
 bool substep(SpringLattice& lattice, const LatticeView& view, const RelaxSettings& settings, float h,
              double fraction, std::span<const TouchingTool> tools) {
@@ -51,14 +69,11 @@ bool substep(SpringLattice& lattice, const LatticeView& view, const RelaxSetting
   const Vector3& g = settings.gravity_m_per_s2;
   kernels.kick(view, h, decay, static_cast<float>(g.x()), static_cast<float>(g.y()),
                static_cast<float>(g.z()));
-  const float cap = static_cast<float>(speed_cap_cells) * lattice.cell_size_m() / h;
+  const float cap = speed_cap(lattice, h);
   for (const TouchingTool& tool : tools) {
     tool.contacts->solve(view, *tool.state, h, fraction, 0.5f * cap);
   }
-  float sum[4];
-  kernels.momentum(view, lattice.free_mass(), sum);
-  const float inverse = sum[3] > 0.0f ? 1.0f / sum[3] : 0.0f;
-  return kernels.drift(view, h, cap, sum[0] * inverse, sum[1] * inverse, sum[2] * inverse) > 1.0f;
+  return drift(lattice, view, h, cap);
 }
 
 }  // namespace

@@ -290,6 +290,7 @@ double SpringLattice::volume_m3() const {
 }
 
 void SpringLattice::hold(std::span<const std::uint8_t> held) {
+  has_held_nodes_ = std::find(held.begin(), held.end(), std::uint8_t{1}) != held.end();
   for (int n = 0; n < mesh_.node_count(); ++n) {
     const bool free = held[static_cast<std::size_t>(n)] == 0;
     inverse_mass_[n] = free ? 1.0f / node_mass_[n] : 0.0f;

@@ -50,6 +50,7 @@ class SpringLattice {
   // Held nodes keep their displacement exactly. One byte a node, 1 = held.
   void hold(std::span<const std::uint8_t> held);
   bool is_held(int node) const { return inverse_mass_[node] == 0.0f; }
+  bool has_held_nodes() const { return has_held_nodes_; }
   float inverse_mass(int node) const { return inverse_mass_[node]; }
   float mass(int node) const { return node_mass_[node]; }
 
@@ -112,7 +113,7 @@ class SpringLattice {
   double total_mass_ = 0.0, rest_volume_ = 0.0, youngs_modulus_ = 0.0;
   float fastest_frequency_ = 0.0f, damping_time_ = 0.0f, yield_strain_ = 0.0f, flow_rate_ = 0.0f;
   float cell_size_ = 0.0f;
-  bool plastic_ = false, has_applied_force_ = false;
+  bool plastic_ = false, has_applied_force_ = false, has_held_nodes_ = false;
   int padded_count_ = 0;
   int offset_[lattice_direction_count] = {};
 

@@ -173,6 +173,13 @@ void BodyMapping::embed(const SpringLattice& lattice) {
           lattice.mesh(), evaluate(rest_, grid.u.parameters[i], grid.v.parameters[j]).position_m));
     }
   }
+  cell_weights_.assign(samples, CellWeights{});
+  for (std::size_t s = 0; s < samples; ++s) {
+    const EmbeddedPoint& point = embedding_[s];
+    std::copy_n(point.node.begin(), point.count, cell_weights_[s].node);
+    std::copy_n(point.weight.begin(), point.count, cell_weights_[s].weight);
+  }
+  node_moves_.assign(4 * static_cast<std::size_t>(lattice.mesh().node_count()), 0.0f);
   for (int axis = 0; axis < 3; ++axis) {
     sample_[axis].assign(samples, 0.0f);
     base_sample_[axis].assign(samples, 0.0f);
@@ -183,13 +190,18 @@ void BodyMapping::embed(const SpringLattice& lattice) {
 }
 
 void BodyMapping::sample_displacements(const SpringLattice& lattice) {
-  const float* displacement[3] = {lattice.displacements(0), lattice.displacements(1),
-                                  lattice.displacements(2)};
-  for (std::size_t s = 0; s < embedding_.size(); ++s) {
-    const EmbeddedPoint& point = embedding_[s];
-    float sum[3] = {0.0f, 0.0f, 0.0f};
-    for (int c = 0; c < point.count; ++c) {
-      for (int axis = 0; axis < 3; ++axis) sum[axis] += point.weight[c] * displacement[axis][point.node[c]];
+  using Vector4 = float __attribute__((vector_size(16)));
+  const int nodes = lattice.mesh().node_count();
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* displacement = lattice.displacements(axis);
+    for (int n = 0; n < nodes; ++n) node_moves_[4 * static_cast<std::size_t>(n) + axis] = displacement[n];
+  }
+  for (std::size_t s = 0; s < cell_weights_.size(); ++s) {
+    const CellWeights& cell = cell_weights_[s];
+    Vector4 sum = {};
+    for (int c = 0; c < 8; ++c) {
+      const auto first = 4 * static_cast<std::size_t>(cell.node[c]);
+      sum += cell.weight[c] * *reinterpret_cast<const Vector4*>(&node_moves_[first]);
     }
     // The base last, so that what did not move is exactly zero.
     for (int axis = 0; axis < 3; ++axis) sample_[axis][s] = sum[axis] - base_sample_[axis][s];

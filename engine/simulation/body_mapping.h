@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/aligned_vector.h"
 #include "engine/bspline/refit.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/surface_collider.h"
@@ -44,6 +45,11 @@ class BodyMapping {
   BodyMapping(Surface rest, Surface current)
       : rest_(std::move(rest)), base_(current), current_(std::move(current)) {}
   void embed(const SpringLattice& lattice);
+  // The embedding of one sample without gaps, as the tick reads it: a place that is not used has weight 0.
+  struct CellWeights {
+    int node[8];
+    float weight[8];
+  };
   // What each sample moved since make().
   void sample_displacements(const SpringLattice& lattice);
 
@@ -51,6 +57,8 @@ class BodyMapping {
   // By pointer, because the collider keeps the grid's address when the mapping moves.
   std::shared_ptr<NestedGrid> nested_;
   std::vector<EmbeddedPoint> embedding_;
+  std::vector<CellWeights> cell_weights_;  // the same
+  AlignedVector<float> node_moves_;        // x, y, z, 0 of each node
   std::vector<float> base_sample_[3], sample_[3], control_[3];
   std::vector<std::uint8_t> held_columns_;
   std::vector<DisplacementRefit> refit_;  // one, once made
