@@ -1,6 +1,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -9,6 +10,7 @@
 #include "app/commands/common_options.h"
 #include "app/files/file_kind.h"
 #include "app/interrupt.h"
+#include "app/live/performance.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/hash_text.h"
 #include "app/report/progress_bar.h"
@@ -24,6 +26,8 @@ struct RecordOptions {
   std::filesystem::path source;
   std::filesystem::path out;
   InstructionSet instruction_set = best_instruction_set();
+  bool live = false;
+  bool draw = false;
   bool json = false;
 };
 
@@ -67,11 +71,56 @@ Status record_input(const RecordOptions& options, const RecordingHeader& header,
   return {};
 }
 
+std::string microseconds_text(double seconds) {
+  return number_text(std::round(1e6 * seconds)) + " us";
+}
+
+void add_loop(const LoopFigures& loop, FactSheet& facts) {
+  facts.add("Ticks", std::to_string(loop.ticks), "ticks", loop.ticks);
+  facts.add("Missed", std::to_string(loop.missed), "missed", loop.missed);
+  facts.add("", "", "late", loop.late);
+  facts.add("Lateness",
+            microseconds_text(loop.lateness_p50_s) + " median, " + microseconds_text(loop.lateness_p99_s) +
+                " at 99 %, " + microseconds_text(loop.lateness_p999_s) + " at 99.9 %",
+            "lateness_p99_s", loop.lateness_p99_s);
+  facts.add("", "", "lateness_p50_s", loop.lateness_p50_s);
+  facts.add("", "", "lateness_p999_s", loop.lateness_p999_s);
+  facts.add("Work",
+            microseconds_text(loop.work_mean_s) + " mean, " + microseconds_text(loop.work_p99_s) + " at 99 %",
+            "work_p99_s", loop.work_p99_s);
+  facts.add("", "", "work_mean_s", loop.work_mean_s);
+  facts.add("Scheduling", loop.fifo ? "real-time" : "ordinary", "fifo", loop.fifo);
+}
+
+Status record_live(const RecordOptions& options, const Script& script, const Document& document,
+                   Console& console) {
+  if (Status checked = check_commands(script.commands); !checked) return checked;
+  PerformanceSettings settings;
+  settings.live.instruction_set = options.instruction_set;
+  settings.live.hand = script.hand;
+  settings.live.start = script.start;
+  settings.draw = options.draw;
+  settings.recording = options.out;
+  InterruptWatch interrupt;
+  const auto report = perform(script, document, options.source.string(), settings,
+                              [&interrupt] { return interrupt.requested(); });
+  if (interrupt.requested()) interrupt.answer();
+  if (!report) return report.error();
+  for (const Notice& notice : report->notices) console.err << "spoonbill: " << notice.text << '\n';
+  FactSheet facts;
+  facts.add("Recording", options.out.string(), "out", options.out.string());
+  add_loop(report->loop, facts);
+  if (options.draw) facts.add("Frames", std::to_string(report->frames), "frames", report->frames);
+  facts.print(console.out, options.json);
+  return {};
+}
+
 Status record_script(const RecordOptions& options, Console& console) {
   const auto script = read_script(options.source);
   if (!script) return script.error();
   auto document = read_document(script->model_file);
   if (!document) return document.error();
+  if (options.live) return record_live(options, script.value(), document.value(), console);
   auto device = ScriptedDevice::make(script.value());
   if (!device) return Error{options.source.string() + ": " + device.error().message};
   LockstepInput input;
@@ -105,6 +154,7 @@ Status record(const RecordOptions& options, Console& console) {
     return Error{options.out.string() + ": is the source itself; choose another name"};
   }
   if (kind.value() == FileKind::script) return record_script(options, console);
+  if (options.live) return Error{options.source.string() + ": only a script can be performed live"};
   if (kind.value() == FileKind::recording) return record_again(options, console);
   return Error{options.source.string() + ": is neither a script nor a recording"};
 }
@@ -124,6 +174,10 @@ CommandEntry add_record(CLI::App& root) {
       "Example: spoonbill record assets/recordings/spoon-handle-bend.script.json --out bend.recording.jsonl");
   parser->add_option("SOURCE", options->source, "A script (.json), or a recording")->required();
   parser->add_option("--out", options->out, "The recording to write")->required();
+  CLI::Option* live =
+      parser->add_flag("--live", options->live,
+                       "Perform the script in real time on the 1 kHz thread, and report how well that held");
+  parser->add_flag("--draw", options->draw, "Draw sixty frames a second beside it, into memory")->needs(live);
   add_instruction_set_option(*parser, options->instruction_set);
   add_json_option(*parser, options->json);
   return {parser, [options](Console& console) { return record(*options, console); }};

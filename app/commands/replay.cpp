@@ -83,6 +83,7 @@ PictureRequest picture_request(const ReplayOptions& options, const Lockstep& loc
 Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPictures& pictures,
                    const InterruptWatch& interrupt) {
   Snapshot snapshot;
+  SessionFacts facts;
   write_snapshot(replay.session, snapshot);
   auto painter = FramePainter::make(request.width_px, request.height_px, snapshot);
   if (!painter) return painter.error();
@@ -94,6 +95,7 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
     write_snapshot(replay.session, snapshot);
     replay.session.flags = tick_flag_none;
     const ViewSettings view = painter->view_of(replay.session.view);
+    write_facts(replay.session, facts);
     const PanelModel panel = panel_of(facts, snapshot, view);
     if (Status painted = painter->paint(snapshot, view, panel, picture); !painted) return painted;
     if (Status added = pictures.add(frame, snapshot.time_s(), picture); !added) return added;

@@ -7,11 +7,12 @@
 
 #include "app/panel/rows.h"
 #include "app/report/quantity_text.h"
+#include "app/view/view_choice.h"
 
 namespace spoonbill {
 namespace {
 
-using Requests = std::vector<PanelRequest>;
+using Requests = std::vector<Request>;
 
 // Narrower than what files may hold: what a hand can tell apart.
 constexpr Range<double> radius_slider_m{0.001, 0.05};
@@ -116,7 +117,8 @@ void draw_fixtures(const PanelModel& model, const Theme& theme) {
 void draw_view(const PanelModel& model, const Theme& theme, Requests& requests) {
   const RowGroup group("View", theme);
   if (!group) return;
-  ShowOverlays show{model.overlays, model.see_through_body};
+  Overlays overlays = model.overlays;
+  bool see_through = model.see_through_body;
   bool changed = false;
   const auto pair = [&](const char* left, bool& left_on, const char* right, bool& right_on) {
     ImGui::TableNextRow();
@@ -126,11 +128,11 @@ void draw_view(const PanelModel& model, const Theme& theme, Requests& requests) 
     ImGui::SetCursorPosX(0.5F * theme.metrics.panel_width_px);
     changed |= ImGui::Checkbox(right, &right_on);
   };
-  pair("Fixed nodes", show.overlays.fixed_nodes, "Touched nodes", show.overlays.touched_nodes);
-  pair("Lattice", show.overlays.lattice, "Control net", show.overlays.control_net);
-  pair("Force", show.overlays.force, "Fixing planes", show.overlays.fixing_planes);
-  pair("See through", show.see_through_body, "Legend", show.overlays.legend);
-  if (changed) requests.emplace_back(show);
+  pair("Fixed nodes", overlays.fixed_nodes, "Touched nodes", overlays.touched_nodes);
+  pair("Lattice", overlays.lattice, "Control net", overlays.control_net);
+  pair("Force", overlays.force, "Fixing planes", overlays.fixing_planes);
+  pair("See through", see_through, "Legend", overlays.legend);
+  if (changed) requests.emplace_back(ChangeView{overlays_command(overlays, see_through)});
 }
 
 void draw_device(const PanelModel& model, const Theme& theme, Requests& requests) {
@@ -166,7 +168,7 @@ Rectangle panel_rectangle(int width_px, int height_px) {
   return {0.0, 0.0, width, static_cast<double>(height_px)};
 }
 
-std::vector<PanelRequest> draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px) {
+std::vector<Request> draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px) {
   Requests requests;
   ImGui::SetNextWindowPos(ImVec2(static_cast<float>(place_px.x), static_cast<float>(place_px.y)));
   ImGui::SetNextWindowSize(ImVec2(static_cast<float>(place_px.width), static_cast<float>(place_px.height)));

@@ -5,6 +5,7 @@
 
 #include "app/panel/panel_model.h"
 #include "app/panel/theme.h"
+#include "app/session/request.h"
 #include "render/camera.h"
 
 namespace spoonbill {
@@ -18,6 +19,6 @@ double panel_scale(int height_px);
 
 // Lays the panel out, between InterfaceContext::begin_frame() and end_frame(), and returns what the person
 // asked for in this frame.
-std::vector<PanelRequest> draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px);
+std::vector<Request> draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px);
 
 }  // namespace spoonbill

@@ -1,12 +1,11 @@
-// What the panel shows, as plain data, and what a person asks for by it. Taken from a snapshot and the
-// settings once a frame; the panel never sees the simulation.
+// What the panel shows, as plain data. Taken from a snapshot and the settings once a frame; the panel never
+// sees the simulation.
 #pragma once
 
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "engine/simulation/command.h"
+#include "engine/simulation/scene.h"
 #include "engine/simulation/snapshot.h"
 #include "render/view_settings.h"
 
@@ -40,14 +39,5 @@ struct PanelModel {
   int substeps = 0;
   std::uint32_t flags = tick_flag_none;
 };
-
-struct UndoStroke {};
-struct RedoStroke {};
-struct ShowOverlays {
-  Overlays overlays;
-  bool see_through_body;
-};
-
-using PanelRequest = std::variant<Command, UndoStroke, RedoStroke, ShowOverlays>;
 
 }  // namespace spoonbill

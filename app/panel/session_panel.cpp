@@ -4,17 +4,16 @@
 
 namespace spoonbill {
 
-PanelModel panel_of(const Session& session, const Snapshot& snapshot, const ViewSettings& view) {
-  const Scene& scene = session.simulation.scene();
+PanelModel panel_of(const SessionFacts& facts, const Snapshot& snapshot, const ViewSettings& view) {
   PanelModel model;
-  model.title = session.title;
+  model.title = facts.title;
   model.time_s = snapshot.time_s();
-  model.can_undo = session.history.can_undo();
-  model.can_redo = session.history.can_redo();
+  model.can_undo = facts.can_undo;
+  model.can_redo = facts.can_redo;
 
-  model.tool = scene.tool;
-  model.sculpting = scene.sculpting;
-  model.material = scene.body.material;
+  model.tool = facts.tool;
+  model.sculpting = facts.sculpting;
+  model.material = facts.material;
   model.felt_youngs_modulus_pa = snapshot.material.felt_youngs_modulus_pa;
   model.mass_kg = snapshot.material.mass_kg;
 

@@ -6,34 +6,35 @@
 namespace spoonbill {
 namespace {
 
-bool is_history_command(const Json& command, const char* name) {
-  return command.size() == 1 && command.contains("command") && command["command"] == name;
-}
-
 bool changes_what_a_shape_means(const Command& command) {
   return std::holds_alternative<PlacePlane>(command) || std::holds_alternative<RemovePlanes>(command) ||
          std::holds_alternative<KeepShape>(command);
 }
 
-Status apply_simulation_command(Session& session, const TimedCommand& timed) {
-  const auto command = command_from_json(timed.command, timed.origin);
-  if (!command) return command.error();
-  if (Status applied = session.simulation.apply(command.value()); !applied) {
-    return Error{timed.origin + ": " + applied.error().message};
+struct RequestApplier {
+  Session& session;
+
+  Status operator()(const Command& command) {
+    if (Status applied = session.simulation.apply(command); !applied) return applied;
+    if (changes_what_a_shape_means(command)) session.history.clear(session.simulation);
+    return {};
   }
-  if (changes_what_a_shape_means(command.value())) session.history.clear(session.simulation);
-  return {};
-}
-
-Status cancel_stroke(Session& session) {
-  if (!session.history.in_stroke()) return {};
-  if (Status cancelled = session.history.cancel(session.simulation); !cancelled) return cancelled;
-  return session.simulation.apply(LiftTool{});
-}
-
-Error unknown_command(const TimedCommand& timed) {
-  return Error{timed.origin + ": unknown command " + json_excerpt(timed.command)};
-}
+  Status operator()(const UndoStroke&) { return session.history.undo(session.simulation); }
+  Status operator()(const RedoStroke&) { return session.history.redo(session.simulation); }
+  Status operator()(const CancelStroke&) {
+    if (!session.history.in_stroke()) return {};
+    if (Status cancelled = session.history.cancel(session.simulation); !cancelled) return cancelled;
+    return session.simulation.apply(LiftTool{});
+  }
+  Status operator()(const ChangeView& change) {
+    return apply_view_command(change.command, "view", session.view);
+  }
+  Status operator()(const MarkFile& mark) {
+    FileMark& made = session.marks.emplace_back(FileMark{mark, {}});
+    if (mark.kind == FileMarkKind::document) made.document = document_of(session);
+    return {};
+  }
+};
 
 }  // namespace
 
@@ -44,10 +45,15 @@ Result<Session> Session::make(const Document& document, const std::string& sourc
   auto simulation = Simulation::make(document.scene, set);
   if (!simulation) return Error{source + ": " + simulation.error().message};
   StrokeHistory history(simulation.value());
-  return Session{document.name,   std::move(simulation).value(),
-                 CouplingState(), std::move(history),
-                 view.value(),    std::move(device),
-                 DeviceReading(), tick_flag_none};
+  return Session{document.name,
+                 std::move(simulation).value(),
+                 CouplingState(),
+                 std::move(history),
+                 view.value(),
+                 std::move(device),
+                 DeviceReading(),
+                 tick_flag_none,
+                 {}};
 }
 
 TickResult advance(Session& session, const DeviceReading& reading) {
@@ -77,28 +83,35 @@ std::uint64_t state_hash(const Session& session) {
   return hash.value();
 }
 
+Document document_of(const Session& session) {
+  Document document{session.title, session.simulation.scene(), view_to_json(session.view)};
+  session.simulation.write_scene(document.scene);
+  return document;
+}
+
+Status apply_request(Session& session, const Request& request) {
+  return std::visit(RequestApplier{session}, request);
+}
+
+bool rebuilds(const Request& request) {
+  if (std::holds_alternative<MarkFile>(request)) return true;
+  const auto* command = std::get_if<Command>(&request);
+  return command != nullptr &&
+         (changes_what_a_shape_means(*command) || std::holds_alternative<SetMaterial>(*command));
+}
+
 Status apply_command(Session& session, const TimedCommand& timed) {
-  const Json& command = timed.command;
-  if (is_simulation_command(command)) return apply_simulation_command(session, timed);
-  if (is_view_command(command)) return apply_view_command(command, timed.origin, session.view);
-  if (is_history_command(command, "undo")) return session.history.undo(session.simulation);
-  if (is_history_command(command, "redo")) return session.history.redo(session.simulation);
-  if (is_history_command(command, "cancel_stroke")) return cancel_stroke(session);
-  return unknown_command(timed);
+  const auto request = request_from_json(timed);
+  if (!request) return request.error();
+  if (Status applied = apply_request(session, request.value()); !applied) {
+    return Error{timed.origin + ": " + applied.error().message};
+  }
+  return {};
 }
 
 Status check_commands(const std::vector<TimedCommand>& commands) {
-  ViewChoice scratch;
   for (const TimedCommand& timed : commands) {
-    const Json& command = timed.command;
-    if (is_simulation_command(command)) {
-      const auto read = command_from_json(command, timed.origin);
-      if (!read) return read.error();
-    } else if (is_view_command(command)) {
-      if (Status read = apply_view_command(command, timed.origin, scratch); !read) return read;
-    } else if (!is_history_command(command, "undo") && !is_history_command(command, "redo")) {
-      return unknown_command(timed);
-    }
+    if (const auto request = request_from_json(timed); !request) return request.error();
   }
   return {};
 }

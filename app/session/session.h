@@ -2,8 +2,11 @@
 // whoever ticks it: the lock-step loop, later the haptic thread.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "app/session/request.h"
 #include "app/undo/stroke_history.h"
 #include "app/view/view_choice.h"
 #include "engine/exchange/document.h"
@@ -12,6 +15,12 @@
 #include "haptic/timed_command.h"
 
 namespace spoonbill {
+
+// A file that was asked for.
+struct FileMark {
+  MarkFile mark;
+  std::optional<Document> document;  // as it was then, when that is what was asked for
+};
 
 struct Session {
   std::string title;
@@ -23,6 +32,7 @@ struct Session {
   DeviceSpecification device;
   DeviceReading reading;                 // of the last tick
   std::uint32_t flags = tick_flag_none;  // TickFlag bits, gathered until somebody clears them
+  std::vector<FileMark> marks;           // gathered until somebody takes them
 
   // `source` names the document's file in messages.
   static Result<Session> make(const Document& document, const std::string& source, DeviceSpecification device,
@@ -38,8 +48,16 @@ void write_snapshot(const Session& session, Snapshot& snapshot);
 // FNV-1a over every bit that the next tick depends on.
 std::uint64_t state_hash(const Session& session);
 
-// Commands of the simulation, of the view, {"command": "undo"} and {"command": "redo"}. An error names the
-// command's origin and leaves the session as it was. May allocate.
+// What would be saved now.
+Document document_of(const Session& session);
+
+// An error leaves the session as it was. Allocates nothing unless rebuilds(request).
+Status apply_request(Session& session, const Request& request);
+
+// Whether applying it builds grids or lattices anew: takes milliseconds and memory.
+bool rebuilds(const Request& request);
+
+// As JSON. An error also names the command's origin.
 Status apply_command(Session& session, const TimedCommand& command);
 
 // Whether each command can be understood, so that a mistake in a recording's last second shows at its start.

@@ -1,10 +1,13 @@
 #include "app/view/view_choice.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "engine/exchange/field_reader.h"
+#include "engine/exchange/length.h"
 #include "engine/simulation/scene.h"
 
 namespace spoonbill {
@@ -59,6 +62,24 @@ void read_see_through(FieldReader& reader, ViewChoice& choice) {
   if (reader.has("see_through_body")) choice.see_through_body = reader.boolean("see_through_body");
 }
 
+void add_camera(const ViewChoice& choice, Json& json) {
+  const Camera& camera = choice.camera;
+  const auto degrees = [](double rad, Range<double> range) {
+    return number_to_json(std::clamp(rad / radians_per_degree, range.low, range.high));
+  };
+  json["yaw_deg"] = degrees(std::remainder(camera.yaw_rad, 2.0 * std::numbers::pi), yaw_range_deg);
+  json["pitch_deg"] = degrees(camera.pitch_rad, pitch_range_deg);
+  json["field_of_view_deg"] = degrees(camera.vertical_field_of_view_rad, field_of_view_range_deg);
+  if (choice.shows_whole_body) return;
+  json["target_mm"] = Json::array();
+  for (int axis = 0; axis < 3; ++axis) json["target_mm"].push_back(length_to_json(camera.target_m[axis]));
+  json["distance_mm"] = length_to_json(camera.distance_m);
+}
+
+void add_overlays(const Overlays& overlays, Json& json) {
+  for (const auto& [field, member] : overlay_fields) json[field] = overlays.*member;
+}
+
 std::string command_name(const Json& command) {
   const auto name = command.is_object() ? command.find("command") : command.end();
   return name != command.end() && name->is_string() ? name->get<std::string>() : std::string();
@@ -87,6 +108,28 @@ Result<ViewChoice> view_from_json(const Json& view, const std::string& source) {
   reader.finish();
   if (!reader.status()) return reader.status().error();
   return choice;
+}
+
+Json view_to_json(const ViewChoice& choice) {
+  Json json;
+  add_camera(choice, json["camera"]);
+  add_overlays(choice.overlays, json["overlays"]);
+  json["see_through_body"] = choice.see_through_body;
+  if (choice.ground_y_m) json["ground_mm"] = length_to_json(*choice.ground_y_m);
+  return json;
+}
+
+Json camera_command(const ViewChoice& choice) {
+  Json json{{"command", "set_camera"}};
+  add_camera(choice, json);
+  return json;
+}
+
+Json overlays_command(const Overlays& overlays, bool see_through_body) {
+  Json json{{"command", "set_overlays"}};
+  add_overlays(overlays, json);
+  json["see_through_body"] = see_through_body;
+  return json;
 }
 
 bool is_view_command(const Json& command) {

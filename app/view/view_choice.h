@@ -28,6 +28,13 @@ struct ViewChoice {
 // `source` names the file in messages. An empty object gives the defaults.
 Result<ViewChoice> view_from_json(const Json& view, const std::string& source);
 
+// The inverse, as a document keeps it.
+Json view_to_json(const ViewChoice& choice);
+
+// The commands that set a camera, or all overlays, as they are in the choice.
+Json camera_command(const ViewChoice& choice);
+Json overlays_command(const Overlays& overlays, bool see_through_body);
+
 // Whether "command" names one of the view's commands.
 bool is_view_command(const Json& command);
 

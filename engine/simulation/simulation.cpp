@@ -275,6 +275,10 @@ Reaction Simulation::advance(const ToolInput& input) {
 const Scene& Simulation::scene() const {
   return state_->scene;
 }
+void Simulation::write_scene(Scene& scene) const {
+  scene = state_->scene;
+  scene.body.surface = state_->mapping.current();
+}
 std::uint64_t Simulation::tick() const {
   return state_->tick;
 }

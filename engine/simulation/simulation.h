@@ -59,8 +59,10 @@ class Simulation {
   // points. Allocates nothing, never throws.
   Reaction advance(const ToolInput& input);
 
-  // The scene with its surfaces as they are now.
+  // The scene as it was set. Its surface is that of the last change of structure: surface() is the one of now.
   const Scene& scene() const;
+  // What would be saved now. Allocates only where `scene` is of another structure.
+  void write_scene(Scene& scene) const;
   std::uint64_t tick() const;
 
   // FNV-1a over every bit that the next tick depends on, the tick number included.

@@ -44,7 +44,7 @@ class Frame {
     context_.fonts().GetTexDataAsAlpha8(&pixels, &width, &height);
   }
 
-  std::vector<PanelRequest> draw(const PanelModel& model) {
+  std::vector<Request> draw(const PanelModel& model) {
     context_.begin_frame(width_px_, height_px_);
     auto requests = draw_panel(model, context_.theme(), panel_rectangle(width_px_, height_px_));
     context_.end_frame();

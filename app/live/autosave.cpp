@@ -1,0 +1,74 @@
+#include "app/live/autosave.h"
+
+#include <system_error>
+
+#include "app/report/hash_text.h"
+#include "engine/exchange/field_reader.h"
+#include "engine/exchange/file.h"
+#include "engine/simulation/state_hash.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr std::size_t bytes_limit = std::size_t{65} << 20;  // a document's, and a little
+constexpr int autosave_version = 1;
+
+// Documents of one name in different folders must not share an autosave.
+std::string file_name_for(const std::filesystem::path& of) {
+  if (of.empty()) return "untitled.autosave.json";
+  StateHash hash;
+  for (const char c : of.string()) hash.add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
+  return of.stem().string() + "-" + hash_text(hash.value()) + ".autosave.json";
+}
+
+std::filesystem::path whole_path(const std::filesystem::path& path) {
+  std::error_code problem;
+  const std::filesystem::path whole = std::filesystem::weakly_canonical(path, problem);
+  return problem ? path : whole;
+}
+
+bool is_older(const std::filesystem::path& one, const std::filesystem::path& other) {
+  std::error_code no_one, no_other;
+  const auto time = std::filesystem::last_write_time(one, no_one);
+  const auto other_time = std::filesystem::last_write_time(other, no_other);
+  return !no_one && !no_other && time < other_time;
+}
+
+}  // namespace
+
+Autosave::Autosave(const std::filesystem::path& folder, const std::filesystem::path& of)
+    : of_(of.empty() ? of : whole_path(of)), file_(folder / file_name_for(of_)) {}
+
+Status Autosave::write(const Document& document) const {
+  Json json{{"spoonbill_autosave", autosave_version}, {"of", of_.string()}};
+  json["document"] = document_to_json(document);
+  return replace_file(file_, json_to_page(json));
+}
+
+Result<std::optional<Document>> Autosave::left_over() const {
+  std::error_code problem;
+  if (!std::filesystem::exists(file_, problem)) return std::optional<Document>();
+  if (!of_.empty() && is_older(file_, of_)) return std::optional<Document>();
+  const auto text = read_text_file(file_, bytes_limit);
+  if (!text) return text.error();
+  const auto json = parse_json(text.value(), file_.string());
+  if (!json) return json.error();
+  FieldReader reader(json.value(), file_.string());
+  reader.version("spoonbill_autosave", autosave_version);
+  reader.ignore("of");
+  const Json inner = reader.has("document") ? reader.object("document") : Json::object();
+  reader.ignore("document");
+  reader.finish();
+  if (!reader.status()) return reader.status().error();
+  auto document = document_from_json(inner, file_.string() + ": document");
+  if (!document) return document.error();
+  return std::optional<Document>(std::move(document).value());
+}
+
+void Autosave::remove() const {
+  std::error_code ignored;
+  std::filesystem::remove(file_, ignored);
+  std::filesystem::remove(file_.string() + ".bak", ignored);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,39 @@
+// Autosaved documents: what a crash leaves of unsaved work. One file a document, in the program's state
+// folder, gone again once the document is saved or closed in order.
+//
+//   {"spoonbill_autosave": 1, "of": "/home/ada/spoon.json", "document": {...}}
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "engine/exchange/document.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+// One document's autosave. Plain value; used by one thread at a time.
+class Autosave {
+ public:
+  // `of` names the document's file; empty for one that has none yet.
+  Autosave(const std::filesystem::path& folder, const std::filesystem::path& of);
+
+  // Whole or not at all, as every document; the one before stays until then.
+  Status write(const Document& document) const;
+
+  // What a session that did not end in order has left; nothing when there is none, or when it is older than
+  // the document's file itself. One that cannot be read is an error, which leaves it where it is.
+  Result<std::optional<Document>> left_over() const;
+
+  // Without one, nothing happens.
+  void remove() const;
+
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  std::filesystem::path of_;
+  std::filesystem::path file_;
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,213 @@
+#include "app/live/haptic_side.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace spoonbill {
+namespace {
+
+constexpr std::uint64_t ticks_between_frames = 4;
+constexpr int ticks_between_scenes = 400;
+
+// A body goes on moving after it was let go; what it does for so long is saved too.
+constexpr int settling_ticks = 3000;
+
+}  // namespace
+
+HapticSide::HapticSide(std::unique_ptr<Session> session, VirtualDevice device,
+                       const Vector3& workspace_centre_m, LiveExchange& exchange, Journal& journal,
+                       SessionWorker& worker)
+    : device_(std::move(device)),
+      specification_(session->device),
+      follower_({{device_.position_m(), Quaternion::Identity()}, 0}),
+      workspace_centre_m_(workspace_centre_m),
+      exchange_(&exchange),
+      journal_(&journal),
+      worker_(&worker) {
+  lent_.session = std::move(session);
+  ticks_since_change_ = settling_ticks;
+}
+
+void HapticSide::tick(const LoopTick& tick) noexcept {
+  if (exchange_->target.take()) follower_.aim(exchange_->target.reading());
+  device_.set_target(follower_.step());
+  const DeviceReading reading = device_.read();
+  if (lent_.session == nullptr) take_back_if_done();
+  if (lent_.session != nullptr) {
+    record_state_when_due();
+    do_commands();
+  }
+  if (lent_.session == nullptr) {
+    device_.set_force(make_force_safe(Vector3::Zero(), reading, tick.dropped, true).force_n);
+    return;
+  }
+  advance_session(reading, tick.dropped);
+  publish(tick.index);
+}
+
+void HapticSide::close() {
+  if (recording_ && lent_.session != nullptr) end_recording();
+}
+
+void HapticSide::do_commands() {
+  while (lent_.session != nullptr && exchange_->commands.pop(command_)) {
+    if (!do_command()) return;
+  }
+}
+
+// False when the session is on loan now.
+bool HapticSide::do_command() {
+  if (auto* asked = std::get_if<AskedRequest>(&command_)) {
+    if (std::holds_alternative<MarkFile>(asked->request)) {
+      record(std::move(asked->json));
+    } else if (rebuilds(asked->request)) {
+      lend();
+      return false;
+    } else {
+      apply_now(*asked);
+    }
+  } else if (auto* work = std::get_if<AskedWork>(&command_)) {
+    if (work->ends_recording) end_recording();
+    lend();
+    return false;
+  } else if (const auto* scene = std::get_if<AskedScene>(&command_)) {
+    request_ = scene->request;
+    publish_scene();
+  } else if (std::holds_alternative<EndRecording>(command_)) {
+    end_recording();
+  }
+  return true;
+}
+
+void HapticSide::lend() {
+  worker_->lend(std::move(lent_), std::move(command_));
+  lent_ = {};
+}
+
+void HapticSide::take_back_if_done() {
+  bool done = false;
+  if (!worker_->take_back(lent_, command_, done)) return;
+  if (lent_.begun_anew) {
+    ++session_count_;
+    specification_ = lent_.session->device;
+    lent_.begun_anew = false;
+  }
+  if (lent_.writer != nullptr) begin_recording(std::move(lent_.writer));
+  if (auto* asked = std::get_if<AskedRequest>(&command_); asked != nullptr && done) {
+    record(std::move(asked->json));
+  }
+  if (!done) exchange_->refused.fetch_add(1, std::memory_order_relaxed);
+  if (done) note_change();
+  proxy_is_stale_ = true;
+}
+
+void HapticSide::apply_now(AskedRequest& asked) {
+  const bool seen = std::holds_alternative<ChangeView>(asked.request);
+  const Status applied = apply_request(*lent_.session, asked.request);
+  if (!applied) {
+    exchange_->refused.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  record(std::move(asked.json));
+  if (!seen) note_change();
+}
+
+void HapticSide::record(Json&& command) {
+  push(RecordedCommand{std::move(command), recording_});
+}
+
+void HapticSide::reset_proxy() {
+  proxy_is_stale_ = false;
+  if (!lent_.session->simulation.apply(ResetProxy{})) return;
+  if (recording_) push(RecordedReset{});
+}
+
+void HapticSide::begin_recording(std::unique_ptr<RecordingWriter> writer) {
+  recording_ = true;
+  recorded_ticks_ = 0;
+  state_recorded_ = false;
+  push(RecordingBegun{std::move(writer)});
+  record_state_when_due();
+}
+
+void HapticSide::end_recording() {
+  if (!recording_) return;
+  push(RecordedState{state_hash(*lent_.session), true});
+  recording_ = false;
+}
+
+void HapticSide::record_state_when_due() {
+  if (!recording_ || state_recorded_ || recorded_ticks_ % recording_checkpoint_ticks != 0) return;
+  push(RecordedState{state_hash(*lent_.session), false});
+  state_recorded_ = true;
+}
+
+void HapticSide::push(JournalEntry&& entry) {
+  if (journal_->push(std::move(entry)) || !recording_) return;
+  // What is lost cannot be replayed: the recording ends where the disk could not follow.
+  recording_ = false;
+  exchange_->recordings_lost.fetch_add(1, std::memory_order_relaxed);
+}
+
+void HapticSide::advance_session(const DeviceReading& reading, std::uint64_t dropped) {
+  if (proxy_is_stale_) reset_proxy();
+  if (recording_) {
+    push(RecordedReading{reading});
+    ++recorded_ticks_;
+    state_recorded_ = false;
+  }
+  const TickResult result = advance(*lent_.session, reading);
+  const SafeForce safe = make_force_safe(result.force_n, reading, dropped, false);
+  device_.set_force(safe.force_n);
+  proxy_is_stale_ = safe.reset_proxy;
+  exchange_->forces.push(ForceSample{static_cast<float>(safe.force_n.norm())});
+  if (result.touching) note_change();
+}
+
+SafeForce HapticSide::make_force_safe(const Vector3& wanted_n, const DeviceReading& reading,
+                                      std::uint64_t dropped, bool stale) {
+  SafetyInput input;
+  input.wanted_n = wanted_n;
+  input.position_m = reading.pose().position_m - workspace_centre_m_;
+  input.buttons = reading.buttons;
+  input.dropped_ticks = dropped;
+  input.stale = stale;
+  const SafeForce safe = make_safe(safety_, specification_, input);
+  safety_flags_ = safe.flags;
+  return safe;
+}
+
+void HapticSide::note_change() {
+  ticks_since_change_ = 0;
+}
+
+void HapticSide::publish(std::uint64_t index) {
+  if (ticks_since_change_ < settling_ticks) {
+    ++ticks_since_change_;
+    ++change_;
+  }
+  if (++ticks_since_scene_ >= ticks_between_scenes && published_change_ != change_) publish_scene();
+  if (index % ticks_between_frames != 0) return;
+  LiveFrame& frame = exchange_->frames.writing();
+  write_snapshot(*lent_.session, frame.snapshot);
+  lent_.session->flags = tick_flag_none;
+  write_facts(*lent_.session, frame.facts);
+  frame.safety_flags = safety_flags_;
+  frame.recording = recording_;
+  frame.session = session_count_;
+  exchange_->frames.publish();
+}
+
+void HapticSide::publish_scene() {
+  ticks_since_scene_ = 0;
+  published_change_ = change_;
+  LiveScene& scene = journal_->scene();
+  scene.title = lent_.session->title;
+  lent_.session->simulation.write_scene(scene.scene);
+  scene.session = session_count_;
+  scene.change = change_;
+  scene.request = request_;
+  journal_->publish_scene();
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,135 @@
+#include "app/live/journal.h"
+
+#include <chrono>
+#include <utility>
+
+namespace spoonbill {
+namespace {
+
+constexpr std::chrono::milliseconds pause_between_looks{5};
+
+}  // namespace
+
+Journal::Journal(Notices& notices, const LiveScene& first)
+    : notices_(&notices), entries_(entry_capacity), scenes_(first), thread_([this] { run(); }) {}
+
+Journal::~Journal() {
+  stopping_.store(true, std::memory_order_release);
+  thread_.join();
+}
+
+void Journal::set_view(Json view) {
+  const std::lock_guard lock(mutex_);
+  view_ = std::move(view);
+}
+
+void Journal::set_autosave(std::optional<Autosave> autosave) {
+  const std::lock_guard lock(mutex_);
+  if (autosave_) autosave_->remove();
+  autosave_ = std::move(autosave);
+}
+
+void Journal::save(std::uint64_t request, std::filesystem::path file) {
+  const std::lock_guard lock(mutex_);
+  save_ = Save{request, std::move(file)};
+}
+
+std::optional<SavedDocument> Journal::take_saved() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(saved_, std::nullopt);
+}
+
+void Journal::run() {
+  while (true) {
+    const bool stopping = stopping_.load(std::memory_order_acquire);
+    while (work()) {
+    }
+    if (stopping) return;
+    std::this_thread::sleep_for(pause_between_looks);
+  }
+}
+
+bool Journal::work() {
+  JournalEntry entry;
+  bool did = false;
+  for (int i = 0; i < 1000 && entries_.pop(entry); ++i) {
+    write(entry);
+    entry = std::monostate{};  // freed here: the queue hands it back to the haptic thread
+    did = true;
+  }
+  if (!scenes_.take()) return did;
+  keep(scenes_.reading());
+  return true;
+}
+
+void Journal::write(JournalEntry& entry) {
+  if (auto* begun = std::get_if<RecordingBegun>(&entry)) {
+    writer_ = std::move(begun->writer);
+    return;
+  }
+  if (writer_ == nullptr) return;
+  if (Status written = write_to_recording(entry); !written) give_up_recording(written.error());
+}
+
+Status Journal::write_to_recording(JournalEntry& entry) {
+  if (const auto* reading = std::get_if<RecordedReading>(&entry)) return writer_->reading(reading->reading);
+  if (const auto* command = std::get_if<RecordedCommand>(&entry)) {
+    return command->recorded ? writer_->command(command->command) : Status();
+  }
+  if (std::holds_alternative<RecordedReset>(entry)) return writer_->command(command_to_json(ResetProxy{}));
+  const auto* state = std::get_if<RecordedState>(&entry);
+  if (state == nullptr) return {};
+  if (!state->last) return writer_->checkpoint(state->state_hash);
+  const std::uint64_t ticks = writer_->tick();
+  Status finished = writer_->finish(state->state_hash);
+  if (finished) {
+    notices_->add(Notice::Kind::information, "recorded " + std::to_string(ticks / 1000) + " s");
+    writer_.reset();
+  }
+  return finished;
+}
+
+void Journal::give_up_recording(const Error& error) {
+  notices_->add(Notice::Kind::problem, "the recording has ended: " + error.message);
+  writer_.reset();
+}
+
+void Journal::keep(const LiveScene& scene) {
+  std::optional<Save> save;
+  {
+    const std::lock_guard lock(mutex_);
+    if (save_ && save_->request <= scene.request) save = std::exchange(save_, std::nullopt);
+  }
+  if (!save) return autosave(scene);
+  const Status written = write_document(document_of(scene), save->file);
+  if (!written) return notices_->add(Notice::Kind::problem, "not saved: " + written.error().message);
+  notices_->add(Notice::Kind::information, "saved " + save->file.filename().string());
+  const std::lock_guard lock(mutex_);
+  saved_ = SavedDocument{save->file, scene.session, scene.change};
+  settled_change_ = scene.change;
+  if (autosave_) autosave_->remove();
+}
+
+Document Journal::document_of(const LiveScene& scene) {
+  const std::lock_guard lock(mutex_);
+  return {scene.title, scene.scene, view_};
+}
+
+void Journal::autosave(const LiveScene& scene) {
+  std::optional<Autosave> place;
+  {
+    const std::lock_guard lock(mutex_);
+    if (scene.change <= settled_change_) return;
+    place = autosave_;
+  }
+  if (!place || scene.change == autosaved_change_) return;
+  const Status written = place->write(document_of(scene));
+  if (written) autosaved_change_ = scene.change;
+  // Once is enough: a full disk would fill the panel with the same line.
+  if (!written && !autosave_failed_) {
+    notices_->add(Notice::Kind::problem, "not autosaved: " + written.error().message);
+  }
+  autosave_failed_ = !written.ok();
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,34 @@
+// What the drawing thread gets of a live session: one tick, as plain data.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "app/session/session_facts.h"
+#include "engine/simulation/snapshot.h"
+
+namespace spoonbill {
+
+struct LiveFrame {
+  Snapshot snapshot;
+  SessionFacts facts;
+  std::uint32_t safety_flags = 0;  // SafetyFlag bits of the last tick
+  bool recording = false;
+  std::uint64_t session = 0;  // grows whenever another session was opened or begun anew
+};
+
+// A document as the haptic thread hands it over to be saved, with its scene as it was at one tick.
+struct LiveScene {
+  std::string title;
+  Scene scene;
+  std::uint64_t session = 0;
+  std::uint64_t change = 0;   // grows with every change of the scene
+  std::uint64_t request = 0;  // of the last save that was asked for before it was written
+};
+
+// The force on the hand, one value a tick in newtons, for a plot.
+struct ForceSample {
+  float force_n = 0.0F;
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,160 @@
+#include "app/live/live_session.h"
+
+#include <utility>
+
+namespace spoonbill {
+namespace {
+
+BoundingBox box_of(const Surface& surface) {
+  BoundingBox box;
+  for (std::size_t i = 0; i < surface.net.x.size(); ++i) {
+    box.include({surface.net.x[i], surface.net.y[i], surface.net.z[i]});
+  }
+  return box;
+}
+
+// A virtual handle reaches as far as the body needs.
+DeviceSpecification device_for(const Surface& surface) {
+  DeviceSpecification device = VirtualDevice::default_specification();
+  const BoundingBox box = box_of(surface);
+  const double reach = (box.high_m - box.low_m).norm();
+  device.workspace_radius_m = std::clamp(reach, device.workspace_radius_m, device_workspace_range_m.high);
+  return device;
+}
+
+Result<std::unique_ptr<Session>> make_session(const Document& document, const std::string& source,
+                                              InstructionSet set) {
+  auto session = Session::make(document, source, device_for(document.scene.body.surface), set);
+  if (!session) return session.error();
+  return std::make_unique<Session>(std::move(session).value());
+}
+
+// The session anew, from the shape it has.
+Status begin_anew(LentSession& lent, InstructionSet set) {
+  auto session = make_session(document_of(*lent.session), "the present shape", set);
+  if (!session) return session.error();
+  session.value()->reading = lent.session->reading;
+  lent.session = std::move(session).value();
+  lent.begun_anew = true;
+  return {};
+}
+
+Status begin_recording(LentSession& lent, const std::filesystem::path& file, InstructionSet set) {
+  const RecordingHeader header{lent.session->device, document_of(*lent.session)};
+  auto writer = RecordingWriter::create(file, header);
+  if (!writer) return writer.error();
+  if (Status anew = begin_anew(lent, set); !anew) return anew;
+  lent.writer = std::make_unique<RecordingWriter>(std::move(writer).value());
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document, const std::string& source,
+                                                        const LiveSettings& settings) {
+  auto session = make_session(document, source, settings.instruction_set);
+  if (!session) return session.error();
+  auto device = VirtualDevice::make(settings.hand, settings.start);
+  if (!device) return device.error();
+  Session& made = *session.value();
+  made.reading = DeviceReading::from(settings.start.pose, settings.start.buttons);
+  LiveFrame first;
+  write_snapshot(made, first.snapshot);
+  write_facts(made, first.facts);
+  const LiveScene first_scene{made.title, document_of(made).scene};
+  std::unique_ptr<LiveSession> live(
+      new LiveSession(std::move(session).value(), std::move(device).value(), settings, first, first_scene));
+  LoopSettings loop_settings;
+  loop_settings.real_time = settings.real_time;
+  auto loop =
+      HapticLoop::start(loop_settings, [side = &live->haptic_](const LoopTick& tick) { side->tick(tick); });
+  if (!loop) return loop.error();
+  live->loop_.emplace(std::move(loop).value());
+  if (const std::string notice = live->loop_->figures().notice; !notice.empty()) {
+    live->notices_.add(Notice::Kind::information, notice);
+  }
+  return live;
+}
+
+LiveSession::LiveSession(std::unique_ptr<Session> session, VirtualDevice device, const LiveSettings& settings,
+                         const LiveFrame& first, const LiveScene& first_scene)
+    : settings_(settings),
+      journal_(notices_, first_scene),
+      worker_(notices_),
+      exchange_(settings.start, first),
+      haptic_(std::move(session), std::move(device), settings.start.pose.position_m, exchange_, journal_,
+              worker_) {}
+
+LiveSession::~LiveSession() {
+  stop();
+}
+
+void LiveSession::stop() {
+  if (!loop_) return;
+  loop_->stop();
+  haptic_.close();
+}
+
+void LiveSession::aim(const HandTarget& target) {
+  exchange_.target.writing() = target;
+  exchange_.target.publish();
+}
+
+bool LiveSession::send(LiveCommand command) {
+  return exchange_.commands.push(std::move(command));
+}
+
+bool LiveSession::ask(Request request) {
+  Json json = request_to_json(request);
+  return send(AskedRequest{std::move(request), std::move(json)});
+}
+
+bool LiveSession::open(Document document, std::string source) {
+  const InstructionSet set = settings_.instruction_set;
+  return send(AskedWork{[document = std::move(document), source = std::move(source), set](LentSession& lent) {
+                          auto session = make_session(document, source, set);
+                          if (!session) return Status(session.error());
+                          lent.session = std::move(session).value();
+                          lent.begun_anew = true;
+                          return Status();
+                        },
+                        true});
+}
+
+bool LiveSession::start_recording(std::filesystem::path file) {
+  const InstructionSet set = settings_.instruction_set;
+  return send(AskedWork{
+      [file = std::move(file), set](LentSession& lent) { return begin_recording(lent, file, set); }, true});
+}
+
+bool LiveSession::stop_recording() {
+  return send(EndRecording{});
+}
+
+bool LiveSession::save(std::filesystem::path file) {
+  const std::uint64_t request = ++saves_;
+  journal_.save(request, std::move(file));
+  return send(AskedScene{request});
+}
+
+const LiveFrame& LiveSession::frame() {
+  exchange_.frames.take();
+  return exchange_.frames.reading();
+}
+
+void LiveSession::take_forces(std::vector<float>& forces_n) {
+  forces_n.clear();
+  ForceSample sample;
+  while (exchange_.forces.pop(sample)) forces_n.push_back(sample.force_n);
+}
+
+std::vector<Notice> LiveSession::take_notices() {
+  const std::uint64_t lost = exchange_.recordings_lost.load(std::memory_order_relaxed);
+  if (lost != recordings_lost_) {
+    recordings_lost_ = lost;
+    notices_.add(Notice::Kind::problem, "the recording has ended: the disk is too slow");
+  }
+  return notices_.take();
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,118 @@
+#include "app/live/performance.h"
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "app/frames/frame_painter.h"
+#include "app/panel/session_panel.h"
+#include "render/gl/allocator_thresholds.h"
+
+namespace spoonbill {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int width_px = 1280;
+constexpr int height_px = 720;
+constexpr std::chrono::microseconds frame_time{16667};
+constexpr std::chrono::seconds longest_wait{10};
+
+class Painting {
+ public:
+  static Result<Painting> make(const LiveFrame& first) {
+    keep_drawing_memory();
+    auto painter = FramePainter::make(width_px, height_px, first.snapshot);
+    if (!painter) return painter.error();
+    return Painting(std::move(painter).value());
+  }
+
+  Status paint(const LiveFrame& frame, const ViewChoice& choice) {
+    const ViewSettings view = painter_.view_of(choice);
+    return painter_.paint(frame.snapshot, view, panel_of(frame.facts, frame.snapshot, view), picture_);
+  }
+
+ private:
+  explicit Painting(FramePainter painter) : painter_(std::move(painter)) {}
+  FramePainter painter_;
+  Image picture_;
+};
+
+// What is asked of the session is done when a frame shows it.
+template <class Done>
+Status wait_until(LiveSession& live, Done done, const char* what) {
+  const auto give_up = Clock::now() + longest_wait;
+  while (!done(live.frame())) {
+    for (Notice& notice : live.take_notices()) {
+      if (notice.kind == Notice::Kind::problem) return Error{std::move(notice.text)};
+    }
+    if (Clock::now() > give_up) return Error{std::string(what) + " took longer than 10 s"};
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return {};
+}
+
+Status ask_due(const Script& script, std::uint64_t tick, std::size_t& next, LiveSession& live) {
+  for (; next < script.commands.size() && script.commands[next].tick <= tick; ++next) {
+    auto request = request_from_json(script.commands[next]);
+    if (!request) return request.error();
+    if (!live.ask(std::move(request).value())) return Error{"the haptic thread takes no more commands"};
+  }
+  return {};
+}
+
+Status play(const Script& script, LiveSession& live, Painting* painting, const ViewChoice& view,
+            const std::function<bool()>& interrupted, std::uint64_t& frames) {
+  const auto begin = Clock::now();
+  std::size_t next = 0;
+  for (auto at = begin; !interrupted(); at = std::max(at + frame_time, Clock::now())) {
+    std::this_thread::sleep_until(at);
+    const auto passed = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - begin).count();
+    const auto tick = static_cast<std::uint64_t>(passed);
+    if (Status asked = ask_due(script, tick, next, live); !asked) return asked;
+    if (tick >= script.tick_count()) break;
+    live.aim(script.target_at(tick));
+    const LiveFrame& frame = live.frame();
+    if (painting == nullptr) continue;
+    if (Status painted = painting->paint(frame, view); !painted) return painted;
+    ++frames;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<PerformanceReport> perform(const Script& script, const Document& document, const std::string& source,
+                                  const PerformanceSettings& settings,
+                                  const std::function<bool()>& interrupted) {
+  const auto view = view_from_json(document.view, source);
+  if (!view) return view.error();
+  auto live = LiveSession::start(document, source, settings.live);
+  if (!live) return live.error();
+  LiveSession& session = *live.value();
+  std::vector<Notice> notices = session.take_notices();
+  session.start_recording(settings.recording);
+  const auto recording = [](const LiveFrame& frame) { return frame.recording; };
+  if (Status begun = wait_until(session, recording, "the recording's beginning"); !begun)
+    return begun.error();
+  std::optional<Painting> painting;
+  if (settings.draw) {
+    auto made = Painting::make(session.frame());
+    if (!made) return made.error();
+    painting.emplace(std::move(made).value());
+  }
+  PerformanceReport report;
+  Status played =
+      play(script, session, painting ? &*painting : nullptr, view.value(), interrupted, report.frames);
+  if (!played) return played.error();
+  session.stop_recording();
+  const auto stopped = [](const LiveFrame& frame) { return !frame.recording; };
+  if (Status ended = wait_until(session, stopped, "the recording's end"); !ended) return ended.error();
+  session.stop();
+  report.loop = session.figures();
+  for (Notice& notice : session.take_notices()) notices.push_back(std::move(notice));
+  report.notices = std::move(notices);
+  return report;
+}
+
+}  // namespace spoonbill
