@@ -166,14 +166,18 @@ std::optional<Eigen::Vector2d> project(const Camera& camera, const Viewport& vie
   return free_centre(viewport) + Eigen::Vector2d(scale * local.x(), -scale * local.y());
 }
 
-std::optional<Vector3> point_on_height(const Camera& camera, const Viewport& viewport,
-                                       const Eigen::Vector2d& pixel, double height_m) {
+Ray ray_through(const Camera& camera, const Viewport& viewport, const Eigen::Vector2d& pixel) {
   const Eigen::Vector2d offset = (pixel - free_centre(viewport)) / focal_px(camera, viewport);
   const Vector3 direction = eye_axes(camera) * Vector3(offset.x(), -offset.y(), -1.0);
-  const Vector3 eye = eye_position(camera);
-  const double rise = height_m - eye.y();
-  if (std::abs(direction.y()) < 1e-9 || rise / direction.y() <= 0.0) return std::nullopt;
-  return Vector3(eye + direction * (rise / direction.y()));
+  return {eye_position(camera), direction.normalized()};
+}
+
+std::optional<Vector3> point_on_height(const Camera& camera, const Viewport& viewport,
+                                       const Eigen::Vector2d& pixel, double height_m) {
+  const Ray ray = ray_through(camera, viewport, pixel);
+  const double rise = height_m - ray.origin_m.y();
+  if (std::abs(ray.direction.y()) < 1e-9 || rise / ray.direction.y() <= 0.0) return std::nullopt;
+  return Vector3(ray.origin_m + ray.direction * (rise / ray.direction.y()));
 }
 
 }  // namespace spoonbill

@@ -75,6 +75,13 @@ double pixels_per_metre(const Camera& camera, const Viewport& viewport);
 std::optional<Eigen::Vector2d> project(const Camera& camera, const Viewport& viewport,
                                        const Vector3& point_m);
 
+// What a pixel shows lies on this ray, from the eye on; the direction is a unit vector.
+struct Ray {
+  Vector3 origin_m;
+  Vector3 direction;
+};
+Ray ray_through(const Camera& camera, const Viewport& viewport, const Eigen::Vector2d& pixel);
+
 // The point of the horizontal plane at that height which a pixel shows; none above the horizon.
 std::optional<Vector3> point_on_height(const Camera& camera, const Viewport& viewport,
                                        const Eigen::Vector2d& pixel, double height_m);

@@ -20,6 +20,7 @@ struct CommandEntry {
 
 CommandEntry add_replay(CLI::App& root);
 CommandEntry add_record(CLI::App& root);
+CommandEntry add_edit(CLI::App& root);
 CommandEntry add_info(CLI::App& root);
 CommandEntry add_sample(CLI::App& root);
 

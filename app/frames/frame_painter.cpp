@@ -36,7 +36,8 @@ Result<FramePainter> FramePainter::make(int width_px, int height_px, const Snaps
 ViewSettings FramePainter::view_of(const ViewChoice& choice) const {
   const int width = context_->width_px();
   const int height = context_->height_px();
-  return settings_for(choice, body_, width, height, panel_rectangle(width, height));
+  return settings_for(choice, body_, width, height, picture_panel_rectangle(width, height),
+                      interface_scale_for(height));
 }
 
 Status FramePainter::paint(const Snapshot& snapshot, const ViewSettings& view, const PanelModel& panel,

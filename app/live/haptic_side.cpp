@@ -95,9 +95,10 @@ void HapticSide::take_back_if_done() {
   if (lent_.writer != nullptr) begin_recording(std::move(lent_.writer));
   if (auto* asked = std::get_if<AskedRequest>(&command_); asked != nullptr && done) {
     record(std::move(asked->json));
+    note_change();
   }
+  if (std::holds_alternative<AskedWork>(command_)) ++(done ? works_done_ : works_failed_);
   if (!done) exchange_->refused.fetch_add(1, std::memory_order_relaxed);
-  if (done) note_change();
   proxy_is_stale_ = true;
 }
 
@@ -195,6 +196,9 @@ void HapticSide::publish(std::uint64_t index) {
   frame.safety_flags = safety_flags_;
   frame.recording = recording_;
   frame.session = session_count_;
+  frame.change = change_;
+  frame.works_done = works_done_;
+  frame.works_failed = works_failed_;
   exchange_->frames.publish();
 }
 

@@ -94,6 +94,8 @@ class HapticSide {
   bool state_recorded_ = false;  // of recorded_ticks_
 
   std::uint64_t session_count_ = 0;
+  std::uint64_t works_done_ = 0;
+  std::uint64_t works_failed_ = 0;
   std::uint64_t change_ = 0;
   std::uint64_t request_ = 0;
   int ticks_since_change_ = 0;

@@ -14,7 +14,10 @@ struct LiveFrame {
   SessionFacts facts;
   std::uint32_t safety_flags = 0;  // SafetyFlag bits of the last tick
   bool recording = false;
-  std::uint64_t session = 0;  // grows whenever another session was opened or begun anew
+  std::uint64_t session = 0;       // grows whenever another session was opened or begun anew
+  std::uint64_t change = 0;        // grows with every change of the scene
+  std::uint64_t works_done = 0;    // of the work asked for (open, start recording)
+  std::uint64_t works_failed = 0;  // of it
 };
 
 // A document as the haptic thread hands it over to be saved, with its scene as it was at one tick.

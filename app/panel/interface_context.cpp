@@ -11,11 +11,21 @@ Result<InterfaceContext> InterfaceContext::make(const std::string& font_path, do
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.DeltaTime = 1.0F / 60.0F;
+  InterfaceContext made(std::move(context), font_path);
+  if (Status scaled = made.rescale(scale); !scaled) return scaled.error();
+  return made;
+}
+
+Status InterfaceContext::rescale(double scale) {
+  make_current();
+  ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+  atlas.Clear();
   const Metrics metrics = metrics_for(scale);
-  auto fonts = add_interface_fonts(*io.Fonts, font_path, metrics.body_px, metrics.heading_px);
+  auto fonts = add_interface_fonts(atlas, font_path_, metrics.body_px, metrics.heading_px);
   if (!fonts) return fonts.error();
   apply_theme(ImGui::GetStyle(), metrics);
-  return InterfaceContext(std::move(context), Theme{metrics, fonts.value()});
+  theme_ = Theme{metrics, fonts.value()};
+  return {};
 }
 
 void InterfaceContext::begin_frame(int width_px, int height_px) {

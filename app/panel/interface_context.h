@@ -1,5 +1,6 @@
 // The Dear ImGui context of one picture or window: fonts, theme and frame clock. It writes no settings file,
-// and its clock advances 1/60 s a frame, so that the same frames always look the same. One owner; the thread
+// and its clock advances 1/60 s a frame, so that the same frames always look the same (a window's backend
+// tells it the true time instead). One owner; the thread
 // that draws.
 #pragma once
 
@@ -18,6 +19,9 @@ class InterfaceContext {
   // Refused: a font file that cannot be read.
   static Result<InterfaceContext> make(const std::string& font_path, double scale);
 
+  // The same at another scale; the fonts must be uploaded again. Refused as make() does.
+  Status rescale(double scale);
+
   // ImGui keeps the current context in a variable of its own: makes ours the current one.
   void make_current() const { ImGui::SetCurrentContext(context_.get()); }
 
@@ -33,11 +37,12 @@ class InterfaceContext {
   struct Destroy {
     void operator()(ImGuiContext* context) const { ImGui::DestroyContext(context); }
   };
-  InterfaceContext(std::unique_ptr<ImGuiContext, Destroy> context, Theme theme)
-      : context_(std::move(context)), theme_(theme) {}
+  InterfaceContext(std::unique_ptr<ImGuiContext, Destroy> context, std::string font_path)
+      : context_(std::move(context)), font_path_(std::move(font_path)) {}
 
   std::unique_ptr<ImGuiContext, Destroy> context_;
-  Theme theme_;
+  std::string font_path_;
+  Theme theme_{};
 };
 
 }  // namespace spoonbill

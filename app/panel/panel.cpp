@@ -161,11 +161,17 @@ double panel_scale(int height_px) {
   return std::max(1.0, std::round(2.0 * height_px / 720.0) / 2.0);
 }
 
-Rectangle panel_rectangle(int width_px, int height_px) {
+Rectangle panel_rectangle(int width_px, int height_px, double scale, double top_px) {
+  constexpr double smallest_height_px = 400.0;
+  const double width = metrics_for(scale).panel_width_px;
+  if (height_px < smallest_height_px * scale || width_px < 2.5 * width) return {};
+  return {0.0, top_px, width, height_px - top_px};
+}
+
+Rectangle picture_panel_rectangle(int width_px, int height_px) {
   constexpr int smallest_height_px = 700;
-  const double width = metrics_for(panel_scale(height_px)).panel_width_px;
-  if (height_px < smallest_height_px || width_px < 2.5 * width) return {};
-  return {0.0, 0.0, width, static_cast<double>(height_px)};
+  if (height_px < smallest_height_px) return {};
+  return panel_rectangle(width_px, height_px, panel_scale(height_px));
 }
 
 std::vector<Request> draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px) {

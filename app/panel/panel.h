@@ -10,9 +10,12 @@
 
 namespace spoonbill {
 
-// The panel's place in a frame of that size, at the left edge; empty where the frame is too small for a panel
-// that can be read.
-Rectangle panel_rectangle(int width_px, int height_px);
+// The panel's place in a frame of that size and scale, at the left edge below what is already at the top;
+// empty where the frame is too small for a panel that can be read.
+Rectangle panel_rectangle(int width_px, int height_px, double scale, double top_px = 0.0);
+
+// The same for a picture, in which nobody can scroll: empty where not all of the panel can be seen.
+Rectangle picture_panel_rectangle(int width_px, int height_px);
 
 // The interface's scale for a frame of that height: 1 at 720 pixels, in steps of a half.
 double panel_scale(int height_px);

@@ -38,6 +38,7 @@ struct PanelModel {
   bool rate_is_nominal = true;  // lock-step has no clock to measure by
   int substeps = 0;
   std::uint32_t flags = tick_flag_none;
+  std::uint32_t safety_flags = 0;  // SafetyFlag bits
 };
 
 }  // namespace spoonbill

@@ -154,14 +154,14 @@ Status apply_view_command(const Json& command, const std::string& source, ViewCh
 }
 
 ViewSettings settings_for(const ViewChoice& choice, const BoundingBox& body, int width_px, int height_px,
-                          const Rectangle& panel_px) {
+                          const Rectangle& panel_px, double interface_scale) {
   ViewSettings settings;
   settings.camera = choice.camera;
   if (choice.shows_whole_body) {
     settings.camera = frame(choice.camera, body, make_viewport(width_px, height_px, panel_px));
   }
   settings.panel_px = panel_px;
-  settings.interface_scale = interface_scale_for(height_px);
+  settings.interface_scale = interface_scale;
   settings.overlays = choice.overlays;
   settings.see_through_body = choice.see_through_body;
   settings.ground_y_m = choice.ground_y_m.value_or(ground_below(body));

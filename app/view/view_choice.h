@@ -44,6 +44,6 @@ Status apply_view_command(const Json& command, const std::string& source, ViewCh
 // The settings to draw a frame of that size with, beside a panel. `body` is the model as it was at the start,
 // so that neither the camera nor the ground moves with its deformation.
 ViewSettings settings_for(const ViewChoice& choice, const BoundingBox& body, int width_px, int height_px,
-                          const Rectangle& panel_px);
+                          const Rectangle& panel_px, double interface_scale);
 
 }  // namespace spoonbill

@@ -46,7 +46,7 @@ class Frame {
 
   std::vector<Request> draw(const PanelModel& model) {
     context_.begin_frame(width_px_, height_px_);
-    auto requests = draw_panel(model, context_.theme(), panel_rectangle(width_px_, height_px_));
+    auto requests = draw_panel(model, context_.theme(), picture_panel_rectangle(width_px_, height_px_));
     context_.end_frame();
     return requests;
   }
@@ -102,9 +102,9 @@ TEST(Panel, UndoButtonAsksForUndo) {
 }
 
 TEST(Panel, LeavesSmallPicturesAlone) {
-  EXPECT_EQ(panel_rectangle(640, 480).width, 0.0);
-  EXPECT_EQ(panel_rectangle(1280, 720).width, 300.0);
-  EXPECT_EQ(panel_rectangle(2560, 1440).width, 600.0);
+  EXPECT_EQ(picture_panel_rectangle(640, 480).width, 0.0);
+  EXPECT_EQ(picture_panel_rectangle(1280, 720).width, 300.0);
+  EXPECT_EQ(picture_panel_rectangle(2560, 1440).width, 600.0);
 }
 
 TEST(QuantityText, HasThreeDigitsAndAUnit) {

@@ -1,0 +1,50 @@
+// The document in the window as the person sees it: which file it is, whether it has unsaved changes, and
+// what a crash may have left of it. One owner; the program's main thread.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "app/live/autosave.h"
+#include "app/live/live_session.h"
+
+namespace spoonbill {
+
+class EditedDocument {
+ public:
+  // `state_folder`: nothing where there is no place to autosave.
+  EditedDocument(std::optional<std::filesystem::path> state_folder, std::filesystem::path file)
+      : state_folder_(std::move(state_folder)), file_(std::move(file)) {}
+
+  // Empty for one that was never saved.
+  const std::filesystem::path& file() const { return file_; }
+
+  // What a session that was cut short has left of this file; nothing for most.
+  Result<std::optional<Document>> left_over() const;
+
+  void discard_left_over() const;
+
+  // The session shows this file from now on, with no change yet; work is autosaved.
+  void begin(std::filesystem::path file, LiveSession& live, std::uint64_t change);
+  // What was left over has taken its place: it counts as changed.
+  void begin_recovered(LiveSession& live);
+
+  void note_saved(const SavedDocument& saved, LiveSession& live);
+  bool has_unsaved_changes(const LiveFrame& frame) const {
+    return recovered_ || frame.change != saved_change_;
+  }
+
+  // "spoon-handle.json *": the star stands for unsaved changes.
+  std::string title(const LiveFrame& frame) const;
+
+ private:
+  std::optional<Autosave> autosave() const;
+
+  std::optional<std::filesystem::path> state_folder_;
+  std::filesystem::path file_;
+  std::uint64_t saved_change_ = 0;
+  bool recovered_ = false;
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,263 @@
+#include "app/edit/editor.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "app/assets_folder.h"
+#include "app/files/state_folder.h"
+#include "app/panel/panel.h"
+#include "app/panel/session_panel.h"
+#include "render/gl/allocator_thresholds.h"
+#include "render/overlay/labels.h"
+#include "render/tessellation/tessellated_surface.h"
+
+namespace spoonbill {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::microseconds frame_time{16667};
+
+std::filesystem::path model_of(const EditSettings& settings) {
+  if (!settings.model.empty()) return settings.model;
+  return std::filesystem::path(assets_folder) / "models" / "spoon-handle.json";
+}
+
+// All that can be read of the materials that come with the program, by name.
+std::vector<Material> read_presets() {
+  std::vector<Material> presets;
+  std::error_code problem;
+  const auto folder = std::filesystem::path(assets_folder) / "materials";
+  for (const auto& entry : std::filesystem::directory_iterator(folder, problem)) {
+    auto material = read_material(entry.path());
+    if (material) presets.push_back(std::move(material).value());
+  }
+  std::sort(presets.begin(), presets.end(),
+            [](const Material& a, const Material& b) { return a.name < b.name; });
+  return presets;
+}
+
+BoundingBox net_box(const Surface& surface) {
+  BoundingBox box;
+  for (std::size_t i = 0; i < surface.net.x.size(); ++i) {
+    box.include({surface.net.x[i], surface.net.y[i], surface.net.z[i]});
+  }
+  return box;
+}
+
+// Above the model, where it touches nothing.
+Vector3 resting_place(const Surface& surface) {
+  const BoundingBox box = net_box(surface);
+  Vector3 place = 0.5 * (box.low_m + box.high_m);
+  place.y() = box.high_m.y() + 0.25 * (box.high_m - box.low_m).norm();
+  return place;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Editor>> Editor::make(const EditSettings& settings) {
+  const std::filesystem::path model = model_of(settings);
+  const auto document = read_document(model);
+  if (!document) return document.error();
+  auto view = view_from_json(document->view, model.string());
+  if (!view) return view.error();
+  auto window = EditWindow::make(settings.width, settings.height, settings.scale);
+  if (!window) return window.error();
+  LiveSettings live_settings;
+  live_settings.instruction_set = settings.instruction_set;
+  live_settings.real_time = settings.real_time;
+  live_settings.start.pose.position_m = resting_place(document->scene.body.surface);
+  auto live = LiveSession::start(document.value(), model.string(), live_settings);
+  if (!live) return live.error();
+  auto state = state_folder();
+  std::optional<std::filesystem::path> folder;
+  if (state) folder = state.value();
+  std::unique_ptr<Editor> editor(new Editor(settings, std::move(window).value(), std::move(live).value(),
+                                            view.value(), EditedDocument(folder, settings.model)));
+  if (!state) editor->messages_.add_problem(state.error().message);
+  return editor;
+}
+
+Editor::Editor(const EditSettings& settings, EditWindow window, std::unique_ptr<LiveSession> live,
+               ViewChoice view, EditedDocument document)
+    : settings_(settings),
+      window_(std::move(window)),
+      live_(std::move(live)),
+      view_(std::move(view)),
+      document_(std::move(document)),
+      presets_(read_presets()),
+      hand_(Vector3::Zero()) {}
+
+Status Editor::run() {
+  keep_drawing_memory();
+  start();
+  window_.window().show();
+  auto last = Clock::now();
+  while (!left_) {
+    const auto now = Clock::now();
+    const double seconds = std::chrono::duration<double>(now - last).count();
+    last = now;
+    if (Status drawn = frame(seconds); !drawn) return drawn;
+    std::this_thread::sleep_until(now + frame_time);
+  }
+  live_->set_autosave(std::nullopt);
+  live_->stop();
+  return {};
+}
+
+void Editor::start() {
+  const LiveFrame& frame = live_->frame();
+  body_ = drawn_bounds(frame.snapshot);
+  hand_ = MouseHand(0.5 * (body_.low_m + body_.high_m));
+  target_.pose.position_m = frame.snapshot.tool.device.position_m;
+  shown_ = view_settings(0.0);
+  if (auto cap = SpaceMouse::open()) space_mouse_.emplace(std::move(cap).value());
+  look_for_left_over();
+  if (settings_.recording.empty()) return;
+  live_->set_view(view_to_json(view_));
+  live_->start_recording(settings_.recording);
+  asked_.emplace_back(std::nullopt);
+}
+
+Status Editor::frame(double seconds) {
+  if (Status begun = window_.begin_frame(); !begun) return begun;
+  const LiveFrame& frame = live_->frame();
+  take_news(frame, seconds);
+  take_keys(frame);
+  if (Status laid = lay_out(frame, seconds); !laid) return laid;
+  take_pointer(frame);
+  follow_space_mouse(seconds);
+  if (Status drawn = window_.end_frame(frame.snapshot, shown_); !drawn) return drawn;
+  if (screenshot_due_) write_screenshot();
+  if (window_.window().should_close() && !unsaved_.asking()) {
+    window_.window().set_should_close(false);
+    leave(Leave::quit);
+  }
+  return {};
+}
+
+void Editor::take_news(const LiveFrame& frame, double seconds) {
+  for (Notice& notice : live_->take_notices()) messages_.add(std::move(notice));
+  live_->take_forces(forces_n_);
+  plots_.add(forces_n_, live_->figures(), seconds);
+  take_answers(frame);
+  if (frame.session != session_) {
+    session_ = frame.session;
+    body_ = drawn_bounds(frame.snapshot);
+  }
+  if (const auto saved = live_->take_saved()) {
+    document_.note_saved(*saved, *live_);
+    if (leave_when_saved_) leave_now(leaving_);
+  }
+}
+
+// Work is answered in the order in which it was asked for.
+void Editor::take_answers(const LiveFrame& frame) {
+  while (works_done_ + works_failed_ < frame.works_done + frame.works_failed && !asked_.empty()) {
+    const bool failed = works_failed_ < frame.works_failed;
+    ++(failed ? works_failed_ : works_done_);
+    const std::optional<AskedOpen> asked = asked_.front();
+    asked_.erase(asked_.begin());
+    if (failed || !asked) continue;
+    view_ = asked->view;
+    if (asked->recovered) {
+      document_.begin_recovered(*live_);
+    } else {
+      document_.begin(asked->file, *live_, frame.change);
+    }
+  }
+}
+
+ViewSettings Editor::view_settings(double top_px) const {
+  const int width = window_.width_px();
+  const int height = window_.height_px();
+  const Rectangle panel = panel_rectangle(width, height, window_.scale(), top_px);
+  return settings_for(view_, body_, width, height, panel, window_.scale());
+}
+
+Status Editor::lay_out(const LiveFrame& frame, double seconds) {
+  const Theme& theme = window_.theme();
+  ImGui::PushFont(theme.fonts.body);
+  MenuState state{frame.facts.can_undo,
+                  frame.facts.can_redo,
+                  frame.recording,
+                  frame.facts.symmetry.on,
+                  static_cast<int>(frame.snapshot.planes.size()),
+                  settings_.navigation,
+                  view_.overlays,
+                  view_.see_through_body};
+  const MenuChoice choice = draw_menu(state);
+  settings_.navigation = choice.navigation;
+  for (const EditAction action : choice.actions) act(action, frame);
+  set_overlays(choice);
+  shown_ = view_settings(choice.height_px);
+  const int width = window_.width_px();
+  const int height = window_.height_px();
+  draw_labels(overlay_labels(frame.snapshot, shown_, width, height), shown_, width, height, *theme.fonts.body,
+              *ImGui::GetBackgroundDrawList());
+  lay_out_panel(frame);
+  const auto left = static_cast<float>(shown_.panel_px.x + shown_.panel_px.width);
+  messages_.draw(theme, ImVec2(left, static_cast<float>(height)), seconds);
+  plots_.draw(theme, ImVec2(static_cast<float>(width), choice.height_px),
+              frame.snapshot.device.force_limit_n);
+  if (keys_shown_) keys_shown_ = draw_keys(theme);
+  lay_out_questions();
+  ImGui::PopFont();
+  return {};
+}
+
+void Editor::lay_out_panel(const LiveFrame& frame) {
+  if (shown_.panel_px.width <= 0.0) return;
+  PanelModel model = panel_of(frame.facts, frame.snapshot, shown_);
+  const LoopFigures figures = live_->figures();
+  model.title = document_.title(frame);
+  model.presets = presets_;
+  model.rate_hz = figures.rate_hz;
+  model.rate_is_nominal = false;
+  model.safety_flags = frame.safety_flags;
+  for (Request& request : draw_panel(model, window_.theme(), shown_.panel_px)) {
+    if (const auto* change = std::get_if<ChangeView>(&request)) {
+      apply_view_command(change->command, "panel", view_);
+    }
+    ask(std::move(request));
+  }
+}
+
+void Editor::lay_out_questions() {
+  if (const auto file = files_.draw()) {
+    if (files_.purpose() == FilePurpose::open_model) {
+      open(*file);
+    } else {
+      save_as(*file);
+    }
+  }
+  if (const auto answer = unsaved_.draw()) {
+    if (*answer == 0) {
+      leave_when_saved_ = true;
+      save();
+    } else if (*answer == 1) {
+      leave_now(leaving_);
+    } else {
+      leaving_ = Leave::none;
+    }
+  }
+  if (const auto answer = left_over_.draw()) {
+    if (*answer == 0) {
+      recover();
+    } else {
+      document_.begin(document_.file(), *live_, live_->frame().change);
+      document_.discard_left_over();
+    }
+  }
+}
+
+void Editor::ask(Request request) {
+  if (live_->ask(std::move(request))) return;
+  messages_.add_problem("The haptic thread is busy: ask again");
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,257 @@
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/edit/editor.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr Range<double> radius_range_m{0.001, 0.05};
+constexpr Range<double> strength_range_m{0.0002, 0.02};
+constexpr double drag_growth_per_px = 0.01;
+
+bool is_held(int key) {
+  return ImGui::IsKeyDown(key);
+}
+
+double dragged(double value, double moved_px, Range<double> range) {
+  return std::clamp(value * std::exp(drag_growth_per_px * moved_px), range.low, range.high);
+}
+
+ToolAction other(ToolAction action) {
+  return action == ToolAction::push ? ToolAction::pull : ToolAction::push;
+}
+
+}  // namespace
+
+Pointer Editor::read_pointer() const {
+  const ImGuiIO& io = ImGui::GetIO();
+  Pointer pointer;
+  pointer.position_px = {io.MousePos.x, io.MousePos.y};
+  pointer.moved_px = {io.MouseDelta.x, io.MouseDelta.y};
+  pointer.wheel = io.MouseWheel;
+  pointer.left = io.MouseDown[0];
+  pointer.right = io.MouseDown[1];
+  pointer.middle = io.MouseDown[2];
+  pointer.ctrl = io.KeyCtrl;
+  pointer.shift = io.KeyShift;
+  return pointer;
+}
+
+void Editor::take_keys(const LiveFrame& frame) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantTextInput || unsaved_.asking() || left_over_.asking()) return;
+  for (const KeyBinding& binding : key_bindings()) {
+    if (binding.ctrl != io.KeyCtrl || binding.shift != io.KeyShift) continue;
+    if (ImGui::IsKeyPressed(binding.key, false)) act(binding.action, frame);
+  }
+}
+
+void Editor::take_pointer(const LiveFrame& frame) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const Pointer pointer = read_pointer();
+  const Viewport viewport = make_viewport(window_.width_px(), window_.height_px(), shown_.panel_px);
+  const bool over_picture = !io.WantCaptureMouse && std::isfinite(io.MousePos.x) && io.MousePos.x >= 0.0F;
+  if (is_held(GLFW_KEY_F) && !io.WantTextInput) return drag_setting(pointer, frame);
+  const CameraMotion motion = camera_motion(settings_.navigation, pointer, hand_.on_model());
+  if (over_picture && motion != CameraMotion::none && !hand_.pressing()) {
+    return move_camera(pointer, motion, viewport);
+  }
+  if (over_picture && pointer.wheel != 0.0 && !hand_.pressing()) {
+    view_.camera = zoomed(shown_.camera, pointer.wheel);
+    view_.shows_whole_body = false;
+    show_camera();
+  }
+  if (pointer.left && ImGui::IsMouseClicked(0)) stroke_began_here_ = over_picture;
+  if (!pointer.left) stroke_began_here_ = false;
+  if (over_picture || hand_.pressing()) stroke(pointer, frame, viewport);
+}
+
+void Editor::drag_setting(const Pointer& pointer, const LiveFrame& frame) {
+  if (pointer.moved_px.x() == 0.0) return;
+  if (pointer.shift) {
+    strength_m_ = dragged(strength_m_, pointer.moved_px.x(), strength_range_m);
+    return;
+  }
+  Tool tool = frame.facts.tool;
+  if (tool.kind == ToolKind::point) return;
+  tool.radius_m = dragged(tool.radius_m, pointer.moved_px.x(), radius_range_m);
+  ask(Command(SetTool{tool}));
+}
+
+void Editor::move_camera(const Pointer& pointer, CameraMotion motion, const Viewport& viewport) {
+  if (pointer.moved_px.isZero()) return;
+  view_.camera = moved(shown_.camera, motion, pointer.moved_px, viewport);
+  view_.shows_whole_body = false;
+  show_camera();
+}
+
+void Editor::show_camera() {
+  ask(ChangeView{camera_command(view_)});
+}
+
+void Editor::stroke(const Pointer& pointer, const LiveFrame& frame, const Viewport& viewport) {
+  const bool held = pointer.left && stroke_began_here_;
+  Tool tool = frame.facts.tool;
+  if (held && !hand_.pressing() && pointer.ctrl && !before_inverting_) {
+    before_inverting_ = tool;
+    tool.action = other(tool.action);
+    ask(Command(SetTool{tool}));
+  }
+  if (!held && before_inverting_) {
+    ask(Command(SetTool{*before_inverting_}));
+    before_inverting_.reset();
+  }
+  if (!hand_.pressing()) pick_.update(frame.snapshot);
+  const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
+  if (held || !pointer.moved_px.isZero()) space_mouse_leads_ = false;
+  if (space_mouse_leads_) return;
+  target_ = hand_.follow(pointer, held, shown_.camera, viewport, pick_,
+                         {radius, strength_m_, tool.action == ToolAction::pull});
+  live_->aim(target_);
+}
+
+void Editor::follow_space_mouse(double seconds) {
+  if (!space_mouse_) return;
+  const auto motion = space_mouse_->poll();
+  if (!motion) return space_mouse_.reset();
+  const HandTarget steered = steer(target_, *motion, seconds);
+  const bool moved_it =
+      steered.pose.position_m != target_.pose.position_m || steered.buttons != target_.buttons;
+  space_mouse_leads_ = space_mouse_leads_ || moved_it;
+  if (!space_mouse_leads_) return;
+  target_ = steered;
+  live_->aim(target_);
+}
+
+void Editor::act(EditAction action, const LiveFrame& frame) {
+  switch (action) {
+    case EditAction::show_keys:
+      keys_shown_ = !keys_shown_;
+      break;
+    case EditAction::new_document:
+      leave(Leave::fresh);
+      break;
+    case EditAction::open:
+      leave(Leave::open);
+      break;
+    case EditAction::quit:
+      leave(Leave::quit);
+      break;
+    case EditAction::save:
+      save();
+      break;
+    case EditAction::save_as:
+      files_.ask(FilePurpose::save_model, document_.file());
+      break;
+    case EditAction::undo:
+      ask(UndoStroke{});
+      break;
+    case EditAction::redo:
+      ask(RedoStroke{});
+      break;
+    case EditAction::cancel:
+      if (files_.asking()) {
+        files_.close();
+      } else if (keys_shown_) {
+        keys_shown_ = false;
+      } else {
+        hand_.let_go();
+        ask(CancelStroke{});
+      }
+      break;
+    case EditAction::toggle_symmetry: {
+      Symmetry symmetry = frame.facts.symmetry;
+      symmetry.on = !symmetry.on;
+      ask(Command(SetSymmetry{symmetry}));
+      break;
+    }
+    case EditAction::toggle_recording:
+      toggle_recording(frame);
+      break;
+    case EditAction::screenshot:
+      screenshot_due_ = true;
+      break;
+    case EditAction::place_plane:
+      place_plane(frame);
+      break;
+    case EditAction::remove_planes:
+      ask(Command(RemovePlanes{}));
+      break;
+    case EditAction::keep_shape:
+      ask(Command(KeepShape{}));
+      break;
+    case EditAction::tool_push_sphere:
+      set_tool(frame, ToolKind::sphere, ToolAction::push);
+      break;
+    case EditAction::tool_pull_sphere:
+      set_tool(frame, ToolKind::sphere, ToolAction::pull);
+      break;
+    case EditAction::tool_push_point:
+      set_tool(frame, ToolKind::point, ToolAction::push);
+      break;
+    case EditAction::tool_pull_point:
+      set_tool(frame, ToolKind::point, ToolAction::pull);
+      break;
+    default:
+      act_on_view(action);
+  }
+}
+
+void Editor::act_on_view(EditAction action) {
+  Camera camera = view_.camera;
+  switch (action) {
+    case EditAction::view_front:
+      camera = look_from(camera, StandardView::front);
+      break;
+    case EditAction::view_right:
+      camera = look_from(camera, StandardView::right);
+      break;
+    case EditAction::view_top:
+      camera = look_from(camera, StandardView::top);
+      break;
+    case EditAction::view_perspective:
+      camera = look_from(camera, StandardView::perspective);
+      break;
+    default:
+      break;
+  }
+  view_.camera = camera;
+  view_.shows_whole_body = true;
+  show_camera();
+}
+
+void Editor::set_tool(const LiveFrame& frame, ToolKind kind, ToolAction tool_action) {
+  Tool tool = frame.facts.tool;
+  tool.kind = kind;
+  tool.action = tool_action;
+  ask(Command(SetTool{tool}));
+}
+
+// The side of the plane that the camera sees less of is held: the part of the model on the far side of the
+// tool from the model's longer remainder stays free. Upright, across the model's longest direction.
+void Editor::place_plane(const LiveFrame& frame) {
+  const Vector3 size = body_.high_m - body_.low_m;
+  int axis = 0;
+  size.maxCoeff(&axis);
+  FixingPlane plane;
+  plane.point_m = frame.snapshot.tool.proxy.position_m;
+  const double middle = 0.5 * (body_.low_m[axis] + body_.high_m[axis]);
+  plane.normal = Vector3::Zero();
+  plane.normal[axis] = plane.point_m[axis] <= middle ? 1.0 : -1.0;
+  ask(Command(PlacePlane{plane}));
+}
+
+void Editor::set_overlays(const MenuChoice& choice) {
+  const Json before = overlays_command(view_.overlays, view_.see_through_body);
+  const Json after = overlays_command(choice.overlays, choice.see_through_body);
+  if (after == before) return;
+  view_.overlays = choice.overlays;
+  view_.see_through_body = choice.see_through_body;
+  ask(ChangeView{after});
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,65 @@
+#include "app/edit/key_bindings.h"
+
+#include <GLFW/glfw3.h>
+
+#include <array>
+
+namespace spoonbill {
+namespace {
+
+using Action = EditAction;
+
+constexpr std::array<KeyBinding, 31> bindings = {{
+    {Action::show_keys, GLFW_KEY_F1, false, false, "F1", "Show or hide these keys"},
+    {Action::open, GLFW_KEY_O, true, false, "Ctrl+O", "Open a model"},
+    {Action::new_document, GLFW_KEY_N, true, false, "Ctrl+N", "Begin anew with the spoon handle"},
+    {Action::save, GLFW_KEY_S, true, false, "Ctrl+S", "Save"},
+    {Action::save_as, GLFW_KEY_S, true, true, "Ctrl+Shift+S", "Save under another name"},
+    {Action::undo, GLFW_KEY_Z, true, false, "Ctrl+Z", "Undo the last stroke"},
+    {Action::redo, GLFW_KEY_Z, true, true, "Ctrl+Shift+Z", "Redo it"},
+    {Action::redo, GLFW_KEY_Y, true, false, "Ctrl+Y", "Redo it"},
+    {Action::cancel, GLFW_KEY_ESCAPE, false, false, "Esc", "Cancel the stroke, or close what is open"},
+    {Action::tool_push_sphere, GLFW_KEY_1, false, false, "1", "Sphere that pushes"},
+    {Action::tool_pull_sphere, GLFW_KEY_2, false, false, "2", "Sphere that pulls"},
+    {Action::tool_push_point, GLFW_KEY_3, false, false, "3", "Point that pushes"},
+    {Action::tool_pull_point, GLFW_KEY_4, false, false, "4", "Point that pulls"},
+    {Action::toggle_symmetry, GLFW_KEY_X, false, false, "X", "Symmetry on or off"},
+    {Action::place_plane, GLFW_KEY_P, false, false, "P", "Fix the model behind a plane at the tool"},
+    {Action::remove_planes, GLFW_KEY_P, false, true, "Shift+P", "Remove the fixing planes"},
+    {Action::keep_shape, GLFW_KEY_K, false, false, "K", "Keep this shape as the rest shape"},
+    {Action::frame_model, GLFW_KEY_HOME, false, false, "Home", "Show the whole model"},
+    {Action::frame_model, GLFW_KEY_PERIOD, false, false, ".", "Show the whole model"},
+    {Action::view_front, GLFW_KEY_KP_1, false, false, "Num 1", "From the front"},
+    {Action::view_right, GLFW_KEY_KP_3, false, false, "Num 3", "From the right"},
+    {Action::view_top, GLFW_KEY_KP_7, false, false, "Num 7", "From the top"},
+    {Action::view_perspective, GLFW_KEY_KP_5, false, false, "Num 5", "At an angle"},
+    {Action::view_front, GLFW_KEY_F5, false, false, "F5", "From the front"},
+    {Action::view_right, GLFW_KEY_F6, false, false, "F6", "From the right"},
+    {Action::view_top, GLFW_KEY_F7, false, false, "F7", "From the top"},
+    {Action::view_perspective, GLFW_KEY_F8, false, false, "F8", "At an angle"},
+    {Action::screenshot, GLFW_KEY_F12, false, false, "F12", "Write a picture"},
+    {Action::toggle_recording, GLFW_KEY_F9, false, false, "F9", "Start or stop recording"},
+    {Action::quit, GLFW_KEY_Q, true, false, "Ctrl+Q", "Quit"},
+    {Action::show_keys, GLFW_KEY_SLASH, false, true, "?", "Show or hide these keys"},
+}};
+
+constexpr std::array<HeldKey, 6> held = {{
+    {"Left button", "Stroke: press in, drag along the screen"},
+    {"Wheel, pressed", "Deeper, or nearer"},
+    {"Ctrl, pressed", "Pull instead of push, and the reverse"},
+    {"F and drag", "Tool radius"},
+    {"Shift+F and drag", "Strength: how deep a press goes"},
+    {"Right button", "Turn the camera; Shift pans, Ctrl or wheel zooms"},
+}};
+
+}  // namespace
+
+std::span<const KeyBinding> key_bindings() {
+  return bindings;
+}
+
+std::span<const HeldKey> held_keys() {
+  return held;
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,57 @@
+// The mouse as the hand that holds the virtual handle. Hovering, the tool rests just above the surface under
+// the pointer, or beside the body on the plane of the last touch. Pressed, it goes in by the strength and
+// follows the pointer in the plane of the screen; the wheel moves that plane. Let go, it hovers again. One
+// owner; the thread that draws.
+#pragma once
+
+#include <optional>
+
+#include "app/edit/navigation.h"
+#include "app/edit/surface_pick.h"
+#include "haptic/virtual_device.h"
+
+namespace spoonbill {
+
+struct MouseStroke {
+  double radius_m = 0.0;    // of the tool, 0 for a point
+  double strength_m = 0.0;  // how deep a press goes in
+  bool grips = false;       // holds what it touches: a pull
+};
+
+class MouseHand {
+ public:
+  // At rest at `start_m`, which also gives the first plane to hover on.
+  explicit MouseHand(const Vector3& start_m)
+      : depth_point_m_(start_m), hover_m_(start_m), target_m_(start_m) {}
+
+  // Once a frame. `held`: whether the button that strokes is down; the press must have begun on the picture.
+  HandTarget follow(const Pointer& pointer, bool held, const Camera& camera, const Viewport& viewport,
+                    const SurfacePick& pick, const MouseStroke& stroke);
+
+  // Ends the press as if the button had been let go, until it is pressed again.
+  void let_go();
+
+  bool pressing() const { return press_.has_value(); }
+  bool on_model() const { return on_model_; }  // the last hover was over the body
+
+ private:
+  struct Press {
+    Vector3 anchor_m;   // where the tool was
+    Vector3 inward;     // zero beside the body
+    Vector3 pointer_m;  // what the pointer pointed at, in the plane
+    double depth_m = 0.0;
+    int frames = 0;
+  };
+  void hover(const Ray& ray, const Camera& camera, const SurfacePick& pick, const MouseStroke& stroke);
+  void press(const Ray& ray, const Pointer& pointer, const Camera& camera, const MouseStroke& stroke);
+
+  Vector3 depth_point_m_;
+  Vector3 hover_m_;
+  Vector3 inward_ = Vector3::Zero();
+  bool on_model_ = false;
+  std::optional<Press> press_;
+  bool must_release_ = false;
+  Vector3 target_m_;
+};
+
+}  // namespace spoonbill
