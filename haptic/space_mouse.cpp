@@ -1,0 +1,122 @@
+#include "haptic/space_mouse.h"
+
+#include <spnav.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <utility>
+
+namespace spoonbill {
+
+namespace {
+
+// What the devices send at full displacement.
+constexpr double full_counts = 350.0;
+
+constexpr int button_count = 32;
+
+constexpr double longest_step_s = 0.1;
+
+double displacement(int counts) {
+  return std::clamp(static_cast<double>(counts) / full_counts, -1.0, 1.0);
+}
+
+void take_button(const spnav_event_button& event, std::uint32_t& buttons) {
+  if (event.bnum < 0 || event.bnum >= button_count) return;
+  const std::uint32_t bit = 1u << event.bnum;
+  buttons = event.press != 0 ? buttons | bit : buttons & ~bit;
+}
+
+// libspnav says "no event" also when the daemon is gone, and the cap would stay where it was last.
+bool daemon_has_gone() {
+  char byte = 0;
+  const ssize_t count = recv(spnav_fd(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+  return count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR);
+}
+
+// 0 within the dead zone, from there to 1 or -1 with the square.
+double shaped(double displacement, double dead_zone) {
+  const double beyond = (std::abs(displacement) - dead_zone) / (1.0 - dead_zone);
+  return beyond > 0.0 ? std::copysign(std::min(beyond * beyond, 1.0), displacement) : 0.0;
+}
+
+Vector3 shaped(const Vector3& displacement, double dead_zone) {
+  return {shaped(displacement.x(), dead_zone), shaped(displacement.y(), dead_zone),
+          shaped(displacement.z(), dead_zone)};
+}
+
+}  // namespace
+
+SpaceMouseMotion motion_from_counts(const int (&counts)[6], std::uint32_t buttons) {
+  SpaceMouseMotion motion;
+  motion.translation = {displacement(counts[0]), displacement(counts[1]), -displacement(counts[2])};
+  motion.rotation = {displacement(counts[3]), displacement(counts[4]), -displacement(counts[5])};
+  motion.buttons = buttons;
+  return motion;
+}
+
+Result<SpaceMouse> SpaceMouse::open() {
+  if (spnav_fd() != -1) return Error{"the SpaceMouse is open already"};
+  if (spnav_open() != 0) {
+    return Error{
+        "no SpaceMouse: its daemon does not answer; install the package spacenavd and start it "
+        "(systemctl start spacenavd)"};
+  }
+  return SpaceMouse();
+}
+
+SpaceMouse::SpaceMouse(SpaceMouse&& other) noexcept
+    : is_open_(std::exchange(other.is_open_, false)), motion_(other.motion_) {}
+
+SpaceMouse& SpaceMouse::operator=(SpaceMouse&& other) noexcept {
+  if (this == &other) return *this;
+  close();
+  is_open_ = std::exchange(other.is_open_, false);
+  motion_ = other.motion_;
+  return *this;
+}
+
+SpaceMouse::~SpaceMouse() {
+  close();
+}
+
+void SpaceMouse::close() {
+  if (std::exchange(is_open_, false)) spnav_close();
+}
+
+std::optional<SpaceMouseMotion> SpaceMouse::poll() {
+  if (!is_open_) return {};
+  spnav_event event;
+  while (spnav_poll_event(&event) != 0) {
+    if (event.type == SPNAV_EVENT_MOTION) {
+      const spnav_event_motion& m = event.motion;
+      motion_ = motion_from_counts({m.x, m.y, m.z, m.rx, m.ry, m.rz}, motion_.buttons);
+    } else if (event.type == SPNAV_EVENT_BUTTON) {
+      take_button(event.button, motion_.buttons);
+    }
+  }
+  if (daemon_has_gone()) {
+    close();
+    return {};
+  }
+  return motion_;
+}
+
+HandTarget steer(const HandTarget& target, const SpaceMouseMotion& motion, double elapsed_s,
+                 const Steering& steering) {
+  const double step_s = std::isfinite(elapsed_s) ? std::clamp(elapsed_s, 0.0, longest_step_s) : 0.0;
+  HandTarget moved = target;
+  moved.buttons = motion.buttons;
+  moved.pose.position_m += shaped(motion.translation, steering.dead_zone) * (steering.speed_m_per_s * step_s);
+  const Vector3 turn = shaped(motion.rotation, steering.dead_zone) * (steering.turn_rate_rad_per_s * step_s);
+  const double angle = turn.norm();
+  if (angle > 0.0) {
+    const Quaternion by(Eigen::AngleAxisd(angle, turn / angle));
+    moved.pose.orientation = (by * moved.pose.orientation).normalized();
+  }
+  return moved;
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,238 @@
+// The safety chain under everything that may go wrong, at random and for long.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <random>
+
+#include "engine/simulation/simulation.h"
+#include "haptic/safety.h"
+#include "haptic/tick.h"
+#include "haptic/virtual_device.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr std::uint32_t all_faults = safety_flag_not_finite | safety_flag_stale | safety_flag_stalled |
+                                     safety_flag_buzzing | safety_flag_dead_man;
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
+  // Evenly over the orders of magnitude.
+  double scaled(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
+  bool once_in(std::uint64_t count) { return engine_() % count == 0; }
+  std::uint64_t bits() { return engine_(); }
+  Vector3 direction() { return Vector3(between(-1, 1), between(-1, 1), between(-1, 1)).normalized(); }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+DeviceSpecification random_specification(Random& random) {
+  DeviceSpecification specification;
+  specification.maximum_force_n = random.once_in(10) ? 0.0 : random.scaled(0.5, 30.0);
+  specification.workspace_radius_m = random.scaled(0.05, 1.0);
+  specification.quiet_force_n = random.scaled(0.02, 1.0);
+  specification.ramp_time_s = random.once_in(5) ? 0.0 : random.scaled(1e-3, 1.0);
+  specification.maximum_force_rate_n_per_s = random.scaled(10.0, 1e5);
+  specification.maximum_speed_m_per_s = random.scaled(0.1, 5.0);
+  specification.dead_man_buttons = random.once_in(3) ? 2u : 0u;
+  return specification;
+}
+
+// A hand and a force that wander, jump, rest, buzz and break.
+class RandomInput {
+ public:
+  explicit RandomInput(Random& random) : random_(random) {}
+
+  SafetyInput next() {
+    if (random_.once_in(300)) manner_ = random_.bits() % 5;
+    SafetyInput input;
+    input.wanted_n = next_force();
+    velocity_ = random_.once_in(200) ? Vector3(random_.scaled(1e-3, 20.0) * random_.direction()) : velocity_;
+    position_ += velocity_ * tick_s;
+    if (position_.norm() > 1.5 || random_.once_in(5000))
+      position_ = random_.between(0, 1) * random_.direction();
+    input.position_m = position_;
+    input.buttons = random_.once_in(10'000) ? 0u : 3u;
+    if (random_.once_in(500)) input.dropped_ticks = random_.bits() % 30;
+    break_something(input);
+    return input;
+  }
+
+ private:
+  Vector3 next_force() {
+    switch (manner_) {
+      case 0:
+        return 0.01 * random_.direction();
+      case 1:
+        return random_.scaled(1e-3, 1e3) * random_.direction();
+      case 2:
+        return force_ = -force_;
+      case 3:
+        return force_ += random_.between(0.0, 0.5) * random_.direction();
+      default:
+        if (random_.once_in(100)) force_ = random_.scaled(0.01, 100.0) * random_.direction();
+        return force_;
+    }
+  }
+
+  void break_something(SafetyInput& input) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr std::array bad = {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity};
+    const auto axis = static_cast<Eigen::Index>(random_.bits() % 3);
+    if (random_.once_in(10'000)) input.wanted_n[axis] = bad[random_.bits() % 3];
+    if (random_.once_in(10'000)) input.position_m[axis] = bad[random_.bits() % 3];
+    if (random_.once_in(1000)) input.wanted_n[axis] = std::numeric_limits<double>::max();
+    if (random_.once_in(10'000)) input.dropped_ticks = random_.bits() >> (random_.bits() % 64);
+    input.stale = random_.once_in(10'000);
+  }
+
+  Random& random_;
+  std::uint64_t manner_ = 0;
+  Vector3 position_ = Vector3::Zero();
+  Vector3 velocity_ = Vector3::Zero();
+  Vector3 force_ = Vector3::Ones();
+};
+
+// What the chain itself cannot be asked: computed from the input alone.
+bool is_fault(const DeviceSpecification& specification, const SafetyInput& input) {
+  if (input.stale || !input.wanted_n.allFinite() || !input.position_m.allFinite()) return true;
+  return input.dropped_ticks >= 25 || (specification.dead_man_buttons & ~input.buttons) != 0;
+}
+
+struct Watched {
+  std::uint64_t beyond_limit = 0, jumps = 0, not_cut = 0, cut_without_reason = 0, missed_resets = 0;
+  std::uint64_t faults = 0, buzzes = 0, with_force = 0, limited = 0;
+  Vector3 last_n = Vector3::Zero();
+
+  // Relative, for the rounding of a norm.
+  static constexpr double rounding = 1e-12;
+
+  void watch(const DeviceSpecification& specification, const SafetyInput& input, const SafeForce& safe) {
+    const double most_n = specification.maximum_force_rate_n_per_s * tick_s;
+    const bool fault = is_fault(specification, input);
+    const bool buzz = !fault && (safe.flags & (safety_flag_cut | safety_flag_buzzing)) ==
+                                    (safety_flag_cut | safety_flag_buzzing);
+    const bool cut = (safe.flags & safety_flag_cut) != 0;
+    beyond_limit += !(safe.force_n.norm() <= specification.maximum_force_n * (1.0 + rounding));
+    // From the force before, which is at most the limit, a difference is exact to that many bits.
+    const double allowed_n = most_n + rounding * (most_n + specification.maximum_force_n);
+    jumps += !cut && !((safe.force_n - last_n).norm() <= allowed_n);
+    not_cut += (fault || cut) && !safe.force_n.isZero(0.0);
+    cut_without_reason += cut != (fault || buzz) || (cut && (safe.flags & all_faults) == 0);
+    missed_resets += safe.reset_proxy != (input.dropped_ticks >= 25);
+    faults += fault;
+    buzzes += buzz;
+    with_force += !safe.force_n.isZero(0.0);
+    limited += (safe.flags & safety_flag_change_limited) != 0;
+    last_n = safe.force_n;
+  }
+
+  void expect_safe() const {
+    EXPECT_EQ(beyond_limit, 0u);
+    EXPECT_EQ(jumps, 0u);
+    EXPECT_EQ(not_cut, 0u);
+    EXPECT_EQ(cut_without_reason, 0u);
+    EXPECT_EQ(missed_resets, 0u);
+  }
+};
+
+TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
+  const std::uint64_t ticks = std::getenv("SPOONBILL_FULL") != nullptr ? 10'000'000 : 300'000;
+  constexpr std::uint64_t ticks_a_device = 20'000;
+  Random random(11);
+  Watched all;
+  for (std::uint64_t done = 0; done < ticks; done += ticks_a_device) {
+    const DeviceSpecification specification = random_specification(random);
+    ASSERT_TRUE(check_specification(specification).ok());
+    RandomInput inputs(random);
+    SafetyState state;
+    all.last_n.setZero();
+    for (std::uint64_t tick = 0; tick < ticks_a_device; ++tick) {
+      const SafetyInput input = inputs.next();
+      all.watch(specification, input, make_safe(state, specification, input));
+    }
+  }
+  all.expect_safe();
+  // That all of it did occur.
+  EXPECT_GT(all.faults, ticks / 5000);
+  EXPECT_GT(all.buzzes, ticks / 100'000);
+  EXPECT_GT(all.with_force, ticks / 40);
+  EXPECT_GT(all.limited, ticks / 400);
+}
+
+Scene random_scene(Random& random) {
+  Scene scene = small_handle();
+  Material& material = scene.body.material;
+  material.youngs_modulus_pa = random.scaled(1e4, 1e9);
+  material.poissons_ratio = random.between(0.26, 0.45);
+  material.density_kg_per_m3 = random.scaled(500.0, 8000.0);
+  material.damping_ratio = random.between(0.01, 0.1);
+  material.plastic = random.once_in(2);
+  scene.planes.push_back({Vector3(random.between(0.01, 0.04), 0, 0), Vector3::UnitX()});
+  scene.tool.kind = random.once_in(3) ? ToolKind::point : ToolKind::sphere;
+  scene.tool.action = random.once_in(3) ? ToolAction::pull : ToolAction::push;
+  scene.tool.radius_m = random.between(0.003, 0.008);
+  scene.tool.iterations = 1 + static_cast<int>(random.bits() % 8);
+  scene.sculpting.force_scale = random.scaled(0.1, 1e4);
+  return scene;
+}
+
+// The hand wanders over and into the handle; the thread is late now and then, and the simulation stale.
+Watched sculpt(Random& random, int ticks) {
+  auto made = Simulation::make(random_scene(random), best_instruction_set());
+  EXPECT_TRUE(made.ok()) << made.error().message;
+  Simulation simulation = std::move(made).value();
+  const double mass = random.scaled(0.02, 1.0), stiffness = random.between(50.0, 1000.0);
+  HandTarget target;
+  target.pose.position_m = Vector3(0.03, 0.02, 0.0);
+  VirtualDevice device =
+      VirtualDevice::make({mass, stiffness, 2.0 * std::sqrt(mass * stiffness)}, target).value();
+  CouplingState coupling;
+  SafetyState safety;
+  Watched watched;
+  Vector3 from = target.pose.position_m, to = from;
+  constexpr int stroke = 100;
+  for (int k = 0; k < ticks; ++k) {
+    if (k % stroke == 0) {
+      from = to;
+      to = Vector3(random.between(0.0, 0.06), random.between(-0.01, 0.02), random.between(-0.01, 0.01));
+      target.buttons = random.once_in(2) ? button_main : 0u;
+    }
+    target.pose.position_m = from + (to - from) * ((k % stroke + 1.0) / stroke);
+    device.set_target(target);
+    SafetyInput input;
+    input.wanted_n = tick(simulation, coupling, device.specification(), device.read()).force_n;
+    input.position_m = device.position_m();
+    input.stale = random.once_in(1000);
+    if (random.once_in(300)) input.dropped_ticks = random.bits() % 60;
+    const SafeForce safe = make_safe(safety, device.specification(), input);
+    watched.watch(device.specification(), input, safe);
+    device.set_force(safe.force_n);
+  }
+  return watched;
+}
+
+TEST(SafetyAtRandom, LimitsHoldWhileSculpting) {
+  const int scenes = std::getenv("SPOONBILL_FULL") != nullptr ? 60 : 6;
+  Random random(12);
+  std::uint64_t with_force = 0;
+  for (int scene = 0; scene < scenes; ++scene) {
+    const Watched watched = sculpt(random, 1500);
+    watched.expect_safe();
+    with_force += watched.with_force;
+  }
+  EXPECT_GT(with_force, 0u);
+}
+
+}  // namespace
+}  // namespace spoonbill
