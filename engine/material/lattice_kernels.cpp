@@ -184,6 +184,7 @@ inline void flow_block(const float* __restrict length, const float* __restrict r
 }
 
 void flow(const LatticeView& view, float yield, float rate_step) {
+  average_dilations(view);
   float* __restrict root = view.fx;
   const float* __restrict dilation = view.node_dilation;
   for (int i = 0; i < view.padded_count; ++i) root[i] = cube_root(dilation[i]);

@@ -38,10 +38,10 @@ struct LatticeView {
   const float* bulk_stiffness = nullptr;  // K_v V0, J
   const float* inverse_volume = nullptr;  // 1/V0, 1/m^3
   float* rest_volume_sum =
-      nullptr;                      // 36 V0 as volume_forces() computes it, so that rest has no strain at all
+      nullptr;                      // 12 V0 as volume_forces() computes it, so that rest has no strain at all
   const float* has_cell = nullptr;  // 1 or 0
   const float* inverse_cell_count = nullptr;  // of the cells around a node
-  float* node_dilation = nullptr;             // J averaged over those cells
+  float* node_dilation = nullptr;             // working memory of flow(): J averaged over them
   float* power_x = nullptr;                   // the vector of the running power iteration
   float* power_y = nullptr;
   float* power_z = nullptr;
