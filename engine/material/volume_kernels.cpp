@@ -134,6 +134,7 @@ inline float dilation_of(const LatticeView& view, const FaceDiagonals& p, int n)
 void volume_forces(const LatticeView& view, float tau) {
   BlockCells cells;
   for (int start = 0; start < view.padded_count; start += block) {
+    if (view.active_block[start / block] == 0) continue;
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
       const FaceDiagonals p = present_diagonals(view, n), gradient = volume_gradient(p);
@@ -187,6 +188,7 @@ void add_volume_row_sums(const LatticeView& view, float* sum) {
 void add_volume_stiffness(const LatticeView& view) {
   BlockCells cells;
   for (int start = 0; start < view.padded_count; start += block) {
+    if (view.active_block[start / block] == 0) continue;
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
       const FaceDiagonals gradient = volume_gradient(present_diagonals(view, n));
