@@ -66,6 +66,7 @@ void spring_forces(const LatticeView& view, float tau) {
   BlockForces force;
   for (const SpringArrays& s : view.springs) {
     for (int start = 0; start < view.padded_count; start += block) {
+      if (view.active_block[start / block] == 0) continue;
       spring_block(view, s, start, tau, force);
       scatter(force, view.fx, view.fy, view.fz, start, s.offset);
     }
@@ -184,12 +185,14 @@ inline void flow_block(const float* __restrict length, const float* __restrict r
 }
 
 void flow(const LatticeView& view, float yield, float rate_step) {
+  average_dilations(view);
   float* __restrict root = view.fx;
   const float* __restrict dilation = view.node_dilation;
   for (int i = 0; i < view.padded_count; ++i) root[i] = cube_root(dilation[i]);
   alignas(64) float length[block];
   for (const SpringArrays& s : view.springs) {
     for (int start = 0; start < view.padded_count; start += block) {
+      if (view.active_block[start / block] == 0) continue;
       length_block(view, s, start, length);
       flow_block(length, root + start, root + start + s.offset, s.stiffness + start,
                  s.first_rest_length + start, s.rest_length + start, s.square_difference + start, yield,
@@ -203,6 +206,7 @@ void stiffness_product_springs(const LatticeView& view) {
   for (const SpringArrays& s : view.springs) {
     const int o = s.offset;
     for (int start = 0; start < view.padded_count; start += block) {
+      if (view.active_block[start / block] == 0) continue;
       for (int l = 0; l < block; ++l) {
         const int i = start + l;
         const float ax = s.rest_x[i] + (view.dx[i + o] - view.dx[i]);

@@ -2,9 +2,10 @@
 // set gives the same bits: lanes run over nodes, sums run in a fixed order, nothing is contracted. This
 // header and its source use no standard library, as engine/bspline/evaluate_kernels.h explains.
 //
-// Arrays are structures of arrays over nodes, k fastest, padded with zeros so that every loop runs over whole
-// blocks and every neighbour offset stays inside. A spring is stored at its first node, once for each of the
-// 13 directions of a regular lattice; a cell at its first corner. Where none exists its stiffness is zero.
+// Arrays are structures of arrays over nodes in the mesh's order, padded with zeros so that every loop runs
+// over whole blocks and every neighbour offset stays inside. A spring is stored at its first node, once for
+// each of the 13 directions of a regular lattice; a cell at its first corner. Where none exists its stiffness
+// is zero.
 #pragma once
 
 namespace spoonbill {
@@ -32,16 +33,19 @@ struct LatticeView {
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
   const float* inverse_mass = nullptr;                // 1/kg; 0 where held
   const float* free_node = nullptr;                   // 1 where free, 0 where held or padding
+  // One a block: 0 where no spring or cell that starts there has a free node. Forces leave such blocks out,
+  // and are then those on free nodes alone.
+  const unsigned char* active_block = nullptr;
   SpringArrays springs[lattice_direction_count];
   int corner_offset[8] = {};              // from a cell's first corner, bit 0 = k, bit 1 = j, bit 2 = i
   int corner_direction[8] = {};           // the spring direction from the first corner to each; [0] unused
   const float* bulk_stiffness = nullptr;  // K_v V0, J
   const float* inverse_volume = nullptr;  // 1/V0, 1/m^3
   float* rest_volume_sum =
-      nullptr;                      // 36 V0 as volume_forces() computes it, so that rest has no strain at all
+      nullptr;                      // 12 V0 as volume_forces() computes it, so that rest has no strain at all
   const float* has_cell = nullptr;  // 1 or 0
   const float* inverse_cell_count = nullptr;  // of the cells around a node
-  float* node_dilation = nullptr;             // J averaged over those cells
+  float* node_dilation = nullptr;             // working memory of flow(): J averaged over them
   float* power_x = nullptr;                   // the vector of the running power iteration
   float* power_y = nullptr;
   float* power_z = nullptr;

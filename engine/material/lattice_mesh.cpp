@@ -110,9 +110,9 @@ LatticeMesh box_mesh(const Vector3& size_m, std::array<int, 3> counts) {
   LatticeMesh mesh;
   mesh.count = counts;
   mesh.nodes.reserve(static_cast<std::size_t>(mesh.node_count()));
-  for (int i = 0; i < counts[0]; ++i) {
-    for (int j = 0; j < counts[1]; ++j) {
-      for (int k = 0; k < counts[2]; ++k) {
+  for (int k = 0; k < counts[2]; ++k) {
+    for (int i = 0; i < counts[0]; ++i) {
+      for (int j = 0; j < counts[1]; ++j) {
         mesh.nodes.emplace_back(size_m.x() * i / (counts[0] - 1), size_m.y() * j / (counts[1] - 1),
                                 size_m.z() * k / (counts[2] - 1));
       }

@@ -10,13 +10,17 @@
 
 namespace spoonbill {
 
-// Node (i, j, k) lies at index (i * count[1] + j) * count[2] + k: k runs along the body, fastest, i and j
-// across.
+// i and j run across the body, k along it, slowest: neighbours in memory are near whatever the body's length,
+// and what a plane holds of it is one stretch of memory.
 struct LatticeMesh {
   std::array<int, 3> count{};
   std::vector<Vector3> nodes;  // m
 
-  int index(int i, int j, int k) const { return (i * count[1] + j) * count[2] + k; }
+  int index(int i, int j, int k) const { return (k * count[0] + i) * count[1] + j; }
+  // The inverse: i, j, k.
+  std::array<int, 3> place(int index) const {
+    return {index / count[1] % count[0], index % count[1], index / (count[0] * count[1])};
+  }
   int node_count() const { return count[0] * count[1] * count[2]; }
   // The corners of the cell whose first corner is (i, j, k): bit 0 of the corner adds to k, bit 1 to j, bit 2
   // to i.

@@ -12,8 +12,8 @@ namespace {
 
 // The 13 directions of a regular lattice as steps in i, j, k, each with a positive offset in memory.
 constexpr int direction_step[lattice_direction_count][3] = {
-    {0, 0, 1}, {0, 1, 0},  {1, 0, 0}, {0, 1, 1},  {0, 1, -1}, {1, 0, 1},   {1, 0, -1},
-    {1, 1, 0}, {1, -1, 0}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1},
+    {0, 1, 0}, {1, 0, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0}, {0, 1, 1},   {0, -1, 1},
+    {1, 0, 1}, {-1, 0, 1}, {1, 1, 1}, {1, -1, 1}, {-1, 1, 1}, {-1, -1, 1},
 };
 
 int direction_of(int di, int dj, int dk) {
@@ -70,10 +70,10 @@ Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const Materia
 void SpringLattice::lay_out(const LatticeMesh& mesh) {
   mesh_ = mesh;
   cell_size_ = static_cast<float>(mesh.mean_edge());
-  const int row = mesh.count[2], layer = mesh.count[1] * mesh.count[2];
+  const int row = mesh.count[1], layer = mesh.count[0] * mesh.count[1];
   int reach = 0;
   for (int d = 0; d < lattice_direction_count; ++d) {
-    offset_[d] = direction_step[d][0] * layer + direction_step[d][1] * row + direction_step[d][2];
+    offset_[d] = direction_step[d][0] * row + direction_step[d][1] + direction_step[d][2] * layer;
     reach = std::max(reach, offset_[d]);
   }
   padded_count_ = (mesh.node_count() + lattice_block - 1) / lattice_block * lattice_block;
@@ -200,8 +200,7 @@ void SpringLattice::store_nodes(const Assembly& sum) {
 
 void SpringLattice::store_springs(int d, const Assembly& sum) {
   for (int n = 0; n < mesh_.node_count(); ++n) {
-    const int at[3] = {n / (mesh_.count[1] * mesh_.count[2]), n / mesh_.count[2] % mesh_.count[1],
-                       n % mesh_.count[2]};
+    const std::array<int, 3> at = mesh_.place(n);
     bool inside = true;
     for (int axis = 0; axis < 3; ++axis) {
       const int to = at[axis] + direction_step[d][axis];
@@ -246,6 +245,7 @@ LatticeView SpringLattice::view() {
   v.fz = fz_.data();
   v.inverse_mass = inverse_mass_.data();
   v.free_node = free_node_.data();
+  v.active_block = active_block_.data();
   for (int d = 0; d < lattice_direction_count; ++d) {
     v.springs[d] = {offset_[d],
                     rest_x_[d].data(),
@@ -297,6 +297,17 @@ void SpringLattice::hold(std::span<const std::uint8_t> held) {
     free_mass_[n] = free ? node_mass_[n] : 0.0f;
     free_node_[n] = free ? 1.0f : 0.0f;
     if (!free) set_velocity(n, Vector3::Zero());
+  }
+  find_active_blocks();
+}
+
+void SpringLattice::find_active_blocks() {
+  active_block_.assign(static_cast<std::size_t>(padded_count_ / lattice_block), 0);
+  const int reach = *std::max_element(offset_, offset_ + lattice_direction_count);
+  for (int n = 0; n < mesh_.node_count(); ++n) {
+    if (free_node_[n] == 0.0f) continue;
+    const int first = std::max(0, n - reach) / lattice_block;
+    for (int b = first; b <= n / lattice_block; ++b) active_block_[static_cast<std::size_t>(b)] = 1;
   }
 }
 

@@ -104,6 +104,7 @@ class SpringLattice {
   void store_nodes(const Assembly& sum);
   void store_springs(int direction, const Assembly& sum);
   void measure_fastest_frequency();
+  void find_active_blocks();
 
   using Floats = AlignedVector<float>;
 
@@ -119,6 +120,7 @@ class SpringLattice {
 
   Floats dx_, dy_, dz_, vx_, vy_, vz_, fx_, fy_, fz_;
   Floats node_mass_, free_mass_, inverse_mass_, free_node_;
+  std::vector<std::uint8_t> active_block_;
   Floats applied_[3];
   Floats rest_x_[lattice_direction_count], rest_y_[lattice_direction_count], rest_z_[lattice_direction_count];
   Floats stiffness_[lattice_direction_count], rest_length_[lattice_direction_count];

@@ -17,67 +17,100 @@ inline Vector operator-(Vector a, Vector b) {
 inline Vector cross(Vector a, Vector b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+inline Vector operator*(float scale, Vector a) {
+  return {scale * a.x, scale * a.y, scale * a.z};
+}
 inline float dot(Vector a, Vector b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// Twelve times the gradient of a trilinear cell's volume by its corners 1..7, for corner 0 at the origin
-// (corner 0's own is minus their sum). Each quad face a, b, c, d, seen from outside counter-clockwise, adds
-// the mean of its two triangulations: (a.(b x c) + a.(c x d) + a.(b x d) + b.(c x d)) / 12. Corner bits: 1 =
-// k, 2 = j, 4 = i.
-struct Gradient {
-  Vector g[8];
+// What a trilinear cell's volume depends on: a diagonal of each of its faces (corner bits: 1 = k, 2 = j, 4 =
+// i). With these, 12 V = (a + b).(c x d) + (c + e).(f x b) + (f + d).(a x e), the mean of the two
+// triangulations of each face (Grandy, "Efficient computation of volume of hexahedral cells", UCRL-ID-128886,
+// 1997).
+struct FaceDiagonals {
+  Vector a;  // from corner 4 to 7
+  Vector b;  // 0 to 3
+  Vector c;  // 2 to 7
+  Vector d;  // 0 to 6
+  Vector e;  // 0 to 5
+  Vector f;  // 1 to 7
 };
-inline void add_far_face(const Vector* p, Vector* g, int a, int b, int c, int d) {
-  const Vector ab = cross(p[a], p[b]), bc = cross(p[b], p[c]), cd = cross(p[c], p[d]), da = cross(p[d], p[a]);
-  const Vector ac = cross(p[a], p[c]), bd = cross(p[b], p[d]);
-  g[a] = g[a] + bc + cd + bd;
-  g[b] = g[b] + cd + da - ac;
-  g[c] = g[c] + da + ab - bd;
-  g[d] = g[d] + ab + bc + ac;
-}
-inline void add_near_face(const Vector* p, Vector* g, int b, int c, int d) {
-  const Vector bc = cross(p[b], p[c]), cd = cross(p[c], p[d]), bd = cross(p[b], p[d]);
-  g[b] = g[b] + cd;
-  g[c] = g[c] - bd;
-  g[d] = g[d] + bc;
-}
-inline Gradient volume_gradient(const Vector* p) {
-  Gradient result;
-  Vector* g = result.g;
-  for (int c = 0; c < 8; ++c) g[c] = {0.0f, 0.0f, 0.0f};
-  add_near_face(p, g, 1, 3, 2);
-  add_near_face(p, g, 2, 6, 4);
-  add_near_face(p, g, 4, 5, 1);
-  add_far_face(p, g, 4, 6, 7, 5);
-  add_far_face(p, g, 2, 3, 7, 6);
-  add_far_face(p, g, 1, 5, 7, 3);
-  g[0] = Vector{0.0f, 0.0f, 0.0f} - (g[1] + g[2] + g[3] + g[4] + g[5] + g[6] + g[7]);
-  return result;
+
+inline Vector difference(const float* x, const float* y, const float* z, int from, int to) {
+  return {x[to] - x[from], y[to] - y[from], z[to] - z[from]};
 }
 
-// The corners of the cell at node n relative to its first.
-inline void cell_corners(const LatticeView& view, int n, Vector* p) {
-  p[0] = {0.0f, 0.0f, 0.0f};
-  for (int c = 1; c < 8; ++c) {
-    const SpringArrays& s = view.springs[view.corner_direction[c]];
-    const int m = n + view.corner_offset[c];
-    p[c] = {s.rest_x[n] + (view.dx[m] - view.dx[n]), s.rest_y[n] + (view.dy[m] - view.dy[n]),
-            s.rest_z[n] + (view.dz[m] - view.dz[n])};
-  }
+// Of a field on the nodes, for the cell at node n.
+inline FaceDiagonals diagonals_of(const LatticeView& view, const float* x, const float* y, const float* z,
+                                  int n) {
+  const int* o = view.corner_offset;
+  return {difference(x, y, z, n + o[4], n + o[7]), difference(x, y, z, n, n + o[3]),
+          difference(x, y, z, n + o[2], n + o[7]), difference(x, y, z, n, n + o[6]),
+          difference(x, y, z, n, n + o[5]),        difference(x, y, z, n + o[1], n + o[7])};
 }
 
-// 36 times the volume, by Euler's theorem for the homogeneous cubic V: 3 V = sum x . dV/dx.
-inline float volume_sum(const Vector* p, const Gradient& gradient) {
-  float sum = 0.0f;
-  for (int c = 1; c < 8; ++c) sum += dot(p[c], gradient.g[c]);
-  return sum;
+inline Vector rest_vector(const SpringArrays& s, int n) {
+  return {s.rest_x[n], s.rest_y[n], s.rest_z[n]};
+}
+
+// Of the present shape: face diagonals are springs.
+inline FaceDiagonals present_diagonals(const LatticeView& view, int n) {
+  const SpringArrays& jk = view.springs[view.corner_direction[3]];
+  const SpringArrays& ik = view.springs[view.corner_direction[5]];
+  const SpringArrays& ij = view.springs[view.corner_direction[6]];
+  const int* o = view.corner_offset;
+  const FaceDiagonals moved = diagonals_of(view, view.dx, view.dy, view.dz, n);
+  return {rest_vector(jk, n + o[4]) + moved.a, rest_vector(jk, n) + moved.b,
+          rest_vector(ik, n + o[2]) + moved.c, rest_vector(ij, n) + moved.d,
+          rest_vector(ik, n) + moved.e,        rest_vector(ij, n + o[1]) + moved.f};
+}
+
+// 12 V.
+inline float volume_sum(const FaceDiagonals& p) {
+  return dot(p.a + p.b, cross(p.c, p.d)) + dot(p.c + p.e, cross(p.f, p.b)) + dot(p.f + p.d, cross(p.a, p.e));
+}
+
+// Its gradient by the diagonals.
+inline FaceDiagonals volume_gradient(const FaceDiagonals& p) {
+  const Vector ab = p.a + p.b, ce = p.c + p.e, fd = p.f + p.d;
+  const Vector cd = cross(p.c, p.d), fb = cross(p.f, p.b), ae = cross(p.a, p.e);
+  return {cd + cross(p.e, fd), cd + cross(ce, p.f), cross(p.d, ab) + fb,
+          cross(ab, p.c) + ae, fb + cross(fd, p.a), cross(p.b, ce) + ae};
+}
+
+// The rate of 12 V at velocities (or any other field) of the nodes.
+inline float volume_rate(const LatticeView& view, const FaceDiagonals& gradient, const float* x,
+                         const float* y, const float* z, int n) {
+  const FaceDiagonals v = diagonals_of(view, x, y, z, n);
+  return dot(v.a, gradient.a) + dot(v.b, gradient.b) + dot(v.c, gradient.c) + dot(v.d, gradient.d) +
+         dot(v.e, gradient.e) + dot(v.f, gradient.f);
 }
 
 // Corner-major results of one block of cells, scattered afterwards.
 struct BlockCells {
   alignas(64) float x[8][block], y[8][block], z[8][block];
-  alignas(64) float dilation[block];
+
+  // `scale` times the gradient by each corner.
+  void set(int l, float scale, const FaceDiagonals& gradient) {
+    const FaceDiagonals g = {scale * gradient.a, scale * gradient.b, scale * gradient.c,
+                             scale * gradient.d, scale * gradient.e, scale * gradient.f};
+    set(0, l, Vector{0.0f, 0.0f, 0.0f} - (g.b + g.d + g.e));
+    set(1, l, Vector{0.0f, 0.0f, 0.0f} - g.f);
+    set(2, l, Vector{0.0f, 0.0f, 0.0f} - g.c);
+    set(3, l, g.b);
+    set(4, l, Vector{0.0f, 0.0f, 0.0f} - g.a);
+    set(5, l, g.e);
+    set(6, l, g.d);
+    set(7, l, g.a + g.c + g.f);
+  }
+
+ private:
+  void set(int c, int l, const Vector& v) {
+    x[c][l] = v.x;
+    y[c][l] = v.y;
+    z[c][l] = v.z;
+  }
 };
 
 inline void add_corner_forces(const LatticeView& view, int start, const BlockCells& cells) {
@@ -91,41 +124,39 @@ inline void add_corner_forces(const LatticeView& view, int start, const BlockCel
   }
 }
 
-void volume_block(const LatticeView& view, int start, float tau, BlockCells& out) {
-  for (int l = 0; l < block; ++l) {
-    const int n = start + l;
-    Vector p[8];
-    cell_corners(view, n, p);
-    const Gradient gradient = volume_gradient(p);
-    float rate = 0.0f;
-    for (int c = 0; c < 8; ++c) {
-      const int m = n + view.corner_offset[c];
-      rate += dot({view.vx[m], view.vy[m], view.vz[m]}, gradient.g[c]);
-    }
-    const float dilation =
-        (volume_sum(p, gradient) - view.rest_volume_sum[n]) * (1.0f / 36.0f) * view.inverse_volume[n];
-    const float strain = dilation + tau * (rate * (1.0f / 12.0f) * view.inverse_volume[n]);
-    const float scale = -view.bulk_stiffness[n] * view.inverse_volume[n] * strain * (1.0f / 12.0f);
-    for (int c = 0; c < 8; ++c) {
-      out.x[c][l] = scale * gradient.g[c].x;
-      out.y[c][l] = scale * gradient.g[c].y;
-      out.z[c][l] = scale * gradient.g[c].z;
-    }
-    out.dilation[l] = (1.0f + dilation) * view.has_cell[n];
-  }
+// J - 1.
+inline float dilation_of(const LatticeView& view, const FaceDiagonals& p, int n) {
+  return (volume_sum(p) - view.rest_volume_sum[n]) * (1.0f / 12.0f) * view.inverse_volume[n];
 }
 
 }  // namespace
 
 void volume_forces(const LatticeView& view, float tau) {
   BlockCells cells;
+  for (int start = 0; start < view.padded_count; start += block) {
+    if (view.active_block[start / block] == 0) continue;
+    for (int l = 0; l < block; ++l) {
+      const int n = start + l;
+      const FaceDiagonals p = present_diagonals(view, n), gradient = volume_gradient(p);
+      const float rate = volume_rate(view, gradient, view.vx, view.vy, view.vz, n);
+      const float strain = dilation_of(view, p, n) + tau * (rate * (1.0f / 12.0f) * view.inverse_volume[n]);
+      cells.set(l, -view.bulk_stiffness[n] * view.inverse_volume[n] * strain * (1.0f / 12.0f), gradient);
+    }
+    add_corner_forces(view, start, cells);
+  }
+}
+
+void average_dilations(const LatticeView& view) {
+  alignas(64) float dilation[block];
   for (int i = 0; i < view.padded_count; ++i) view.node_dilation[i] = 0.0f;
   for (int start = 0; start < view.padded_count; start += block) {
-    volume_block(view, start, tau, cells);
-    add_corner_forces(view, start, cells);
+    for (int l = 0; l < block; ++l) {
+      const int n = start + l;
+      dilation[l] = (1.0f + dilation_of(view, present_diagonals(view, n), n)) * view.has_cell[n];
+    }
     for (int c = 0; c < 8; ++c) {
       float* __restrict j = view.node_dilation + start + view.corner_offset[c];
-      for (int l = 0; l < block; ++l) j[l] += cells.dilation[l];
+      for (int l = 0; l < block; ++l) j[l] += dilation[l];
     }
   }
   for (int i = 0; i < view.padded_count; ++i) view.node_dilation[i] *= view.inverse_cell_count[i];
@@ -136,12 +167,11 @@ void add_volume_row_sums(const LatticeView& view, float* sum) {
   for (int start = 0; start < view.padded_count; start += block) {
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
-      Vector p[8];
-      cell_corners(view, n, p);
-      const Gradient gradient = volume_gradient(p);
+      const FaceDiagonals g = volume_gradient(present_diagonals(view, n));
+      const Vector by_corner[8] = {g.b + g.d + g.e, g.f, g.c, g.b, g.a, g.e, g.d, g.a + g.c + g.f};
       float length[8], total = 0.0f;
       for (int c = 0; c < 8; ++c) {
-        length[c] = __builtin_sqrtf(dot(gradient.g[c], gradient.g[c]));
+        length[c] = __builtin_sqrtf(dot(by_corner[c], by_corner[c]));
         total += length[c];
       }
       const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
@@ -158,34 +188,21 @@ void add_volume_row_sums(const LatticeView& view, float* sum) {
 void add_volume_stiffness(const LatticeView& view) {
   BlockCells cells;
   for (int start = 0; start < view.padded_count; start += block) {
+    if (view.active_block[start / block] == 0) continue;
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
-      Vector p[8];
-      cell_corners(view, n, p);
-      const Gradient gradient = volume_gradient(p);
-      float rate = 0.0f;
-      for (int c = 0; c < 8; ++c) {
-        const int m = n + view.corner_offset[c];
-        rate += dot({view.power_x[m], view.power_y[m], view.power_z[m]}, gradient.g[c]);
-      }
+      const FaceDiagonals gradient = volume_gradient(present_diagonals(view, n));
+      const float rate = volume_rate(view, gradient, view.power_x, view.power_y, view.power_z, n);
       const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
-      const float scale = view.bulk_stiffness[n] * inverse * inverse * rate;
-      for (int c = 0; c < 8; ++c) {
-        cells.x[c][l] = scale * gradient.g[c].x;
-        cells.y[c][l] = scale * gradient.g[c].y;
-        cells.z[c][l] = scale * gradient.g[c].z;
-      }
+      cells.set(l, view.bulk_stiffness[n] * inverse * inverse * rate, gradient);
     }
     add_corner_forces(view, start, cells);
   }
 }
 
 void measure_rest_volumes(const LatticeView& view) {
-  for (int n = 0; n < view.padded_count; ++n) {
-    Vector p[8];
-    cell_corners(view, n, p);
-    view.rest_volume_sum[n] = volume_sum(p, volume_gradient(p));
-  }
+  for (int n = 0; n < view.padded_count; ++n)
+    view.rest_volume_sum[n] = volume_sum(present_diagonals(view, n));
 }
 
 }  // namespace spoonbill::SPOONBILL_KERNELS

@@ -14,6 +14,9 @@ namespace spoonbill::SPOONBILL_KERNELS {
 // See LatticeKernels::volume_forces.
 void volume_forces(const LatticeView& view, float tau_s);
 
+// J of the cells around each node, averaged into node_dilation.
+void average_dilations(const LatticeView& view);
+
 // Adds each cell's share to the row sums, N/m.
 void add_volume_row_sums(const LatticeView& view, float* sum_n_per_m);
 

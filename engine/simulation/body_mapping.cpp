@@ -96,8 +96,7 @@ EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
       nearest = n;
     }
   }
-  const int ni = nearest / (mesh.count[1] * mesh.count[2]), nj = nearest / mesh.count[2] % mesh.count[1],
-            nk = nearest % mesh.count[2];
+  const auto [ni, nj, nk] = mesh.place(nearest);
   CellLocation best;
   best.outside = std::numeric_limits<double>::infinity();
   std::array<int, 3> cell{};

@@ -22,20 +22,21 @@ void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>
   const LatticeMesh& mesh = lattice.mesh();
   const std::size_t count = static_cast<std::size_t>(mesh.node_count());
   for (std::vector<float>* values : {&out.x, &out.y, &out.z}) values->resize(count);
-  for (int n = 0; n < mesh.node_count(); ++n) {
-    const Vector3 position = lattice.position(n);
-    out.x[static_cast<std::size_t>(n)] = static_cast<float>(position.x());
-    out.y[static_cast<std::size_t>(n)] = static_cast<float>(position.y());
-    out.z[static_cast<std::size_t>(n)] = static_cast<float>(position.z());
-  }
-  out.fixed = held;
-  out.touched = touched;
-  if (std::equal(mesh.count.begin(), mesh.count.end(), out.count)) return;
+  for (std::vector<std::uint8_t>* marks : {&out.fixed, &out.touched, &out.on_shell}) marks->resize(count);
   std::copy(mesh.count.begin(), mesh.count.end(), out.count);
-  out.on_shell.clear();
+  std::size_t at = 0;
   for (int i = 0; i < mesh.count[0]; ++i) {
     for (int j = 0; j < mesh.count[1]; ++j) {
-      for (int k = 0; k < mesh.count[2]; ++k) out.on_shell.push_back(mesh.is_shell(i, j, k));
+      for (int k = 0; k < mesh.count[2]; ++k, ++at) {
+        const int node = mesh.index(i, j, k);
+        const Vector3 position = lattice.position(node);
+        out.x[at] = static_cast<float>(position.x());
+        out.y[at] = static_cast<float>(position.y());
+        out.z[at] = static_cast<float>(position.z());
+        out.fixed[at] = held[static_cast<std::size_t>(node)];
+        out.touched[at] = touched[static_cast<std::size_t>(node)];
+        out.on_shell[at] = mesh.is_shell(i, j, k);
+      }
     }
   }
 }
