@@ -1,10 +1,15 @@
 // Bullet's soft bodies as blocks of mass points like our lattices: count^3 nodes, edges, face and body
-// diagonals as links, one face held, under gravity, without any collision.
+// diagonals as links, one face held, shaken, without any collision.
 #pragma once
 
 #include <memory>
 
 namespace spoonbill {
+
+// The acceleration, along y, that shakes the blocks at that step: theirs and ours.
+inline float block_shaking_m_per_s2(int step) {
+  return step / 16 % 2 == 0 ? -20.0f : 20.0f;
+}
 
 class BulletBlock {
  public:

@@ -13,12 +13,13 @@
 namespace spoonbill {
 namespace {
 
-constexpr int quads = 200, levels = 6;  // ours: 5 elements * 2^6 = 320 cells a side at the finest
+constexpr int controls = 28, levels = 3;  // 25 elements a side, 2^3 cells each
+constexpr int quads = 200;
 constexpr double radius_m = 0.05, depth_m = 0.004;
 
 // Two shapes of one sheet, and where a sphere sits in both.
 struct Sheets {
-  Sheets() : shapes{wavy_sheet(8), wavy_sheet(8)} {
+  Sheets() : shapes{wavy_sheet(controls), wavy_sheet(controls)} {
     for (double& y : shapes[1].net.y) y *= 1.01;
     const SurfacePoint at = evaluate(shapes[0], 0.42, 0.57);
     centre = at.position_m + (radius_m - depth_m) * at.dv.cross(at.du).normalized();

@@ -51,13 +51,13 @@ FIGURES = (
            "200 x 200 samples to 8 x 8 control points, three coordinates, both f32; Eigen: the dense product with "
            "the same pseudo-inverse, same flags and instruction set"),
     Figure("springs12_vs_bullet", "us", "ratio", "at least", 10,
-           "one step, 12^3 nodes, 18,788 springs; ours with volume forces; Bullet: soft body, position based, "
-           "one iteration, Debian's build"),
+           "one step, 12^3 nodes, 18,788 springs; ours f32 with volume forces; Bullet: soft body, position based, "
+           "one iteration, f32, Debian's build"),
     Figure("springs24_vs_bullet", "us", "ratio", "at least", 20,
-           "one step, 24^3 nodes, 164,588 springs; ours with volume forces; Bullet: deformable body, explicit, "
-           "Debian's build"),
+           "one step, 24^3 nodes, 164,588 springs; ours f32 with volume forces; Bullet: deformable body, explicit, "
+           "f32, Debian's build"),
     Figure("sphere_vs_fcl", "us", "ratio", "at least", 100,
-           "a sheet of 200 x 200 quads or finer deforms, then all contacts with a sphere; ours on the true surface; "
+           "a sheet of 200 x 200 cells deforms, then all contacts with a sphere; ours on the true surface; "
            "FCL: AABB tree refitted (vertices given), which knows nothing of the grid"),
     Figure("tick_p99_us", "us", "ours", "at most", 250,
            "the whole tick while touching, p99 of the thread's own time", "handle"),
