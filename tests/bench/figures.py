@@ -39,6 +39,10 @@ HANDLE = "assets/recordings/spoon-handle-bend.recording.jsonl"
 TICK_CASES = {"handle": HANDLE, "block 12x12x12": "block:12:6"}
 LATTICE_COUNTS = (8, 12, 16, 20, 24, 28, 30, 32, 34)
 
+LOOP = ("ticks of the 1 kHz loop late by 1 ms or more, the tick of the block in it; peer: cyclictest -m -p80, "
+        "without work, just after; ")
+LATE = "p99 of how late a tick begins, as above; "
+
 FIGURES = (
     Figure("eval_vs_sisl", "us", "ratio", "at least", 20, GRID + "ours f32, SISL s1506 f64"),
     Figure("eval_vs_occt", "us", "ratio", "at least", 40, GRID + "ours f32, OCCT GeomAdaptor_Surface::D1 f64"),
@@ -69,6 +73,10 @@ FIGURES = (
     Figure("lattice_at_1khz", "nodes", "ours", "at least", 32768,
            "the largest block of clay whose whole tick while touching, one relaxation step, keeps its p99 of the "
            "thread's own time under 1 ms"),
+    Figure("loop_missed_per_1000", "per 1,000", "ours", "at most", 1, LOOP + "nothing draws", "idle"),
+    Figure("loop_missed_per_1000", "per 1,000", "ours", "at most", 1, LOOP + "a thread draws at 60 Hz", "drawing"),
+    Figure("loop_p99_us", "us", "ratio", "at least", 0.5, LATE + "nothing draws", "idle"),
+    Figure("loop_p99_us", "us", "ratio", "at least", 0.5, LATE + "a thread draws at 60 Hz", "drawing"),
 )
 
 NAMES = tuple(dict.fromkeys(figure.name for figure in FIGURES))

@@ -2,10 +2,12 @@
 """Runs the benchmarks of a build folder and reports each figure beside its target. tests/bench/run calls it."""
 
 import argparse
+import functools
 import json
 import os
 import platform
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -14,6 +16,7 @@ from pathlib import Path
 
 from figures import FIGURES, GROWTH, HANDLE, LATTICE_COUNTS, NAMES, PAIRS, TICK_CASES
 
+LOOP_SECONDS = 20
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -66,6 +69,68 @@ class Measurements:
         used = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
         return done["frames"], seconds, used
 
+    @functools.cache
+    def loop(self, load):
+        """Lateness of our loop, then of cyclictest under the same load, None where that is not permitted."""
+        ours = json.loads(output_of([self.build / "tests/bench/loop_bench", LOOP_SECONDS, "loop", load]))
+        if ours["notice"]:
+            say(ours["notice"])
+        return ours, self.cyclictest(load)
+
+    def cyclictest(self, load):
+        program = shutil.which("cyclictest") or "/usr/sbin/cyclictest"
+        background = subprocess.Popen(
+            [str(self.build / "tests/bench/loop_bench"), str(LOOP_SECONDS + 3), "none", load],
+            stdout=subprocess.DEVNULL)
+        try:
+            time.sleep(1.5)
+            return lateness_of(output_of([program, "-q", "-m", "-p80", "-i1000", "-h", 50000,
+                                          "-l", 1000 * LOOP_SECONDS]))
+        except (RuntimeError, OSError) as error:
+            say(f"no cyclictest beside it: {error}")
+            return None
+        finally:
+            background.wait()
+
+
+def lateness_of(histogram):
+    """Quantiles of cyclictest's histogram of microseconds."""
+    bins, beyond = [], 0
+    for line in histogram.splitlines():
+        words = line.split()
+        if len(words) == 2 and words[0].isdigit() and words[1].isdigit():
+            bins.append((int(words[0]), int(words[1])))
+        elif line.startswith("# Histogram Overflows:"):
+            beyond = int(words[-1])
+    total = beyond + sum(count for _, count in bins)
+    if not total:
+        raise RuntimeError("cyclictest printed no histogram")
+
+    def quantile(share):
+        seen = 0
+        for late_us, count in bins:
+            seen += count
+            if seen >= share * total:
+                return late_us
+        return bins[-1][0]
+
+    missed = beyond + sum(count for late_us, count in bins if late_us >= 1000)
+    return {"ticks": total, "missed": missed, "p50_us": quantile(0.5), "p99_us": quantile(0.99),
+            "p999_us": quantile(0.999)}
+
+
+def measured_missed(measure, figure):
+    ours, peer = measure.loop(figure.case)
+    return {"ours": 1000 * ours["missed"] / (ours["ticks"] + ours["missed"]),
+            "peer": 1000 * peer["missed"] / peer["ticks"] if peer else None,
+            "details": {"ours": ours, "cyclictest": peer}}
+
+
+def measured_lateness(measure, figure):
+    ours, peer = measure.loop(figure.case)
+    return {"ours": ours["p99_us"], "peer": peer["p99_us"] if peer else None,
+            "ratio": peer["p99_us"] / ours["p99_us"] if peer else None}
+
 
 def measured_pair(measure, figure):
     ours, peer = PAIRS[figure.name]
@@ -99,7 +164,8 @@ def measured(measure, figure):
     if figure.name in PAIRS:
         return measured_pair(measure, figure)
     return {"tick_p99_us": measured_tick, "frames_per_second": measured_frames,
-            "lattice_at_1khz": measured_lattice}[figure.name](measure, figure)
+            "lattice_at_1khz": measured_lattice, "loop_missed_per_1000": measured_missed,
+            "loop_p99_us": measured_lateness}[figure.name](measure, figure)
 
 
 def row_of(measure, figure):

@@ -29,6 +29,10 @@ class MadeUp:
     def replay(self):
         return 300, 6.0, 9.0
 
+    def loop(self, load):
+        ours = {"ticks": 9990, "missed": 10 if load == "idle" else 30, "p99_us": 80.0}
+        return ours, {"ticks": 10000, "missed": 5, "p99_us": 60}
+
 
 def run(*arguments):
     out = io.StringIO()
@@ -71,6 +75,14 @@ class Report(unittest.TestCase):
         self.assertEqual(code, 1)
         row = json.loads(text)["figures"][0]
         self.assertEqual((row["ours"], row["met"], row["error"]), (None, None, "broken"))
+
+    def test_the_loop_is_judged_beside_cyclictest(self):
+        rows = json.loads(run("--json", "loop_missed_per_1000", "loop_p99_us")[1])["figures"]
+        self.assertEqual([row["met"] for row in rows], [True, False, True, True])
+        self.assertEqual(rows[0]["peer"], 0.5)
+        late = report.lateness_of("# Histogram\n000010 000900\n000020 000095\n001500 000003\n"
+                                  "# Histogram Overflows: 00002\n")
+        self.assertEqual(late, {"ticks": 1000, "missed": 5, "p50_us": 10, "p99_us": 20, "p999_us": 1500})
 
     def test_unknown_names_are_wrong_use(self):
         with self.assertRaises(SystemExit) as stopped:
