@@ -1,7 +1,8 @@
 #include "app/edit/edit_window.h"
 
-#include <imgui_impl_glfw.h>
+#include <backends/imgui_impl_glfw.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 

@@ -221,7 +221,7 @@ void Editor::lay_out_panel(const LiveFrame& frame) {
   model.safety_flags = frame.safety_flags;
   for (Request& request : draw_panel(model, window_.theme(), shown_.panel_px)) {
     if (const auto* change = std::get_if<ChangeView>(&request)) {
-      apply_view_command(change->command, "panel", view_);
+      if (Status seen = apply_view_command(change->command, "panel", view_); !seen) continue;
     }
     ask(std::move(request));
   }

@@ -1,0 +1,92 @@
+"""The figures: what is measured, beside what, and what it must reach. Plain data, read by report.py and plot."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Figure:
+    name: str
+    unit: str
+    judged: str  # "ratio" (peer / ours) or "ours"
+    sense: str  # "at least" or "at most"
+    target: float
+    compared: str  # what both sides do
+    case: str = ""  # tells rows of one name apart
+
+    def met(self, ours, ratio):
+        value = ratio if self.judged == "ratio" else ours
+        if value is None:
+            return None
+        return value >= self.target if self.sense == "at least" else value <= self.target
+
+
+GRID = "points and unit normals of a bicubic sheet, 8 x 8 control points, 200 x 200 samples; "
+
+# Names of Google Benchmark's cases of a pair: ours, peer.
+PAIRS = {
+    "eval_vs_sisl": ("evaluate_ours/200/8", "evaluate_sisl/200/8"),
+    "eval_vs_occt": ("evaluate_ours/200/8", "evaluate_occt_cached/200/8"),
+    "eval_vs_eigen": ("evaluate_ours/200/8", "evaluate_eigen/200/8"),
+    "refit_vs_occt": ("refit_ours/200/8", "refit_occt/200/8"),
+    "refit_vs_dense": ("refit_ours/200/8", "refit_dense/200/8"),
+    "springs12_vs_bullet": ("springs_ours/12", "springs_position_based/12"),
+    "springs24_vs_bullet": ("springs_ours/24", "springs_explicit/24"),
+    "sphere_vs_fcl": ("sphere_ours", "sphere_fcl"),
+    "png_ms": ("png_ours", "png_stb"),
+}
+
+HANDLE = "assets/recordings/spoon-handle-bend.recording.jsonl"
+TICK_CASES = {"handle": HANDLE, "block 12x12x12": "block:12:6"}
+LATTICE_COUNTS = (8, 12, 16, 20, 24, 28, 30, 32, 34)
+
+LOOP = ("ticks of the 1 kHz loop late by 1 ms or more, the tick of the block in it; peer: cyclictest -m -p80, "
+        "without work, just after; ")
+LATE = "p99 of how late a tick begins, as above; "
+
+FIGURES = (
+    Figure("eval_vs_sisl", "us", "ratio", "at least", 20, GRID + "ours f32, SISL s1506 f64"),
+    Figure("eval_vs_occt", "us", "ratio", "at least", 40, GRID + "ours f32, OCCT GeomAdaptor_Surface::D1 f64"),
+    Figure("eval_vs_eigen", "us", "ratio", "at least", 2.5,
+           GRID + "both f32; Eigen: dense A_u P A_v^T, same flags and instruction set"),
+    Figure("refit_vs_occt", "us", "ratio", "at least", 1000,
+           "200 x 200 samples to 8 x 8 control points; OCCT GeomAPI_PointsToBSplineSurface, which also finds "
+           "parameters and knots"),
+    Figure("refit_vs_dense", "us", "ratio", "at least", 1 / 1.2,
+           "200 x 200 samples to 8 x 8 control points, three coordinates, both f32; Eigen: the dense product with "
+           "the same pseudo-inverse, same flags and instruction set"),
+    Figure("springs12_vs_bullet", "us", "ratio", "at least", 10,
+           "one step, 12^3 nodes, 18,788 springs; ours f32 with volume forces; Bullet: soft body, position based, "
+           "one iteration, f32, Debian's build"),
+    Figure("springs24_vs_bullet", "us", "ratio", "at least", 20,
+           "one step, 24^3 nodes, 164,588 springs; ours f32 with volume forces; Bullet: deformable body, explicit, "
+           "f32, Debian's build"),
+    Figure("sphere_vs_fcl", "us", "ratio", "at least", 100,
+           "a sheet of 200 x 200 cells deforms, then all contacts with a sphere; ours on the true surface; "
+           "FCL: AABB tree refitted (vertices given), which knows nothing of the grid"),
+    Figure("tick_p99_us", "us", "ours", "at most", 250,
+           "the whole tick while touching, p99 of the thread's own time", "handle"),
+    Figure("tick_p99_us", "us", "ours", "at most", 250,
+           "the whole tick while touching, 6 relaxation steps, p99 of the thread's own time", "block 12x12x12"),
+    Figure("frames_per_second", "1/s", "ours", "at least", 30,
+           "`spoonbill replay` of the bundled recording to PNG, 1280x720, antialiasing, shadow and panel"),
+    Figure("png_ms", "ms", "ours", "at most", 8, "one frame of 1280x720 to PNG; peer: stb_image_write"),
+    Figure("lattice_at_1khz", "nodes", "ours", "at least", 32768,
+           "the largest block of clay whose whole tick while touching, one relaxation step, keeps its p99 of the "
+           "thread's own time under 1 ms"),
+    Figure("loop_missed_per_1000", "per 1,000", "ours", "at most", 1, LOOP + "nothing draws", "idle"),
+    Figure("loop_missed_per_1000", "per 1,000", "ours", "at most", 1, LOOP + "a thread draws at 60 Hz", "drawing"),
+    Figure("loop_p99_us", "us", "ratio", "at least", 0.5, LATE + "nothing draws", "idle"),
+    Figure("loop_p99_us", "us", "ratio", "at least", 0.5, LATE + "a thread draws at 60 Hz", "drawing"),
+)
+
+NAMES = tuple(dict.fromkeys(figure.name for figure in FIGURES))
+
+# How cost grows: what to plot, each a list of Google Benchmark's cases by what is counted along the axis.
+GROWTH = {
+    "grid": {name: {n: f"evaluate_{name}/{n}/8" for n in (25, 50, 100, 200, 400, 1000)}
+             for name in ("ours", "ours_double", "eigen", "sisl", "occt_cached")},
+    "net": {name: {n: f"evaluate_{name}/200/{n}" for n in (8, 16, 32, 64)}
+            for name in ("ours", "ours_double", "eigen", "sisl", "occt_cached")},
+    "lattice": {name: {n: f"springs_{name}/{n}" for n in (6, 8, 12, 16, 24, 32)}
+                for name in ("ours", "position_based", "explicit")},
+}

@@ -1,0 +1,13 @@
+// Our clamped sheets as OpenCASCADE's surfaces.
+#pragma once
+
+#include <Geom_BSplineSurface.hxx>
+
+#include "engine/bspline/surface.h"
+
+namespace spoonbill {
+
+// The sheet must be clamped in both directions.
+opencascade::handle<Geom_BSplineSurface> opencascade_sheet(const Surface& sheet);
+
+}  // namespace spoonbill

@@ -1,0 +1,104 @@
+// Control points from a grid of samples: ours, the same product written densely with Eigen, OpenCASCADE's
+// approximation. Arguments: samples a side, control points a side.
+#include <benchmark/benchmark.h>
+
+#include <GeomAPI_PointsToBSplineSurface.hxx>
+#include <Geom_BSplineSurface.hxx>
+#include <TColgp_Array2OfPnt.hxx>
+#include <cmath>
+#include <gp_Pnt.hxx>
+
+#include "engine/bspline/blending_matrix.h"
+#include "engine/bspline/refit.h"
+#include "tests/bench/agreement.h"
+#include "tests/bench/dense_products.h"
+#include "tests/bench/sheet.h"
+
+namespace spoonbill {
+namespace {
+
+struct Case {
+  explicit Case(const benchmark::State& state)
+      : sheet(wavy_sheet(static_cast<int>(state.range(1)))),
+        grid(sheet_grid(sheet, static_cast<int>(state.range(0)))),
+        controls(sheet.net.size()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int i = 0; i < grid.rows() * grid.columns(); ++i)
+        samples[axis].push_back(1e-3f * std::sin(0.01f * static_cast<float>(i + axis)));
+    }
+  }
+  Surface sheet;
+  Grid grid;
+  std::vector<float> samples[3];
+  std::vector<float> controls;  // of the coordinate done last
+};
+
+// A displacement has three coordinates.
+template <class Refit>
+void displace(Refit& refit, Case& which) {
+  for (const auto& samples : which.samples) refit.control_displacement(samples.data(), which.controls.data());
+}
+
+template <class Refit>
+void time_refit(benchmark::State& state, Refit& refit, Case& which) {
+  for (auto _ : state) {
+    displace(refit, which);
+    benchmark::ClobberMemory();
+  }
+}
+
+void refit_ours(benchmark::State& state) {
+  Case which(state);
+  DisplacementRefit refit = DisplacementRefit::make(which.grid, best_instruction_set()).value();
+  time_refit(state, refit, which);
+}
+
+void refit_dense(benchmark::State& state) {
+  Case which(state), ours(state);
+  const Eigen::MatrixXd inverse = pseudo_inverse(which.grid.u.knots, which.grid.u.parameters).value();
+  std::vector<float> table;
+  for (int row = 0; row < inverse.rows(); ++row) {
+    for (int column = 0; column < inverse.cols(); ++column)
+      table.push_back(static_cast<float>(inverse(row, column)));
+  }
+  const auto dense =
+      make_dense_refit(which.grid.rows(), which.sheet.net.rows, table.data(), best_instruction_set());
+  DisplacementRefit refit = DisplacementRefit::make(which.grid, best_instruction_set()).value();
+  displace(refit, ours);
+  displace(*dense, which);
+  // Displacements of a millimetre in single precision, over sums of 200 terms.
+  require_agreement(state, largest_difference(ours.controls, which.controls), 1e-7);
+  time_refit(state, *dense, which);
+}
+
+// It chooses its own parameters and knots, so its control points are near ours in number only.
+void refit_occt(benchmark::State& state) {
+  const Case which(state);
+  const int side = which.grid.rows();
+  TColgp_Array2OfPnt points(1, side, 1, side);
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; ++j) {
+      const Vector3 point =
+          evaluate(which.sheet, which.grid.u.parameters[i], which.grid.v.parameters[j]).position_m;
+      points(i + 1, j + 1) = gp_Pnt(point.x(), point.y(), point.z());
+    }
+  }
+  int poles = 0;
+  for (auto _ : state) {
+    const GeomAPI_PointsToBSplineSurface fit(points, 3, 3, GeomAbs_C2, 1e-3);
+    if (!fit.IsDone()) state.SkipWithError("OpenCASCADE found no surface");
+    poles = fit.Surface()->NbUPoles();
+  }
+  state.counters["poles"] = poles;
+}
+
+void sizes(benchmark::internal::Benchmark* bench) {
+  bench->Unit(benchmark::kMicrosecond)->Args({50, 8})->Args({200, 8})->Args({200, 32});
+}
+
+BENCHMARK(refit_ours)->Apply(sizes);
+BENCHMARK(refit_dense)->Apply(sizes);
+BENCHMARK(refit_occt)->Unit(benchmark::kMicrosecond)->Args({200, 8});
+
+}  // namespace
+}  // namespace spoonbill

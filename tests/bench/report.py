@@ -1,0 +1,264 @@
+#!/usr/bin/env python3
+"""Runs the benchmarks of a build folder and reports each figure beside its target. tests/bench/run calls it."""
+
+import argparse
+import functools
+import json
+import os
+import platform
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from figures import FIGURES, GROWTH, HANDLE, LATTICE_COUNTS, NAMES, PAIRS, TICK_CASES
+
+LOOP_SECONDS = 20
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def say(text):
+    print(f"bench: {text}", file=sys.stderr, flush=True)
+
+
+def output_of(command):
+    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, check=False)
+    if done.returncode != 0:
+        raise RuntimeError(f"{Path(command[0]).name} failed with {done.returncode}")
+    return done.stdout.decode()
+
+
+class Measurements:
+    """Runs the programs of a build folder."""
+
+    def __init__(self, build):
+        self.build = build
+
+    def medians(self, cases, repetitions=15, seconds=0.05):
+        """Medians of the cases' processor time, repetitions of all shuffled into each other."""
+        pattern = "^(" + "|".join(cases) + ")$"
+        report = json.loads(output_of([
+            self.build / "tests/bench/kernel_bench", f"--benchmark_filter={pattern}", "--benchmark_format=json",
+            f"--benchmark_repetitions={repetitions}", f"--benchmark_min_time={seconds}",
+            "--benchmark_enable_random_interleaving=true"]))
+        times = {}
+        for run in report["benchmarks"]:
+            if run.get("error_occurred"):
+                raise RuntimeError(f"{run['name']}: {run['error_message']}")
+            if run.get("aggregate_name") == "median":
+                times[run["run_name"]] = run["cpu_time"]
+        missing = set(cases) - set(times)
+        if missing:
+            raise RuntimeError(f"not measured: {', '.join(sorted(missing))}")
+        return times
+
+    def ticks(self, case, rounds=3):
+        case = str(ROOT / case) if case.endswith(".jsonl") else case
+        return json.loads(output_of([self.build / "tests/bench/tick_bench", rounds, case]))[case]
+
+    def replay(self):
+        """Frames of the bundled recording, and the seconds and the processor's seconds that they took."""
+        with tempfile.TemporaryDirectory() as folder:
+            before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+            done = json.loads(output_of([self.build / "app/spoonbill", "replay", ROOT / HANDLE, "--out", folder,
+                                         "--size", "1280x720", "--json"]))
+            seconds, after = time.monotonic() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+        used = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+        return done["frames"], seconds, used
+
+    @functools.cache
+    def loop(self, load):
+        """Lateness of our loop, then of cyclictest under the same load, None where that is not permitted."""
+        ours = json.loads(output_of([self.build / "tests/bench/loop_bench", LOOP_SECONDS, "loop", load]))
+        if ours["notice"]:
+            say(ours["notice"])
+        return ours, self.cyclictest(load)
+
+    def cyclictest(self, load):
+        program = shutil.which("cyclictest") or "/usr/sbin/cyclictest"
+        background = subprocess.Popen(
+            [str(self.build / "tests/bench/loop_bench"), str(LOOP_SECONDS + 3), "none", load],
+            stdout=subprocess.DEVNULL)
+        try:
+            time.sleep(1.5)
+            return lateness_of(output_of([program, "-q", "-m", "-p80", "-i1000", "-h", 50000,
+                                          "-l", 1000 * LOOP_SECONDS]))
+        except (RuntimeError, OSError) as error:
+            say(f"no cyclictest beside it: {error}")
+            return None
+        finally:
+            background.wait()
+
+
+def lateness_of(histogram):
+    """Quantiles of cyclictest's histogram of microseconds."""
+    bins, beyond = [], 0
+    for line in histogram.splitlines():
+        words = line.split()
+        if len(words) == 2 and words[0].isdigit() and words[1].isdigit():
+            bins.append((int(words[0]), int(words[1])))
+        elif line.startswith("# Histogram Overflows:"):
+            beyond = int(words[-1])
+    total = beyond + sum(count for _, count in bins)
+    if not total:
+        raise RuntimeError("cyclictest printed no histogram")
+
+    def quantile(share):
+        seen = 0
+        for late_us, count in bins:
+            seen += count
+            if seen >= share * total:
+                return late_us
+        return bins[-1][0]
+
+    missed = beyond + sum(count for late_us, count in bins if late_us >= 1000)
+    return {"ticks": total, "missed": missed, "p50_us": quantile(0.5), "p99_us": quantile(0.99),
+            "p999_us": quantile(0.999)}
+
+
+def measured_missed(measure, figure):
+    ours, peer = measure.loop(figure.case)
+    return {"ours": 1000 * ours["missed"] / (ours["ticks"] + ours["missed"]),
+            "peer": 1000 * peer["missed"] / peer["ticks"] if peer else None,
+            "details": {"ours": ours, "cyclictest": peer}}
+
+
+def measured_lateness(measure, figure):
+    ours, peer = measure.loop(figure.case)
+    return {"ours": ours["p99_us"], "peer": peer["p99_us"] if peer else None,
+            "ratio": peer["p99_us"] / ours["p99_us"] if peer else None}
+
+
+def measured_pair(measure, figure):
+    ours, peer = PAIRS[figure.name]
+    times = measure.medians([ours, peer])
+    return {"ours": times[ours], "peer": times[peer], "ratio": times[peer] / times[ours]}
+
+
+def measured_tick(measure, figure):
+    ticks = measure.ticks(TICK_CASES[figure.case])
+    return {"ours": ticks["thread_p99_us"], "details": ticks}
+
+
+def measured_frames(measure, _figure):
+    frames, seconds, used = measure.replay()
+    return {"ours": frames / seconds,
+            "details": {"frames": frames, "seconds": seconds, "processor_seconds": used,
+                        "frames_per_second_if_two_cores_were_free": 2 * frames / used}}
+
+
+def measured_lattice(measure, _figure):
+    times, largest = {}, 0
+    for count in LATTICE_COUNTS:
+        times[count] = measure.ticks(f"block:{count}:1", rounds=1)
+        if times[count]["thread_p99_us"] >= 1000:
+            break
+        largest = count**3
+    return {"ours": largest, "details": {str(count**3): ticks for count, ticks in times.items()}}
+
+
+def measured(measure, figure):
+    if figure.name in PAIRS:
+        return measured_pair(measure, figure)
+    return {"tick_p99_us": measured_tick, "frames_per_second": measured_frames,
+            "lattice_at_1khz": measured_lattice, "loop_missed_per_1000": measured_missed,
+            "loop_p99_us": measured_lateness}[figure.name](measure, figure)
+
+
+def row_of(measure, figure):
+    say(figure.name + (f", {figure.case}" if figure.case else ""))
+    row = {"name": figure.name, "case": figure.case, "unit": figure.unit, "ours": None, "peer": None, "ratio": None,
+           "target": figure.target, "target_is": f"{figure.judged} {figure.sense}", "met": None,
+           "compared": figure.compared}
+    try:
+        row.update(measured(measure, figure))
+    except (RuntimeError, OSError, KeyError, json.JSONDecodeError) as error:
+        row["error"] = str(error)
+        say(f"{figure.name} failed: {error}")
+    row["met"] = figure.met(row["ours"], row["ratio"])
+    return row
+
+
+def grown(measure):
+    growth = {}
+    for axis, curves in GROWTH.items():
+        say(f"growth with the {axis}")
+        cases = [case for curve in curves.values() for case in curve.values()]
+        times = measure.medians(cases, repetitions=3, seconds=0.02)
+        growth[axis] = {name: {str(n): times[case] for n, case in curve.items()} for name, curve in curves.items()}
+    return growth
+
+
+def processor():
+    for line in Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.processor()
+
+
+def number(value):
+    if value is None:
+        return "-"
+    if value >= 1000:
+        return f"{value:,.0f}"
+    return f"{value:.3g}" if value < 100 else f"{value:.0f}"
+
+
+def table(rows):
+    lines = [("name", "ours", "peer", "ratio", "target", "met")]
+    for row in rows:
+        judged, sense = row["target_is"].split(" ", 1)
+        unit = "" if judged == "ratio" else " " + row["unit"]
+        peer = "-" if row["peer"] is None else f"{number(row['peer'])} {row['unit']}"
+        lines.append((row["name"] + (f" ({row['case']})" if row["case"] else ""),
+                      f"{number(row['ours'])} {row['unit']}", peer, number(row["ratio"]),
+                      f"{'>=' if sense == 'at least' else '<='} {number(row['target'])}{unit}",
+                      {True: "yes", False: "NO", None: "failed"}[row["met"]]))
+    widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
+    text = [
+        "  ".join(cell.ljust(width) if k == 0 else cell.rjust(width)
+                  for k, (cell, width) in enumerate(zip(line, widths))) for line in lines
+    ]
+    text.append("")
+    text += [f"{row['name']}{' (' + row['case'] + ')' if row['case'] else ''}: {row['compared']}" for row in rows]
+    text += ["", "Times are medians of the processor's time, ours and peer interleaved; ratio = peer / ours."]
+    return "\n".join(text)
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="tests/bench/run", allow_abbrev=False,
+                                     description="Runs the benchmarks and prints each figure beside its target.",
+                                     epilog="Names: " + " ".join(NAMES))
+    parser.add_argument("--json", action="store_true", help="one JSON object on standard output, nothing else")
+    parser.add_argument("--growth", action="store_true", help="also measure how cost grows, for tests/bench/plot")
+    parser.add_argument("--build", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--check", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="what to measure; all unless told")
+    options = parser.parse_args()
+    for name in options.names:
+        if name not in NAMES:
+            parser.error(f"unknown name '{name}'; the names are: {' '.join(NAMES)}")
+    return options
+
+
+def main():
+    options = arguments()
+    if options.check:
+        return 0
+    measure = Measurements(options.build)
+    wanted = [figure for figure in FIGURES if not options.names or figure.name in options.names]
+    load = os.getloadavg()[0]
+    report = {"machine": {"processor": processor(), "cores": os.cpu_count(), "load_before": load},
+              "figures": [row_of(measure, figure) for figure in wanted]}
+    if options.growth:
+        report["growth_us"] = grown(measure)
+    (options.build / "figures.json").write_text(json.dumps(report, indent=1) + "\n")
+    print(json.dumps(report) if options.json else table(report["figures"]))
+    return 1 if any("error" in row for row in report["figures"]) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,97 @@
+"""The report of the benchmarks, with measurements made up: rows, targets, names. Nothing is timed."""
+
+import contextlib
+import io
+import json
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import report
+from figures import FIGURES, NAMES, PAIRS
+
+
+class MadeUp:
+    """Ours takes 10, every peer 250; a tick 300 us; a block of more than 20 a side too long for 1 kHz."""
+
+    def __init__(self, _build):
+        pass
+
+    def medians(self, cases, **_settings):
+        return {case: 10.0 if "_ours" in case else 250.0 for case in cases}
+
+    def ticks(self, case, rounds=3):
+        count = int(case.split(":")[1]) if case.startswith("block") else 0
+        return {"thread_p99_us": 1500.0 if count > 20 else 300.0}
+
+    def replay(self):
+        return 300, 6.0, 9.0
+
+    def loop(self, load):
+        ours = {"ticks": 9990, "missed": 10 if load == "idle" else 30, "p99_us": 80.0}
+        return ours, {"ticks": 10000, "missed": 5, "p99_us": 60}
+
+
+def run(*arguments):
+    out = io.StringIO()
+    with tempfile.TemporaryDirectory() as folder, mock.patch.object(report, "Measurements", MadeUp), \
+            mock.patch.object(sys, "argv", ["run", "--build", folder, *arguments]), \
+            contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()):
+        code = report.main()
+    return code, out.getvalue()
+
+
+class Report(unittest.TestCase):
+    def test_json_has_every_figure_once_and_nothing_beside(self):
+        code, text = run("--json")
+        rows = json.loads(text)["figures"]
+        self.assertEqual(code, 0)
+        self.assertEqual([(row["name"], row["case"]) for row in rows], [(f.name, f.case) for f in FIGURES])
+        for row in rows:
+            self.assertGreaterEqual(row.keys(), {"name", "ours", "peer", "ratio", "target", "met"})
+
+    def test_targets_are_judged_by_ratio_or_by_our_own_value(self):
+        rows = {row["name"]: row for row in json.loads(run("--json")[1])["figures"]}
+        self.assertEqual(rows["eval_vs_sisl"]["ratio"], 25.0)
+        self.assertTrue(rows["eval_vs_sisl"]["met"])
+        self.assertFalse(rows["eval_vs_occt"]["met"])
+        self.assertFalse(rows["tick_p99_us"]["met"])
+        self.assertEqual(rows["frames_per_second"]["ours"], 50.0)
+        self.assertTrue(rows["frames_per_second"]["met"])
+        self.assertEqual(rows["lattice_at_1khz"]["ours"], 20**3)
+
+    def test_table_names_what_is_missed(self):
+        _, text = run("eval_vs_sisl", "tick_p99_us")
+        lines = text.splitlines()
+        self.assertEqual(lines[0].split(), ["name", "ours", "peer", "ratio", "target", "met"])
+        self.assertEqual(lines[1].split(), ["eval_vs_sisl", "10", "us", "250", "us", "25", ">=", "20", "yes"])
+        self.assertIn("NO", lines[2])
+
+    def test_a_failure_is_a_row_and_an_exit_code(self):
+        with mock.patch.object(MadeUp, "medians", side_effect=RuntimeError("broken")):
+            code, text = run("--json", "png_ms")
+        self.assertEqual(code, 1)
+        row = json.loads(text)["figures"][0]
+        self.assertEqual((row["ours"], row["met"], row["error"]), (None, None, "broken"))
+
+    def test_the_loop_is_judged_beside_cyclictest(self):
+        rows = json.loads(run("--json", "loop_missed_per_1000", "loop_p99_us")[1])["figures"]
+        self.assertEqual([row["met"] for row in rows], [True, False, True, True])
+        self.assertEqual(rows[0]["peer"], 0.5)
+        late = report.lateness_of("# Histogram\n000010 000900\n000020 000095\n001500 000003\n"
+                                  "# Histogram Overflows: 00002\n")
+        self.assertEqual(late, {"ticks": 1000, "missed": 5, "p50_us": 10, "p99_us": 20, "p999_us": 1500})
+
+    def test_unknown_names_are_wrong_use(self):
+        with self.assertRaises(SystemExit) as stopped:
+            run("eval_vs_nobody")
+        self.assertEqual(stopped.exception.code, 2)
+
+    def test_every_pair_is_a_figure(self):
+        self.assertLessEqual(set(PAIRS), set(NAMES))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,79 @@
+// One step of a block of count^3 mass points with springs along edges, face and body diagonals. Ours also
+// keeps each cell's volume and caps speeds, as every substep of a tick does. Argument: nodes a side.
+#include <benchmark/benchmark.h>
+
+#include "engine/denormals.h"
+#include "engine/material/lattice_solver.h"
+#include "engine/material/spring_lattice.h"
+#include "tests/bench/bullet_blocks.h"
+
+namespace spoonbill {
+namespace {
+
+SpringLattice block(int count) {
+  Material material;
+  material.name = material.source = "benchmark";
+  material.youngs_modulus_pa = 1e4;
+  material.poissons_ratio = 0.3;
+  material.density_kg_per_m3 = 1000.0;
+  material.damping_ratio = 0.05;
+  const LatticeMesh mesh = box_mesh(Vector3::Constant(0.1), {count, count, count});
+  SpringLattice lattice =
+      SpringLattice::make(mesh, material, material.youngs_modulus_pa, best_instruction_set()).value();
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(mesh.node_count()));
+  for (int node = 0; node < count * count; ++node) held[static_cast<std::size_t>(node)] = 1;
+  lattice.hold(held);
+  return lattice;
+}
+
+// A substep as relax() takes it, without a tool.
+void step(SpringLattice& lattice, float h_s, float acceleration) {
+  const LatticeView view = lattice.view();
+  const LatticeKernels& kernels = lattice.kernels();
+  kernels.clear_forces(view);
+  kernels.spring_forces(view, lattice.damping_time_s());
+  kernels.volume_forces(view, lattice.damping_time_s());
+  kernels.kick(view, h_s, 1.0f, 0.0f, acceleration, 0.0f);
+  float sum[4];
+  kernels.momentum(view, lattice.free_mass(), sum);
+  const float cap = static_cast<float>(speed_cap_cells) * lattice.cell_size_m() / h_s;
+  kernels.drift(view, h_s, cap, sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]);
+}
+
+void springs_ours(benchmark::State& state) {
+  const DenormalsFlushed flushed;
+  SpringLattice lattice = block(static_cast<int>(state.range(0)));
+  const double omega = lattice.fastest_frequency();
+  const auto h = static_cast<float>(0.5 * stable_step_s(omega, 0.5 * lattice.damping_time_s() * omega));
+  int steps = 0;
+  for (auto _ : state) step(lattice, h, block_shaking_m_per_s2(steps++));
+  const int last = lattice.mesh().node_count() - 1;
+  if (!(lattice.displacement(last).norm() < 0.1)) state.SkipWithError("the block flew apart");
+}
+
+void time_bullet(benchmark::State& state, BulletBlock& block) {
+  const DenormalsFlushed flushed;
+  for (auto _ : state) block.step();
+  if (!block.sane()) state.SkipWithError("Bullet's block flew apart");
+  state.counters["springs"] = block.link_count();
+}
+
+void springs_position_based(benchmark::State& state) {
+  time_bullet(state, *bullet_position_based_block(static_cast<int>(state.range(0))));
+}
+
+void springs_explicit(benchmark::State& state) {
+  time_bullet(state, *bullet_explicit_block(static_cast<int>(state.range(0))));
+}
+
+void sizes(benchmark::internal::Benchmark* bench) {
+  bench->Unit(benchmark::kMicrosecond);
+  for (const int count : {6, 8, 12, 16, 24, 32}) bench->Arg(count);
+}
+
+BENCHMARK(springs_ours)->Apply(sizes);
+BENCHMARK(springs_position_based)->Apply(sizes);
+BENCHMARK(springs_explicit)->Apply(sizes);
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,126 @@
+// tick_bench ROUNDS CASE...: plays presses and prints, as JSON, how long each whole tick with contact took. A
+// case is the file of a recording, or block:COUNT:ITERATIONS. Every tick is timed on the steady clock and on
+// the thread's own, which does not run while another program has the processor.
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/denormals.h"
+#include "engine/exchange/document.h"
+#include "engine/exchange/json.h"
+#include "haptic/tick.h"
+#include "tests/bench/presses.h"
+
+namespace spoonbill {
+namespace {
+
+double thread_time_us() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
+double steady_time_us() {
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+struct Times {
+  std::vector<double> wall_us, thread_us;  // of ticks with contact
+};
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+bool play(const Press& press, Times& times) {
+  auto made = Simulation::make(press.scene, best_instruction_set());
+  if (!made) {
+    std::cerr << made.error().message << '\n';
+    return false;
+  }
+  Simulation simulation = std::move(made).value();
+  CouplingState coupling;
+  std::size_t next = 0;
+  for (std::uint64_t t = 0; t < press.readings.size(); ++t) {
+    for (; next < press.commands.size() && press.commands[next].tick <= t; ++next) {
+      if (const auto command = command_from_json(press.commands[next].command, "recording"))
+        (void)simulation.apply(command.value());
+    }
+    const double wall = steady_time_us(), thread = thread_time_us();
+    const TickResult result = tick(simulation, coupling, press.device, press.readings[t]);
+    const double thread_after = thread_time_us(), wall_after = steady_time_us();
+    if (!result.touching) continue;
+    times.wall_us.push_back(wall_after - wall);
+    times.thread_us.push_back(thread_after - thread);
+  }
+  return true;
+}
+
+Result<Press> press_of(const std::string& name) {
+  int count = 0, iterations = 0;
+  if (std::sscanf(name.c_str(), "block:%d:%d", &count, &iterations) == 2)
+    return block_press(count, iterations);
+  return recorded_press(name);
+}
+
+// Quantiles of every round; the median round is reported, so that one stall of the host does not decide.
+Json report(const Press& press, int rounds) {
+  std::vector<double> figures[4];
+  std::size_t ticks = 0;
+  for (int round = 0; round < rounds; ++round) {
+    Times times;
+    if (!play(press, times) || times.wall_us.empty()) return {};
+    ticks = times.wall_us.size();
+    figures[0].push_back(quantile(times.wall_us, 0.5));
+    figures[1].push_back(quantile(times.wall_us, 0.99));
+    figures[2].push_back(quantile(times.thread_us, 0.5));
+    figures[3].push_back(quantile(times.thread_us, 0.99));
+  }
+  return {{"ticks", ticks},
+          {"median_us", quantile(figures[0], 0.5)},
+          {"p99_us", quantile(figures[1], 0.5)},
+          {"thread_median_us", quantile(figures[2], 0.5)},
+          {"thread_p99_us", quantile(figures[3], 0.5)}};
+}
+
+int run(int rounds, std::span<char*> cases) {
+  Json all = Json::object();
+  for (const std::string name : cases) {
+    const auto press = press_of(name);
+    if (!press) {
+      std::cerr << press.error().message << '\n';
+      return 1;
+    }
+    all[name] = report(press.value(), rounds);
+    if (all[name].is_null()) {
+      std::cerr << name << ": no tick touched the body\n";
+      return 1;
+    }
+  }
+  std::cout << all.dump() << '\n';
+  return 0;
+}
+
+}  // namespace
+}  // namespace spoonbill
+
+int main(int count, char** arguments) {
+  const std::span<char*> all(arguments, static_cast<std::size_t>(count));
+  if (count < 3) {
+    std::cerr << "usage: tick_bench ROUNDS CASE...\n";
+    return 2;
+  }
+  const spoonbill::DenormalsFlushed flushed;
+  return spoonbill::run(std::max(1, std::atoi(arguments[1])), all.subspan(2));
+}
