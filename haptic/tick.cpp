@@ -1,5 +1,7 @@
 #include "haptic/tick.h"
 
+#include "engine/denormals.h"
+
 namespace spoonbill {
 namespace {
 
@@ -14,6 +16,7 @@ constexpr double least_force_scale = 1e-9;
 
 TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpecification& specification,
                 const DeviceReading& reading) {
+  const DenormalsFlushed flushed;  // the fading force too must be the same on every thread
   const double stiffness = specification.maximum_stiffness_n_per_m;
   const double scale = simulation.scene().sculpting.force_scale;
   ToolInput input;

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
+#include "engine/denormals.h"
 #include "haptic/virtual_device.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/simulation/handle.h"
@@ -29,6 +32,23 @@ TEST(Tick, NoContactNoForce) {
     EXPECT_EQ(result.force_n, Vector3::Zero());
     EXPECT_FALSE(result.touching);
   }
+}
+
+// The haptic thread flushes denormal numbers, a lock-step replay's does not: a fading force must reach zero
+// in both, or a live recording would not replay to its own states.
+TEST(Tick, AFadingForceIsTheSameWhetherTheThreadFlushesDenormalsOrNot) {
+  CouplingState fading[2];
+  for (const int which : {0, 1}) {
+    Simulation simulation = held_handle(100.0);
+    fading[which].force_n = Vector3(0.0, 1e-300, 0.0);
+    std::optional<DenormalsFlushed> flushed;
+    if (which == 1) flushed.emplace();
+    for (int k = 0; k < 60; ++k) {
+      tick(simulation, fading[which], VirtualDevice::default_specification(), reading_at(0.05, 0.05));
+    }
+  }
+  EXPECT_EQ(fading[0].force_n.y(), 0.0);
+  EXPECT_EQ(fading[1].force_n.y(), 0.0);
 }
 
 TEST(Tick, PushedMaterialPushesBackAndTheForceScalesIt) {
