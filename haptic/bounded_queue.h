@@ -50,7 +50,7 @@ class BoundedQueue {
   }
 
  private:
-  // No cache line holds what two threads write.
+  // The threads count in different cache lines.
   static constexpr std::size_t cache_line = 64;
 
   // Counts only grow: at a million a second they last longer than half a million years.
@@ -59,9 +59,9 @@ class BoundedQueue {
     swap(slots_[count % slots_.size()], value);
   }
 
-  std::vector<T> slots_;
   alignas(cache_line) std::atomic<std::size_t> pushed_{0};
   alignas(cache_line) std::atomic<std::size_t> popped_{0};
+  std::vector<T> slots_;
 };
 
 }  // namespace spoonbill

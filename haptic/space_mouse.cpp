@@ -68,7 +68,7 @@ Result<SpaceMouse> SpaceMouse::open() {
 }
 
 SpaceMouse::SpaceMouse(SpaceMouse&& other) noexcept
-    : is_open_(std::exchange(other.is_open_, false)), motion_(other.motion_) {}
+    : is_open_(std::exchange(other.is_open_, false)), motion_(std::move(other.motion_)) {}
 
 SpaceMouse& SpaceMouse::operator=(SpaceMouse&& other) noexcept {
   if (this == &other) return *this;

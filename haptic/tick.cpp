@@ -1,35 +1,49 @@
 #include "haptic/tick.h"
 
+#include <algorithm>
+
 #include "engine/denormals.h"
 
 namespace spoonbill {
 namespace {
 
-// The share of the way to the newly computed force that one tick takes: a low pass at about 60 Hz, above what
-// a hand moves and below the jitter of nodes that come and go.
-constexpr double force_filter_share = 0.3;
+// The share of the way to the newly computed force that one tick takes: a low pass at about 110 Hz, above
+// what a hand moves and below the jitter of nodes that come and go.
+constexpr double force_filter_share = 0.5;
+
+// How late the force is: by the filter, and by half the tick for which it is held.
+constexpr double force_lag_s = ((1.0 - force_filter_share) / force_filter_share + 0.5) * tick_s;
+
+// Over the least that keeps the coupling passive.
+constexpr double damping_reserve = 2.0;
 
 // Below this a scaled force is none, and the hand holds the tool rigidly.
 constexpr double least_force_scale = 1e-9;
 
+// Along the way to the proxy, and never away from it, so that nothing sticks.
+Vector3 damped_spring(const DeviceSpecification& specification, const Vector3& way_m,
+                      const Vector3& velocity_m_per_s) {
+  const double length_m = way_m.norm();
+  if (!(length_m > 0.0)) return Vector3::Zero();
+  const double stiffness = specification.maximum_stiffness_n_per_m;
+  const double damping =
+      std::min(specification.maximum_damping_n_s_per_m, damping_reserve * stiffness * force_lag_s);
+  const Vector3 direction = way_m / length_m;
+  const double force_n = stiffness * length_m - damping * velocity_m_per_s.dot(direction);
+  return std::max(0.0, force_n) * direction;
+}
+
 }  // namespace
 
-TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpecification& specification,
-                const DeviceReading& reading) {
-  const DenormalsFlushed flushed;  // the fading force too must be the same on every thread
-  const double stiffness = specification.maximum_stiffness_n_per_m;
-  const double scale = simulation.scene().sculpting.force_scale;
-  ToolInput input;
-  input.pose = reading.pose();
-  input.gripping = (reading.buttons & button_main) != 0;
-  input.coupling_n_per_m = scale > least_force_scale ? stiffness / scale : 0.0;
-  const Reaction reaction = simulation.advance(input);
+TickResult couple(CouplingState& coupling, const DeviceSpecification& specification,
+                  const Vector3& position_m, const Vector3& way_m) {
+  Vector3 velocity_m_per_s = Vector3::Zero();
+  if (coupling.position_known) velocity_m_per_s = (position_m - coupling.position_m) / tick_s;
+  coupling.position_m = position_m;
+  coupling.position_known = true;
 
   TickResult result;
-  result.flags = reaction.flags;
-  result.touching = reaction.touching || reaction.mirror_touching;
-  Vector3 wanted = Vector3::Zero();
-  if (reaction.touching) wanted = stiffness * (reaction.proxy.position_m - input.pose.position_m);
+  Vector3 wanted = damped_spring(specification, way_m, velocity_m_per_s);
   const double norm = wanted.norm();
   if (norm > specification.maximum_force_n) {
     wanted *= specification.maximum_force_n / norm;
@@ -41,8 +55,29 @@ TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpe
   return result;
 }
 
+TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpecification& specification,
+                const DeviceReading& reading) {
+  const DenormalsFlushed flushed;  // a fading force too must be the same on every thread
+  const double stiffness = specification.maximum_stiffness_n_per_m;
+  const double scale = simulation.scene().sculpting.force_scale;
+  ToolInput input;
+  input.pose = reading.pose();
+  input.gripping = (reading.buttons & button_main) != 0;
+  input.coupling_n_per_m = scale > least_force_scale ? stiffness / scale : 0.0;
+  const Reaction reaction = simulation.advance(input);
+
+  Vector3 way_m = Vector3::Zero();
+  if (reaction.touching) way_m = reaction.proxy.position_m - input.pose.position_m;
+  TickResult result = couple(coupling, specification, input.pose.position_m, way_m);
+  result.flags |= reaction.flags;
+  result.touching = reaction.touching || reaction.mirror_touching;
+  return result;
+}
+
 void add_to_hash(const CouplingState& coupling, StateHash& hash) {
-  for (int axis = 0; axis < 3; ++axis) hash.add(coupling.force_n[axis]);
+  for (const Vector3& vector : {coupling.force_n, coupling.position_m}) {
+    for (int axis = 0; axis < 3; ++axis) hash.add(vector[axis]);
+  }
 }
 
 }  // namespace spoonbill

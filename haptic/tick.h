@@ -13,10 +13,18 @@ namespace spoonbill {
 
 // The virtual coupling: a critically damped spring of the device's highest stiffness joins the device and the
 // proxy, the tool as the material lets it move (after the proxy of Ruspini et al. 1997). Its force goes to
-// the hand, filtered and limited; its opposite, divided by the force scale, presses the tool on the material.
+// the hand, damped, filtered and limited; the spring's opposite, divided by the force scale, presses the tool
+// on the material.
+//
+// The force comes late: it is held for a tick and filtered. Late by t, a spring K gives back more than it
+// took, as if damped by -K t (Colgate & Brown 1994 for t = half a tick), so the hand is damped along the
+// spring by twice that, and within the device's highest damping.
+//
 // Plain data, owned with the simulation by whoever ticks.
 struct CouplingState {
   Vector3 force_n = Vector3::Zero();  // on the hand
+  Vector3 position_m = Vector3::Zero();
+  bool position_known = false;
 };
 
 struct TickResult {
@@ -27,6 +35,10 @@ struct TickResult {
 
 TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpecification& specification,
                 const DeviceReading& reading);
+
+// The coupling alone. `way_m` leads from the device to where something stops it, zero where nothing does.
+TickResult couple(CouplingState& coupling, const DeviceSpecification& specification,
+                  const Vector3& position_m, const Vector3& way_m);
 
 // The coupling's part of the state hash.
 void add_to_hash(const CouplingState& coupling, StateHash& hash);

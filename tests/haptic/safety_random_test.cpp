@@ -59,8 +59,9 @@ class RandomInput {
     input.wanted_n = next_force();
     velocity_ = random_.once_in(200) ? Vector3(random_.scaled(1e-3, 20.0) * random_.direction()) : velocity_;
     position_ += velocity_ * tick_s;
-    if (position_.norm() > 1.5 || random_.once_in(5000))
+    if (position_.norm() > 1.5 || random_.once_in(5000)) {
       position_ = random_.between(0, 1) * random_.direction();
+    }
     input.position_m = position_;
     input.buttons = random_.once_in(10'000) ? 0u : 3u;
     if (random_.once_in(500)) input.dropped_ticks = random_.bits() % 30;

@@ -1,0 +1,147 @@
+// A wall must never give a hand more energy than it took, or it kicks: random hands press walls of the
+// device's highest stiffness, and what the force does to the hand is added up, tick by tick (the passivity
+// observer of Hannaford & Ryu 2002).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <random>
+
+#include "engine/simulation/simulation.h"
+#include "haptic/tick.h"
+#include "haptic/virtual_device.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+// What the sum may show of energy given, in joules: the rounding of positions to nanometres, at the highest
+// force and for the 2,000 ticks of a press (3.3 N * 0.5 nm * 2000), all to one side.
+constexpr double rounding_j = 3.3e-6;
+
+struct Press {
+  Hand hand;
+  double depth_m = 0.0;       // that the target goes below the wall's surface
+  double frequency_hz = 0.0;  // in and out again
+};
+
+double evenly(std::mt19937_64& random, double low, double high) {
+  return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+double scaled(std::mt19937_64& random, double low, double high) {
+  return std::exp(evenly(random, std::log(low), std::log(high)));
+}
+
+// Of the ranges of virtual_device.h, within what is stable there; the damping between none and critical.
+Press random_press(std::mt19937_64& random) {
+  Press press;
+  Hand& hand = press.hand;
+  hand.mass_kg = scaled(random, hand_mass_range_kg.low, hand_mass_range_kg.high);
+  const double stiffest = std::min(hand_stiffness_range_n_per_m.high, hand.mass_kg / (tick_s * tick_s));
+  hand.stiffness_n_per_m = scaled(random, hand_stiffness_range_n_per_m.low, stiffest);
+  const double critical = 2.0 * std::sqrt(hand.mass_kg * hand.stiffness_n_per_m);
+  const double damping = evenly(random, 0.0, 1.0) < 0.3 ? 0.0 : evenly(random, 0.0, critical);
+  hand.damping_n_s_per_m = std::min(hand_damping_range_n_s_per_m.high, damping);
+  press.depth_m = evenly(random, 1e-3, 1e-2);
+  press.frequency_hz = evenly(random, 0.5, 5.0);
+  return press;
+}
+
+struct Energy {
+  double given_most_j = 0.0;  // highest sum at any time
+  double taken_j = 0.0;       // all that the wall took, for scale
+};
+
+// Moves a hand above the wall, whose surface is at `surface_m`, into it and out again; `wall` gives the force
+// for a reading.
+template <class Wall>
+Energy press_wall(const Press& press, const Vector3& surface_m, Wall wall) {
+  constexpr double clearance_m = 0.005;
+  constexpr int ticks = 2000;
+  HandTarget target;
+  target.pose.position_m = surface_m + Vector3(0.0, clearance_m, 0.0);
+  VirtualDevice device = VirtualDevice::make(press.hand, target).value();
+  Energy energy;
+  double sum_j = 0.0;
+  Vector3 force_n = Vector3::Zero(), before_m = device.position_m();
+  for (int k = 1; k <= ticks; ++k) {
+    const double way = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * press.frequency_hz * k * tick_s);
+    target.pose.position_m.y() = surface_m.y() + clearance_m - way * (clearance_m + press.depth_m);
+    device.set_target(target);
+    const DeviceReading reading = device.read();
+    const double work_j = force_n.dot(device.position_m() - before_m);
+    before_m = device.position_m();
+    sum_j += work_j;
+    energy.given_most_j = std::max(energy.given_most_j, sum_j);
+    energy.taken_j += std::max(0.0, -work_j);
+    force_n = wall(reading);
+    device.set_force(force_n);
+  }
+  return energy;
+}
+
+TEST(Passivity, ARigidWallOfTheHighestStiffnessGivesBackNoMoreThanItTook) {
+  std::mt19937_64 random(21);
+  const DeviceSpecification specification = VirtualDevice::default_specification();
+  double taken_j = 0.0;
+  for (int run = 0; run < 200; ++run) {
+    const Press press = random_press(random);
+    CouplingState coupling;
+    const Energy energy = press_wall(press, Vector3::Zero(), [&](const DeviceReading& reading) {
+      const Vector3 position_m = reading.pose().position_m;
+      const double depth_m = std::max(0.0, -position_m.y());
+      return couple(coupling, specification, position_m, Vector3(0.0, depth_m, 0.0)).force_n;
+    });
+    EXPECT_LE(energy.given_most_j, rounding_j)
+        << press.hand.mass_kg << " kg, " << press.hand.stiffness_n_per_m << " N/m, "
+        << press.hand.damping_n_s_per_m << " N s/m, " << press.depth_m << " m at " << press.frequency_hz
+        << " Hz; took " << energy.taken_j << " J";
+    taken_j += energy.taken_j;
+  }
+  EXPECT_GT(taken_j, 0.2);  // that there was something to give back: a millijoule a press
+}
+
+Scene scene_to_press() {
+  Scene scene = small_handle();
+  scene.body.material.youngs_modulus_pa = 1e6;
+  scene.body.material.plastic = false;
+  scene.planes.push_back({Vector3(0.03, 0, 0), Vector3::UnitX()});
+  return scene;
+}
+
+// `x_m` chooses the held part, which is a wall, or the part that gives way.
+void expect_simulation_passive(double x_m, int runs, unsigned seed) {
+  std::mt19937_64 random(seed);
+  const DeviceSpecification specification = VirtualDevice::default_specification();
+  const Vector3 surface_m(x_m, 0.0025 + 0.006, 0.0);
+  for (int run = 0; run < runs; ++run) {
+    const Press press = random_press(random);
+    Simulation simulation = Simulation::make(scene_to_press(), best_instruction_set()).value();
+    CouplingState coupling;
+    const Energy energy = press_wall(press, surface_m, [&](const DeviceReading& reading) {
+      return tick(simulation, coupling, specification, reading).force_n;
+    });
+    EXPECT_LE(energy.given_most_j, rounding_j)
+        << press.hand.mass_kg << " kg, " << press.hand.stiffness_n_per_m << " N/m, "
+        << press.hand.damping_n_s_per_m << " N s/m, " << press.depth_m << " m at " << press.frequency_hz
+        << " Hz; took " << energy.taken_j << " J";
+  }
+}
+
+int simulated_runs() {
+  return std::getenv("SPOONBILL_FULL") != nullptr ? 40 : 3;
+}
+
+TEST(Passivity, TheHeldPartGivesBackNoMoreThanItTook) {
+  expect_simulation_passive(0.01, simulated_runs(), 22);
+}
+
+TEST(Passivity, ABodyThatBendsGivesBackNoMoreThanItTook) {
+  expect_simulation_passive(0.05, simulated_runs(), 23);
+}
+
+}  // namespace
+}  // namespace spoonbill
