@@ -35,8 +35,8 @@ class Renderer::Parts {
     if (Status current = context_->make_current(); !current) return current;
     if (Status target = fit_target(settings.samples); !target) return target;
     const FrameView view = make_frame_view(settings, target_->width_px(), target_->height_px());
-    const double detail = pixels_per_metre(settings.camera, view.viewport);
-    if (Status bodies = bodies_.update(snapshot, detail); !bodies) return bodies;
+    const double detail = settings.detail * pixels_per_metre(settings.camera, view.viewport);
+    if (Status bodies = bodies_.update(snapshot, detail, settings.keep_level); !bodies) return bodies;
     scene_->draw_shadows(view, snapshot, settings, bodies_);
     scene_->draw(view, snapshot, settings, bodies_, *target_);
     if (interface != nullptr) interface_->draw(*interface);

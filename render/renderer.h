@@ -7,8 +7,8 @@
 //   renderer->read_pixels(image);                                   // or renderer->present()
 //
 // The picture depends on snapshot, settings and interface alone: the same input gives the same pixels, on any
-// number of drawing threads, except that the tessellation may keep a slightly finer or coarser level from the
-// frame before.
+// number of drawing threads, except that with ViewSettings::keep_level the tessellation may keep a slightly
+// finer or coarser level from the frame before.
 #pragma once
 
 #include <imgui.h>

@@ -32,7 +32,10 @@ struct ViewSettings {
 
   Vector3 toward_key_light = Vector3(-0.42, 0.80, 0.43);  // any length; kept above the horizon when drawn
   bool shadow = true;
-  int samples = 4;          // 0 or 4 samples a pixel
+  int samples = 4;  // 0 or 4 samples a pixel
+  double detail =
+      1.0;  // of the tessellation: at 0.5 its edges are twice as long, its chords twice as far off
+  bool keep_level = true;   // the tessellation may stay a little too fine or coarse, rather than flicker
   double ground_y_m = 0.0;  // see ground_below()
   double arrow_m_per_n = 0.012;
 };

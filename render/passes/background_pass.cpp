@@ -10,15 +10,13 @@ namespace {
 constexpr double bottom_srgb[3] = {238.0, 238.5, 239.0};
 constexpr double top_srgb[3] = {196.0, 200.0, 205.0};
 
-// Ordered dithering, four pixels wide: it hides the steps of eight bits, and repeats along the rows, so that
-// PNG files stay small.
-constexpr int pattern_side = 4;
-constexpr int pattern[pattern_side][pattern_side] = {
-    {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+// Ordered dithering from row to row hides the steps of eight bits; along a row the colour stays one, so that
+// PNG files are small and soon written.
+constexpr int pattern_rows = 8;
+constexpr int pattern[pattern_rows] = {0, 4, 2, 6, 1, 5, 3, 7};
 
-std::uint8_t dithered(double value, int x, int y) {
-  const double threshold =
-      (pattern[y % pattern_side][x % pattern_side] + 0.5) / (pattern_side * pattern_side);
+std::uint8_t dithered(double value, int row) {
+  const double threshold = (pattern[row % pattern_rows] + 0.5) / pattern_rows;
   return static_cast<std::uint8_t>(std::floor(value + threshold));
 }
 
@@ -29,12 +27,12 @@ std::vector<std::uint8_t> gradient(int width_px, int height_px) {
   for (int y = 0; y < height_px; ++y) {
     const double t = (y + 0.5) / height_px;
     const double share = t * t * (3.0 - 2.0 * t);
-    for (int x = 0; x < width_px; ++x) {
-      for (int c = 0; c < 3; ++c) {
-        texels.push_back(dithered(bottom_srgb[c] + share * (top_srgb[c] - bottom_srgb[c]), x, y));
-      }
-      texels.push_back(255);
+    std::uint8_t colour[4] = {0, 0, 0, 255};
+    // The channels step in rows of their own, or the rows would show.
+    for (int c = 0; c < 3; ++c) {
+      colour[c] = dithered(bottom_srgb[c] + share * (top_srgb[c] - bottom_srgb[c]), y + 3 * c);
     }
+    for (int x = 0; x < width_px; ++x) texels.insert(texels.end(), colour, colour + 4);
   }
   return texels;
 }

@@ -2,7 +2,7 @@
 
 namespace spoonbill {
 
-Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre) {
+Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level) {
   surfaces_.resize(snapshot.surfaces.size());
   while (buffers_.size() > surfaces_.size()) buffers_.pop_back();
   while (buffers_.size() < surfaces_.size()) buffers_.emplace_back(*gl_);
@@ -10,7 +10,8 @@ Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre) {
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const SurfaceSnapshot& surface = snapshot.surfaces[i];
     if (Status net = check_net(surface); !net) return net;
-    const SamplingLevel level = choose_sampling_level(surface, pixels_per_metre, surfaces_[i].level());
+    const SamplingLevel last = keep_level ? surfaces_[i].level() : SamplingLevel();
+    const SamplingLevel level = choose_sampling_level(surface, pixels_per_metre, last);
     if (Status updated = surfaces_[i].update(surface, level); !updated) return updated;
     buffers_[i].upload(surfaces_[i]);
     const BoundingBox one = surfaces_[i].bounds();

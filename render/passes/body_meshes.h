@@ -14,8 +14,9 @@ class BodyMeshes {
  public:
   explicit BodyMeshes(const GlFunctions& gl) : gl_(&gl) {}
 
-  // Follows the snapshot. The error is that of the first surface that cannot be tessellated.
-  Status update(const Snapshot& snapshot, double pixels_per_metre);
+  // Follows the snapshot; `keep_level` lets the last frame's tessellation stay while it is near enough. The
+  // error is that of the first surface that cannot be tessellated.
+  Status update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level);
 
   const std::vector<SurfaceBuffers>& buffers() const { return buffers_; }
   const BoundingBox& bounds() const { return bounds_; }

@@ -1,5 +1,6 @@
 #include "render/passes/frame_view.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -36,10 +37,13 @@ FrameView make_frame_view(const ViewSettings& settings, int width_px, int height
 void set_frame_uniforms(const Program& program, const FrameView& view) {
   program.set("world_to_clip", view.world_to_clip);
   program.set("eye", view.eye_m);
-  program.set("eye_right", view.eye_right);
-  program.set("eye_up", view.eye_up);
   program.set("toward_key", view.toward_key);
   program.set("ground_y", view.ground_y_m);
+  const Eigen::Vector3f back = view.eye_right.cross(view.eye_up);
+  const Eigen::Vector3f up = Eigen::Vector3f::UnitY();
+  program.set("toward_fill", (0.75f * view.eye_right + 0.2f * view.eye_up + 0.6f * back).normalized().eval());
+  program.set("toward_rim", (0.75f * up - 0.8f * back - 0.35f * view.eye_right).normalized().eval());
+  program.set("toward_strip", (0.9f * view.eye_right + 0.25f * view.eye_up + 0.15f * up).normalized().eval());
 }
 
 }  // namespace spoonbill

@@ -31,9 +31,10 @@ float sky_past_sphere(vec3 p, vec3 n) {
 
 const char* const studio_light_glsl = R"(
 uniform vec3 eye;
-uniform vec3 eye_right;
-uniform vec3 eye_up;
 uniform float ground_y;
+uniform vec3 toward_fill;
+uniform vec3 toward_rim;
+uniform vec3 toward_strip;
 
 const vec3 key_colour = vec3(1.26, 1.20, 1.12);
 const vec3 rim_colour = vec3(0.42, 0.46, 0.52);
@@ -56,8 +57,7 @@ vec3 studio_mirror(vec3 r, float roughness) {
   float v = mix(0.62, 0.20, smoothstep(-0.42 - w, 0.0 + w, up));
   v = mix(v, 1.02, smoothstep(0.06 - w, 0.42 + w, up));
   float box = smoothstep(0.86 - 0.8 * w, 0.95 + 0.05 * w, dot(r, toward_key));
-  vec3 strip_way = normalize(eye_right * 0.9 + eye_up * 0.25 + vec3(0.0, 0.15, 0.0));
-  float strip = smoothstep(0.80 - 0.7 * w, 0.94 + 0.06 * w, dot(r, strip_way));
+  float strip = smoothstep(0.80 - 0.7 * w, 0.94 + 0.06 * w, dot(r, toward_strip));
   return vec3(v) * vec3(0.98, 1.0, 1.03) + box * 1.5 * key_colour / (1.0 + 5.0 * roughness) + strip * vec3(0.5);
 }
 
@@ -78,15 +78,22 @@ float highlight(vec3 n, vec3 v, vec3 l, float roughness) {
   return a2 / (4.0 * d * d * lh * lh * (roughness + 0.5));
 }
 
-// Keeps what is brighter than the picture can show from turning flat.
+// Keeps what is brighter than the picture can show from turning flat: 1 - exp(-x) above the knee, by the first terms
+// of exp(x)'s series, which is half a step of eight bits away at most.
 vec3 shoulder(vec3 c) {
   const float knee = 0.72;
-  vec3 over = max(c - knee, 0.0);
-  return min(c, knee) + (1.0 - knee) * (1.0 - exp(-over / (1.0 - knee)));
+  vec3 x = max(c - knee, 0.0) / (1.0 - knee);
+  vec3 grown = 1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6.0 + x / 24.0)));
+  return min(c, knee) + (1.0 - knee) * (1.0 - 1.0 / grown);
 }
 
+// sRGB, its power fitted by roots: a power costs as much as all the rest, and this is never a tenth of a step of
+// eight bits away.
 vec3 encode(vec3 c) {
-  return mix(12.92 * c, 1.055 * pow(max(c, vec3(0.0031308)), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+  vec3 root2 = sqrt(max(c, vec3(0.0031308)));
+  vec3 root4 = sqrt(root2);
+  vec3 bright = 0.5545041 * root2 + 0.9000026 * root4 - 0.4887426 * sqrt(root4) + 0.0344366;
+  return mix(12.92 * c, bright, step(0.0031308, c));
 }
 
 struct Lit {
@@ -100,15 +107,14 @@ Lit studio_light(Look look, vec3 p, vec3 n, float key, float sky) {
   float nl = dot(n, toward_key);
   float wrap = 0.45 * look.translucency;
   float key_share = max(nl + wrap, 0.0) / (1.0 + wrap);
-  vec3 fill_way = normalize(eye_right * 0.75 + eye_up * 0.2 + cross(eye_right, eye_up) * 0.6);
-  vec3 rim_way = normalize(-cross(eye_right, eye_up) * 0.8 + vec3(0.0, 0.75, 0.0) - eye_right * 0.35);
   float near_floor = exp(-max(p.y - ground_y, 0.0) / 0.012);
   float floor_seen = 1.0 - 0.6 * near_floor;
   vec3 ambient = mix(floor_colour * floor_seen, sky_colour, 0.5 + 0.5 * n.y) * sky;
-  vec3 light = ambient + key_colour * key_share * key + fill_colour * max(dot(n, fill_way), 0.0) * sky +
-               rim_colour * max(dot(n, rim_way), 0.0);
+  vec3 light = ambient + key_colour * key_share * key + fill_colour * max(dot(n, toward_fill), 0.0) * sky +
+               rim_colour * max(dot(n, toward_rim), 0.0);
   // What shines through from behind.
-  light += look.translucency * key_colour * 0.35 * pow(clamp(0.5 - 0.5 * nl, 0.0, 1.0), 1.5) * (0.4 + 0.6 * key);
+  float away = clamp(0.5 - 0.5 * nl, 0.0, 1.0);
+  light += look.translucency * key_colour * 0.35 * away * sqrt(away) * (0.4 + 0.6 * key);
 
   vec3 f0 = mix(vec3(0.04), look.base, look.metalness);
   vec2 share = mirror_share(look.roughness, nv);
@@ -116,7 +122,7 @@ Lit studio_light(Look look, vec3 p, vec3 n, float key, float sky) {
   vec3 mirrored = studio_mirror(reflect(-v, n), look.roughness) * occlusion;
   vec3 mirror = mirrored * (f0 * share.x + share.y);
   mirror += f0 * key_colour * highlight(n, v, toward_key, look.roughness) * max(nl, 0.0) * key * 0.5;
-  mirror += f0 * rim_colour * highlight(n, v, rim_way, look.roughness) * max(dot(n, rim_way), 0.0) * 0.5;
+  mirror += f0 * rim_colour * highlight(n, v, toward_rim, look.roughness) * max(dot(n, toward_rim), 0.0) * 0.5;
   return Lit(look.base * (1.0 - look.metalness) * (1.0 - 0.4 * look.translucency) * light, mirror);
 }
 

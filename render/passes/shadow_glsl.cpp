@@ -84,9 +84,12 @@ void main() {
     key = 1.0 - covered / float(taps);
   }
 
+  // A level so coarse that its four texels hold all that the taps could see tells where there is nothing.
   float hidden = 0.0;
   level = level_for(reach);
-  for (int i = 0; i < taps; ++i) hidden += textureLod(cover, uv + spiral(i, taps) * reach / side, level).b;
+  if (textureLod(cover, uv, ceil(level) + 3.0).b > 0.0) {
+    for (int i = 0; i < taps; ++i) hidden += textureLod(cover, uv + spiral(i, taps) * reach / side, level).b;
+  }
   float sky = 1.0 - 0.85 * min(hidden / float(taps), 1.0);
 
   key *= key_past_sphere(ground);

@@ -20,7 +20,7 @@ struct SamplingLevel {
 SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces);
 
 struct SamplingTarget {
-  double longest_edge_px = 24.0;
+  double longest_edge_px = 48.0;
   double largest_sagitta_px = 0.18;  // between a chord and its arc: below what antialiasing shows
 };
 

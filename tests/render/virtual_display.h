@@ -1,0 +1,39 @@
+// A display in memory (Xvfb) for tests of windows; DISPLAY names it as long as it lives. One at a time.
+#pragma once
+
+#include <sys/types.h>
+
+#include <memory>
+#include <string>
+
+#include "engine/result.h"
+#include "render/image/image.h"
+
+namespace spoonbill {
+
+class VirtualDisplay {
+ public:
+  // Starts Xvfb under a number that it chooses itself, so that tests can run beside each other. Refused: Xvfb
+  // is not installed or does not come up.
+  static Result<std::unique_ptr<VirtualDisplay>> start(int width_px, int height_px);
+
+  ~VirtualDisplay();
+  VirtualDisplay(const VirtualDisplay&) = delete;
+  VirtualDisplay& operator=(const VirtualDisplay&) = delete;
+
+  const std::string& name() const { return name_; }
+
+  // The upper left part of what the display shows. Nothing manages windows here: they stand in that corner.
+  Image screenshot(int width_px, int height_px) const;
+
+  // What windows opened from now on take for the display's density: 96 is a scale of 1.
+  void set_dots_per_inch(int dots_per_inch) const;
+
+ private:
+  VirtualDisplay(pid_t process, std::string name);
+
+  pid_t process_;
+  std::string name_;
+};
+
+}  // namespace spoonbill
