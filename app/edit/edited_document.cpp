@@ -19,9 +19,9 @@ void EditedDocument::discard_left_over() const {
   if (const auto place = autosave()) place->remove();
 }
 
-void EditedDocument::begin(std::filesystem::path file, LiveSession& live, std::uint64_t change) {
+void EditedDocument::begin(std::filesystem::path file, LiveSession& live, std::uint64_t deed) {
   file_ = std::move(file);
-  saved_change_ = change;
+  saved_deed_ = deed;
   recovered_ = false;
   live.set_autosave(autosave());
 }
@@ -34,7 +34,7 @@ void EditedDocument::begin_recovered(LiveSession& live) {
 void EditedDocument::note_saved(const SavedDocument& saved, LiveSession& live) {
   const bool renamed = saved.file != file_;
   file_ = saved.file;
-  saved_change_ = saved.change;
+  saved_deed_ = saved.deed;
   recovered_ = false;
   if (renamed) live.set_autosave(autosave());
 }

@@ -26,14 +26,12 @@ class EditedDocument {
   void discard_left_over() const;
 
   // The session shows this file from now on, with no change yet; work is autosaved.
-  void begin(std::filesystem::path file, LiveSession& live, std::uint64_t change);
+  void begin(std::filesystem::path file, LiveSession& live, std::uint64_t deed);
   // What was left over has taken its place: it counts as changed.
   void begin_recovered(LiveSession& live);
 
   void note_saved(const SavedDocument& saved, LiveSession& live);
-  bool has_unsaved_changes(const LiveFrame& frame) const {
-    return recovered_ || frame.change != saved_change_;
-  }
+  bool has_unsaved_changes(const LiveFrame& frame) const { return recovered_ || frame.deed != saved_deed_; }
 
   // "spoon-handle.json *": the star stands for unsaved changes.
   std::string title(const LiveFrame& frame) const;
@@ -43,7 +41,7 @@ class EditedDocument {
 
   std::optional<std::filesystem::path> state_folder_;
   std::filesystem::path file_;
-  std::uint64_t saved_change_ = 0;
+  std::uint64_t saved_deed_ = 0;
   bool recovered_ = false;
 };
 

@@ -11,6 +11,7 @@
 #include "app/files/state_folder.h"
 #include "app/panel/panel.h"
 #include "app/panel/session_panel.h"
+#include "haptic/safety.h"
 #include "render/gl/allocator_thresholds.h"
 #include "render/overlay/labels.h"
 #include "render/tessellation/tessellated_surface.h"
@@ -102,6 +103,7 @@ Status Editor::run() {
     const double seconds = std::chrono::duration<double>(now - last).count();
     last = now;
     if (Status drawn = frame(seconds); !drawn) return drawn;
+    budget_.add_frame(std::chrono::duration<double>(Clock::now() - now).count());
     std::this_thread::sleep_until(now + frame_time);
   }
   live_->set_autosave(std::nullopt);
@@ -116,6 +118,10 @@ void Editor::start() {
   target_.pose.position_m = frame.snapshot.tool.device.position_m;
   shown_ = view_settings(0.0);
   if (auto cap = SpaceMouse::open()) space_mouse_.emplace(std::move(cap).value());
+  if (frame.snapshot.planes.empty()) {
+    messages_.add(
+        {Notice::Kind::information, "Nothing is held: P fixes the model behind the tool. F1 shows the keys"});
+  }
   look_for_left_over();
   if (settings_.recording.empty()) return;
   live_->set_view(view_to_json(view_));
@@ -131,6 +137,7 @@ Status Editor::frame(double seconds) {
   if (Status laid = lay_out(frame, seconds); !laid) return laid;
   take_pointer(frame);
   follow_space_mouse(seconds);
+  budget_.apply(shown_);
   if (Status drawn = window_.end_frame(frame.snapshot, shown_); !drawn) return drawn;
   if (screenshot_due_) write_screenshot();
   if (window_.window().should_close() && !unsaved_.asking()) {
@@ -167,7 +174,7 @@ void Editor::take_answers(const LiveFrame& frame) {
     if (asked->recovered) {
       document_.begin_recovered(*live_);
     } else {
-      document_.begin(asked->file, *live_, frame.change);
+      document_.begin(asked->file, *live_, frame.deed);
     }
   }
 }
@@ -218,7 +225,8 @@ void Editor::lay_out_panel(const LiveFrame& frame) {
   model.presets = presets_;
   model.rate_hz = figures.rate_hz;
   model.rate_is_nominal = false;
-  model.safety_flags = frame.safety_flags;
+  model.safety_text = safety_text(frame.safety_flags);
+  model.drawing_text = budget_.text();
   for (Request& request : draw_panel(model, window_.theme(), shown_.panel_px)) {
     if (const auto* change = std::get_if<ChangeView>(&request)) {
       if (Status seen = apply_view_command(change->command, "panel", view_); !seen) continue;
@@ -249,7 +257,7 @@ void Editor::lay_out_questions() {
     if (*answer == 0) {
       recover();
     } else {
-      document_.begin(document_.file(), *live_, live_->frame().change);
+      document_.begin(document_.file(), *live_, live_->frame().deed);
       document_.discard_left_over();
     }
   }

@@ -18,6 +18,7 @@
 #include "app/edit/prompts.h"
 #include "app/view/view_choice.h"
 #include "haptic/space_mouse.h"
+#include "render/frame_budget.h"
 
 namespace spoonbill {
 
@@ -112,6 +113,7 @@ class Editor {
   bool stroke_began_here_ = false;        // the press began on the picture, not on the panel
   HandTarget target_;
   bool space_mouse_leads_ = false;  // until the mouse moves again
+  FrameBudget budget_;
   LivePlots plots_;
   MessageLine messages_;
   std::vector<float> forces_n_;

@@ -72,7 +72,7 @@ void Editor::open_fresh() {
 void Editor::look_for_left_over() {
   const auto found = document_.left_over();
   if (!found) return messages_.add_problem(found.error().message);
-  if (!found.value()) return document_.begin(document_.file(), *live_, live_->frame().change);
+  if (!found.value()) return document_.begin(document_.file(), *live_, live_->frame().deed);
   left_over_.ask("An earlier session of " + stem_of(document_.file()) +
                  " did not end in order.\nWhat it had not saved is still there.");
 }

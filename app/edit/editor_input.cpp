@@ -42,11 +42,16 @@ Pointer Editor::read_pointer() const {
 }
 
 void Editor::take_keys(const LiveFrame& frame) {
-  const ImGuiIO& io = ImGui::GetIO();
-  if (io.WantTextInput || unsaved_.asking() || left_over_.asking()) return;
-  for (const KeyBinding& binding : key_bindings()) {
-    if (binding.ctrl != io.KeyCtrl || binding.shift != io.KeyShift) continue;
-    if (ImGui::IsKeyPressed(binding.key, false)) act(binding.action, frame);
+  const std::vector<GlfwWindow::KeyPress> presses = window_.window().take_key_presses();
+  if (unsaved_.asking() || left_over_.asking()) return;
+  for (const GlfwWindow::KeyPress& press : presses) {
+    // While a name is typed only Esc is a command.
+    if (ImGui::GetIO().WantTextInput && press.key != GLFW_KEY_ESCAPE) continue;
+    for (const KeyBinding& binding : key_bindings()) {
+      const bool meant =
+          binding.key == press.key && binding.ctrl == press.ctrl && binding.shift == press.shift;
+      if (meant) act(binding.action, frame);
+    }
   }
 }
 

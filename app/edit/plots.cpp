@@ -30,7 +30,7 @@ void LivePlots::draw(const Theme& theme, const ImVec2& corner_px, double force_l
   ImGui::PushFont(theme.fonts.body);
   const float height = ImGui::GetTextLineHeight();
   const float gap = theme.metrics.padding_px;
-  ImGui::SetNextWindowPos(ImVec2(corner_px.x - gap, corner_px.y - gap), ImGuiCond_Always, ImVec2(1.0F, 1.0F));
+  ImGui::SetNextWindowPos(ImVec2(corner_px.x - gap, corner_px.y + gap), ImGuiCond_Always, ImVec2(1.0F, 0.0F));
   ImGui::Begin("Plots", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize |

@@ -17,7 +17,7 @@ class LivePlots {
   // Once a frame: the forces since the last one, and how the loop does.
   void add(const std::vector<float>& forces_n, const LoopFigures& loop, double seconds);
 
-  // Between begin_frame() and end_frame(); the right lower corner of the frame is given.
+  // Between begin_frame() and end_frame(); the right upper corner of the picture is given.
   void draw(const Theme& theme, const ImVec2& corner_px, double force_limit_n) const;
 
  private:

@@ -180,6 +180,7 @@ SafeForce HapticSide::make_force_safe(const Vector3& wanted_n, const DeviceReadi
 
 void HapticSide::note_change() {
   ticks_since_change_ = 0;
+  ++deed_;
 }
 
 void HapticSide::publish(std::uint64_t index) {
@@ -196,7 +197,7 @@ void HapticSide::publish(std::uint64_t index) {
   frame.safety_flags = safety_flags_;
   frame.recording = recording_;
   frame.session = session_count_;
-  frame.change = change_;
+  frame.deed = deed_;
   frame.works_done = works_done_;
   frame.works_failed = works_failed_;
   exchange_->frames.publish();
@@ -210,6 +211,7 @@ void HapticSide::publish_scene() {
   lent_.session->simulation.write_scene(scene.scene);
   scene.session = session_count_;
   scene.change = change_;
+  scene.deed = deed_;
   scene.request = request_;
   journal_->publish_scene();
 }

@@ -97,6 +97,7 @@ class HapticSide {
   std::uint64_t works_done_ = 0;
   std::uint64_t works_failed_ = 0;
   std::uint64_t change_ = 0;
+  std::uint64_t deed_ = 0;
   std::uint64_t request_ = 0;
   int ticks_since_change_ = 0;
   int ticks_since_scene_ = 0;

@@ -105,7 +105,7 @@ void Journal::keep(const LiveScene& scene) {
   if (!written) return notices_->add(Notice::Kind::problem, "not saved: " + written.error().message);
   notices_->add(Notice::Kind::information, "saved " + save->file.filename().string());
   const std::lock_guard lock(mutex_);
-  saved_ = SavedDocument{save->file, scene.session, scene.change};
+  saved_ = SavedDocument{save->file, scene.session, scene.deed};
   settled_change_ = scene.change;
   if (autosave_) autosave_->remove();
 }

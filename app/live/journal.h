@@ -42,7 +42,7 @@ using JournalEntry = std::variant<std::monostate, RecordingBegun, RecordedReadin
 struct SavedDocument {
   std::filesystem::path file;
   std::uint64_t session = 0;
-  std::uint64_t change = 0;
+  std::uint64_t deed = 0;
 };
 
 class Journal {

@@ -15,7 +15,7 @@ struct LiveFrame {
   std::uint32_t safety_flags = 0;  // SafetyFlag bits of the last tick
   bool recording = false;
   std::uint64_t session = 0;       // grows whenever another session was opened or begun anew
-  std::uint64_t change = 0;        // grows with every change of the scene
+  std::uint64_t deed = 0;          // grows with every touch and command: what a person would want saved
   std::uint64_t works_done = 0;    // of the work asked for (open, start recording)
   std::uint64_t works_failed = 0;  // of it
 };
@@ -25,7 +25,8 @@ struct LiveScene {
   std::string title;
   Scene scene;
   std::uint64_t session = 0;
-  std::uint64_t change = 0;   // grows with every change of the scene
+  std::uint64_t change = 0;   // grows with every change of the scene, its settling included
+  std::uint64_t deed = 0;     // as in LiveFrame
   std::uint64_t request = 0;  // of the last save that was asked for before it was written
 };
 

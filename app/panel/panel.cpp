@@ -153,6 +153,10 @@ void draw_device(const PanelModel& model, const Theme& theme, Requests& requests
   for (const std::string& text : flag_texts(model.flags)) {
     ImGui::TextColored(colour::warning, "%s", text.c_str());
   }
+  ImGui::PushTextWrapPos(0.0F);
+  if (!model.safety_text.empty()) ImGui::TextColored(colour::warning, "%s", model.safety_text.c_str());
+  if (!model.drawing_text.empty()) ImGui::TextColored(colour::quiet_ink, "%s", model.drawing_text.c_str());
+  ImGui::PopTextWrapPos();
 }
 
 }  // namespace

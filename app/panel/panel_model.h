@@ -38,7 +38,8 @@ struct PanelModel {
   bool rate_is_nominal = true;  // lock-step has no clock to measure by
   int substeps = 0;
   std::uint32_t flags = tick_flag_none;
-  std::uint32_t safety_flags = 0;  // SafetyFlag bits
+  std::string safety_text;   // why the hand feels less than the material asks, a line each
+  std::string drawing_text;  // what is left out of the picture
 };
 
 }  // namespace spoonbill

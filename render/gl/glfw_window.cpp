@@ -58,6 +58,20 @@ Result<std::unique_ptr<GlfwWindow>> GlfwWindow::make(int width, int height, cons
   return std::unique_ptr<GlfwWindow>(new GlfwWindow(window));
 }
 
+GlfwWindow::GlfwWindow(GLFWwindow* window) : window_(window) {
+  glfwSetWindowUserPointer(window, this);
+  glfwSetKeyCallback(window, [](GLFWwindow* from, int key, int, int action, int modifiers) {
+    if (action != GLFW_PRESS) return;
+    auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(from));
+    self->key_presses_.push_back(
+        {key, (modifiers & GLFW_MOD_CONTROL) != 0, (modifiers & GLFW_MOD_SHIFT) != 0});
+  });
+}
+
+std::vector<GlfwWindow::KeyPress> GlfwWindow::take_key_presses() {
+  return std::exchange(key_presses_, {});
+}
+
 GlfwWindow::~GlfwWindow() {
   glfwDestroyWindow(window_);
   glfwTerminate();

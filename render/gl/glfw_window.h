@@ -13,6 +13,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "render/gl/context.h"
 
@@ -64,13 +65,23 @@ class GlfwWindow final : public GlContext {
   bool should_close() const;
   void set_should_close(bool close);
 
-  // For Dear ImGui's GLFW backend; it stays the window's.
+  // A key as it goes down; held ones repeat no press.
+  struct KeyPress {
+    int key = 0;  // GLFW_KEY_
+    bool ctrl = false;
+    bool shift = false;
+  };
+  // Those since the last call, in their order: a tap between two frames is not lost.
+  std::vector<KeyPress> take_key_presses();
+
+  // For Dear ImGui's GLFW backend, whose callbacks must be installed after make(); it stays the window's.
   GLFWwindow* native() const { return window_; }
 
  private:
-  explicit GlfwWindow(GLFWwindow* window) : window_(window) {}
+  explicit GlfwWindow(GLFWwindow* window);
 
   GLFWwindow* window_;
+  std::vector<KeyPress> key_presses_;
 };
 
 }  // namespace spoonbill

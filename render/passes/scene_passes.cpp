@@ -110,7 +110,7 @@ void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, co
   if (translucent) draw_body();
   draw_overlays(view, snapshot, settings);
   if (settings.overlays.fixing_planes) draw_planes(view, snapshot, bodies.bounds());
-  if (settings.overlays.tool) draw_tool(view, snapshot);
+  if (settings.overlays.tool) draw_tools(view, snapshot);
   if (settings.overlays.touched_nodes) draw_touched(view, snapshot);
 }
 
@@ -169,8 +169,13 @@ void ScenePasses::draw_planes(const FrameView& view, const Snapshot& snapshot, c
   passes_.line.draw(view, lines_, 0.0f);
 }
 
-void ScenePasses::draw_tool(const FrameView& view, const Snapshot& snapshot) const {
-  const Eigen::Vector3f centre = snapshot.tool.proxy.position_m.cast<float>();
+void ScenePasses::draw_tools(const FrameView& view, const Snapshot& snapshot) const {
+  draw_tool(view, snapshot, snapshot.tool.proxy);
+  if (snapshot.symmetric) draw_tool(view, snapshot, snapshot.mirrored_proxy);
+}
+
+void ScenePasses::draw_tool(const FrameView& view, const Snapshot& snapshot, const Pose& pose) const {
+  const Eigen::Vector3f centre = pose.position_m.cast<float>();
   if (snapshot.tool.kind == ToolKind::sphere) {
     passes_.solid.draw_glass_sphere(view, centre, static_cast<float>(snapshot.tool.radius_m), palette::tool);
   } else {

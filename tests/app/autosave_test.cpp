@@ -1,0 +1,104 @@
+#include "app/live/autosave.h"
+
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+
+#include "tests/app/workplace.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+Document handle(const std::string& name) {
+  return {name, small_handle(), Json::object()};
+}
+
+TEST(Autosave, GivesBackWhatWasLeft) {
+  const Workplace place;
+  const Autosave autosave(place.path("."), {});
+  EXPECT_FALSE(autosave.left_over().value().has_value());
+  ASSERT_TRUE(autosave.write(handle("unfinished")));
+  const auto found = autosave.left_over();
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found.value().has_value());
+  EXPECT_EQ(found.value()->name, "unfinished");
+  EXPECT_EQ(document_to_json(*found.value()), document_to_json(handle("unfinished")));
+  autosave.remove();
+  EXPECT_FALSE(autosave.left_over().value().has_value());
+}
+
+TEST(Autosave, DocumentsOfOneNameInTwoFoldersHaveTheirOwn) {
+  const Workplace place;
+  const Autosave one(place.path("."), "/a/spoon.json"), other(place.path("."), "/b/spoon.json");
+  EXPECT_NE(one.file(), other.file());
+}
+
+TEST(Autosave, OlderThanTheDocumentIsNothing) {
+  const Workplace place;
+  const Autosave autosave(place.path("."), place.path("model.json"));
+  ASSERT_TRUE(autosave.write(handle("old")));
+  using namespace std::chrono_literals;
+  std::filesystem::last_write_time(autosave.file(),
+                                   std::filesystem::last_write_time(place.path("model.json")) - 10s);
+  EXPECT_FALSE(autosave.left_over().value().has_value());
+}
+
+TEST(Autosave, ABrokenOneIsAnErrorAndStays) {
+  const Workplace place;
+  const Autosave autosave(place.path("."), {});
+  for (const char* content :
+       {"", "{", "[]", "{\"spoonbill_autosave\":1}", "{\"spoonbill_autosave\":1,\"of\":\"\",\"document\":{}}",
+        "{\"spoonbill_autosave\":2,\"of\":\"\",\"document\":{}}"}) {
+    std::ofstream(autosave.file()) << content;
+    const auto found = autosave.left_over();
+    EXPECT_FALSE(found) << content;
+    if (!found) {
+      EXPECT_EQ(found.error().message.find('\n'), std::string::npos);
+    }
+    EXPECT_TRUE(std::filesystem::exists(autosave.file()));
+  }
+}
+
+// A disk of 64 KiB.
+class SmallDisk {
+ public:
+  explicit SmallDisk(const std::filesystem::path& folder) : folder_(folder) {
+    std::filesystem::create_directory(folder_);
+    mounted_ = mount("none", folder_.c_str(), "tmpfs", 0, "size=64k") == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) umount(folder_.c_str());
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  bool mounted() const { return mounted_; }
+
+ private:
+  std::filesystem::path folder_;
+  bool mounted_;
+};
+
+TEST(Autosave, AFullDiskKeepsTheLastWholeOne) {
+  const Workplace place;
+  const SmallDisk disk(place.path("disk"));
+  if (!disk.mounted()) GTEST_SKIP() << "only root may mount a small disk";
+  const Autosave autosave(place.path("disk"), {});
+  ASSERT_TRUE(autosave.write(handle("first")));
+  std::ofstream filler(place.path("disk") / "filler");
+  const std::string block(4096, 'x');
+  while (filler.write(block.data(), 4096).flush()) {
+  }
+  const Status failed = autosave.write(handle("second"));
+  ASSERT_FALSE(failed);
+  EXPECT_NE(failed.error().message.find("autosave"), std::string::npos) << failed.error().message;
+  const auto found = autosave.left_over();
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found.value()->name, "first");
+}
+
+}  // namespace
+}  // namespace spoonbill

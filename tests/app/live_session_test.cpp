@@ -1,0 +1,227 @@
+#include "app/live/live_session.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "app/program.h"
+#include "tests/app/workplace.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A machine under load or a sanitizer may take its time; nothing here is judged by it.
+constexpr std::chrono::seconds patience{60};
+
+Document held_handle() {
+  Document document{"small handle", small_handle(), Json::object()};
+  document.scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+  return document;
+}
+
+HandTarget at(double x_m, double y_m) {
+  return {{Vector3(x_m, y_m, 0.0), Quaternion::Identity()}, 0};
+}
+
+std::unique_ptr<LiveSession> start_live(const Document& document) {
+  LiveSettings settings;
+  settings.real_time = false;
+  settings.start = at(0.05, 0.03);
+  auto live = LiveSession::start(document, "test", settings);
+  EXPECT_TRUE(live) << live.error().message;
+  return std::move(live).value();
+}
+
+template <class Condition>
+bool wait_for(LiveSession& live, Condition condition) {
+  const auto give_up = Clock::now() + patience;
+  while (Clock::now() < give_up) {
+    if (condition(live.frame())) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return false;
+}
+
+void wait_ticks(LiveSession& live, std::uint64_t ticks) {
+  const std::uint64_t from = live.frame().snapshot.tick;
+  EXPECT_TRUE(wait_for(live, [&](const LiveFrame& frame) { return frame.snapshot.tick >= from + ticks; }));
+}
+
+// Presses the handle's end down and lets go.
+void stroke(LiveSession& live) {
+  live.aim(at(0.05, 0.0));
+  ASSERT_TRUE(wait_for(live, [](const LiveFrame& frame) { return frame.facts.in_stroke; }));
+  wait_ticks(live, 60);
+  live.aim(at(0.05, 0.03));
+  ASSERT_TRUE(wait_for(live, [](const LiveFrame& frame) { return !frame.facts.in_stroke; }));
+}
+
+double tip_height_m(const LiveFrame& frame) {
+  const LatticeSnapshot& lattice = frame.snapshot.lattice;
+  double lowest = 1.0;
+  for (const float y : lattice.y) lowest = std::min(lowest, static_cast<double>(y));
+  return lowest;
+}
+
+TEST(LiveSession, AStrokeIsUndoneAndRedone) {
+  auto live = start_live(held_handle());
+  const double before = tip_height_m(live->frame());
+  stroke(*live);
+  wait_ticks(*live, 300);
+  const double after = tip_height_m(live->frame());
+  EXPECT_LT(after, before - 1e-4);
+  ASSERT_TRUE(live->frame().facts.can_undo);
+  ASSERT_TRUE(live->ask(UndoStroke{}));
+  EXPECT_TRUE(
+      wait_for(*live, [&](const LiveFrame& frame) { return std::abs(tip_height_m(frame) - before) < 1e-6; }));
+  ASSERT_TRUE(live->ask(RedoStroke{}));
+  EXPECT_TRUE(
+      wait_for(*live, [&](const LiveFrame& frame) { return std::abs(tip_height_m(frame) - after) < 1e-4; }));
+}
+
+TEST(LiveSession, ACancelledStrokeLeavesNothingAndTheToolActsAgainOnceItHasLeft) {
+  auto live = start_live(held_handle());
+  const double before = tip_height_m(live->frame());
+  live->aim(at(0.05, 0.0));
+  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.in_stroke; }));
+  wait_ticks(*live, 60);
+  ASSERT_TRUE(live->ask(CancelStroke{}));
+  EXPECT_TRUE(
+      wait_for(*live, [&](const LiveFrame& frame) { return std::abs(tip_height_m(frame) - before) < 1e-6; }));
+  wait_ticks(*live, 50);
+  EXPECT_NEAR(tip_height_m(live->frame()), before, 1e-6);
+  live->aim(at(0.05, 0.03));
+  wait_ticks(*live, 200);
+  stroke(*live);
+}
+
+TEST(LiveSession, WhatRebuildsIsDoneWhileTheLoopGoesOn) {
+  auto live = start_live({"small handle", small_handle(), Json::object()});
+  ASSERT_TRUE(live->ask(Command(PlacePlane{{Vector3(0.02, 0, 0), Vector3::UnitX()}})));
+  EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.snapshot.planes.size() == 1; }));
+  Material stiffer = small_handle().body.material;
+  stiffer.poissons_ratio = 0.3;
+  ASSERT_TRUE(live->ask(Command(SetMaterial{stiffer})));
+  EXPECT_TRUE(
+      wait_for(*live, [](const LiveFrame& frame) { return frame.facts.material.poissons_ratio == 0.3; }));
+}
+
+TEST(LiveSession, ARefusedRequestIsSaidAndChangesNothing) {
+  auto live = start_live(held_handle());
+  Material wrong = small_handle().body.material;
+  wrong.poissons_ratio = 0.7;
+  ASSERT_TRUE(live->ask(Command(SetMaterial{wrong})));
+  std::vector<Notice> notices;
+  EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) {
+    for (Notice& notice : live->take_notices()) {
+      if (notice.kind == Notice::Kind::problem) notices.push_back(std::move(notice));
+    }
+    return !notices.empty();
+  }));
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices[0].text.find("poissons_ratio"), std::string::npos) << notices[0].text;
+  wait_ticks(*live, 10);
+  EXPECT_NE(live->frame().facts.material.poissons_ratio, 0.7);
+}
+
+TEST(LiveSession, SavesWhatTheShapeIsNow) {
+  const Workplace place;
+  auto live = start_live(held_handle());
+  stroke(*live);
+  ASSERT_TRUE(live->save(place.path("bent.json")));
+  EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return live->take_saved().has_value(); }));
+  const auto saved = read_document(place.path("bent.json"));
+  ASSERT_TRUE(saved) << saved.error().message;
+  double lowest = 1.0, lowest_before = 1.0;
+  for (const double y : saved->scene.body.surface.net.y) lowest = std::min(lowest, y);
+  for (const double y : small_handle().body.surface.net.y) lowest_before = std::min(lowest_before, y);
+  EXPECT_LT(lowest, lowest_before - 1e-4);
+  EXPECT_EQ(saved->scene.planes.size(), 1U);
+}
+
+TEST(LiveSession, AutosavesUnsavedWorkUntilItIsSaved) {
+  const Workplace place;
+  const Autosave autosave(place.path("."), place.path("model.json"));
+  auto live = start_live(held_handle());
+  live->set_autosave(autosave);
+  wait_ticks(*live, 600);
+  EXPECT_FALSE(std::filesystem::exists(autosave.file()));  // nothing has changed
+  stroke(*live);
+  EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return std::filesystem::exists(autosave.file()); }));
+  const auto found = autosave.left_over();
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found.value().has_value());
+  // Settled, so that nothing is autosaved after the save.
+  wait_ticks(*live, 4000);
+  ASSERT_TRUE(live->save(place.path("model.json")));
+  EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return live->take_saved().has_value(); }));
+  EXPECT_FALSE(std::filesystem::exists(autosave.file()));
+}
+
+TEST(LiveSession, ARecordingThatCannotBeWrittenIsSaid) {
+  const Workplace place;
+  auto live = start_live(held_handle());
+  ASSERT_TRUE(live->start_recording(place.path("no such folder/x.recording.jsonl")));
+  EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.works_failed == 1; }));
+  EXPECT_FALSE(live->frame().recording);
+  wait_ticks(*live, 10);
+}
+
+TEST(LiveSession, OpensAnotherDocument) {
+  auto live = start_live(held_handle());
+  Document other = held_handle();
+  other.name = "another";
+  other.scene.planes.clear();
+  ASSERT_TRUE(live->open(other, "other"));
+  EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.title == "another"; }));
+  EXPECT_TRUE(live->frame().snapshot.planes.empty());
+  EXPECT_EQ(live->frame().works_done, 1U);
+}
+
+// A live session recorded and replayed gives the same states: the replay compares every thousandth tick and
+// the last.
+class LiveRecording : public testing::Test {
+ protected:
+  static const char* script() {
+    return R"({
+      "spoonbill_script": 1, "model": "model.json",
+      "steps": [
+        {"start_mm": [50, 14, 0]},
+        {"command": "place_plane", "point_mm": [20, 0, 0], "normal": [1, 0, 0]},
+        {"hold_s": 0.1},
+        {"move_to_mm": [50, 6, 0], "over_s": 0.2},
+        {"command": "set_tool", "kind": "sphere", "action": "push", "radius_mm": 7, "iterations": 3},
+        {"hold_s": 0.1},
+        {"command": "cancel_stroke"},
+        {"move_to_mm": [50, 14, 0], "over_s": 0.2},
+        {"command": "set_symmetry", "on": true, "point_mm": [0, 0, 0], "normal": [0, 0, 1]},
+        {"move_to_mm": [45, 5, 3], "over_s": 0.3},
+        {"move_to_mm": [45, 14, 3], "over_s": 0.2},
+        {"command": "keep_shape"},
+        {"hold_s": 0.1},
+        {"move_to_mm": [50, 5, 0], "over_s": 0.2},
+        {"move_to_mm": [50, 14, 0], "over_s": 0.2},
+        {"command": "undo"}, {"hold_s": 0.2}, {"command": "redo"}, {"hold_s": 0.6}
+      ]})";
+  }
+};
+
+TEST_F(LiveRecording, ReplaysToItsOwnStates) {
+  const Workplace place;
+  place.write("live.json", script());
+  const Outcome recorded =
+      run({"record", place.text("live.json"), "--live", "--out", place.text("live.jsonl"), "--json"});
+  ASSERT_EQ(recorded.code, exit_done) << recorded.err;
+  const Outcome replayed = run({"replay", place.text("live.jsonl"), "--no-frames", "--json"});
+  ASSERT_EQ(replayed.code, exit_done) << replayed.err;
+  EXPECT_TRUE(json_of(replayed.out)["complete"].get<bool>());
+  EXPECT_GT(json_of(replayed.out)["ticks"].get<int>(), 1000);
+}
+
+}  // namespace
+}  // namespace spoonbill
