@@ -60,6 +60,24 @@ void derivatives_of_one(const Table& table, int degree, int r, int highest, Basi
 
 }  // namespace
 
+void basis_values(const KnotVector& knots, double u, BasisFunctions& basis) {
+  const int degree = knots.degree();
+  basis.span = knots.find_span(u);
+  const double* at = knots.extended_knots().data() + basis.span;
+  std::array<double, max_degree + 1>& values = basis.values[0];
+  values[0] = 1.0;
+  for (int j = 1; j <= degree; ++j) {
+    double saved = 0.0;
+    for (int r = 0; r < j; ++r) {
+      const double right = at[r + 1] - u, left = u - at[1 - (j - r)];
+      const double quotient = values[r] / (right + left);
+      values[r] = saved + right * quotient;
+      saved = left * quotient;
+    }
+    values[j] = saved;
+  }
+}
+
 BasisFunctions basis_functions(const KnotVector& knots, double u) {
   const int degree = knots.degree();
   BasisFunctions basis;

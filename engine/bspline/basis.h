@@ -20,4 +20,7 @@ struct BasisFunctions {
 // algorithm A2.3).
 BasisFunctions basis_functions(const KnotVector& knots, double u);
 
+// Their values alone, to the same bits: values[0], nothing else is set.
+void basis_values(const KnotVector& knots, double u, BasisFunctions& basis);
+
 }  // namespace spoonbill

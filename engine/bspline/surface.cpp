@@ -67,6 +67,25 @@ SurfacePoint evaluate(const Surface& surface, double u, double v) {
   return point;
 }
 
+Vector3 position(const Surface& surface, double u, double v) {
+  // Only values[0] is ever read.
+  BasisFunctions bu, bv;
+  basis_values(surface.u, surface.u.into_domain(u), bu);
+  basis_values(surface.v, surface.v.into_domain(v), bv);
+  std::array<int, max_degree + 1> columns;
+  for (int j = 0; j <= surface.v.degree(); ++j) columns[j] = surface.v.control_index(bv.span, j);
+  Vector3 point = Vector3::Zero();
+  for (int i = 0; i <= surface.u.degree(); ++i) {
+    const int row = surface.u.control_index(bu.span, i);
+    Vector3 value = Vector3::Zero();
+    for (int j = 0; j <= surface.v.degree(); ++j) {
+      value += bv.values[0][j] * surface.net.point(row, columns[j]);
+    }
+    point += bu.values[0][i] * value;
+  }
+  return point;
+}
+
 Vector3 unit_normal(const Surface& surface, double u, double v) {
   return unit_normal(
       surface.u, surface.v,

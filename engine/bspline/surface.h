@@ -52,6 +52,9 @@ struct SurfacePoint {
 // u, v are wrapped or clamped into the domain. Allocates nothing.
 SurfacePoint evaluate(const Surface& surface, double u, double v);
 
+// The position alone, to the same bits, at a fifth of the cost.
+Vector3 position(const Surface& surface, double u, double v);
+
 // The unit normal along du x dv. At poles and collapsed edges, where that product vanishes, the limit from
 // inside the surface; zero where the surface has no normal at all (a single point or a line).
 Vector3 unit_normal(const Surface& surface, double u, double v);

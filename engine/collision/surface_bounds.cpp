@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace spoonbill {
 namespace {
@@ -51,40 +52,87 @@ SurfaceBounds::SurfaceBounds(const KnotVector& u, const KnotVector& v)
   norm_vv_ = norm_uu_;
   second_uu_.assign(span_u_.size() * span_v_.size(), 0.0);
   second_vv_ = second_uu_;
+  column_at_.assign(static_cast<std::size_t>(columns_), 0);
+  element_at_.assign(span_v_.size(), 0);
+  for (std::vector<double>* edge : {&low_[0], &low_[1], &low_[2], &high_[0], &high_[1], &high_[2]})
+    edge->assign(static_cast<std::size_t>(v.control_point_count()), 0.0);
 }
 
 void SurfaceBounds::update(const ControlNet& net) {
-  const auto point = [&](int i, int j) { return net.point(control_u_[i], control_v_[j]); };
+  begin();
+  for (int element = 0; element < elements_v(); ++element) update(net, element);
+}
+
+void SurfaceBounds::take_norms(const ControlNet& net, int j) {
+  if (column_at_[j] == stamp_) return;
+  column_at_[j] = stamp_;
+  const auto point = [&](int i, int column) { return net.point(control_u_[i], control_v_[column]); };
   for (int i = 0; i < rows_; ++i) {
-    for (int j = 0; j < columns_; ++j) {
-      const std::size_t at = static_cast<std::size_t>(i * columns_ + j);
-      if (i + 2 < rows_) {
-        const Vector3 a = first_scale_u_[i] * (point(i + 1, j) - point(i, j));
-        const Vector3 b = first_scale_u_[i + 1] * (point(i + 2, j) - point(i + 1, j));
-        norm_uu_[at] = (second_scale_u_[i] * (b - a)).squaredNorm();
-      }
-      if (j + 2 < columns_) {
-        const Vector3 a = first_scale_v_[j] * (point(i, j + 1) - point(i, j));
-        const Vector3 b = first_scale_v_[j + 1] * (point(i, j + 2) - point(i, j + 1));
-        norm_vv_[at] = (second_scale_v_[j] * (b - a)).squaredNorm();
-      }
+    const std::size_t at = static_cast<std::size_t>(i * columns_ + j);
+    const Vector3 here = point(i, j);
+    if (i + 2 < rows_) {
+      const Vector3 next = point(i + 1, j);
+      const Vector3 a = first_scale_u_[i] * (next - here);
+      const Vector3 b = first_scale_u_[i + 1] * (point(i + 2, j) - next);
+      norm_uu_[at] = (second_scale_u_[i] * (b - a)).squaredNorm();
+    }
+    if (j + 2 < columns_) {
+      const Vector3 next = point(i, j + 1);
+      const Vector3 a = first_scale_v_[j] * (next - here);
+      const Vector3 b = first_scale_v_[j + 1] * (point(i, j + 2) - next);
+      norm_vv_[at] = (second_scale_v_[j] * (b - a)).squaredNorm();
     }
   }
+}
+
+void SurfaceBounds::update(const ControlNet& net, int ev) {
+  if (element_at_[ev] == stamp_) return;
+  element_at_[ev] = stamp_;
+  const int first = span_v_[ev] - degree_v_;
+  for (int j = first; j <= span_v_[ev]; ++j) take_norms(net, j);
   for (int eu = 0; eu < elements_u(); ++eu) {
-    for (int ev = 0; ev < elements_v(); ++ev) {
-      double uu = 0.0, vv = 0.0;
-      for (int i = span_u_[eu] - degree_u_; i <= span_u_[eu]; ++i) {
-        for (int j = span_v_[ev] - degree_v_; j <= span_v_[ev]; ++j) {
-          const std::size_t at = static_cast<std::size_t>(i * columns_ + j);
-          if (i + 2 <= span_u_[eu]) uu = std::max(uu, norm_uu_[at]);
-          if (j + 2 <= span_v_[ev]) vv = std::max(vv, norm_vv_[at]);
-        }
+    double uu = 0.0, vv = 0.0;
+    for (int i = span_u_[eu] - degree_u_; i <= span_u_[eu]; ++i) {
+      for (int j = first; j <= span_v_[ev]; ++j) {
+        const std::size_t at = static_cast<std::size_t>(i * columns_ + j);
+        if (i + 2 <= span_u_[eu]) uu = std::max(uu, norm_uu_[at]);
+        if (j + 2 <= span_v_[ev]) vv = std::max(vv, norm_vv_[at]);
       }
-      const std::size_t e = static_cast<std::size_t>(eu * elements_v() + ev);
-      second_uu_[e] = std::sqrt(uu);
-      second_vv_[e] = std::sqrt(vv);
+    }
+    const std::size_t e = static_cast<std::size_t>(eu * elements_v() + ev);
+    second_uu_[e] = std::sqrt(uu);
+    second_vv_[e] = std::sqrt(vv);
+  }
+}
+
+void SurfaceBounds::take_boxes(const ControlNet& net) {
+  const std::vector<double>* values[3] = {&net.x, &net.y, &net.z};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double* from = values[axis]->data();
+    double* low = low_[axis].data();
+    double* high = high_[axis].data();
+    std::copy_n(from, net.columns, low);
+    std::copy_n(from, net.columns, high);
+    for (int i = 1; i < net.rows; ++i) {
+      from += net.columns;
+      for (int j = 0; j < net.columns; ++j) {
+        low[j] = std::min(low[j], from[j]);
+        high[j] = std::max(high[j], from[j]);
+      }
     }
   }
+}
+
+SurfaceBounds::Box SurfaceBounds::box(int element_v) const {
+  Box box{Vector3::Constant(std::numeric_limits<double>::infinity()),
+          Vector3::Constant(-std::numeric_limits<double>::infinity())};
+  for (int j = span_v_[element_v] - degree_v_; j <= span_v_[element_v]; ++j) {
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = std::min(box.low[axis], low_[axis][control_v_[j]]);
+      box.high[axis] = std::max(box.high[axis], high_[axis][control_v_[j]]);
+    }
+  }
+  return box;
 }
 
 }  // namespace spoonbill

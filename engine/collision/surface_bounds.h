@@ -1,6 +1,7 @@
 // Bounds on how far a surface patch can bulge away from its corner samples.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "engine/bspline/surface.h"
@@ -20,8 +21,18 @@ class SurfaceBounds {
  public:
   SurfaceBounds(const KnotVector& u, const KnotVector& v);
 
-  // Takes the bounds from the present control points.
+  // Takes the bounds from the present control points; those of the elements (., element_v) alone once begin()
+  // has put all aside.
   void update(const ControlNet& net);
+  void begin() { ++stamp_; }
+  void update(const ControlNet& net, int element_v);
+
+  // A box about the elements (., element_v): the hull of their control points, as of the last take_boxes().
+  struct Box {
+    Vector3 low, high;
+  };
+  void take_boxes(const ControlNet& net);
+  Box box(int element_v) const;
 
   int elements_u() const { return static_cast<int>(span_u_.size()); }
   int elements_v() const { return static_cast<int>(span_v_.size()); }
@@ -35,11 +46,16 @@ class SurfaceBounds {
  private:
   int rows_ = 0, columns_ = 0;  // of the unrolled net
   int degree_u_ = 0, degree_v_ = 0;
+  void take_norms(const ControlNet& net, int column);
+
   std::vector<int> span_u_, span_v_;        // of each element
   std::vector<int> control_u_, control_v_;  // unrolled index to control index
   std::vector<double> first_scale_u_, second_scale_u_, first_scale_v_, second_scale_v_;
   std::vector<double> norm_uu_, norm_vv_;  // squared, one an unrolled control point
   std::vector<double> second_uu_, second_vv_;
+  std::uint64_t stamp_ = 1;
+  std::vector<std::uint64_t> column_at_, element_at_;  // when taken: by unrolled column, by element_v
+  std::vector<double> low_[3], high_[3];               // of each control column
 };
 
 }  // namespace spoonbill

@@ -16,12 +16,18 @@ constexpr int deepest_patch = 24;
 // this, less than a hand's device resolves (0.055 mm); a tighter bound costs most where surface and tool fit
 // snugly and all points are as near.
 constexpr double nearest_tolerance_m = 2e-5;
+// Below this, a step of Newton's method gains nothing but rounding.
+constexpr double least_gain_m = 1e-15;
 // Whether anything touches at all is decided to this.
 constexpr double touch_tolerance_m = 1e-6;
 
-std::array<Vector3, 4> corners_of(const Surface& surface, double u0, double u1, double v0, double v1) {
-  return {evaluate(surface, u0, v0).position_m, evaluate(surface, u0, v1).position_m,
-          evaluate(surface, u1, v0).position_m, evaluate(surface, u1, v1).position_m};
+// A lower bound of the tool's distance over a box.
+double lower_bound(const ToolShape& tool, const SurfaceBounds::Box& box) {
+  if (tool.kind == ToolShape::Kind::sphere) {
+    return (tool.centre_m - tool.centre_m.cwiseMax(box.low).cwiseMin(box.high)).norm() - tool.radius_m;
+  }
+  const Vector3 foremost = (tool.normal.array() > 0.0).select(box.low, box.high);
+  return tool.distance(foremost);
 }
 
 // A lower bound of the tool's distance over a patch: the bilinear patch lies in the hull of its corners, the
@@ -59,6 +65,7 @@ SurfaceCollider::SurfaceCollider(const NestedGrid& nested)
   samples_.resize(count);
   sampled_at_.assign(count, 0);
   near_at_.assign(count, 0);
+  column_bound_.assign(static_cast<std::size_t>(bounds_.elements_v()), 0.0);
   cells_.reserve(cell_capacity);
   finest_.reserve(cell_capacity);
   patches_.reserve(patch_capacity);
@@ -80,6 +87,7 @@ const Vector3& SurfaceCollider::sample(const Surface& surface, int index) {
     }
     point += a_u.values[row * a_u.bandwidth + a] * line;
   }
+  ++samples_evaluated_;
   samples_[index] = point;
   sampled_at_[index] = query_;
   return samples_[index];
@@ -104,9 +112,11 @@ CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape
   ++query_;
   near_.clear();
   best_distance_ = std::numeric_limits<double>::infinity();
-  bounds_.update(surface.net);
+  samples_evaluated_ = 0;
+  bounds_.begin();
   descend(surface, tool, margin_m, result);
   polish(surface, tool);
+  result.samples_evaluated = samples_evaluated_;
   search_between_samples(surface, tool, result);
   const Vector3 normal = unit_normal(surface, best_u_, best_v_);
   const bool inside =
@@ -117,20 +127,38 @@ CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape
   return result;
 }
 
+// The coarsest samples, but for elements too far for any to count: first along the nearest box, whose samples
+// show how far that is.
+void SurfaceCollider::offer_coarsest(const Surface& surface, const ToolShape& tool, double margin) {
+  const Grid& grid = nested_->grid;
+  const int stride_u = 1 << nested_->levels_u, stride_v = 1 << nested_->levels_v;
+  const auto offer_column = [&](int j) {
+    for (int i = 0; i < grid.rows(); i += stride_u) {
+      offer(tool, grid.u.parameters[i], grid.v.parameters[j], sample(surface, i * grid.columns() + j));
+    }
+  };
+  bounds_.take_boxes(surface.net);
+  for (int e = 0; e < bounds_.elements_v(); ++e) column_bound_[e] = lower_bound(tool, bounds_.box(e));
+  const auto nearest = std::min_element(column_bound_.begin(), column_bound_.end()) - column_bound_.begin();
+  offer_column(static_cast<int>(nearest) * stride_v);
+  offer_column((static_cast<int>(nearest) + 1) * stride_v);
+  for (int e = 0; e < bounds_.elements_v(); ++e) {
+    if (column_bound_[e] > reach(margin)) continue;
+    offer_column(e * stride_v);
+    offer_column((e + 1) * stride_v);
+  }
+}
+
 void SurfaceCollider::descend(const Surface& surface, const ToolShape& tool, double margin,
                               CollisionResult& result) {
   const Grid& grid = nested_->grid;
   const int stride_u = 1 << nested_->levels_u, stride_v = 1 << nested_->levels_v;
   cells_.clear();
   finest_.clear();
-  for (int i = 0; i < grid.rows(); i += stride_u) {
-    for (int j = 0; j < grid.columns(); j += stride_v) {
-      const int index = i * grid.columns() + j;
-      offer(tool, grid.u.parameters[i], grid.v.parameters[j], sample(surface, index));
-    }
-  }
+  offer_coarsest(surface, tool, margin);
   for (int i = 0; i + stride_u < grid.rows(); i += stride_u) {
     for (int j = 0; j + stride_v < grid.columns(); j += stride_v) {
+      if (column_bound_[j / stride_v] > reach(margin)) continue;
       if (cells_.size() < cell_capacity) {
         cells_.push_back({i, j, 0});
       } else {
@@ -141,7 +169,6 @@ void SurfaceCollider::descend(const Surface& surface, const ToolShape& tool, dou
   // Breadth first: a coarse level's best distance prunes the finer ones.
   for (std::size_t at = 0; at < cells_.size(); ++at)
     visit_cell(surface, tool, cells_[at], reach(margin), result);
-  for (std::uint32_t stamp : sampled_at_) result.samples_evaluated += stamp == query_;
   for (const Cell& cell : finest_) {
     for (int corner = 0; corner < 4; ++corner) {
       const int index = (cell.i + (corner >> 1)) * grid.columns() + cell.j + (corner & 1);
@@ -171,6 +198,7 @@ SurfaceCollider::Cover SurfaceCollider::cover(const Surface& surface, int i, int
   for (const Vector3& corner : corners) radius = std::max(radius, (corner - centre).norm());
   const double h_u = grid.u.parameters[i + step_u] - grid.u.parameters[i];
   const double h_v = grid.v.parameters[j + step_v] - grid.v.parameters[j];
+  bounds_.update(surface.net, j >> nested_->levels_v);
   return {centre, radius + bounds_.bulge(i >> nested_->levels_u, j >> nested_->levels_v, h_u, h_v)};
 }
 
@@ -207,41 +235,57 @@ void SurfaceCollider::search_between_samples(const Surface& surface, const ToolS
                                              CollisionResult& result) {
   const Grid& grid = nested_->grid;
   for (const Cell& cell : finest_) {
+    const int index = cell.i * grid.columns() + cell.j;
     patches_.clear();
-    patches_.push_back({grid.u.parameters[cell.i], grid.u.parameters[cell.i + 1], grid.v.parameters[cell.j],
-                        grid.v.parameters[cell.j + 1], cell.i >> nested_->levels_u,
-                        cell.j >> nested_->levels_v, 0});
+    patches_.push_back(
+        {grid.u.parameters[cell.i],
+         grid.u.parameters[cell.i + 1],
+         grid.v.parameters[cell.j],
+         grid.v.parameters[cell.j + 1],
+         {sample(surface, index), sample(surface, index + 1), sample(surface, index + grid.columns()),
+          sample(surface, index + grid.columns() + 1)},
+         cell.i >> nested_->levels_u,
+         cell.j >> nested_->levels_v,
+         0});
     while (!patches_.empty()) {
       const Patch patch = patches_.back();
       patches_.pop_back();
       const double bulge =
           bounds_.bulge(patch.element_u, patch.element_v, patch.u1 - patch.u0, patch.v1 - patch.v0);
-      const auto corners = corners_of(surface, patch.u0, patch.u1, patch.v0, patch.v1);
-      const double low = lower_bound(tool, corners, bulge);
+      const double low = lower_bound(tool, patch.corners, bulge);
       const bool could_touch = best_distance_ >= 0.0 && low < -touch_tolerance_m;
       if (!could_touch && low >= best_distance_ - nearest_tolerance_m) continue;
       if (patch.depth == deepest_patch || patches_.size() + 4 > patch_capacity) {
         result.overflow = true;
         continue;
       }
-      const double u = 0.5 * (patch.u0 + patch.u1), v = 0.5 * (patch.v0 + patch.v1);
-      const double before = best_distance_;
-      offer(tool, u, v, evaluate(surface, u, v).position_m);
-      if (best_distance_ < before) polish(surface, tool);
-      patches_.push_back({patch.u0, u, patch.v0, v, patch.element_u, patch.element_v, patch.depth + 1});
-      patches_.push_back({patch.u0, u, v, patch.v1, patch.element_u, patch.element_v, patch.depth + 1});
-      patches_.push_back({u, patch.u1, patch.v0, v, patch.element_u, patch.element_v, patch.depth + 1});
-      patches_.push_back({u, patch.u1, v, patch.v1, patch.element_u, patch.element_v, patch.depth + 1});
+      cut(surface, tool, patch);
     }
   }
+}
+
+void SurfaceCollider::cut(const Surface& surface, const ToolShape& tool, const Patch& patch) {
+  const double u = 0.5 * (patch.u0 + patch.u1), v = 0.5 * (patch.v0 + patch.v1);
+  const Vector3 centre = position(surface, u, v);
+  const double before = best_distance_;
+  offer(tool, u, v, centre);
+  if (best_distance_ < before) polish(surface, tool);
+  const Vector3 low_u = position(surface, patch.u0, v), high_u = position(surface, patch.u1, v),
+                low_v = position(surface, u, patch.v0), high_v = position(surface, u, patch.v1);
+  const auto& [p00, p01, p10, p11] = patch.corners;
+  const int eu = patch.element_u, ev = patch.element_v, depth = patch.depth + 1;
+  patches_.push_back({patch.u0, u, patch.v0, v, {p00, low_u, low_v, centre}, eu, ev, depth});
+  patches_.push_back({patch.u0, u, v, patch.v1, {low_u, p01, centre, high_v}, eu, ev, depth});
+  patches_.push_back({u, patch.u1, patch.v0, v, {low_v, centre, p10, high_u}, eu, ev, depth});
+  patches_.push_back({u, patch.u1, v, patch.v1, {centre, high_v, high_u, p11}, eu, ev, depth});
 }
 
 // Newton's method on the parameters from the best point so far; a step that does not come nearer is halved,
 // and the gradient takes over where the curvature has the wrong sign.
 void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
   const bool sphere = tool.kind == ToolShape::Kind::sphere;
+  SurfacePoint at = evaluate(surface, best_u_, best_v_);
   for (int step = 0; step < 20; ++step) {
-    const SurfacePoint at = evaluate(surface, best_u_, best_v_);
     const Vector3 towards = sphere ? Vector3(at.position_m - tool.centre_m) : tool.normal;
     const double gu = towards.dot(at.du), gv = towards.dot(at.dv);
     const double metric_u = at.du.squaredNorm(), metric_v = at.dv.squaredNorm(), metric_uv = at.du.dot(at.dv);
@@ -256,12 +300,16 @@ void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
     const double determinant = huu * hvv - huv * huv;
     double move_u = -(hvv * gu - huv * gv) / determinant, move_v = -(huu * gv - huv * gu) / determinant;
     if (!std::isfinite(move_u) || !std::isfinite(move_v)) return;
+    // Where no more than rounding can be gained, the last step is not worth halving.
+    const double gain = -(move_u * gu + move_v * gv) / towards.norm();
+    const int tries = gain > least_gain_m ? 12 : 1;
     const double before = best_distance_;
-    for (int half = 0; half < 12 && best_distance_ >= before; ++half, move_u *= 0.5, move_v *= 0.5) {
+    for (int half = 0; half < tries && best_distance_ >= before; ++half, move_u *= 0.5, move_v *= 0.5) {
       const double u = surface.u.into_domain(best_u_ + move_u), v = surface.v.into_domain(best_v_ + move_v);
-      offer(tool, u, v, evaluate(surface, u, v).position_m);
+      at = evaluate(surface, u, v);
+      offer(tool, u, v, at.position_m);
     }
-    if (!(best_distance_ < before - 1e-15)) return;
+    if (!(best_distance_ < before - least_gain_m)) return;
   }
 }
 

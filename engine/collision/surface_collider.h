@@ -3,6 +3,7 @@
 // sphere meets the tool, then the nearest point polished on the true surface.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -67,14 +68,17 @@ class SurfaceCollider {
   };
   struct Patch {
     double u0, u1, v0, v1;
+    std::array<Vector3, 4> corners;  // (u0, v0), (u0, v1), (u1, v0), (u1, v1)
     int element_u, element_v, depth;
   };
 
   const Vector3& sample(const Surface& surface, int index);
+  void offer_coarsest(const Surface& surface, const ToolShape& tool, double margin);
   void descend(const Surface& surface, const ToolShape& tool, double margin, CollisionResult& result);
   void visit_cell(const Surface& surface, const ToolShape& tool, const Cell& cell, double reach,
                   CollisionResult& result);
   void search_between_samples(const Surface& surface, const ToolShape& tool, CollisionResult& result);
+  void cut(const Surface& surface, const ToolShape& tool, const Patch& patch);
   void offer(const ToolShape& tool, double u, double v, const Vector3& point);
   void polish(const Surface& surface, const ToolShape& tool);
   double reach(double margin) const;
@@ -84,6 +88,8 @@ class SurfaceCollider {
   std::vector<Vector3> samples_;
   std::vector<std::uint32_t> sampled_at_;  // the query in which a sample was evaluated
   std::uint32_t query_ = 0;
+  int samples_evaluated_ = 0;
+  std::vector<double> column_bound_;  // of the tool's distance, for the elements of each span of v
   std::vector<Cell> cells_, finest_;
   std::vector<Patch> patches_;
   std::vector<NearSample> near_;

@@ -79,5 +79,16 @@ TEST(Surface, DerivativesMatchDifferences) {
   }
 }
 
+TEST(Surface, ThePositionAloneHasTheSameBits) {
+  Random random(41);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Surface surface = random_surface(random);
+    const double u = random.uniform(surface.u.domain_start(), surface.u.domain_end());
+    const double v = trial % 10 == 0 ? surface.v.domain_end()
+                                     : random.uniform(surface.v.domain_start(), surface.v.domain_end());
+    EXPECT_EQ(position(surface, u, v), evaluate(surface, u, v).position_m) << trial;
+  }
+}
+
 }  // namespace
 }  // namespace spoonbill
