@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+
+#include "app/live/autosave.h"
+#include "app/program.h"
+#include "engine/exchange/document.h"
+#include "haptic/recording.h"
+#include "render/image/png.h"
+#include "tests/app/process.h"
+#include "tests/app/workplace.h"
+#include "tests/render/virtual_display.h"
+
+namespace spoonbill {
+namespace {
+
+using namespace std::chrono_literals;
+
+// The editor in a window of its own, and a person's hands: real X events from xdotool. Software drawing on a
+// loaded machine manages a few frames a second; every wait ends when what is waited for has happened.
+class EditWindow : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto display = VirtualDisplay::start(1300, 760);
+    ASSERT_TRUE(display) << display.error().message;
+    display_ = std::move(display).value();
+    setenv("XDG_STATE_HOME", place_.text("state").c_str(), 1);
+  }
+  void TearDown() override { kill_editor(); }
+
+  void start(const std::vector<std::string>& arguments) {
+    std::string command = "exec \"" SPOONBILL_PROGRAM "\" edit";
+    for (const std::string& argument : arguments) command += " \"" + argument + "\"";
+    editor_ = fork();
+    ASSERT_GE(editor_, 0);
+    if (editor_ == 0) {
+      setenv("DISPLAY", display_->name().c_str(), 1);
+      execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+      _exit(127);
+    }
+    ASSERT_TRUE(wait_for([&] { return hands("search --onlyvisible --name Spoonbill windowfocus --sync"); }));
+    std::this_thread::sleep_for(1s);
+  }
+
+  bool hands(const std::string& what) const {
+    const std::string command = "DISPLAY=" + display_->name() + " xdotool " + what + " >/dev/null 2>&1";
+    return std::system(command.c_str()) == 0;
+  }
+
+  template <class Condition>
+  bool wait_for(Condition condition) const {
+    const auto give_up = std::chrono::steady_clock::now() + 60s;
+    while (std::chrono::steady_clock::now() < give_up) {
+      if (condition()) return true;
+      std::this_thread::sleep_for(50ms);
+    }
+    return false;
+  }
+
+  // The file's content once it is newer than `older`.
+  Document saved(const std::string& name, std::filesystem::file_time_type older) {
+    EXPECT_TRUE(hands("key ctrl+s"));
+    EXPECT_TRUE(wait_for([&] { return std::filesystem::last_write_time(place_.path(name)) > older; }));
+    auto document = read_document(place_.path(name));
+    EXPECT_TRUE(document) << document.error().message;
+    return std::move(document).value();
+  }
+  std::filesystem::file_time_type time_of(const std::string& name) const {
+    return std::filesystem::last_write_time(place_.path(name));
+  }
+
+  // Presses on the handle, right of the panel, and drags down.
+  void stroke() {
+    EXPECT_TRUE(hands("mousemove 850 330"));
+    std::this_thread::sleep_for(700ms);
+    EXPECT_TRUE(hands("mousedown 1"));
+    for (int y = 340; y <= 400; y += 10) {
+      EXPECT_TRUE(hands("mousemove 850 " + std::to_string(y)));
+      std::this_thread::sleep_for(150ms);
+    }
+    EXPECT_TRUE(hands("mouseup 1"));
+    EXPECT_TRUE(hands("mousemove 850 150"));
+  }
+
+  int wait_for_end() {
+    int status = 0;
+    const bool ended = wait_for([&] { return waitpid(editor_, &status, WNOHANG) == editor_; });
+    if (ended) editor_ = -1;
+    return ended && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  void kill_editor() {
+    if (editor_ <= 0) return;
+    kill(editor_, SIGKILL);
+    waitpid(editor_, nullptr, 0);
+    editor_ = -1;
+  }
+
+  Workplace place_;
+  std::unique_ptr<VirtualDisplay> display_;
+  pid_t editor_ = -1;
+};
+
+double largest_difference(const Document& a, const Document& b) {
+  const ControlNet &one = a.scene.body.surface.net, &other = b.scene.body.surface.net;
+  if (one.size() != other.size()) return HUGE_VAL;
+  double largest = 0.0;
+  for (int i = 0; i < one.rows; ++i) {
+    for (int j = 0; j < one.columns; ++j) {
+      largest = std::max(largest, (one.point(i, j) - other.point(i, j)).norm());
+    }
+  }
+  return largest;
+}
+
+Document held_model() {
+  auto document = read_document(std::filesystem::path(SPOONBILL_ASSETS) / "models" / "spoon-handle.json");
+  EXPECT_TRUE(document);
+  document->scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+  return std::move(document).value();
+}
+
+TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
+  ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
+  start({place_.text("handle.json"), "--record", place_.text("session.jsonl")});
+  const Document original = saved("handle.json", time_of("handle.json"));
+  stroke();
+  std::this_thread::sleep_for(4s);  // settled
+  const Document bent = saved("handle.json", time_of("handle.json"));
+  EXPECT_GT(largest_difference(bent, original), 1e-3);
+
+  ASSERT_TRUE(hands("key ctrl+z"));
+  std::this_thread::sleep_for(1s);
+  const Document undone = saved("handle.json", time_of("handle.json"));
+  EXPECT_EQ(largest_difference(undone, original), 0.0);  // to the bit
+
+  ASSERT_TRUE(hands("key ctrl+y"));
+  std::this_thread::sleep_for(1s);
+  const Document redone = saved("handle.json", time_of("handle.json"));
+  EXPECT_LT(largest_difference(redone, bent), 1e-5);  // what it still settled between save and undo
+
+  ASSERT_TRUE(hands("key F12"));
+  EXPECT_TRUE(wait_for([&] { return std::filesystem::exists(place_.path("handle-0001.png")); }));
+  ASSERT_TRUE(hands("key ctrl+q"));
+  EXPECT_EQ(wait_for_end(), exit_done);
+  const Outcome replayed = run({"replay", place_.text("session.jsonl"), "--no-frames", "--json"});
+  ASSERT_EQ(replayed.code, exit_done) << replayed.err;
+  EXPECT_TRUE(json_of(replayed.out)["complete"].get<bool>());
+
+  start({place_.text("handle.json"), "--record", place_.text("again.jsonl")});
+  std::this_thread::sleep_for(1s);
+  ASSERT_TRUE(hands("key ctrl+q"));
+  EXPECT_EQ(wait_for_end(), exit_done);
+  const auto again = read_recording(place_.path("again.jsonl"));
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(largest_difference(again->header.document, redone), 0.0);
+  EXPECT_EQ(run({"replay", place_.text("again.jsonl"), "--no-frames"}).code, exit_done);
+}
+
+TEST_F(EditWindow, KilledInAStrokeItLosesASecondAtMost) {
+  ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
+  const std::string before = json_to_page(document_to_json(held_model()));
+  start({place_.text("handle.json")});
+  ASSERT_TRUE(hands("mousemove 850 330"));
+  std::this_thread::sleep_for(700ms);
+  ASSERT_TRUE(hands("mousedown 1"));
+  ASSERT_TRUE(hands("mousemove 850 380"));
+  const Autosave autosave(place_.path("state") / "spoonbill", place_.path("handle.json"));
+  EXPECT_TRUE(wait_for([&] { return std::filesystem::exists(autosave.file()); }));
+  std::this_thread::sleep_for(1s);
+  kill_editor();
+  EXPECT_EQ(json_to_page(document_to_json(read_document(place_.path("handle.json")).value())), before);
+  const auto found = autosave.left_over();
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found.value().has_value());
+  EXPECT_GT(largest_difference(*found.value(), held_model()), 1e-4);
+}
+
+TEST(EditWithoutDisplay, SaysSoInOneLineAndNamesReplay) {
+  const Outcome outcome = run_process(SPOONBILL_PROGRAM, {"edit"}, "DISPLAY= WAYLAND_DISPLAY=");
+  EXPECT_EQ(outcome.code, exit_failed);
+  EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+  EXPECT_NE(outcome.err.find("spoonbill replay"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace spoonbill
