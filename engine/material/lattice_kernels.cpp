@@ -19,6 +19,16 @@ inline float max_of(float a, float b) {
   return a > b ? a : b;
 }
 
+inline void clear(BlockForces& force) {
+  for (int l = 0; l < block; ++l) force.x[l] = force.y[l] = force.z[l] = 0.0f;
+}
+
+inline void add(const BlockForces& force, const LatticeView& view, int start) {
+  for (int l = 0; l < block; ++l) view.fx[start + l] += force.x[l];
+  for (int l = 0; l < block; ++l) view.fy[start + l] += force.y[l];
+  for (int l = 0; l < block; ++l) view.fz[start + l] += force.z[l];
+}
+
 // Each spring pulls its two ends: the near end first, then the far one, so that overlapping offsets cannot
 // clash.
 inline void scatter(const BlockForces& force, float* __restrict f_x, float* __restrict f_y,
@@ -38,38 +48,56 @@ void clear_forces(const LatticeView& view) {
   }
 }
 
-// The extension is a difference of squares over a sum, so that a small one keeps all its digits.
-void spring_block(const LatticeView& view, const SpringArrays& s, int start, float tau, BlockForces& force) {
+// What one block of springs of one direction adds to their near ends, and takes from their far ends at once.
+// With n the rest vector, a = n + e the present one and s = |a|^2 - L0^2 = e.(n + a) + (|n|^2 - L0^2), the
+// force is k (s / (L + L0) + tau v.a / L) a / L, in which a small extension keeps all its digits, brought to
+// one root and one quotient.
+inline void spring_block(const LatticeView& view, const SpringArrays& s, int start, float tau,
+                         BlockForces& near) {
   const int o = s.offset;
   const float *dx = view.dx + start, *dy = view.dy + start, *dz = view.dz + start;
   const float *vx = view.vx + start, *vy = view.vy + start, *vz = view.vz + start;
   const float *rx = s.rest_x + start, *ry = s.rest_y + start, *rz = s.rest_z + start;
   const float *k = s.stiffness + start, *rest = s.rest_length + start, *q = s.square_difference + start;
+  float* __restrict far_x = view.fx + start + o;
+  float* __restrict far_y = view.fy + start + o;
+  float* __restrict far_z = view.fz + start + o;
+#pragma GCC ivdep
   for (int l = 0; l < block; ++l) {
     const float ex = dx[l + o] - dx[l], ey = dy[l + o] - dy[l], ez = dz[l + o] - dz[l];
     const float ax = rx[l] + ex, ay = ry[l] + ey, az = rz[l] + ez;
-    const float length = __builtin_sqrtf(ax * ax + ay * ay + az * az + tiny);
-    const float squares =
-        2.0f * (rx[l] * ex + ry[l] * ey + rz[l] * ez) + (ex * ex + ey * ey + ez * ez) + q[l];
-    const float extension = squares / (length + rest[l]);
-    const float inverse = 1.0f / length;
-    const float rate =
-        ((vx[l + o] - vx[l]) * ax + (vy[l + o] - vy[l]) * ay + (vz[l + o] - vz[l]) * az) * inverse;
-    const float scale = k[l] * (extension + tau * rate) * inverse;
-    force.x[l] = scale * ax;
-    force.y[l] = scale * ay;
-    force.z[l] = scale * az;
+    const float squares = ex * (rx[l] + ax) + ey * (ry[l] + ay) + ez * (rz[l] + az) + q[l];
+    const float rest_square = rest[l] * rest[l];
+    const float square = max_of(rest_square + squares, 1e-6f * rest_square);
+    const float length = __builtin_sqrtf(square), both = length + rest[l];
+    const float rate = (vx[l + o] - vx[l]) * ax + (vy[l + o] - vy[l]) * ay + (vz[l + o] - vz[l]) * az;
+    const float scale = k[l] * (squares * length + (tau * rate) * both) / (square * both);
+    const float fx = scale * ax, fy = scale * ay, fz = scale * az;
+    near.x[l] += fx;
+    near.y[l] += fy;
+    near.z[l] += fz;
+    far_x[l] -= fx;
+    far_y[l] -= fy;
+    far_z[l] -= fz;
   }
 }
 
+// A tile of blocks, direction by direction: displacements and forces stay in the first cache, and few enough
+// arrays are read at once for the processor to fetch them ahead. Near ends are summed apart, so that no load
+// waits for an overlapping store just before it.
 void spring_forces(const LatticeView& view, float tau) {
-  BlockForces force;
-  for (const SpringArrays& s : view.springs) {
-    for (int start = 0; start < view.padded_count; start += block) {
-      if (view.active_block[start / block] == 0) continue;
-      spring_block(view, s, start, tau, force);
-      scatter(force, view.fx, view.fy, view.fz, start, s.offset);
+  constexpr int tile_blocks = 8, tile = tile_blocks * block;
+  BlockForces near[tile_blocks];
+  for (int first = 0; first < view.padded_count; first += tile) {
+    const int end = first + tile < view.padded_count ? first + tile : view.padded_count;
+    for (int b = 0; b < tile_blocks; ++b) clear(near[b]);
+    for (const SpringArrays& s : view.springs) {
+      for (int start = first; start < end; start += block) {
+        if (view.active_block[start / block] == 0) continue;
+        spring_block(view, s, start, tau, near[(start - first) / block]);
+      }
     }
+    for (int start = first; start < end; start += block) add(near[(start - first) / block], view, start);
   }
 }
 
