@@ -9,7 +9,7 @@
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/option_values.h"
-#include "app/frames/frame_painter.h"
+#include "app/frames/painting_crew.h"
 #include "app/frames/replay_pictures.h"
 #include "app/interrupt.h"
 #include "app/panel/session_panel.h"
@@ -80,26 +80,45 @@ PictureRequest picture_request(const ReplayOptions& options, const Lockstep& loc
   return request;
 }
 
+// The frame that shows the session as it stands.
+PaintingJob job_of(std::uint64_t frame, Session& session, const BoundingBox& framed,
+                   const PictureRequest& request) {
+  PaintingJob job;
+  job.frame = frame;
+  write_snapshot(session, job.snapshot);
+  session.flags = tick_flag_none;
+  job.view = frame_view(session.view, framed, request.width_px, request.height_px);
+  SessionFacts facts;
+  write_facts(session, facts);
+  job.panel = panel_of(facts, job.snapshot, job.view);
+  return job;
+}
+
+Status keep_oldest(PaintingCrew& crew, ReplayPictures& pictures) {
+  auto painted = crew.take();
+  if (!painted) return painted.error();
+  return pictures.add(painted->frame, painted->time_s, std::move(painted->picture));
+}
+
 Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPictures& pictures,
                    const InterruptWatch& interrupt) {
-  Snapshot snapshot;
-  SessionFacts facts;
-  write_snapshot(replay.session, snapshot);
-  auto painter = FramePainter::make(request.width_px, request.height_px, snapshot);
-  if (!painter) return painter.error();
+  Snapshot start;
+  write_snapshot(replay.session, start);
+  const BoundingBox framed = framed_box(start);
+  PaintingCrew crew(request.width_px, request.height_px);
   ProgressBar progress(replay.console, "Drawing", replay.options.progress);
-  Image picture;
   for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested();
        frame += request.every) {
     if (Status ran = replay.lockstep.run_to(tick_of_frame(frame)); !ran) return ran;
-    write_snapshot(replay.session, snapshot);
-    replay.session.flags = tick_flag_none;
-    const ViewSettings view = painter->view_of(replay.session.view);
-    write_facts(replay.session, facts);
-    const PanelModel panel = panel_of(facts, snapshot, view);
-    if (Status painted = painter->paint(snapshot, view, panel, picture); !painted) return painted;
-    if (Status added = pictures.add(frame, snapshot.time_s(), picture); !added) return added;
+    PaintingJob job = job_of(frame, replay.session, framed, request);
+    if (crew.is_full()) {
+      if (Status kept = keep_oldest(crew, pictures); !kept) return kept;
+    }
+    crew.start(std::move(job));
     progress.show(frame + 1, request.frame_count);
+  }
+  while (crew.in_flight() > 0) {
+    if (Status kept = keep_oldest(crew, pictures); !kept) return kept;
   }
   progress.show(1, 1);
   return {};

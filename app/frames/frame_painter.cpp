@@ -9,9 +9,15 @@
 namespace spoonbill {
 namespace {
 
-BoundingBox box_of(const Snapshot& snapshot) {
+std::unique_lock<std::mutex> take_turn(std::mutex* interface_turn) {
+  return interface_turn != nullptr ? std::unique_lock(*interface_turn) : std::unique_lock<std::mutex>();
+}
+
+}  // namespace
+
+BoundingBox framed_box(const Snapshot& start) {
   BoundingBox box;
-  for (const SurfaceSnapshot& surface : snapshot.surfaces) {
+  for (const SurfaceSnapshot& surface : start.surfaces) {
     for (std::size_t i = 0; i < surface.x.size(); ++i) {
       box.include({surface.x[i], surface.y[i], surface.z[i]});
     }
@@ -19,9 +25,16 @@ BoundingBox box_of(const Snapshot& snapshot) {
   return box;
 }
 
-}  // namespace
+ViewSettings frame_view(const ViewChoice& choice, const BoundingBox& framed, int width_px, int height_px) {
+  ViewSettings view =
+      settings_for(choice, framed, width_px, height_px, picture_panel_rectangle(width_px, height_px),
+                   interface_scale_for(height_px));
+  view.keep_level = false;
+  return view;
+}
 
-Result<FramePainter> FramePainter::make(int width_px, int height_px, const Snapshot& start) {
+Result<FramePainter> FramePainter::make(int width_px, int height_px, std::mutex* interface_turn) {
+  const auto turn = take_turn(interface_turn);
   auto context = OsmesaContext::make(width_px, height_px);
   if (!context) return context.error();
   auto interface = InterfaceContext::make(font_file, panel_scale(height_px));
@@ -30,14 +43,13 @@ Result<FramePainter> FramePainter::make(int width_px, int height_px, const Snaps
   if (!renderer) return renderer.error();
   renderer->upload_fonts(interface->fonts());
   return FramePainter(std::move(context).value(), std::move(interface).value(), std::move(renderer).value(),
-                      box_of(start));
+                      interface_turn);
 }
 
-ViewSettings FramePainter::view_of(const ViewChoice& choice) const {
-  const int width = context_->width_px();
-  const int height = context_->height_px();
-  return settings_for(choice, body_, width, height, picture_panel_rectangle(width, height),
-                      interface_scale_for(height));
+FramePainter::~FramePainter() {
+  if (!context_) return;  // moved from
+  const auto turn = take_turn(interface_turn_);
+  interface_.reset();
 }
 
 Status FramePainter::paint(const Snapshot& snapshot, const ViewSettings& view, const PanelModel& panel,
@@ -51,12 +63,13 @@ const ImDrawData& FramePainter::lay_out(const Snapshot& snapshot, const ViewSett
                                         const PanelModel& panel) {
   const int width = context_->width_px();
   const int height = context_->height_px();
-  interface_.begin_frame(width, height);
+  const auto turn = take_turn(interface_turn_);
+  interface_->begin_frame(width, height);
   draw_labels(overlay_labels(snapshot, view, width, height), view, width, height,
-              *interface_.theme().fonts.body, *ImGui::GetBackgroundDrawList());
+              *interface_->theme().fonts.body, *ImGui::GetBackgroundDrawList());
   // Nobody can press anything in a picture.
-  if (view.panel_px.width > 0.0) draw_panel(panel, interface_.theme(), view.panel_px);
-  return interface_.end_frame();
+  if (view.panel_px.width > 0.0) draw_panel(panel, interface_->theme(), view.panel_px);
+  return interface_->end_frame();
 }
 
 }  // namespace spoonbill

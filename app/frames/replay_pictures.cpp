@@ -49,13 +49,13 @@ ReplayPictures::ReplayPictures(PictureRequest request, std::optional<VideoEncode
   if (request_.folder) frames_ = std::make_unique<FrameWriter>(*request_.folder);
 }
 
-Status ReplayPictures::add(std::uint64_t frame, double time_s, const Image& picture) {
+Status ReplayPictures::add(std::uint64_t frame, double time_s, Image picture) {
   if (video_) {
     if (Status added = video_->add(picture); !added) return added;
   }
   if (frames_) {
     if (belongs_on_sheet(count_)) sheet_.add(picture, seconds_text(time_s));
-    if (Status added = frames_->add(static_cast<int>(frame), picture); !added) return added;
+    if (Status added = frames_->add(static_cast<int>(frame), std::move(picture)); !added) return added;
   }
   ++count_;
   return {};

@@ -28,7 +28,7 @@ class ReplayPictures {
   static Result<ReplayPictures> start(const PictureRequest& request);
 
   // Frame number `frame`, a multiple of `every`, shown at `time_s`.
-  Status add(std::uint64_t frame, double time_s, const Image& picture);
+  Status add(std::uint64_t frame, double time_s, Image picture);
 
   // Waits until everything is written.
   Status finish();

@@ -22,19 +22,20 @@ class Painting {
  public:
   static Result<Painting> make(const LiveFrame& first) {
     keep_drawing_memory();
-    auto painter = FramePainter::make(width_px, height_px, first.snapshot);
+    auto painter = FramePainter::make(width_px, height_px);
     if (!painter) return painter.error();
-    return Painting(std::move(painter).value());
+    return Painting(std::move(painter).value(), framed_box(first.snapshot));
   }
 
   Status paint(const LiveFrame& frame, const ViewChoice& choice) {
-    const ViewSettings view = painter_.view_of(choice);
+    const ViewSettings view = frame_view(choice, framed_, width_px, height_px);
     return painter_.paint(frame.snapshot, view, panel_of(frame.facts, frame.snapshot, view), picture_);
   }
 
  private:
-  explicit Painting(FramePainter painter) : painter_(std::move(painter)) {}
+  Painting(FramePainter painter, const BoundingBox& framed) : painter_(std::move(painter)), framed_(framed) {}
   FramePainter painter_;
+  BoundingBox framed_;
   Image picture_;
 };
 

@@ -23,8 +23,8 @@ struct FrameView {
 
 FrameView make_frame_view(const ViewSettings& settings, int width_px, int height_px);
 
-// Sets the uniforms that every scene shader may use: world_to_clip, eye, toward_key, ground_y, and the ways of the
-// lights that turn with the eye: toward_fill, toward_rim, toward_strip.
+// Sets the uniforms that every scene shader may use: world_to_clip, eye, toward_key, ground_y, and the ways
+// of the lights that turn with the eye: toward_fill, toward_rim, toward_strip.
 void set_frame_uniforms(const Program& program, const FrameView& view);
 
 }  // namespace spoonbill

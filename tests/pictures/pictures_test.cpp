@@ -24,6 +24,8 @@ namespace {
 // of it; the smallest change that must show is above twice of it.
 constexpr double tolerance = 2.0;
 
+constexpr int width_px = 1280, height_px = 720;
+
 const std::filesystem::path recording_file = SPOONBILL_ASSETS "/recordings/spoon-handle-bend.recording.jsonl";
 const std::filesystem::path approved_folder = SPOONBILL_SCREENSHOTS;
 const std::filesystem::path failure_folder = SPOONBILL_PICTURE_FAILURES;
@@ -46,6 +48,7 @@ class BendPictures : public ::testing::Test {
     Session session;
     FramePainter painter;
     Snapshot snapshot;
+    BoundingBox framed;
   };
 
   static Stage stage_of(const Moment& moment) {
@@ -57,7 +60,8 @@ class BendPictures : public ::testing::Test {
     session->reading = recording->readings.front();
     Snapshot snapshot;
     write_snapshot(session.value(), snapshot);
-    auto painter = FramePainter::make(1280, 720, snapshot);
+    auto painter = FramePainter::make(width_px, height_px);
+    const BoundingBox framed = framed_box(snapshot);
     EXPECT_TRUE(painter) << painter.error().message;
 
     PlaybackDevice device(recording->header.device, recording->readings);
@@ -67,12 +71,14 @@ class BendPictures : public ::testing::Test {
     EXPECT_TRUE(lockstep.run_to(tick_of_frame(frame)));
     session->flags = tick_flag_none;  // of many frames at once
     write_snapshot(session.value(), snapshot);
-    return {std::move(session).value(), std::move(painter).value(), std::move(snapshot)};
+    return {std::move(session).value(), std::move(painter).value(), std::move(snapshot), framed};
   }
 
   static Image paint(Stage& stage, const Edit& edit) {
-    ViewSettings view = stage.painter.view_of(stage.session.view);
-    PanelModel panel = panel_of(stage.session, stage.snapshot, view);
+    ViewSettings view = frame_view(stage.session.view, stage.framed, width_px, height_px);
+    SessionFacts facts;
+    write_facts(stage.session, facts);
+    PanelModel panel = panel_of(facts, stage.snapshot, view);
     if (edit) edit(view, panel);
     Image image;
     EXPECT_TRUE(stage.painter.paint(stage.snapshot, view, panel, image));
