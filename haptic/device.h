@@ -47,6 +47,8 @@ inline constexpr Range<double> device_speed_range_m_per_s{1e-2, 100.0};
 Status check_specification(const DeviceSpecification& specification);
 
 inline constexpr std::uint32_t button_main = 1u;  // grips in pull
+inline constexpr std::uint32_t button_hover =
+    2u;  // a hand that only points, as a mouse does: nothing is touched
 
 // Farther from the origin than any device reaches.
 inline constexpr std::int64_t reading_limit_nm = 10'000'000'000;

@@ -63,6 +63,7 @@ TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpe
   ToolInput input;
   input.pose = reading.pose();
   input.gripping = (reading.buttons & button_main) != 0;
+  input.hovering = (reading.buttons & button_hover) != 0;
   input.coupling_n_per_m = scale > least_force_scale ? stiffness / scale : 0.0;
   const Reaction reaction = simulation.advance(input);
 

@@ -123,7 +123,8 @@ void Editor::follow_space_mouse(double seconds) {
   if (!space_mouse_) return;
   const auto motion = space_mouse_->poll();
   if (!motion) return space_mouse_.reset();
-  const HandTarget steered = steer(target_, *motion, seconds);
+  HandTarget steered = steer(target_, *motion, seconds);
+  steered.buttons &= button_main;
   const bool moved_it =
       steered.pose.position_m != target_.pose.position_m || steered.buttons != target_.buttons;
   space_mouse_leads_ = space_mouse_leads_ || moved_it;

@@ -38,7 +38,8 @@ HandTarget MouseHand::follow(const Pointer& pointer, bool held, const Camera& ca
   } else {
     hover(ray, camera, pick, stroke);
   }
-  return {{target_m_, Quaternion::Identity()}, press_ && stroke.grips ? button_main : 0U};
+  const std::uint32_t gripping = stroke.grips ? button_main : 0U;
+  return {{target_m_, Quaternion::Identity()}, press_ ? gripping : button_hover};
 }
 
 void MouseHand::let_go() {

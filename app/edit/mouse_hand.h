@@ -1,7 +1,7 @@
-// The mouse as the hand that holds the virtual handle. Hovering, the tool rests just above the surface under
-// the pointer, or beside the body on the plane of the last touch. Pressed, it goes in by the strength and
-// follows the pointer in the plane of the screen; the wheel moves that plane. Let go, it hovers again. One
-// owner; the thread that draws.
+// The mouse as the hand that holds the virtual handle. Hovering, the tool touches nothing and rests just
+// above the surface under the pointer, or beside the body on the plane of the last touch. Pressed, it goes in
+// by the strength and follows the pointer in the plane of the screen; the wheel moves that plane. Let go, it
+// hovers again. One owner; the thread that draws.
 #pragma once
 
 #include <optional>

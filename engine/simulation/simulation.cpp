@@ -226,7 +226,7 @@ ToolMotion motion_of(const Simulation::State& s, const Pose& from, const Pose& t
 TouchingTool touch(const Simulation::State& s, HeldTool& held, const Pose& pose, const ToolInput& input) {
   if (!held.placed) held.place(pose);
   held.contact.prepare(s.mapping, s.lattice, s.scene.tool, {held.state.position_m, pose.orientation},
-                       input.gripping);
+                       input.gripping, input.hovering);
   const ToolMotion motion = motion_of(s, held.hand, pose, input.coupling_n_per_m);
   held.hand = pose;
   return {motion, &held.state, &held.contact.constraints()};
@@ -297,7 +297,8 @@ void add_to_hash(const HeldTool& held, StateHash& hash) {
   }
   for (int c = 0; c < 4; ++c) hash.add(held.hand.orientation.coeffs()[c]);
   const std::uint64_t lifted = held.contact.lifted() ? std::uint64_t{1} << 32 : 0;
-  hash.add(lifted | static_cast<std::uint64_t>(held.contact.constraints().count()));
+  const std::uint64_t hovered = held.contact.hovered() ? std::uint64_t{1} << 33 : 0;
+  hash.add(lifted | hovered | static_cast<std::uint64_t>(held.contact.constraints().count()));
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ struct ToolInput {
   bool gripping = false;  // holds a pull
   // The spring by which the hand holds the tool, in N/m of the real material; 0 = held rigidly.
   double coupling_n_per_m = 0.0;
+  bool hovering = false;  // only points: the tool acts on nothing, until it is outside the body again
 };
 
 // What the material answers. The force is that of the real stiffness: sculpting computes with the felt one,
@@ -59,7 +60,8 @@ class Simulation {
   // points. Allocates nothing, never throws.
   Reaction advance(const ToolInput& input);
 
-  // The scene as it was set. Its surface is that of the last change of structure: surface() is the one of now.
+  // The scene as it was set. Its surface is that of the last change of structure: surface() is the one of
+  // now.
   const Scene& scene() const;
   // What would be saved now. Allocates only where `scene` is of another structure.
   void write_scene(Scene& scene) const;

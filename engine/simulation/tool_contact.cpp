@@ -25,14 +25,15 @@ void ToolContact::lift() {
 }
 
 void ToolContact::prepare(const BodyMapping& mapping, const SpringLattice& lattice, const Tool& tool,
-                          const Pose& pose, bool gripping) {
+                          const Pose& pose, bool gripping, bool hovering) {
   const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
   const double margin = margin_cells * static_cast<double>(lattice.cell_size_m());
   collision_ = collider_.collide(mapping.current(), ToolShape::sphere(pose.position_m, radius), margin, true);
   overflow_ = collision_.overflow;
   const bool inside = collision_.found && collision_.nearest.depth_m >= 0.0;
   lifted_ = lifted_ && (inside || gripping);
-  if (lifted_) return release();
+  hovered_ = hovering || (hovered_ && inside);
+  if (lifted_ || hovered_) return release();
   if (tool.action == ToolAction::push) {
     constraints_.clear();
     if (collision_.found) add_pushes(mapping, lattice);

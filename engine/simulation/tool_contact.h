@@ -18,12 +18,14 @@ class ToolContact {
 
   // Finds the contact of the tool at `pose` and sets the constraints of this tick. A push lets go as the tool
   // leaves; a pull grips what it first touches while `gripping` and holds it until the button is released.
+  // While `hovering`, and then until it is outside the body, the tool acts on nothing.
   void prepare(const BodyMapping& mapping, const SpringLattice& lattice, const Tool& tool, const Pose& pose,
-               bool gripping);
+               bool gripping, bool hovering);
   void release();
   // Acts on nothing from the next prepare() on until the tool has left the body and the button is free.
   void lift();
   bool lifted() const { return lifted_; }
+  bool hovered() const { return hovered_; }
 
   ContactConstraints& constraints() { return constraints_; }
   const ContactConstraints& constraints() const { return constraints_; }
@@ -39,6 +41,7 @@ class ToolContact {
   CollisionResult collision_;
   bool gripped_ = false;
   bool lifted_ = false;
+  bool hovered_ = false;
   bool overflow_ = false;
 };
 

@@ -75,17 +75,17 @@ class EditWindow : public testing::Test {
     return std::filesystem::last_write_time(place_.path(name));
   }
 
-  // Presses on the handle, right of the panel, and drags down.
+  // Presses at the handle's upper edge, right of the panel, and drags down.
   void stroke() {
-    EXPECT_TRUE(hands("mousemove 850 330"));
+    EXPECT_TRUE(hands("mousemove 900 250"));
     std::this_thread::sleep_for(700ms);
     EXPECT_TRUE(hands("mousedown 1"));
-    for (int y = 340; y <= 400; y += 10) {
-      EXPECT_TRUE(hands("mousemove 850 " + std::to_string(y)));
+    for (int y = 260; y <= 350; y += 10) {
+      EXPECT_TRUE(hands("mousemove 900 " + std::to_string(y)));
       std::this_thread::sleep_for(150ms);
     }
     EXPECT_TRUE(hands("mouseup 1"));
-    EXPECT_TRUE(hands("mousemove 850 150"));
+    EXPECT_TRUE(hands("mousemove 900 150"));
   }
 
   int wait_for_end() {
@@ -142,7 +142,8 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   ASSERT_TRUE(hands("key ctrl+y"));
   std::this_thread::sleep_for(1s);
   const Document redone = saved("handle.json", time_of("handle.json"));
-  EXPECT_LT(largest_difference(redone, bent), 1e-5);  // what it still settled between save and undo
+  // Between the saves it went on settling.
+  EXPECT_LT(largest_difference(redone, bent), 0.25 * largest_difference(bent, original));
 
   ASSERT_TRUE(hands("key F12"));
   EXPECT_TRUE(wait_for([&] { return std::filesystem::exists(place_.path("handle-0001.png")); }));
@@ -166,10 +167,10 @@ TEST_F(EditWindow, KilledInAStrokeItLosesASecondAtMost) {
   ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
   const std::string before = json_to_page(document_to_json(held_model()));
   start({place_.text("handle.json")});
-  ASSERT_TRUE(hands("mousemove 850 330"));
+  ASSERT_TRUE(hands("mousemove 900 250"));
   std::this_thread::sleep_for(700ms);
   ASSERT_TRUE(hands("mousedown 1"));
-  ASSERT_TRUE(hands("mousemove 850 380"));
+  ASSERT_TRUE(hands("mousemove 900 330"));
   const Autosave autosave(place_.path("state") / "spoonbill", place_.path("handle.json"));
   EXPECT_TRUE(wait_for([&] { return std::filesystem::exists(autosave.file()); }));
   std::this_thread::sleep_for(1s);

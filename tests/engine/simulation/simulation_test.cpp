@@ -338,6 +338,24 @@ TEST(Simulation, ALiftedToolActsOnlyAfterItHasLeft) {
   EXPECT_TRUE(reaction.touching);
 }
 
+TEST(Simulation, AHoveringToolTouchesNothingUntilItIsOutside) {
+  Scene scene = small_handle();
+  scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+  Simulation simulation = simulate(scene);
+  const auto hover = [&](double y, bool hovering) {
+    ToolInput input = above(0.03, y);
+    input.hovering = hovering;
+    return simulation.advance(input).touching;
+  };
+  for (int tick = 0; tick < 100; ++tick) ASSERT_FALSE(hover(0.02 - 4e-4 * tick, true));  // right through
+  for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, true));
+  for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, false));  // still inside
+  for (int tick = 0; tick < 50; ++tick) hover(0.02, false);
+  bool touching = false;
+  for (int tick = 0; tick < 60; ++tick) touching = hover(0.009 - 6e-5 * tick, false);
+  EXPECT_TRUE(touching);
+}
+
 TEST(Simulation, AResetProxyDoesNotSweepTheWayBetween) {
   Simulation simulation = simulate(small_handle());
   simulation.advance(above(0.03, 0.03));
