@@ -52,7 +52,7 @@ struct SurfacePoint {
 // u, v are wrapped or clamped into the domain. Allocates nothing.
 SurfacePoint evaluate(const Surface& surface, double u, double v);
 
-// The position alone, to the same bits, at a fifth of the cost.
+// The position alone, to the same bits, at two fifths of the cost.
 Vector3 position(const Surface& surface, double u, double v);
 
 // The unit normal along du x dv. At poles and collapsed edges, where that product vanishes, the limit from

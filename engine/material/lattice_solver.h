@@ -29,8 +29,8 @@ inline constexpr double felt_stability_share = 0.75;
 // No node moves further than this share of a cell in a substep, relative to the body's mean velocity, or to
 // what holds the body where a node is held; nor in 2 / w, the longest step that the lattice alone could take.
 // Waves pass a cell in about that time, so that nodes stay below a ninth of their speed and a blow strains
-// even a soft, undamped body by no more than its springs can bring back. Without the latter two, a sphere of
-// 30 mm at 5 m/s threw a held gel of 4 Pa 28 m far.
+// even a soft, undamped body by no more than its springs can bring back. Without the latter two, a
+// sphere of 16 mm that gripped a held gel of 4 Pa at up to 5 m/s drew it out to 28 m.
 inline constexpr double speed_cap_cells = 0.1;
 
 // The largest stable symplectic Euler step for the angular frequency and damping ratio: h < (2 / w)
