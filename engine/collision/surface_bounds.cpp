@@ -54,8 +54,9 @@ SurfaceBounds::SurfaceBounds(const KnotVector& u, const KnotVector& v)
   second_vv_ = second_uu_;
   column_at_.assign(static_cast<std::size_t>(columns_), 0);
   element_at_.assign(span_v_.size(), 0);
-  for (std::vector<double>* edge : {&low_[0], &low_[1], &low_[2], &high_[0], &high_[1], &high_[2]})
+  for (std::vector<double>* edge : {&low_[0], &low_[1], &low_[2], &high_[0], &high_[1], &high_[2]}) {
     edge->assign(static_cast<std::size_t>(v.control_point_count()), 0.0);
+  }
 }
 
 void SurfaceBounds::update(const ControlNet& net) {

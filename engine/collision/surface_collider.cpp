@@ -167,8 +167,9 @@ void SurfaceCollider::descend(const Surface& surface, const ToolShape& tool, dou
     }
   }
   // Breadth first: a coarse level's best distance prunes the finer ones.
-  for (std::size_t at = 0; at < cells_.size(); ++at)
+  for (std::size_t at = 0; at < cells_.size(); ++at) {
     visit_cell(surface, tool, cells_[at], reach(margin), result);
+  }
   for (const Cell& cell : finest_) {
     for (int corner = 0; corner < 4; ++corner) {
       const int index = (cell.i + (corner >> 1)) * grid.columns() + cell.j + (corner & 1);

@@ -98,8 +98,9 @@ RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings,
   report.material_time_s = settings.iterations * substeps.count * substeps.h;
   for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, report.material_time_s);
   const float h = static_cast<float>(substeps.h);
-  if (substeps.slowed)
+  if (substeps.slowed) {
     view.inverse_mass = lattice.steady_strained_nodes(h, static_cast<float>(stability_share));
+  }
   const int total = settings.iterations * substeps.count;
   for (int s = 0; s < total; ++s) {
     const double fraction = static_cast<double>(s) / total;

@@ -110,8 +110,9 @@ void SpringLattice::lay_out(const LatticeMesh& mesh) {
   }
   std::fill(inverse_volume_.begin(), inverse_volume_.end(), 1.0f);
   for (int d = 0; d < lattice_direction_count; ++d) {
-    for (Floats* a : {&rest_y_[d], &rest_z_[d], &stiffness_[d], &square_difference_[d]})
+    for (Floats* a : {&rest_y_[d], &rest_z_[d], &stiffness_[d], &square_difference_[d]}) {
       a->assign(size, 0.0f);
+    }
     // Springs that do not exist have a length all the same, so that nothing divides by zero.
     for (Floats* a : {&rest_x_[d], &rest_length_[d], &first_rest_length_[d]}) a->assign(size, cell_size_);
   }
@@ -226,8 +227,9 @@ void SpringLattice::measure_fastest_frequency() {
     power_z_[n] = mixed(static_cast<std::uint32_t>(3 * n + 3));
   }
   float square = 0.0f;
-  for (int step = 0; step < frequency_steps; ++step)
+  for (int step = 0; step < frequency_steps; ++step) {
     square = kernels_->power_step(lattice, node_mass_.data());
+  }
   fastest_frequency_ = std::sqrt(square);
 }
 

@@ -275,8 +275,9 @@ std::array<int, 3> near_cubic_counts(double width, double thickness, double leng
 
 Status check_closed_tube(const Surface& surface) {
   if (!surface.u.is_periodic()) return Error{"surface: u must be periodic for a closed body"};
-  if (surface.v.is_periodic())
+  if (surface.v.is_periodic()) {
     return Error{"surface: v must be open, with a pole at both ends, for a closed body"};
+  }
   const Ring first = sample_ring(surface, surface.v.domain_start());
   const Ring last = sample_ring(surface, surface.v.domain_end());
   const double size = (last.centre - first.centre).norm();
@@ -291,8 +292,9 @@ Status check_closed_tube(const Surface& surface) {
     const double u = along(surface.u, static_cast<double>(s) / ring_samples);
     outward += unit_normal(surface, u, middle).dot(ring.points[s] - ring.centre);
   }
-  if (!(outward > 0.0))
+  if (!(outward > 0.0)) {
     return Error{"surface: normals point inward; reverse the order of the control points in u"};
+  }
   return {};
 }
 

@@ -201,8 +201,9 @@ void add_volume_stiffness(const LatticeView& view) {
 }
 
 void measure_rest_volumes(const LatticeView& view) {
-  for (int n = 0; n < view.padded_count; ++n)
+  for (int n = 0; n < view.padded_count; ++n) {
     view.rest_volume_sum[n] = volume_sum(present_diagonals(view, n));
+  }
 }
 
 }  // namespace spoonbill::SPOONBILL_KERNELS

@@ -65,8 +65,9 @@ DerivativeBounds derivative_bounds(const SurfaceSnapshot& surface, bool along_u)
   const int lines = (along_u ? surface.v : surface.u).control_point_count();
   const std::size_t slopes = knots.extended_knots().size() - static_cast<std::size_t>(knots.degree()) - 2;
   DerivativeBounds bounds{std::vector<double>(slopes), std::vector<double>(slopes)};
-  for (int across = 0; across < lines; ++across)
+  for (int across = 0; across < lines; ++across) {
     include_line(NetLine(surface, along_u, across), knots, bounds);
+  }
   return bounds;
 }
 

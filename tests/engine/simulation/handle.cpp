@@ -1,5 +1,7 @@
 #include "tests/engine/simulation/handle.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -44,6 +46,16 @@ Scene small_handle() {
   clay.flow_rate_per_s = 50.0;
   scene.tool.radius_m = 0.006;
   return scene;
+}
+
+Simulation simulate(const Scene& scene, InstructionSet set) {
+  Result<Simulation> simulation = Simulation::make(scene, set);
+  EXPECT_TRUE(simulation.ok()) << simulation.error().message;
+  return std::move(simulation).value();
+}
+
+ToolInput above(double x_m, double y_m, bool gripping) {
+  return {{Vector3(x_m, y_m, 0.0), Quaternion::Identity()}, gripping, 0.0};
 }
 
 }  // namespace spoonbill

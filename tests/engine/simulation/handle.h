@@ -3,9 +3,15 @@
 #pragma once
 
 #include "engine/simulation/scene.h"
+#include "engine/simulation/simulation.h"
 
 namespace spoonbill {
 
 Scene small_handle();
+
+Simulation simulate(const Scene& scene, InstructionSet set = InstructionSet::baseline);
+
+// A rigid hand at that place over the handle's middle line.
+ToolInput above(double x_m, double y_m, bool gripping = false);
 
 }  // namespace spoonbill

@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/simulation/symmetry.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+TEST(Tool, SymmetryMirrorsTheStroke) {
+  for (const bool symmetric : {true, false}) {
+    Scene scene = small_handle();
+    scene.tool.iterations = 1;
+    scene.tool.radius_m = 0.0015;
+    scene.symmetry.on = symmetric;  // about z = 0
+    Simulation simulation = simulate(scene);
+    const Surface before = simulation.surface();
+    Pose hand;
+    Reaction reaction;
+    for (int tick = 0; tick < 250; ++tick) {
+      hand.position_m = Vector3(0.03, 0.0042 - 8e-6 * tick, 0.003);
+      reaction = simulation.advance({hand, false, 0.0});
+    }
+    EXPECT_TRUE(reaction.touching);
+    EXPECT_EQ(reaction.mirror_touching, symmetric);
+    // u = 0.75 is the top; 0.75 - d and 0.75 + d mirror each other.
+    const auto dent = [&](double u) {
+      return (evaluate(before, u, 0.03).position_m - evaluate(simulation.surface(), u, 0.03).position_m).y();
+    };
+    const double left = dent(0.66), right = dent(0.84);
+    ASSERT_GT(std::max(left, right), 2e-4);
+    // The two tools take turns within a substep, so that the sides agree nearly, not to the bit.
+    if (symmetric) {
+      EXPECT_NEAR(left, right, 0.03 * std::max(left, right));
+    } else {
+      EXPECT_GT(std::abs(left - right), 0.3 * std::max(left, right));
+    }
+  }
+}
+
+TEST(Symmetry, MirrorsPosesAsAMirrorDoes) {
+  const Symmetry plane{true, Vector3(0.01, 0, 0), Vector3(1, 2, -2) / 3.0};
+  const Pose pose{Vector3(0.02, -0.01, 0.03), Quaternion(0.5, -0.1, 0.7, 0.5).normalized()};
+  const Pose mirror = mirrored_pose(plane, pose);
+  const Vector3 offset(0.001, 0.002, -0.003);
+  // A mirrored tool carries the mirrored offset to where the mirror shows it: R' (M d) = M (R d).
+  const auto reflect = [&](const Vector3& d) {
+    return Vector3(d - 2.0 * plane.normal.dot(d) * plane.normal);
+  };
+  EXPECT_LT((mirror.orientation * reflect(offset) - reflect(pose.orientation * offset)).norm(), 1e-15);
+  EXPECT_LT((mirrored_point(plane, mirror.position_m) - pose.position_m).norm(), 1e-15);
+}
+
+TEST(Tool, ALiftedToolActsOnlyAfterItHasLeft) {
+  Scene scene = small_handle();
+  scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+  Simulation simulation = simulate(scene);
+  const double inside = 0.006;
+  for (int tick = 0; tick < 50; ++tick) simulation.advance(above(0.03, 0.009 - 6e-5 * tick));
+  ASSERT_TRUE(simulation.apply(LiftTool{}));
+  Reaction reaction;
+  for (int tick = 0; tick < 20; ++tick) {
+    reaction = simulation.advance(above(0.03, inside));
+    ASSERT_FALSE(reaction.touching) << tick;
+  }
+  for (int tick = 0; tick < 30; ++tick) simulation.advance(above(0.03, 0.02));
+  for (int tick = 0; tick < 120; ++tick) reaction = simulation.advance(above(0.03, 0.009 - 6e-5 * tick));
+  EXPECT_TRUE(reaction.touching);
+}
+
+TEST(Tool, AHoveringToolTouchesNothingUntilItIsOutside) {
+  Scene scene = small_handle();
+  scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+  Simulation simulation = simulate(scene);
+  const auto hover = [&](double y, bool hovering) {
+    ToolInput input = above(0.03, y);
+    input.hovering = hovering;
+    return simulation.advance(input).touching;
+  };
+  for (int tick = 0; tick < 100; ++tick) ASSERT_FALSE(hover(0.02 - 4e-4 * tick, true));  // right through
+  for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, true));
+  for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, false));  // still inside
+  for (int tick = 0; tick < 50; ++tick) hover(0.02, false);
+  bool touching = false;
+  for (int tick = 0; tick < 60; ++tick) touching = hover(0.009 - 6e-5 * tick, false);
+  EXPECT_TRUE(touching);
+}
+
+TEST(Tool, AResetProxyDoesNotSweepTheWayBetween) {
+  Simulation simulation = simulate(small_handle());
+  simulation.advance(above(0.03, 0.03));
+  ASSERT_TRUE(simulation.apply(ResetProxy{}));
+  // Straight through the handle to the other side in one tick.
+  const Reaction reaction = simulation.advance(above(0.03, -0.03));
+  EXPECT_FALSE(reaction.touching);
+  EXPECT_NEAR(reaction.proxy.position_m.y(), -0.03, 1e-9);
+}
+
+}  // namespace
+}  // namespace spoonbill
