@@ -1,4 +1,5 @@
-#include <algorithm>
+#include <array>
+#include <cstdio>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -22,9 +23,9 @@ std::filesystem::path next_free(const std::filesystem::path& folder, const std::
   std::filesystem::path file;
   std::error_code ignored;
   for (int number = 1; number <= most_numbered_files; ++number) {
-    const std::string digits = std::to_string(number);
-    file = folder /
-           (name + "-" + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits + ending);
+    std::array<char, 16> digits{};
+    std::snprintf(digits.data(), digits.size(), "-%04d", number);
+    file = folder / (name + digits.data() + ending);
     if (!std::filesystem::exists(file, ignored)) break;
   }
   return file;

@@ -173,7 +173,7 @@ SafeForce HapticSide::make_force_safe(const Vector3& wanted_n, const DeviceReadi
   input.buttons = reading.buttons;
   input.dropped_ticks = dropped;
   input.stale = stale;
-  const SafeForce safe = make_safe(safety_, specification_, input);
+  SafeForce safe = make_safe(safety_, specification_, input);
   safety_flags_ = safe.flags;
   return safe;
 }

@@ -94,8 +94,8 @@ Result<PerformanceReport> perform(const Script& script, const Document& document
   std::vector<Notice> notices = session.take_notices();
   session.start_recording(settings.recording);
   const auto recording = [](const LiveFrame& frame) { return frame.recording; };
-  if (Status begun = wait_until(session, recording, "the recording's beginning"); !begun)
-    return begun.error();
+  Status begun = wait_until(session, recording, "the recording's beginning");
+  if (!begun) return begun.error();
   std::optional<Painting> painting;
   if (settings.draw) {
     auto made = Painting::make(session.frame());

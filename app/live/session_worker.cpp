@@ -10,8 +10,9 @@ namespace {
 // What the standard library throws, for want of memory above all, ends here: the thread must live on.
 Status do_work(LiveCommand& command, LentSession& lent) {
   try {
-    if (auto* asked = std::get_if<AskedRequest>(&command))
+    if (auto* asked = std::get_if<AskedRequest>(&command)) {
       return apply_request(*lent.session, asked->request);
+    }
     if (auto* asked = std::get_if<AskedWork>(&command)) return asked->work(lent);
   } catch (const std::exception& exception) {
     return Error{std::string("not done: ") + exception.what()};
