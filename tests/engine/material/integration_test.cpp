@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-
 #include <cmath>
 
 #include "engine/material/lattice_solver.h"
@@ -155,7 +154,8 @@ TEST(Integration, SelfWeightOnASlippingBase) {
       settings.step_s = 2e-4;
       settings.damping_per_s = 300.0;
       settings.gravity_m_per_s2 = {0.0, -gravity, 0.0};
-      for (int tick = 0; tick < 1500; ++tick) relax(lattice, settings, std::array{TouchingTool{ToolMotion{}, &tool, &contacts}});
+      for (int tick = 0; tick < 1500; ++tick)
+        relax(lattice, settings, std::array{TouchingTool{ToolMotion{}, &tool, &contacts}});
       double drop = 0.0;
       const LatticeMesh& mesh = lattice.mesh();
       for (int i = 0; i < count; ++i) {
@@ -195,7 +195,8 @@ TEST(Integration, HangingWeight) {
   settings.damping_per_s = 60.0;
   ToolMotion at_top;
   at_top.start_m = at_top.end_m = {0.0, length, 0.0};
-  for (int tick = 0; tick < 4000; ++tick) relax(lattice, settings, std::array{TouchingTool{at_top, &tool, &contacts}});
+  for (int tick = 0; tick < 4000; ++tick)
+    relax(lattice, settings, std::array{TouchingTool{at_top, &tool, &contacts}});
   EXPECT_NEAR(lattice.displacement(mesh.index(0, 0, 0)).y(), -1.962e-3,
               0.01e-3);  // 0.2 % strain, squared terms
 }
@@ -222,9 +223,11 @@ TEST(Integration, BlockSlidesDownAnIncline) {
       }
       return sum / mass;
     };
-    for (int tick = 0; tick < 200; ++tick) relax(lattice, settings, std::array{TouchingTool{ground, &tool, &contacts}});
+    for (int tick = 0; tick < 200; ++tick)
+      relax(lattice, settings, std::array{TouchingTool{ground, &tool, &contacts}});
     const double before = speed();
-    for (int tick = 0; tick < 500; ++tick) relax(lattice, settings, std::array{TouchingTool{ground, &tool, &contacts}});
+    for (int tick = 0; tick < 500; ++tick)
+      relax(lattice, settings, std::array{TouchingTool{ground, &tool, &contacts}});
     const double expected = g * (std::sin(tilt) - friction * std::cos(tilt));
     EXPECT_NEAR((speed() - before) / 0.5, expected, 0.02 * g)
         << "friction " << friction;  // the block still quivers
@@ -240,7 +243,8 @@ TEST(Integration, HeldNodesDoNotMoveAtAll) {
   ToolState tool;
   RelaxSettings settings;
   settings.gravity_m_per_s2 = {3.0, -9.81, 2.0};
-  for (int tick = 0; tick < 500; ++tick) relax(lattice, settings, std::array{TouchingTool{ToolMotion{}, &tool, &none}});
+  for (int tick = 0; tick < 500; ++tick)
+    relax(lattice, settings, std::array{TouchingTool{ToolMotion{}, &tool, &none}});
   for (int n = 0; n < 15; ++n) EXPECT_EQ(lattice.displacement(n), Vector3::Zero());
   EXPECT_LT(lattice.displacement(74).y(), -1e-5);
 }
@@ -265,9 +269,11 @@ TEST(Integration, ClayKeepsAStretchAndRubberDoesNot) {
     ToolState tool;
     RelaxSettings settings;
     settings.damping_per_s = 60.0;
-    for (int tick = 0; tick < 1000; ++tick) relax(lattice, settings, std::array{TouchingTool{ToolMotion{}, &tool, &none}});
+    for (int tick = 0; tick < 1000; ++tick)
+      relax(lattice, settings, std::array{TouchingTool{ToolMotion{}, &tool, &none}});
     lattice.hold(std::vector<std::uint8_t>(ends.size(), 0));
-    for (int tick = 0; tick < 1500; ++tick) relax(lattice, settings, std::array{TouchingTool{ToolMotion{}, &tool, &none}});
+    for (int tick = 0; tick < 1500; ++tick)
+      relax(lattice, settings, std::array{TouchingTool{ToolMotion{}, &tool, &none}});
     const double length =
         (lattice.position(mesh.index(2, 2, 8)) - lattice.position(mesh.index(2, 2, 0))).norm();
     const double kept = (length / 0.016 - 1.0) / 0.08;
