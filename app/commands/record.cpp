@@ -33,11 +33,12 @@ struct RecordOptions {
 
 constexpr std::uint64_t ticks_between_looks = 100;
 
-Status run(Lockstep& lockstep, Console& console) {
+Status run(Lockstep& lockstep, Session& session, Console& console) {
   InterruptWatch interrupt;
   ProgressBar progress(console, "Recording", false);
   while (lockstep.tick() < lockstep.tick_count()) {
     if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_looks); !ran) return ran;
+    session.marks.clear();  // the replay makes these files
     progress.show(lockstep.tick(), lockstep.tick_count());
     if (!interrupt.requested()) continue;
     interrupt.answer();
@@ -56,7 +57,7 @@ Status record_input(const RecordOptions& options, const RecordingHeader& header,
   if (!writer) return writer.error();
   const std::size_t command_count = input.commands.size();
   Lockstep lockstep(session.value(), std::move(input), &writer.value());
-  if (Status ran = run(lockstep, console); !ran) return ran;
+  if (Status ran = run(lockstep, session.value(), console); !ran) return ran;
 
   FactSheet facts;
   const double duration_s = tick_s * static_cast<double>(lockstep.tick());

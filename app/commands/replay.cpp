@@ -9,6 +9,7 @@
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/option_values.h"
+#include "app/frames/marked_files.h"
 #include "app/frames/painting_crew.h"
 #include "app/frames/replay_pictures.h"
 #include "app/interrupt.h"
@@ -59,6 +60,7 @@ Status run_without_pictures(const Replay& replay) {
   while (lockstep.tick() < lockstep.tick_count()) {
     if (interrupt.requested()) return stopped(lockstep, interrupt);
     if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_looks); !ran) return ran;
+    replay.session.marks.clear();  // there is no folder to make files in
     progress.show(lockstep.tick(), lockstep.tick_count());
   }
   return lockstep.finish();
@@ -94,9 +96,12 @@ PaintingJob job_of(std::uint64_t frame, Session& session, const BoundingBox& fra
   return job;
 }
 
-Status keep_oldest(PaintingCrew& crew, ReplayPictures& pictures) {
+Status keep_oldest(PaintingCrew& crew, const PictureRequest& request, ReplayPictures& pictures) {
   auto painted = crew.take();
   if (!painted) return painted.error();
+  for (const std::string& name : painted->also_as) {
+    if (Status kept = write_marked_picture(painted->picture, name, *request.folder); !kept) return kept;
+  }
   return pictures.add(painted->frame, painted->time_s, std::move(painted->picture));
 }
 
@@ -110,15 +115,18 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
   for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested();
        frame += request.every) {
     if (Status ran = replay.lockstep.run_to(tick_of_frame(frame)); !ran) return ran;
+    auto names = take_marks(replay.session, request.folder);
+    if (!names) return names.error();
     PaintingJob job = job_of(frame, replay.session, framed, request);
+    job.also_as = std::move(names).value();
     if (crew.is_full()) {
-      if (Status kept = keep_oldest(crew, pictures); !kept) return kept;
+      if (Status kept = keep_oldest(crew, request, pictures); !kept) return kept;
     }
     crew.start(std::move(job));
     progress.show(frame + 1, request.frame_count);
   }
   while (crew.in_flight() > 0) {
-    if (Status kept = keep_oldest(crew, pictures); !kept) return kept;
+    if (Status kept = keep_oldest(crew, request, pictures); !kept) return kept;
   }
   progress.show(1, 1);
   return {};
@@ -134,6 +142,7 @@ Status run_with_pictures(const Replay& replay, FactSheet& facts) {
   if (Status drawn = draw_frames(replay, request, pictures.value(), interrupt); !drawn) return drawn;
   if (interrupt.requested()) return stopped(replay.lockstep, interrupt);
   if (Status finished = replay.lockstep.finish(); !finished) return finished;
+  if (auto late = take_marks(replay.session, request.folder); !late) return late.error();
   if (Status finished = pictures->finish(); !finished) return finished;
 
   facts.add("Frames", std::to_string(pictures->count()), "frames", pictures->count());

@@ -124,8 +124,7 @@ void Editor::start() {
   }
   look_for_left_over();
   if (settings_.recording.empty()) return;
-  live_->set_view(view_to_json(view_));
-  live_->start_recording(settings_.recording);
+  live_->start_recording(settings_.recording, view_);
   asked_.emplace_back(std::nullopt);
 }
 

@@ -25,7 +25,9 @@ std::filesystem::path next_free(const std::filesystem::path& folder, const std::
   for (int number = 1; number <= most_numbered_files; ++number) {
     std::array<char, 16> digits{};
     std::snprintf(digits.data(), digits.size(), "-%04d", number);
-    file = folder / (name + digits.data() + ending);
+    std::string whole = name;
+    whole.append(digits.data()).append(ending);
+    file = folder / whole;
     if (!std::filesystem::exists(file, ignored)) break;
   }
   return file;
@@ -105,8 +107,7 @@ void Editor::toggle_recording(const LiveFrame& frame) {
   }
   const std::filesystem::path file =
       next_free(folder_of(document_.file()), stem_of(document_.file()), ".recording.jsonl");
-  live_->set_view(view_to_json(view_));
-  if (!live_->start_recording(file)) return;
+  if (!live_->start_recording(file, view_)) return;
   asked_.emplace_back(std::nullopt);
   messages_.add({Notice::Kind::information, "recording to " + file.filename().string()});
 }

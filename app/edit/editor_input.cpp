@@ -95,6 +95,7 @@ void Editor::move_camera(const Pointer& pointer, CameraMotion motion, const View
 }
 
 void Editor::show_camera() {
+  live_->set_view(view_to_json(view_));
   ask(ChangeView{camera_command(view_)});
 }
 
@@ -237,8 +238,7 @@ void Editor::set_tool(const LiveFrame& frame, ToolKind kind, ToolAction tool_act
   ask(Command(SetTool{tool}));
 }
 
-// The side of the plane that the camera sees less of is held: the part of the model on the far side of the
-// tool from the model's longer remainder stays free. Upright, across the model's longest direction.
+// Across the model's longest direction, at the tool; the shorter part is held.
 void Editor::place_plane(const LiveFrame& frame) {
   const Vector3 size = body_.high_m - body_.low_m;
   int axis = 0;

@@ -10,7 +10,7 @@ namespace spoonbill {
 namespace {
 
 // Fixed, whatever the machine: what a painter has drawn before must not depend on it.
-constexpr std::size_t painter_count = 2;
+constexpr std::size_t painter_count = 3;
 
 // One being painted and one waiting, so that nobody waits for the owner.
 constexpr std::size_t jobs_a_painter = 2;
@@ -71,7 +71,7 @@ class PaintingCrew::Painter {
     auto painter = FramePainter::make(width_px_, height_px_, &interface_turn_);
     if (!painter) return fail(painter.error());
     while (auto job = next_job()) {
-      PaintedFrame frame{job->frame, job->snapshot.time_s(), {}};
+      PaintedFrame frame{job->frame, job->snapshot.time_s(), {}, std::move(job->also_as)};
       const Status painted = painter->paint(job->snapshot, job->view, job->panel, frame.picture);
       if (!painted) return fail(painted.error());
       const std::lock_guard lock(mutex_);

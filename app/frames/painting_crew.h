@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "app/frames/frame_painter.h"
@@ -24,12 +25,14 @@ struct PaintingJob {
   Snapshot snapshot;
   ViewSettings view;
   PanelModel panel;
+  std::vector<std::string> also_as;  // other names that the picture is kept under
 };
 
 struct PaintedFrame {
   std::uint64_t frame = 0;
   double time_s = 0.0;
   Image picture;
+  std::vector<std::string> also_as;
 };
 
 class PaintingCrew {

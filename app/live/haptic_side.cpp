@@ -12,6 +12,11 @@ constexpr int ticks_between_scenes = 400;
 // A body goes on moving after it was let go; what it does for so long is saved too.
 constexpr int settling_ticks = 3000;
 
+// The main thread draws and writes files itself; what is left to do is to record that it did.
+bool concerns_the_main_thread_alone(const Request& request) {
+  return std::holds_alternative<ChangeView>(request) || std::holds_alternative<MarkFile>(request);
+}
+
 }  // namespace
 
 HapticSide::HapticSide(std::unique_ptr<Session> session, VirtualDevice device,
@@ -58,7 +63,7 @@ void HapticSide::do_commands() {
 // False when the session is on loan now.
 bool HapticSide::do_command() {
   if (auto* asked = std::get_if<AskedRequest>(&command_)) {
-    if (std::holds_alternative<MarkFile>(asked->request)) {
+    if (concerns_the_main_thread_alone(asked->request)) {
       record(std::move(asked->json));
     } else if (rebuilds(asked->request)) {
       lend();
@@ -103,14 +108,13 @@ void HapticSide::take_back_if_done() {
 }
 
 void HapticSide::apply_now(AskedRequest& asked) {
-  const bool seen = std::holds_alternative<ChangeView>(asked.request);
   const Status applied = apply_request(*lent_.session, asked.request);
   if (!applied) {
     exchange_->refused.fetch_add(1, std::memory_order_relaxed);
     return;
   }
   record(std::move(asked.json));
-  if (!seen) note_change();
+  note_change();
 }
 
 void HapticSide::record(Json&& command) {

@@ -39,7 +39,9 @@ Status begin_anew(LentSession& lent, InstructionSet set) {
   return {};
 }
 
-Status begin_recording(LentSession& lent, const std::filesystem::path& file, InstructionSet set) {
+Status begin_recording(LentSession& lent, const std::filesystem::path& file, const ViewChoice& view,
+                       InstructionSet set) {
+  lent.session->view = view;
   const RecordingHeader header{lent.session->device, document_of(*lent.session)};
   auto writer = RecordingWriter::create(file, header);
   if (!writer) return writer.error();
@@ -121,10 +123,12 @@ bool LiveSession::open(Document document, std::string source) {
                         true});
 }
 
-bool LiveSession::start_recording(std::filesystem::path file) {
+bool LiveSession::start_recording(std::filesystem::path file, const ViewChoice& view) {
   const InstructionSet set = settings_.instruction_set;
-  return send(AskedWork{
-      [file = std::move(file), set](LentSession& lent) { return begin_recording(lent, file, set); }, true});
+  return send(AskedWork{[file = std::move(file), view, set](LentSession& lent) {
+                          return begin_recording(lent, file, view, set);
+                        },
+                        true});
 }
 
 bool LiveSession::stop_recording() {

@@ -38,7 +38,8 @@ class LiveSession {
 
   // Begins anew from the shape as it is now, at rest, and records from there: that is what makes the
   // recording whole by itself.
-  bool start_recording(std::filesystem::path file);
+  // `view` is how the replay looks at its beginning.
+  bool start_recording(std::filesystem::path file, const ViewChoice& view);
   bool stop_recording();
 
   // Saves the document as it is when the haptic thread hears of it; take_saved() and the notices tell.

@@ -92,7 +92,7 @@ Result<PerformanceReport> perform(const Script& script, const Document& document
   if (!live) return live.error();
   LiveSession& session = *live.value();
   std::vector<Notice> notices = session.take_notices();
-  session.start_recording(settings.recording);
+  session.start_recording(settings.recording, view.value());
   const auto recording = [](const LiveFrame& frame) { return frame.recording; };
   Status begun = wait_until(session, recording, "the recording's beginning");
   if (!begun) return begun.error();

@@ -69,13 +69,23 @@ Status Lockstep::apply_due_commands() {
   return {};
 }
 
+Vector3 Lockstep::safe_force(const TickResult& result, const DeviceReading& reading) {
+  SafetyInput input;
+  input.wanted_n = result.force_n;
+  const Vector3 position_m = reading.pose().position_m;
+  if (!workspace_centre_m_) workspace_centre_m_ = position_m;
+  input.position_m = position_m - *workspace_centre_m_;
+  input.buttons = reading.buttons;
+  return make_safe(safety_, session_->device, input).force_n;
+}
+
 Status Lockstep::run_tick() {
   const DeviceReading reading = input_.device->read();
   if (writer_ != nullptr) {
     if (Status written = writer_->reading(reading); !written) return written;
   }
   const TickResult result = advance(*session_, reading);
-  input_.device->set_force(result.force_n);
+  input_.device->set_force(safe_force(result, reading));
   ++tick_;
   stands_ = false;
   return {};

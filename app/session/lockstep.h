@@ -9,6 +9,7 @@
 #include "app/session/session.h"
 #include "haptic/recording.h"
 #include "haptic/recording_writer.h"
+#include "haptic/safety.h"
 
 namespace spoonbill {
 
@@ -54,10 +55,13 @@ class Lockstep {
   bool has_checkpoint_here() const;
   Status apply_due_commands();
   Status run_tick();
+  Vector3 safe_force(const TickResult& result, const DeviceReading& reading);
 
   Session* session_;
   LockstepInput input_;
   RecordingWriter* writer_;
+  SafetyState safety_;                         // between the force and the hand, as live
+  std::optional<Vector3> workspace_centre_m_;  // where the hand begins
   std::uint64_t tick_ = 0;
   std::size_t next_command_ = 0;
   std::size_t next_expected_ = 0;

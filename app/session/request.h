@@ -4,8 +4,8 @@
 //   {"command": "undo"}    {"command": "redo"}    {"command": "cancel_stroke"}
 //   {"command": "save", "name": "bent"}           the document as it is then
 //   {"command": "screenshot", "name": "bent"}     the next frame
-// A replay writes the last two as NAME.json and NAME.png into its own output folder, whatever file they went
-// to when they were recorded. Names have 1 to 64 letters, digits, - and _.
+// A replay writes the last two as saved-NAME.json and picture-NAME.png into its own output folder, whatever
+// file they went to when they were recorded. Names have 1 to 64 letters, digits, - and _.
 #pragma once
 
 #include <string>

@@ -11,6 +11,9 @@ bool changes_what_a_shape_means(const Command& command) {
          std::holds_alternative<KeepShape>(command);
 }
 
+// A recording cannot fill the memory with documents that nobody takes.
+constexpr std::size_t most_waiting_marks = 1000;
+
 struct RequestApplier {
   Session& session;
 
@@ -30,6 +33,7 @@ struct RequestApplier {
     return apply_view_command(change.command, "view", session.view);
   }
   Status operator()(const MarkFile& mark) {
+    if (session.marks.size() == most_waiting_marks) return Error{"too many files are asked for at once"};
     FileMark& made = session.marks.emplace_back(FileMark{mark, {}});
     if (mark.kind == FileMarkKind::document) made.document = document_of(session);
     return {};

@@ -46,7 +46,7 @@ std::vector<FixingPlane> read_planes(FieldReader& reader) {
 Symmetry read_symmetry_of(FieldReader& reader) {
   if (!reader.has("symmetry")) return {};
   FieldReader symmetry_reader = reader.inner("symmetry");
-  const Symmetry symmetry = read_symmetry(symmetry_reader);
+  Symmetry symmetry = read_symmetry(symmetry_reader);
   symmetry_reader.finish();
   return symmetry;
 }

@@ -41,7 +41,6 @@ struct Simulation::State {
   HeldTool mirrored;
   std::vector<std::uint8_t> held, touched;
   std::uint64_t tick = 0;
-  std::uint32_t structure = 1;
   RelaxReport relaxed{};
   Reaction reaction{};
 };
@@ -197,7 +196,6 @@ struct CommandApplier {
     state.tool.contact = ToolContact(state.mapping);
     state.mirrored.contact = ToolContact(state.mapping);
     state.scene.body.surface = state.mapping.current();
-    ++state.structure;
   }
 };
 
@@ -348,7 +346,7 @@ void write_symmetry(const Simulation::State& s, Snapshot& snapshot) {
 void Simulation::write_snapshot(Snapshot& snapshot) const {
   const State& s = *state_;
   snapshot.tick = s.tick;
-  write_surface(s.mapping.current(), s.structure, snapshot.surfaces);
+  write_surface(s.mapping.current(), snapshot.surfaces);
   write_lattice(s.lattice, s.held, s.touched, snapshot.lattice);
   snapshot.tool.kind = s.scene.tool.kind;
   snapshot.tool.action = s.scene.tool.action;
@@ -359,6 +357,7 @@ void Simulation::write_snapshot(Snapshot& snapshot) const {
   write_symmetry(s, snapshot);
   snapshot.planes.clear();
   for (const FixingPlane& plane : s.scene.planes) snapshot.planes.push_back({plane.point_m, plane.normal});
+  snapshot.contacts.reserve(1);  // before the first contact, which must not allocate
   snapshot.contacts.clear();
   const CollisionResult& collision = s.tool.contact.collision();
   if (s.reaction.touching && collision.found) {

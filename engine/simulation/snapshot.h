@@ -16,7 +16,7 @@ enum class ToolAction { push, pull };
 
 struct SurfaceSnapshot {
   KnotVector u, v;
-  std::uint32_t structure = 0;  // changes whenever the knot vectors do, so that a Grid can be kept until then
+  std::uint64_t structure = 0;  // the knot vectors' fingerprint: while it stays, a Grid can be kept
   std::vector<float> x, y, z;   // control points in metres, as in ControlNet
 };
 

@@ -2,9 +2,29 @@
 
 #include <algorithm>
 
+#include "engine/simulation/state_hash.h"
+
 namespace spoonbill {
 
-void write_surface(const Surface& surface, std::uint32_t structure, std::vector<SurfaceSnapshot>& out) {
+namespace {
+
+void add_to_hash(const KnotVector& direction, StateHash& hash) {
+  hash.add(static_cast<std::uint64_t>(direction.degree()) << 1 | (direction.is_periodic() ? 1u : 0u));
+  for (const double knot : direction.knots()) hash.add(knot);
+}
+
+// By what it is and not by counting changes: two sessions whose surfaces differ must differ in it too.
+std::uint64_t structure_of(const Surface& surface) {
+  StateHash hash;
+  add_to_hash(surface.u, hash);
+  add_to_hash(surface.v, hash);
+  return hash.value();
+}
+
+}  // namespace
+
+void write_surface(const Surface& surface, std::vector<SurfaceSnapshot>& out) {
+  const std::uint64_t structure = structure_of(surface);
   if (out.size() != 1 || out[0].structure != structure) {
     out.clear();
     out.push_back({surface.u, surface.v, structure, {}, {}, {}});

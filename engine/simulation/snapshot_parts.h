@@ -12,7 +12,7 @@
 
 namespace spoonbill {
 
-void write_surface(const Surface& surface, std::uint32_t structure, std::vector<SurfaceSnapshot>& out);
+void write_surface(const Surface& surface, std::vector<SurfaceSnapshot>& out);
 
 // held, touched: one byte a node.
 void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>& held,

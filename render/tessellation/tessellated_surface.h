@@ -52,7 +52,7 @@ class TessellatedSurface {
   bool edge_collapsed(bool along_u, int at) const;
   double signed_volume_m3() const;
 
-  std::uint32_t structure_ = 0;
+  std::uint64_t structure_ = 0;
   SamplingLevel level_;
   std::uint64_t topology_version_ = 0;
   bool closed_ = false;

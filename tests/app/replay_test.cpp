@@ -30,6 +30,29 @@ TEST(Frames, ShowTheStateAfterWholeTicks) {
   EXPECT_EQ(frame_count(1000), 61U);
 }
 
+TEST(Replay, MakesTheFilesThatTheRecordingAskedFor) {
+  const Workplace place;
+  place.write("marks.json", R"({
+    "spoonbill_script": 1, "model": "model.json",
+    "steps": [
+      {"start_mm": [50, 14, 0]}, {"hold_s": 0.05},
+      {"command": "screenshot", "name": "first"}, {"command": "save", "name": "as_it_was"},
+      {"hold_s": 0.1}]})");
+  ASSERT_EQ(run({"record", place.text("marks.json"), "--out", place.text("marks.jsonl")}).code, exit_done);
+  const Outcome outcome =
+      run({"replay", place.text("marks.jsonl"), "--out", place.text("out"), "--size", "96x64"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const auto saved = read_document(place.path("out/saved-as_it_was.json"));
+  ASSERT_TRUE(saved) << saved.error().message;
+  EXPECT_EQ(saved->scene.body.surface.net.x,
+            read_document(place.path("model.json"))->scene.body.surface.net.x);
+  // The screenshot stands at tick 50, which frame 3 shows.
+  const auto picture = read_png(place.path("out/picture-first.png"));
+  const auto frame = read_png(place.path("out/frame-0003.png"));
+  ASSERT_TRUE(picture && frame);
+  EXPECT_EQ(picture->rgba, frame->rgba);
+}
+
 TEST(Replay, LeavesFramesAndContactSheet) {
   const Workplace place;
   const std::string recording = place.record("bend.jsonl").string();

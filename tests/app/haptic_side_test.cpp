@@ -1,0 +1,139 @@
+#include "app/live/haptic_side.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/app/workplace.h"
+#include "tests/engine/allocations.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+Document held_handle() {
+  Document document{"small handle", small_handle(), Json::object()};
+  document.scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+  return document;
+}
+
+HandTarget at(double y_m, std::uint32_t buttons = 0) {
+  return {{Vector3(0.05, y_m, 0.0), Quaternion::Identity()}, buttons};
+}
+
+// The haptic thread's part of a live session, called by the test's own thread, so that allocations count.
+class Side {
+ public:
+  Side() {
+    auto session = Session::make(held_handle(), "test", VirtualDevice::default_specification(),
+                                 InstructionSet::baseline);
+    EXPECT_TRUE(session);
+    auto made = std::make_unique<Session>(std::move(session).value());
+    LiveFrame first;
+    write_snapshot(*made, first.snapshot);
+    write_facts(*made, first.facts);
+    const LiveScene scene{made->title, document_of(*made).scene};
+    journal_.emplace(notices_, scene);
+    worker_.emplace(notices_);
+    exchange_.emplace(at(0.03), first);
+    side_.emplace(std::move(made), VirtualDevice::make(Hand{}, at(0.03)).value(), Vector3(0.05, 0, 0),
+                  *exchange_, *journal_, *worker_);
+  }
+
+  void aim(const HandTarget& target) {
+    exchange_->target.writing() = target;
+    exchange_->target.publish();
+  }
+  void ask(Request request) {
+    Json json = request_to_json(request);
+    ASSERT_TRUE(exchange_->commands.push(AskedRequest{std::move(request), std::move(json)}));
+  }
+  void begin_recording(const std::filesystem::path& file) {
+    const SessionWork work = [file](LentSession& lent) {
+      auto writer = RecordingWriter::create(file, {lent.session->device, document_of(*lent.session)});
+      if (!writer) return Status(writer.error());
+      lent.writer = std::make_unique<RecordingWriter>(std::move(writer).value());
+      return Status();
+    };
+    ASSERT_TRUE(exchange_->commands.push(AskedWork{work, true}));
+    for (int i = 0; i < 10000 && !frame().recording; ++i) {
+      tick(4);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ASSERT_TRUE(frame().recording);
+  }
+
+  // How often the ticks took something from the heap.
+  std::size_t tick(int count, std::uint64_t dropped = 0) {
+    const std::size_t before = allocation_count();
+    for (int i = 0; i < count; ++i) side_->tick({index_++, dropped});
+    return allocation_count() - before;
+  }
+
+  const LiveFrame& frame() {
+    exchange_->frames.take();
+    return exchange_->frames.reading();
+  }
+
+ private:
+  Notices notices_;
+  std::optional<Journal> journal_;
+  std::optional<SessionWorker> worker_;
+  std::optional<LiveExchange> exchange_;
+  std::optional<HapticSide> side_;
+  std::uint64_t index_ = 0;
+};
+
+TEST(HapticSide, TicksStrokesAndLightCommandsAllocateNothing) {
+  const Workplace place;
+  Side side;
+  side.begin_recording(place.path("live.jsonl"));
+  side.tick(2000);  // every buffer has had its first value
+  side.aim(at(0.004));
+  bool in_stroke = false;
+  for (int i = 0; i < 300; ++i) {
+    EXPECT_EQ(side.tick(1), 0U) << i;
+    in_stroke = in_stroke || side.frame().facts.in_stroke;
+  }
+  EXPECT_TRUE(in_stroke);
+  Tool tool = small_handle().tool;
+  tool.radius_m = 0.005;
+  side.ask(Command(SetTool{tool}));
+  side.ask(CancelStroke{});
+  side.ask(ChangeView{camera_command(ViewChoice())});
+  EXPECT_EQ(side.tick(50), 0U);
+  side.aim(at(0.03));
+  EXPECT_EQ(side.tick(1500), 0U);  // a state hash among them
+  side.ask(UndoStroke{});
+  side.ask(RedoStroke{});
+  EXPECT_EQ(side.tick(100), 0U);
+  EXPECT_EQ(side.tick(5, 40), 0U);  // stalls, which reset the proxy
+}
+
+TEST(HapticSide, ATargetThatIsNotFiniteIsNotFollowed) {
+  Side side;
+  side.tick(20);
+  const Vector3 before = side.frame().snapshot.tool.device.position_m;
+  HandTarget broken = at(0.0);
+  broken.pose.position_m.x() = std::nan("");
+  side.aim(broken);
+  side.tick(100);
+  EXPECT_LT((side.frame().snapshot.tool.device.position_m - before).norm(), 1e-6);
+}
+
+TEST(HapticSide, AfterALoanTheForceComesBackByTheRamp) {
+  Side side;
+  side.tick(1500);
+  EXPECT_EQ(side.frame().safety_flags, 0U);
+  side.ask(Command(PlacePlane{{Vector3(0.025, 0, 0), Vector3::UnitX()}}));
+  side.tick(1);
+  for (int i = 0; i < 10000 && side.frame().snapshot.planes.size() != 2; ++i) {
+    side.tick(4);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(side.frame().snapshot.planes.size(), 2U);
+  EXPECT_NE(side.frame().safety_flags, 0U);
+}
+
+}  // namespace
+}  // namespace spoonbill
