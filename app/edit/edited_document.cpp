@@ -19,19 +19,31 @@ void EditedDocument::discard_left_over() const {
   if (const auto place = autosave()) place->remove();
 }
 
-void EditedDocument::begin(std::filesystem::path file, LiveSession& live, std::uint64_t deed) {
+void EditedDocument::set_left_over_aside() const {
+  if (const auto place = autosave()) place->set_aside();
+}
+
+void EditedDocument::turn_to(std::filesystem::path file, LiveSession& live) {
   file_ = std::move(file);
-  saved_deed_ = deed;
+  document_ = live.last_frame().document;
+  saved_deed_ = live.last_frame().deed;
   recovered_ = false;
+  live.set_autosave(std::nullopt);
+}
+
+void EditedDocument::begin(LiveSession& live) {
+  saved_deed_ = live.last_frame().deed;
   live.set_autosave(autosave());
 }
 
 void EditedDocument::begin_recovered(LiveSession& live) {
+  document_ = live.last_frame().document;
   recovered_ = true;
   live.set_autosave(autosave());
 }
 
 void EditedDocument::note_saved(const SavedDocument& saved, LiveSession& live) {
+  if (saved.document != document_) return;
   const bool renamed = saved.file != file_;
   file_ = saved.file;
   saved_deed_ = saved.deed;

@@ -24,9 +24,15 @@ class EditedDocument {
   Result<std::optional<Document>> left_over() const;
 
   void discard_left_over() const;
+  // One that cannot be read must not keep this session's work from being autosaved.
+  void set_left_over_aside() const;
 
-  // The session shows this file from now on, with no change yet; work is autosaved.
-  void begin(std::filesystem::path file, LiveSession& live, std::uint64_t deed);
+  // The session shows this file from now on; nothing is autosaved until begin(), when it is known what
+  // becomes of what was left over.
+  void turn_to(std::filesystem::path file, LiveSession& live);
+
+  // As it is now it has no change; work is autosaved.
+  void begin(LiveSession& live);
   // What was left over has taken its place: it counts as changed.
   void begin_recovered(LiveSession& live);
 
@@ -41,6 +47,7 @@ class EditedDocument {
 
   std::optional<std::filesystem::path> state_folder_;
   std::filesystem::path file_;
+  std::uint64_t document_ = 0;  // as in LiveFrame
   std::uint64_t saved_deed_ = 0;
   bool recovered_ = false;
 };

@@ -157,23 +157,26 @@ void Editor::take_news(const LiveFrame& frame, double seconds) {
   }
   if (const auto saved = live_->take_saved()) {
     document_.note_saved(*saved, *live_);
-    if (leave_when_saved_) leave_now(leaving_);
+    // An earlier save's answer is not the one that is waited for.
+    if (leave_when_saved_ && frame.deed <= saved->deed) leave_now(leaving_);
   }
 }
 
 // Work is answered in the order in which it was asked for.
 void Editor::take_answers(const LiveFrame& frame) {
-  while (works_done_ + works_failed_ < frame.works_done + frame.works_failed && !asked_.empty()) {
-    const bool failed = works_failed_ < frame.works_failed;
-    ++(failed ? works_failed_ : works_done_);
+  for (; works_ < frame.works && !asked_.empty(); ++works_) {
+    const bool failed = ((frame.failed_works >> (works_ % 64)) & 1U) != 0;
     const std::optional<AskedOpen> asked = asked_.front();
     asked_.erase(asked_.begin());
-    if (failed || !asked) continue;
+    if (!asked) continue;
+    if (failed && asked->recovered) begin_without_left_over();
+    if (failed) continue;
     view_ = asked->view;
     if (asked->recovered) {
       document_.begin_recovered(*live_);
     } else {
-      document_.begin(asked->file, *live_, frame.deed);
+      document_.turn_to(asked->file, *live_);
+      look_for_left_over();
     }
   }
 }
@@ -256,8 +259,8 @@ void Editor::lay_out_questions() {
     if (*answer == 0) {
       recover();
     } else {
-      document_.begin(document_.file(), *live_, live_->frame().deed);
       document_.discard_left_over();
+      document_.begin(*live_);
     }
   }
 }

@@ -92,6 +92,7 @@ class Editor {
   void toggle_recording(const LiveFrame& frame);
   void write_screenshot();
   void look_for_left_over();
+  void begin_without_left_over();
 
   void ask(Request request);
 
@@ -127,8 +128,7 @@ class Editor {
   bool keys_shown_ = false;
   bool screenshot_due_ = false;
   std::vector<std::optional<AskedOpen>> asked_;  // nothing stands for a recording
-  std::uint64_t works_done_ = 0;
-  std::uint64_t works_failed_ = 0;
+  std::uint64_t works_ = 0;
 };
 
 }  // namespace spoonbill

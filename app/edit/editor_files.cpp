@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string>
@@ -41,7 +42,7 @@ std::string stem_of(const std::filesystem::path& file) {
 
 void Editor::leave(Leave how) {
   leaving_ = how;
-  if (!document_.has_unsaved_changes(live_->frame())) return leave_now(how);
+  if (!document_.has_unsaved_changes(live_->last_frame())) return leave_now(how);
   unsaved_.ask("Save the changes to " + stem_of(document_.file()) + "?");
 }
 
@@ -74,18 +75,27 @@ void Editor::open_fresh() {
 
 void Editor::look_for_left_over() {
   const auto found = document_.left_over();
-  if (!found) return messages_.add_problem(found.error().message);
-  if (!found.value()) return document_.begin(document_.file(), *live_, live_->frame().deed);
+  if (!found) {
+    messages_.add_problem(found.error().message);
+    return begin_without_left_over();
+  }
+  if (!found.value()) return document_.begin(*live_);
   left_over_.ask("An earlier session of " + stem_of(document_.file()) +
                  " did not end in order.\nWhat it had not saved is still there.");
 }
 
+void Editor::begin_without_left_over() {
+  document_.set_left_over_aside();
+  document_.begin(*live_);
+}
+
 void Editor::recover() {
   auto found = document_.left_over();
-  if (!found || !found.value()) return;
+  if (!found || !found.value()) return begin_without_left_over();
   auto view = view_from_json(found.value()->view, "the recovered document");
-  if (!view) return messages_.add_problem(view.error().message);
-  if (!live_->open(std::move(*found.value()), "the recovered document")) return;
+  if (!view || !live_->open(std::move(*found.value()), "the recovered document")) {
+    return begin_without_left_over();
+  }
   asked_.emplace_back(AskedOpen{document_.file(), view.value(), true});
 }
 
@@ -105,6 +115,8 @@ void Editor::toggle_recording(const LiveFrame& frame) {
     live_->stop_recording();
     return;
   }
+  const bool is_asked = std::any_of(asked_.begin(), asked_.end(), [](const auto& asked) { return !asked; });
+  if (is_asked) return;  // its answer is not here yet
   const std::filesystem::path file =
       next_free(folder_of(document_.file()), stem_of(document_.file()), ".recording.jsonl");
   if (!live_->start_recording(file, view_)) return;

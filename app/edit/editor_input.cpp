@@ -149,9 +149,11 @@ void Editor::act(EditAction action, const LiveFrame& frame) {
       leave(Leave::quit);
       break;
     case EditAction::save:
+      leave_when_saved_ = false;
       save();
       break;
     case EditAction::save_as:
+      leave_when_saved_ = false;
       files_.ask(FilePurpose::save_model, document_.file());
       break;
     case EditAction::undo:

@@ -65,6 +65,11 @@ Result<std::optional<Document>> Autosave::left_over() const {
   return std::optional<Document>(std::move(document).value());
 }
 
+void Autosave::set_aside() const {
+  std::error_code ignored;
+  std::filesystem::rename(file_, file_.string() + ".unread", ignored);
+}
+
 void Autosave::remove() const {
   std::error_code ignored;
   std::filesystem::remove(file_, ignored);

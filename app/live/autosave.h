@@ -28,6 +28,8 @@ class Autosave {
 
   // Without one, nothing happens.
   void remove() const;
+  // Out of the way of the next ones, for whoever can still read it.
+  void set_aside() const;
 
   const std::filesystem::path& file() const { return file_; }
 

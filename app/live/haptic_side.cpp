@@ -34,6 +34,7 @@ HapticSide::HapticSide(std::unique_ptr<Session> session, VirtualDevice device,
 }
 
 void HapticSide::tick(const LoopTick& tick) noexcept {
+  if (journal_->take_gave_up()) recording_ = false;
   if (exchange_->target.take()) follower_.aim(exchange_->target.reading());
   device_.set_target(follower_.step());
   const DeviceReading reading = device_.read();
@@ -97,14 +98,21 @@ void HapticSide::take_back_if_done() {
     specification_ = lent_.session->device;
     lent_.begun_anew = false;
   }
+  if (lent_.other_document) ++document_count_;
+  lent_.other_document = false;
   if (lent_.writer != nullptr) begin_recording(std::move(lent_.writer));
   if (auto* asked = std::get_if<AskedRequest>(&command_); asked != nullptr && done) {
     record(std::move(asked->json));
     note_change();
   }
-  if (std::holds_alternative<AskedWork>(command_)) ++(done ? works_done_ : works_failed_);
+  if (std::holds_alternative<AskedWork>(command_)) answer_work(done);
   if (!done) exchange_->refused.fetch_add(1, std::memory_order_relaxed);
   proxy_is_stale_ = true;
+}
+
+void HapticSide::answer_work(bool done) {
+  const std::uint64_t bit = std::uint64_t{1} << (works_++ % 64);
+  failed_works_ = done ? failed_works_ & ~bit : failed_works_ | bit;
 }
 
 void HapticSide::apply_now(AskedRequest& asked) {
@@ -202,8 +210,9 @@ void HapticSide::publish(std::uint64_t index) {
   frame.recording = recording_;
   frame.session = session_count_;
   frame.deed = deed_;
-  frame.works_done = works_done_;
-  frame.works_failed = works_failed_;
+  frame.document = document_count_;
+  frame.works = works_;
+  frame.failed_works = failed_works_;
   exchange_->frames.publish();
 }
 
@@ -213,7 +222,7 @@ void HapticSide::publish_scene() {
   LiveScene& scene = journal_->scene();
   scene.title = lent_.session->title;
   lent_.session->simulation.write_scene(scene.scene);
-  scene.session = session_count_;
+  scene.document = document_count_;
   scene.change = change_;
   scene.deed = deed_;
   scene.request = request_;

@@ -61,6 +61,7 @@ class HapticSide {
   bool do_command();
   void lend();
   void take_back_if_done();
+  void answer_work(bool done);
   void apply_now(AskedRequest& asked);
   void record(Json&& command);
   void reset_proxy();
@@ -94,8 +95,9 @@ class HapticSide {
   bool state_recorded_ = false;  // of recorded_ticks_
 
   std::uint64_t session_count_ = 0;
-  std::uint64_t works_done_ = 0;
-  std::uint64_t works_failed_ = 0;
+  std::uint64_t document_count_ = 0;
+  std::uint64_t works_ = 0;
+  std::uint64_t failed_works_ = 0;
   std::uint64_t change_ = 0;
   std::uint64_t deed_ = 0;
   std::uint64_t request_ = 0;

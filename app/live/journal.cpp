@@ -27,11 +27,12 @@ void Journal::set_autosave(std::optional<Autosave> autosave) {
   const std::lock_guard lock(mutex_);
   if (autosave_) autosave_->remove();
   autosave_ = std::move(autosave);
+  ++autosave_count_;
 }
 
-void Journal::save(std::uint64_t request, std::filesystem::path file) {
+void Journal::save(AskedSave save) {
   const std::lock_guard lock(mutex_);
-  save_ = Save{request, std::move(file)};
+  save_ = std::move(save);
 }
 
 std::optional<SavedDocument> Journal::take_saved() {
@@ -65,6 +66,7 @@ bool Journal::work() {
 void Journal::write(JournalEntry& entry) {
   if (auto* begun = std::get_if<RecordingBegun>(&entry)) {
     writer_ = std::move(begun->writer);
+    gave_up_.store(false, std::memory_order_release);
     return;
   }
   if (writer_ == nullptr) return;
@@ -92,20 +94,24 @@ Status Journal::write_to_recording(JournalEntry& entry) {
 void Journal::give_up_recording(const Error& error) {
   notices_->add(Notice::Kind::problem, "the recording has ended: " + error.message);
   writer_.reset();
+  gave_up_.store(true, std::memory_order_release);
 }
 
 void Journal::keep(const LiveScene& scene) {
-  std::optional<Save> save;
+  std::optional<AskedSave> save;
   {
     const std::lock_guard lock(mutex_);
     if (save_ && save_->request <= scene.request) save = std::exchange(save_, std::nullopt);
   }
   if (!save) return autosave(scene);
+  if (save->document != scene.document) {
+    return notices_->add(Notice::Kind::problem, "not saved: another document was opened meanwhile");
+  }
   const Status written = write_document(document_of(scene), save->file);
   if (!written) return notices_->add(Notice::Kind::problem, "not saved: " + written.error().message);
   notices_->add(Notice::Kind::information, "saved " + save->file.filename().string());
   const std::lock_guard lock(mutex_);
-  saved_ = SavedDocument{save->file, scene.session, scene.deed};
+  saved_ = SavedDocument{save->file, scene.document, scene.deed};
   settled_change_ = scene.change;
   if (autosave_) autosave_->remove();
 }
@@ -115,15 +121,23 @@ Document Journal::document_of(const LiveScene& scene) {
   return {scene.title, scene.scene, view_};
 }
 
+bool Journal::was_superseded(std::uint64_t autosave_count) {
+  const std::lock_guard lock(mutex_);
+  return autosave_count != autosave_count_;
+}
+
 void Journal::autosave(const LiveScene& scene) {
   std::optional<Autosave> place;
+  std::uint64_t count = 0;
   {
     const std::lock_guard lock(mutex_);
     if (scene.change <= settled_change_) return;
     place = autosave_;
+    count = autosave_count_;
   }
   if (!place || scene.change == autosaved_change_) return;
   const Status written = place->write(document_of(scene));
+  if (was_superseded(count)) return place->remove();  // while it was being written
   if (written) autosaved_change_ = scene.change;
   // Once is enough: a full disk would fill the panel with the same line.
   if (!written && !autosave_failed_) {

@@ -41,8 +41,14 @@ using JournalEntry = std::variant<std::monostate, RecordingBegun, RecordedReadin
 // A document that was saved.
 struct SavedDocument {
   std::filesystem::path file;
-  std::uint64_t session = 0;
+  std::uint64_t document = 0;  // as in LiveFrame
   std::uint64_t deed = 0;
+};
+
+struct AskedSave {
+  std::uint64_t request = 0;
+  std::uint64_t document = 0;  // that was to be seen when it was asked for
+  std::filesystem::path file;
 };
 
 class Journal {
@@ -59,21 +65,19 @@ class Journal {
   // The slot to write a scene into, and the word that it is whole.
   LiveScene& scene() { return scenes_.writing(); }
   void publish_scene() { scenes_.publish(); }
+  // Whether a recording was given up since the last call.
+  bool take_gave_up() { return gave_up_.exchange(false, std::memory_order_acq_rel); }
 
   // By the program's main thread. How the next documents are looked at.
   void set_view(Json view);
   // Where unsaved work goes from now on; nothing for nowhere. The one before is removed.
   void set_autosave(std::optional<Autosave> autosave);
-  // Writes the scene that answers this request, or a newer one, to the file.
-  void save(std::uint64_t request, std::filesystem::path file);
+  // Writes the scene that answers this request, or a newer one of the same document, to the file.
+  void save(AskedSave save);
   // The last document that was saved since the last call.
   std::optional<SavedDocument> take_saved();
 
  private:
-  struct Save {
-    std::uint64_t request;
-    std::filesystem::path file;
-  };
   void run();
   bool work();
   void write(JournalEntry& entry);
@@ -82,22 +86,25 @@ class Journal {
   void keep(const LiveScene& scene);
   Document document_of(const LiveScene& scene);
   void autosave(const LiveScene& scene);
+  bool was_superseded(std::uint64_t autosave_count);
 
   Notices* notices_;
   BoundedQueue<JournalEntry> entries_;
   TripleBuffer<LiveScene> scenes_;
 
-  std::mutex mutex_;  // for the five below, which the main thread sets
+  std::mutex mutex_;  // for the six below, which the main thread sets
   Json view_ = Json::object();
   std::optional<Autosave> autosave_;
-  std::optional<Save> save_;
+  std::optional<AskedSave> save_;
   std::optional<SavedDocument> saved_;
+  std::uint64_t autosave_count_ = 0;  // of the places that were set
   std::uint64_t settled_change_ = 0;  // in the file, or as it was opened: need not be autosaved
 
   std::unique_ptr<RecordingWriter> writer_;  // the journal's thread only, as all below
   std::uint64_t autosaved_change_ = 0;
   bool autosave_failed_ = false;
 
+  std::atomic<bool> gave_up_{false};
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };

@@ -18,6 +18,7 @@ namespace spoonbill {
 struct LentSession {
   std::unique_ptr<Session> session;
   bool begun_anew = false;                  // another session than the one that was lent
+  bool other_document = false;              // and of another document
   std::unique_ptr<RecordingWriter> writer;  // of a recording that begins with the session's next tick
 };
 

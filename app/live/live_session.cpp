@@ -118,6 +118,7 @@ bool LiveSession::open(Document document, std::string source) {
                           if (!session) return Status(session.error());
                           lent.session = std::move(session).value();
                           lent.begun_anew = true;
+                          lent.other_document = true;
                           return Status();
                         },
                         true});
@@ -137,7 +138,7 @@ bool LiveSession::stop_recording() {
 
 bool LiveSession::save(std::filesystem::path file) {
   const std::uint64_t request = ++saves_;
-  journal_.save(request, std::move(file));
+  journal_.save({request, last_frame().document, std::move(file)});
   return send(AskedScene{request});
 }
 

@@ -42,7 +42,8 @@ class LiveSession {
   bool start_recording(std::filesystem::path file, const ViewChoice& view);
   bool stop_recording();
 
-  // Saves the document as it is when the haptic thread hears of it; take_saved() and the notices tell.
+  // Saves the document of the last frame as it is when the haptic thread hears of it; take_saved() and the
+  // notices tell. Refused there when another one has been opened by then.
   bool save(std::filesystem::path file);
   std::optional<SavedDocument> take_saved() { return journal_.take_saved(); }
 
@@ -52,6 +53,8 @@ class LiveSession {
 
   // The newest tick there is.
   const LiveFrame& frame();
+  // The one that frame() gave last; stays as it is until frame() is called again.
+  const LiveFrame& last_frame() const { return exchange_.frames.reading(); }
   // The forces of the ticks since the last call, oldest first.
   void take_forces(std::vector<float>& forces_n);
   std::vector<Notice> take_notices();

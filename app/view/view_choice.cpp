@@ -72,8 +72,13 @@ void add_camera(const ViewChoice& choice, Json& json) {
   json["field_of_view_deg"] = degrees(camera.vertical_field_of_view_rad, field_of_view_range_deg);
   if (choice.shows_whole_body) return;
   json["target_mm"] = Json::array();
-  for (int axis = 0; axis < 3; ++axis) json["target_mm"].push_back(length_to_json(camera.target_m[axis]));
-  json["distance_mm"] = length_to_json(camera.distance_m);
+  const auto within = [](double metres, Range<double> range) {
+    return length_to_json(std::clamp(metres, range.low, range.high));
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    json["target_mm"].push_back(within(camera.target_m[axis], position_range_m));
+  }
+  json["distance_mm"] = within(camera.distance_m, distance_range_m);
 }
 
 void add_overlays(const Overlays& overlays, Json& json) {

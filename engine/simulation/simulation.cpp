@@ -200,6 +200,7 @@ struct CommandApplier {
 };
 
 Status Simulation::apply(const Command& command) {
+  const DenormalsFlushed flushed;  // the same bits, whichever thread asks
   return std::visit(CommandApplier{*state_}, command);
 }
 
@@ -326,6 +327,7 @@ void Simulation::write_shape(ShapeState& shape) const {
 }
 
 Status Simulation::restore(const ShapeState& shape) {
+  const DenormalsFlushed flushed;
   if (!state_->lattice.set_shape(shape.lattice)) return Error{"shape: it belongs to another lattice"};
   state_->tool.contact.release();
   state_->mirrored.contact.release();

@@ -147,6 +147,15 @@ TEST(Request, AMarksNameCannotLeaveItsFolder) {
   EXPECT_EQ(mark_name_of(""), "unnamed");
 }
 
+TEST(ViewChoice, WritesNothingThatItWouldRefuse) {
+  ViewChoice choice;
+  choice.shows_whole_body = false;
+  choice.camera.target_m = Vector3(1e4, -1e4, 0.0);
+  choice.camera.distance_m = 1e4;
+  choice.camera.yaw_rad = 1e3;
+  EXPECT_TRUE(view_from_json(view_to_json(choice), "test"));
+}
+
 TEST(ViewChoice, ReadsWhatItWrites) {
   ViewChoice choice;
   choice.camera.yaw_rad = 0.7;
