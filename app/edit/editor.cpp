@@ -11,6 +11,7 @@
 #include "app/files/state_folder.h"
 #include "app/panel/panel.h"
 #include "app/panel/session_panel.h"
+#include "app/session/control_net_box.h"
 #include "haptic/safety.h"
 #include "render/gl/allocator_thresholds.h"
 #include "render/overlay/labels.h"
@@ -42,17 +43,9 @@ std::vector<Material> read_presets() {
   return presets;
 }
 
-BoundingBox net_box(const Surface& surface) {
-  BoundingBox box;
-  for (std::size_t i = 0; i < surface.net.x.size(); ++i) {
-    box.include({surface.net.x[i], surface.net.y[i], surface.net.z[i]});
-  }
-  return box;
-}
-
 // Above the model, where it touches nothing.
 Vector3 resting_place(const Surface& surface) {
-  const BoundingBox box = net_box(surface);
+  const BoundingBox box = control_net_box(surface);
   Vector3 place = 0.5 * (box.low_m + box.high_m);
   place.y() = box.high_m.y() + 0.25 * (box.high_m - box.low_m).norm();
   return place;

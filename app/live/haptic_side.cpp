@@ -106,7 +106,6 @@ void HapticSide::take_back_if_done() {
     note_change();
   }
   if (std::holds_alternative<AskedWork>(command_)) answer_work(done);
-  if (!done) exchange_->refused.fetch_add(1, std::memory_order_relaxed);
   proxy_is_stale_ = true;
 }
 
@@ -117,10 +116,7 @@ void HapticSide::answer_work(bool done) {
 
 void HapticSide::apply_now(AskedRequest& asked) {
   const Status applied = apply_request(*lent_.session, asked.request);
-  if (!applied) {
-    exchange_->refused.fetch_add(1, std::memory_order_relaxed);
-    return;
-  }
+  if (!applied) return;
   record(std::move(asked.json));
   note_change();
 }

@@ -37,7 +37,6 @@ struct LiveExchange {
   BoundedQueue<LiveCommand> commands;             // main -> haptic
   TripleBuffer<LiveFrame> frames;                 // haptic -> main
   BoundedQueue<ForceSample> forces;               // haptic -> main; those that find no room are not plotted
-  std::atomic<std::uint64_t> refused{0};          // commands that a session refused
   std::atomic<std::uint64_t> recordings_lost{0};  // ended because the disk could not follow
 };
 

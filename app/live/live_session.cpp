@@ -1,22 +1,17 @@
 #include "app/live/live_session.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "app/session/control_net_box.h"
 
 namespace spoonbill {
 namespace {
 
-BoundingBox box_of(const Surface& surface) {
-  BoundingBox box;
-  for (std::size_t i = 0; i < surface.net.x.size(); ++i) {
-    box.include({surface.net.x[i], surface.net.y[i], surface.net.z[i]});
-  }
-  return box;
-}
-
 // A virtual handle reaches as far as the body needs.
 DeviceSpecification device_for(const Surface& surface) {
   DeviceSpecification device = VirtualDevice::default_specification();
-  const BoundingBox box = box_of(surface);
+  const BoundingBox box = control_net_box(surface);
   const double reach = (box.high_m - box.low_m).norm();
   device.workspace_radius_m = std::clamp(reach, device.workspace_radius_m, device_workspace_range_m.high);
   return device;

@@ -1,5 +1,5 @@
 // A session: one simulation with what belongs to it while it is worked on. Plain struct with one owner,
-// whoever ticks it: the lock-step loop, later the haptic thread.
+// whoever ticks it: the lock-step loop or the haptic thread.
 #pragma once
 
 #include <optional>
