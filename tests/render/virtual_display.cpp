@@ -14,14 +14,15 @@
 namespace spoonbill {
 namespace {
 
-// In the child: Xvfb writes the number of its display to `number_pipe`.
+// In the child: Xvfb writes the number of its display to `number_pipe`. It must not start afresh whenever its
+// last client leaves: the next one might meet it in between, and what was set would be forgotten.
 [[noreturn]] void become_xvfb(int number_pipe, const std::string& screen) {
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   dup2(nowhere, STDOUT_FILENO);
   dup2(nowhere, STDERR_FILENO);
   const std::string number = std::to_string(number_pipe);
   execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", screen.c_str(), "-nolisten", "tcp",
-         static_cast<char*>(nullptr));
+         "-noreset", static_cast<char*>(nullptr));
   _exit(127);
 }
 
@@ -94,8 +95,6 @@ void VirtualDisplay::set_dots_per_inch(int dots_per_inch) const {
   XChangeProperty(display, DefaultRootWindow(display), XA_RESOURCE_MANAGER, XA_STRING, 8, PropModeReplace,
                   reinterpret_cast<const unsigned char*>(resources.data()),
                   static_cast<int>(resources.size()));
-  // A server without clients starts afresh and would forget it.
-  XSetCloseDownMode(display, RetainPermanent);
   XCloseDisplay(display);
 }
 
