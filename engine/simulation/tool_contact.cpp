@@ -31,7 +31,8 @@ void ToolContact::prepare(const BodyMapping& mapping, const SpringLattice& latti
   collision_ = collider_.collide(mapping.current(), ToolShape::sphere(pose.position_m, radius), margin, true);
   overflow_ = collision_.overflow;
   const bool inside = collision_.found && collision_.nearest.depth_m >= 0.0;
-  lifted_ = lifted_ && (inside || gripping);
+  // By a margin: a body that the tool has just pressed lies against it, and quivers.
+  lifted_ = lifted_ && (collision_.found || gripping);
   hovered_ = hovering || (hovered_ && inside);
   if (lifted_ || hovered_) return release();
   if (tool.action == ToolAction::push) {
