@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/aligned_vector.h"
 #include "engine/bspline/grid.h"
 #include "engine/instruction_set.h"
 #include "engine/result.h"
@@ -34,18 +35,24 @@ class DisplacementRefit {
   int sample_rows() const { return sample_rows_; }
   int sample_columns() const { return sample_columns_; }
 
-  // sample: grid.rows() x grid.columns() displacements of one coordinate in metres; control: r x s
-  // displacements of the control points, written. Exactly zero in gives exactly zero out.
+  // A row of samples takes so many numbers: those past grid.columns() count for nothing.
+  int sample_stride() const { return sample_stride_; }
+
+  // sample: grid.rows() x sample_stride() displacements of one coordinate in metres, on an address that is a
+  // multiple of 64 bytes; control: r x s displacements of the control points, written. Exactly zero in gives
+  // exactly zero out.
   void control_displacement(const float* sample, float* control);
 
  private:
   DisplacementRefit() = default;
 
   InstructionSet set_{};
-  int sample_rows_ = 0, sample_columns_ = 0, control_rows_ = 0, control_columns_ = 0;
-  std::vector<float> u_inverse_;             // control_rows x sample_rows
-  std::vector<float> v_inverse_transposed_;  // sample_columns x control_columns
-  std::vector<float> half_;                  // control_rows x sample_columns
+  int sample_rows_ = 0, sample_columns_ = 0, sample_stride_ = 0;
+  int control_rows_ = 0, control_columns_ = 0, control_stride_ = 0;
+  std::vector<float> u_inverse_;               // control_rows x sample_rows
+  AlignedVector<float> v_inverse_transposed_;  // sample_stride x control_stride, zero past the inverse
+  AlignedVector<float> half_;                  // control_rows x sample_stride
+  AlignedVector<float> padded_control_;        // control_rows x control_stride
 };
 
 }  // namespace spoonbill

@@ -7,12 +7,12 @@ namespace {
 // So many factors are added to a sum while it stays in a register, for all rows while they stay in the cache.
 constexpr int unrolled = 8;
 
+using Lanes = float __attribute__((vector_size(4 * product_lanes)));
+
 template <int count>
-inline void add_products(const float* __restrict scale, const float* __restrict factors,
-                         float* __restrict sums, long columns) {
-#pragma GCC ivdep
+inline void add_products(const float* scale, const Lanes* factors, Lanes* sums, long columns) {
   for (long j = 0; j < columns; ++j) {
-    float sum = sums[j];
+    Lanes sum = sums[j];
 #pragma GCC unroll 8
     for (int n = 0; n < count; ++n) sum += scale[n] * factors[n * columns + j];
     sums[j] = sum;
@@ -20,17 +20,19 @@ inline void add_products(const float* __restrict scale, const float* __restrict 
 }
 
 void multiply(const float* a, const float* b, float* out, int rows, int depth, int columns) {
-  const long stride = columns;
-  for (long j = 0; j < rows * stride; ++j) out[j] = 0.0f;
+  const long stride = columns / product_lanes;
+  const auto* const factors = reinterpret_cast<const Lanes*>(b);
+  auto* const sums = reinterpret_cast<Lanes*>(out);
+  for (long j = 0; j < rows * stride; ++j) sums[j] = Lanes{};
   long k = 0;
   for (; k + unrolled <= depth; k += unrolled) {
     for (long row = 0; row < rows; ++row) {
-      add_products<unrolled>(a + row * depth + k, b + k * stride, out + row * stride, stride);
+      add_products<unrolled>(a + row * depth + k, factors + k * stride, sums + row * stride, stride);
     }
   }
   for (; k < depth; ++k) {
     for (long row = 0; row < rows; ++row) {
-      add_products<1>(a + row * depth + k, b + k * stride, out + row * stride, stride);
+      add_products<1>(a + row * depth + k, factors + k * stride, sums + row * stride, stride);
     }
   }
 }

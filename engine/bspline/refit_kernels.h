@@ -4,8 +4,11 @@
 
 namespace spoonbill {
 
-// out (rows x columns) = a (rows x depth) b (depth x columns), all row-major without gaps; out must not
-// overlap a or b. Each entry is summed in order of depth, whatever the vector width.
+inline constexpr int product_lanes = 16;  // a whole number of them makes a row of b and out
+
+// out (rows x columns) = a (rows x depth) b (depth x columns), all row-major without gaps, b and out on
+// addresses that are multiples of 64 bytes; out must not overlap a or b. Each entry is summed in order of
+// depth, whatever the vector width.
 using MultiplyInOrder = void (*)(const float* a, const float* b, float* out, int rows, int depth,
                                  int columns);
 

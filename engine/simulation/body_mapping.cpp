@@ -156,8 +156,9 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
 
 void BodyMapping::embed(const SpringLattice& lattice) {
   const Grid& grid = nested_->grid;
-  const std::size_t samples =
-      static_cast<std::size_t>(grid.rows()) * static_cast<std::size_t>(grid.columns());
+  const auto columns = static_cast<std::size_t>(grid.columns());
+  const auto stride = static_cast<std::size_t>(refit_.front().sample_stride());
+  const std::size_t samples = static_cast<std::size_t>(grid.rows()) * columns;
   embedding_.reserve(samples);
   for (int i = 0; i < grid.rows(); ++i) {
     for (int j = 0; j < grid.columns(); ++j) {
@@ -180,30 +181,42 @@ void BodyMapping::embed(const SpringLattice& lattice) {
   }
   node_moves_.assign(4 * static_cast<std::size_t>(lattice.mesh().node_count()), 0.0f);
   for (int axis = 0; axis < 3; ++axis) {
-    sample_[axis].assign(samples, 0.0f);
-    base_sample_[axis].assign(samples, 0.0f);
+    sample_[axis].assign(static_cast<std::size_t>(grid.rows()) * stride, 0.0f);
     control_[axis].assign(rest_.net.size(), 0.0f);
   }
+  base_moves_.assign(4 * samples, 0.0f);
   sample_displacements(lattice);
-  for (int axis = 0; axis < 3; ++axis) base_sample_[axis] = sample_[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t s = 0; s < samples; ++s) {
+      base_moves_[4 * s + axis] = sample_[axis][s / columns * stride + s % columns];
+    }
+  }
 }
 
 void BodyMapping::sample_displacements(const SpringLattice& lattice) {
   using Vector4 = float __attribute__((vector_size(16)));
-  const int nodes = lattice.mesh().node_count();
-  for (int axis = 0; axis < 3; ++axis) {
-    const float* displacement = lattice.displacements(axis);
-    for (int n = 0; n < nodes; ++n) node_moves_[4 * static_cast<std::size_t>(n) + axis] = displacement[n];
-  }
-  for (std::size_t s = 0; s < cell_weights_.size(); ++s) {
-    const CellWeights& cell = cell_weights_[s];
-    Vector4 sum = {};
-    for (int c = 0; c < 8; ++c) {
-      const auto first = 4 * static_cast<std::size_t>(cell.node[c]);
-      sum += cell.weight[c] * *reinterpret_cast<const Vector4*>(&node_moves_[first]);
+  const auto nodes = static_cast<std::size_t>(lattice.mesh().node_count());
+  const float *x = lattice.displacements(0), *y = lattice.displacements(1), *z = lattice.displacements(2);
+  auto* const moves = reinterpret_cast<Vector4*>(node_moves_.data());
+  for (std::size_t n = 0; n < nodes; ++n) moves[n] = Vector4{x[n], y[n], z[n], 0.0f};
+  const auto* const base = reinterpret_cast<const Vector4*>(base_moves_.data());
+  const Grid& grid = nested_->grid;
+  std::size_t s = 0;
+  for (int i = 0; i < grid.rows(); ++i) {
+    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(i) * refit_.front().sample_stride();
+    float *const x_row = sample_[0].data() + first, *const y_row = sample_[1].data() + first,
+                 *const z_row = sample_[2].data() + first;
+    for (int j = 0; j < grid.columns(); ++j, ++s) {
+      const CellWeights& cell = cell_weights_[s];
+      const auto term = [&](int c) { return cell.weight[c] * moves[cell.node[c]]; };
+      const Vector4 sum =
+          ((term(0) + term(1)) + (term(2) + term(3))) + ((term(4) + term(5)) + (term(6) + term(7)));
+      // The base last, so that what did not move is exactly zero.
+      const Vector4 moved = sum - base[s];
+      x_row[j] = moved[0];
+      y_row[j] = moved[1];
+      z_row[j] = moved[2];
     }
-    // The base last, so that what did not move is exactly zero.
-    for (int axis = 0; axis < 3; ++axis) sample_[axis][s] = sum[axis] - base_sample_[axis][s];
   }
 }
 

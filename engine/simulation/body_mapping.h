@@ -59,7 +59,9 @@ class BodyMapping {
   std::vector<EmbeddedPoint> embedding_;
   std::vector<CellWeights> cell_weights_;  // the same
   AlignedVector<float> node_moves_;        // x, y, z, 0 of each node
-  std::vector<float> base_sample_[3], sample_[3], control_[3];
+  AlignedVector<float> base_moves_;        // the same of each sample, at make()
+  AlignedVector<float> sample_[3];         // as the refit takes them
+  std::vector<float> control_[3];
   std::vector<std::uint8_t> held_columns_;
   std::vector<DisplacementRefit> refit_;  // one, once made
 };

@@ -5,6 +5,7 @@
 #include <GeomAPI_PointsToBSplineSurface.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <TColgp_Array2OfPnt.hxx>
+#include <algorithm>
 #include <cmath>
 #include <gp_Pnt.hxx>
 
@@ -33,16 +34,30 @@ struct Case {
   std::vector<float> controls;  // of the coordinate done last
 };
 
-// A displacement has three coordinates.
-template <class Refit>
-void displace(Refit& refit, Case& which) {
-  for (const auto& samples : which.samples) refit.control_displacement(samples.data(), which.controls.data());
+// Rows as ours takes them.
+std::vector<AlignedVector<float>> padded(const Case& which, int stride) {
+  std::vector<AlignedVector<float>> all;
+  for (const std::vector<float>& samples : which.samples) {
+    all.emplace_back(static_cast<std::size_t>(which.grid.rows() * stride), 0.0f);
+    for (int i = 0; i < which.grid.rows(); ++i) {
+      std::copy_n(&samples[static_cast<std::size_t>(i * which.grid.columns())], which.grid.columns(),
+                  &all.back()[static_cast<std::size_t>(i * stride)]);
+    }
+  }
+  return all;
 }
 
-template <class Refit>
-void time_refit(benchmark::State& state, Refit& refit, Case& which) {
+// A displacement has three coordinates.
+template <class Refit, class Samples>
+void displace(Refit& refit, const Samples& coordinates, std::vector<float>& controls) {
+  for (const auto& samples : coordinates) refit.control_displacement(samples.data(), controls.data());
+}
+
+template <class Refit, class Samples>
+void time_refit(benchmark::State& state, Refit& refit, const Samples& coordinates,
+                std::vector<float>& controls) {
   for (auto _ : state) {
-    displace(refit, which);
+    displace(refit, coordinates, controls);
     benchmark::ClobberMemory();
   }
 }
@@ -50,7 +65,7 @@ void time_refit(benchmark::State& state, Refit& refit, Case& which) {
 void refit_ours(benchmark::State& state) {
   Case which(state);
   DisplacementRefit refit = DisplacementRefit::make(which.grid, best_instruction_set()).value();
-  time_refit(state, refit, which);
+  time_refit(state, refit, padded(which, refit.sample_stride()), which.controls);
 }
 
 void refit_dense(benchmark::State& state) {
@@ -64,11 +79,11 @@ void refit_dense(benchmark::State& state) {
   const auto dense =
       make_dense_refit(which.grid.rows(), which.sheet.net.rows, table.data(), best_instruction_set());
   DisplacementRefit refit = DisplacementRefit::make(which.grid, best_instruction_set()).value();
-  displace(refit, ours);
-  displace(*dense, which);
+  displace(refit, padded(ours, refit.sample_stride()), ours.controls);
+  displace(*dense, which.samples, which.controls);
   // Displacements of a millimetre in single precision, over sums of 200 terms.
   require_agreement(state, largest_difference(ours.controls, which.controls), 1e-7);
-  time_refit(state, *dense, which);
+  time_refit(state, *dense, which.samples, which.controls);
 }
 
 // It chooses its own parameters and knots, so its control points are near ours in number only.

@@ -25,6 +25,16 @@ Grid usual_grid() {
   return grid_of(u, v, 20, 29);
 }
 
+// Rows of samples as the refit takes them, with numbers in the gaps that must not matter.
+AlignedVector<float> with_gaps(const DisplacementRefit& refit, const std::vector<float>& samples) {
+  AlignedVector<float> rows(static_cast<std::size_t>(refit.sample_rows() * refit.sample_stride()), 1e3f);
+  for (int i = 0; i < refit.sample_rows(); ++i) {
+    std::copy_n(&samples[static_cast<std::size_t>(i * refit.sample_columns())], refit.sample_columns(),
+                &rows[static_cast<std::size_t>(i * refit.sample_stride())]);
+  }
+  return rows;
+}
+
 std::vector<float> random_numbers(Random& random, int count, double size) {
   std::vector<float> numbers;
   numbers.reserve(static_cast<std::size_t>(count));
@@ -36,7 +46,7 @@ TEST(DisplacementRefit, ZeroInGivesZeroOutAndAllocatesNothing) {
   const Grid grid = usual_grid();
   for (const InstructionSet set : available_instruction_sets()) {
     auto refit = DisplacementRefit::make(grid, set).value();
-    const std::vector<float> samples(20 * 29, 0.0f);
+    const AlignedVector<float> samples = with_gaps(refit, std::vector<float>(20 * 29, 0.0f));
     std::vector<float> controls(10 * 13, 1.0f);
     const std::size_t before = allocation_count();
     refit.control_displacement(samples.data(), controls.data());
@@ -61,7 +71,7 @@ TEST(DisplacementRefit, GivesBackTheDisplacementOfControlPoints) {
     for (int j = 0; j < 29; ++j) displacement.push_back(static_cast<float>(samples(i, j)));
   }
   std::vector<float> found(10 * 13);
-  refit.control_displacement(displacement.data(), found.data());
+  refit.control_displacement(with_gaps(refit, displacement).data(), found.data());
   for (int i = 0; i < 10; ++i) {
     for (int j = 0; j < 13; ++j) {
       // Single precision of displacements up to 1 mm, times the inverses' norms below 10.
@@ -83,7 +93,7 @@ TEST(DisplacementRefit, GivesTheSameBitsOnEveryInstructionSet) {
     for (const InstructionSet set : available_instruction_sets()) {
       results.emplace_back(static_cast<std::size_t>(u.control_point_count() * v.control_point_count()));
       auto refit = DisplacementRefit::make(grid, set).value();
-      refit.control_displacement(samples.data(), results.back().data());
+      refit.control_displacement(with_gaps(refit, samples).data(), results.back().data());
       EXPECT_EQ(results.back(), results.front()) << name_of(set);
     }
   }
@@ -96,7 +106,7 @@ TEST(DisplacementRefit, HasTheBitsItHadBefore) {
   Random random(25);
   const auto samples = random_numbers(random, 20 * 29, 0.01);
   std::vector<float> controls(10 * 13);
-  refit.control_displacement(samples.data(), controls.data());
+  refit.control_displacement(with_gaps(refit, samples).data(), controls.data());
   std::uint64_t hash = 14695981039346656037ull;  // FNV-1a
   for (const float displacement : controls) {
     std::uint32_t bits = 0;
@@ -134,7 +144,7 @@ TEST(DisplacementRefit, HeldColumnsNeverMoveAndKeptEndsFollowTheirSamples) {
   auto samples = random_numbers(random, 20 * 29, 0.01);
   for (int i = 0; i < 20; ++i) samples[i * 29] = 0.007f;
   std::vector<float> controls(10 * 13);
-  refit.control_displacement(samples.data(), controls.data());
+  refit.control_displacement(with_gaps(refit, samples).data(), controls.data());
   for (int i = 0; i < 10; ++i) {
     EXPECT_EQ(controls[i * 13 + 4], 0.0f);
     EXPECT_EQ(controls[i * 13 + 5], 0.0f);
