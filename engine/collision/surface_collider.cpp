@@ -65,6 +65,7 @@ SurfaceCollider::SurfaceCollider(const NestedGrid& nested)
   samples_.resize(count);
   sampled_at_.assign(count, 0);
   near_at_.assign(count, 0);
+  lines_.resize(static_cast<std::size_t>(nested.grid.u.knots.control_point_count()));
   column_bound_.assign(static_cast<std::size_t>(bounds_.elements_v()), 0.0);
   cells_.reserve(cell_capacity);
   finest_.reserve(cell_capacity);
@@ -91,6 +92,30 @@ const Vector3& SurfaceCollider::sample(const Surface& surface, int index) {
   samples_[index] = point;
   sampled_at_[index] = query_;
   return samples_[index];
+}
+
+// The coarsest samples of one column, which share their sums along v.
+void SurfaceCollider::sample_column(const Surface& surface, int column) {
+  const Grid& grid = nested_->grid;
+  const BlendingMatrix& a_u = grid.u.values;
+  const BlendingMatrix& a_v = grid.v.values;
+  for (int i = 0; i < surface.net.rows; ++i) {
+    lines_[i].setZero();
+    for (int b = 0; b < a_v.bandwidth; ++b) {
+      lines_[i] += a_v.values[column * a_v.bandwidth + b] * surface.net.point(i, a_v.column(column, b));
+    }
+  }
+  for (int row = 0; row < grid.rows(); row += 1 << nested_->levels_u) {
+    const int index = row * grid.columns() + column;
+    if (sampled_at_[index] == query_) continue;
+    Vector3 point = Vector3::Zero();
+    for (int a = 0; a < a_u.bandwidth; ++a) {
+      point += a_u.values[row * a_u.bandwidth + a] * lines_[a_u.column(row, a)];
+    }
+    ++samples_evaluated_;
+    samples_[index] = point;
+    sampled_at_[index] = query_;
+  }
 }
 
 double SurfaceCollider::reach(double margin) const {
@@ -133,8 +158,9 @@ void SurfaceCollider::offer_coarsest(const Surface& surface, const ToolShape& to
   const Grid& grid = nested_->grid;
   const int stride_u = 1 << nested_->levels_u, stride_v = 1 << nested_->levels_v;
   const auto offer_column = [&](int j) {
+    sample_column(surface, j);
     for (int i = 0; i < grid.rows(); i += stride_u) {
-      offer(tool, grid.u.parameters[i], grid.v.parameters[j], sample(surface, i * grid.columns() + j));
+      offer(tool, grid.u.parameters[i], grid.v.parameters[j], samples_[i * grid.columns() + j]);
     }
   };
   bounds_.take_boxes(surface.net);

@@ -73,6 +73,7 @@ class SurfaceCollider {
   };
 
   const Vector3& sample(const Surface& surface, int index);
+  void sample_column(const Surface& surface, int column);
   void offer_coarsest(const Surface& surface, const ToolShape& tool, double margin);
   void descend(const Surface& surface, const ToolShape& tool, double margin, CollisionResult& result);
   void visit_cell(const Surface& surface, const ToolShape& tool, const Cell& cell, double reach,
@@ -86,6 +87,7 @@ class SurfaceCollider {
   const NestedGrid* nested_;
   SurfaceBounds bounds_;
   std::vector<Vector3> samples_;
+  std::vector<Vector3> lines_;             // working memory: a column's sums along v, one a control row
   std::vector<std::uint32_t> sampled_at_;  // the query in which a sample was evaluated
   std::uint32_t query_ = 0;
   int samples_evaluated_ = 0;
