@@ -78,7 +78,7 @@ def main():
             "lattice": {"node_budget": 2000},
         },
         "fixing_planes": [],
-        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8.0, "iterations": 8},
+        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8.0, "iterations": 6},
         "sculpting": {"damping_per_s": 2.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
         "view": {
             "camera": {"yaw_deg": 22, "pitch_deg": 16, "target_mm": [57, -7, 0], "distance_mm": 250},

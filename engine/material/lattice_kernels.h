@@ -13,6 +13,11 @@ namespace spoonbill {
 inline constexpr int lattice_block = 64;  // nodes a block; the order of sums depends on it, so it is fixed
 inline constexpr int lattice_direction_count = 13;
 
+// The springs of one direction, linearised: with a the vector from a node to its neighbour at the reference,
+// a spring pulls its node by transverse * m + axial * (a.m) a where its ends move apart by m. A block's
+// numbers lie together, five runs: a's x, y and z in m, axial in N/m^3 and transverse in N/m.
+inline constexpr int tangent_runs = 5;
+
 // The springs of one direction.
 struct SpringArrays {
   int offset = 0;                 // from a node to its neighbour, positive
@@ -23,6 +28,7 @@ struct SpringArrays {
   float* rest_length = nullptr;              // m; flows where the material is plastic
   float* square_difference = nullptr;        // |rest vector|^2 - rest_length^2, m^2; exactly 0 until flow
   const float* first_rest_length = nullptr;  // before any flow, m
+  float* tangent = nullptr;                  // see tangent_runs
 };
 
 // Views of arrays that SpringLattice owns.
@@ -31,11 +37,19 @@ struct LatticeView {
   float *dx = nullptr, *dy = nullptr, *dz = nullptr;  // displacement from the rest shape, m
   float *vx = nullptr, *vy = nullptr, *vz = nullptr;  // m/s
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
-  const float* inverse_mass = nullptr;                // 1/kg; 0 where held
-  const float* free_node = nullptr;                   // 1 where free, 0 where held or padding
+  // Where nodes will be after the damping time at their present velocity: d + tau v, m. Forces taken there
+  // are damped: f(x + tau v) is f(x) + tau df/dt, a Voigt element each spring and cell.
+  float *ahead_x = nullptr, *ahead_y = nullptr, *ahead_z = nullptr;
+  float *reference_x = nullptr, *reference_y = nullptr,
+        *reference_z = nullptr;                                         // the same, when linearised, m
+  float *moved_x = nullptr, *moved_y = nullptr, *moved_z = nullptr;     // since then, m
+  float *spring_x = nullptr, *spring_y = nullptr, *spring_z = nullptr;  // the springs' forces then, N
+  const float* inverse_mass = nullptr;                                  // 1/kg; 0 where held
+  const float* free_node = nullptr;  // 1 where free, 0 where held or padding
   // One a block: 0 where no spring or cell that starts there has a free node. Forces leave such blocks out,
   // and are then those on free nodes alone.
   const unsigned char* active_block = nullptr;
+  const unsigned char* free_block = nullptr;  // one a block: 0 where no node is free, so that none moves
   SpringArrays springs[lattice_direction_count];
   int corner_offset[8] = {};              // from a cell's first corner, bit 0 = k, bit 1 = j, bit 2 = i
   int corner_direction[8] = {};           // the spring direction from the first corner to each; [0] unused
@@ -52,18 +66,36 @@ struct LatticeView {
   const float* power_noise = nullptr;  // keeps every mode present in it
 };
 
+// How the nodes move in a substep.
+struct Drift {
+  float h_s = 0.0f;
+  float cap_m_per_s = 0.0f;
+  float mean_x = 0.0f, mean_y = 0.0f, mean_z = 0.0f;  // m/s; the cap is on speeds relative to it
+  float tau_s = 0.0f;
+};
+
+struct Drifted {
+  float speed_square = 0.0f;  // the largest, over the cap's
+  float moved_square = 0.0f;  // the largest since the springs were linearised, m^2
+};
+
 struct LatticeKernels {
-  void (*clear_forces)(const LatticeView&);
-  // F = k (L - L0 + tau (v_j - v_i).n) n along each spring: a Voigt element whose damper is projected on the
-  // axis. Eq. 7 of Pungotra et al. 2013 is not, and would damp a rotation.
-  void (*spring_forces)(const LatticeView&, float tau_s);
-  // f = -p dV/dx, p = K_v (J - 1 + tau V'/V0), with the exact volume of each trilinear cell.
-  void (*volume_forces)(const LatticeView&, float tau_s);
+  // Places nodes ahead by the damping time tau.
+  void (*look_ahead)(const LatticeView&, float tau_s);
+  // Takes the present as the reference: F = k (L - L0) n of every spring, ahead in time, and its derivative.
+  // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, and so a rotation; ahead of a rotating body there
+  // is the same body turned further, so that this does not.
+  void (*linearise_springs)(const LatticeView&);
+  // Sets the forces to the springs' at the reference.
+  void (*start_forces)(const LatticeView&);
+  // Adds what the springs' forces changed by since, to first order.
+  void (*spring_forces)(const LatticeView&);
+  // f = -p dV/dx, p = K_v (J - 1), ahead in time, with the exact volume of each trilinear cell.
+  void (*volume_forces)(const LatticeView&);
   // v = (v + h (f/m + g)) * decay.
   void (*kick)(const LatticeView&, float h_s, float decay, float gx, float gy, float gz);
-  // Caps speeds relative to the mean velocity m, then d += h v. Returns the largest squared ratio of speed to
-  // cap that was found.
-  float (*drift)(const LatticeView&, float h_s, float cap_m_per_s, float mx, float my, float mz);
+  // Caps speeds relative to the mean, then d += h v, and looks ahead.
+  Drifted (*drift)(const LatticeView&, const Drift&);
   // Mass-weighted sums of velocity over free nodes; masses enter as given. sum[4]: x, y, z, mass.
   void (*momentum)(const LatticeView&, const float* mass, float sum[4]);
   // L0 += rate_step * (|e| - yield) sign(e) L0, e = L / (L0 J^(1/3)) - 1, L0 within 1/2 to 2 of its first
@@ -74,8 +106,8 @@ struct LatticeKernels {
   void (*row_sums)(const LatticeView&, float* sum_n_per_m);
   // Fills rest_volume_sum from the present shape.
   void (*measure_rest_volumes)(const LatticeView&);
-  // One step w <- M^-1 K w of the power iteration, normalised. Returns |M^-1 K w| / |w| in the mass norm, an
-  // estimate of the largest omega^2. Uses the force arrays as working memory.
+  // One step w <- M^-1 K w of the power iteration, normalised, K linearised. Returns |M^-1 K w| / |w| in the
+  // mass norm, an estimate of the largest omega^2. Uses the force arrays as working memory.
   float (*power_step)(const LatticeView&, const float* mass);
 };
 

@@ -6,7 +6,7 @@
 namespace spoonbill {
 namespace {
 
-// Of the strain beyond yield that one tick may take away: the rest of it stays for the next.
+// Of the strain beyond yield that one flow may take away: the rest of it stays for the next.
 constexpr double largest_flow_share = 0.5;
 
 struct Substeps {
@@ -45,30 +45,47 @@ float speed_cap(const SpringLattice& lattice, float h) {
   return static_cast<float>(speed_cap_cells) * lattice.cell_size_m() / std::max(h, longest);
 }
 
-// Caps speeds and moves the nodes. Returns whether one met the cap.
-bool drift(const SpringLattice& lattice, const LatticeView& view, float h, float cap) {
+// Caps speeds and moves the nodes.
+Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, float cap) {
   const LatticeKernels& kernels = lattice.kernels();
-  float mean[4] = {};
+  Drift drift;
+  drift.h_s = h;
+  drift.cap_m_per_s = cap;
+  drift.tau_s = lattice.damping_time_s();
   if (!lattice.has_held_nodes()) {
-    kernels.momentum(view, lattice.free_mass(), mean);
-    const float inverse = mean[3] > 0.0f ? 1.0f / mean[3] : 0.0f;
-    for (float& component : mean) component *= inverse;
+    float sum[4];
+    kernels.momentum(view, lattice.free_mass(), sum);
+    const float inverse = sum[3] > 0.0f ? 1.0f / sum[3] : 0.0f;
+    drift.mean_x = sum[0] * inverse;
+    drift.mean_y = sum[1] * inverse;
+    drift.mean_z = sum[2] * inverse;
   }
-  return kernels.drift(view, h, cap, mean[0], mean[1], mean[2]) > 1.0f;
+  return kernels.drift(view, drift);
 }
 
-// Returns whether a node met the speed cap.
-bool substep(SpringLattice& lattice, const LatticeView& view, const RelaxSettings& settings, float h,
-             double fraction, std::span<const TouchingTool> tools) {
+void linearise(const SpringLattice& lattice, const LatticeView& view) {
+  lattice.kernels().look_ahead(view, lattice.damping_time_s());
+  lattice.kernels().linearise_springs(view);
+}
+
+// `moved_square` is of the node that moved furthest since the springs were linearised.
+void take_forces(const SpringLattice& lattice, const LatticeView& view, float moved_square) {
   const LatticeKernels& kernels = lattice.kernels();
-  kernels.clear_forces(view);
-  kernels.spring_forces(view, lattice.damping_time_s());
-  kernels.volume_forces(view, lattice.damping_time_s());
+  const float limit = static_cast<float>(linear_cells) * lattice.cell_size_m();
+  const bool linear = moved_square <= limit * limit;
+  if (!linear) kernels.linearise_springs(view);
+  kernels.start_forces(view);
+  if (linear && moved_square > 0.0f) kernels.spring_forces(view);
+  kernels.volume_forces(view);
   apply_node_forces(lattice, view);
+}
+
+Drifted substep(SpringLattice& lattice, const LatticeView& view, const RelaxSettings& settings, float h,
+                double fraction, std::span<const TouchingTool> tools) {
   const float decay = 1.0f / (1.0f + h * static_cast<float>(settings.damping_per_s));
   const Vector3& g = settings.gravity_m_per_s2;
-  kernels.kick(view, h, decay, static_cast<float>(g.x()), static_cast<float>(g.y()),
-               static_cast<float>(g.z()));
+  lattice.kernels().kick(view, h, decay, static_cast<float>(g.x()), static_cast<float>(g.y()),
+                         static_cast<float>(g.z()));
   const float cap = speed_cap(lattice, h);
   for (const TouchingTool& tool : tools) {
     tool.contacts->solve(view, *tool.state, h, fraction, 0.5f * cap);
@@ -90,7 +107,9 @@ double felt_modulus_limit_pa(double unit_frequency, double damping_ratio) {
 RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings,
                   std::span<const TouchingTool> tools) {
   LatticeView view = lattice.view();
-  follow_fastest_frequency(lattice, view);
+  linearise(lattice, view);
+  const bool flows = settings.tick % 2 == 1;
+  if (!flows) follow_fastest_frequency(lattice, view);
   const Substeps substeps = choose_substeps(lattice, settings.step_s);
   RelaxReport report;
   report.substeps = substeps.count;
@@ -100,14 +119,18 @@ RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings,
   const float h = static_cast<float>(substeps.h);
   if (substeps.slowed) {
     view.inverse_mass = lattice.steady_strained_nodes(h, static_cast<float>(stability_share));
+    linearise(lattice, view);  // velocities changed
   }
   const int total = settings.iterations * substeps.count;
+  Drifted drifted;
   for (int s = 0; s < total; ++s) {
-    const double fraction = static_cast<double>(s) / total;
-    report.speed_capped |= substep(lattice, view, settings, h, fraction, tools);
+    take_forces(lattice, view, drifted.moved_square);
+    drifted = substep(lattice, view, settings, h, static_cast<double>(s) / total, tools);
+    report.speed_capped |= drifted.speed_square > 1.0f;
   }
-  if (lattice.plastic()) {
-    const double share = std::min(largest_flow_share, lattice.flow_rate_per_s() * report.material_time_s);
+  if (flows && lattice.plastic()) {
+    const double share =
+        std::min(largest_flow_share, 2.0 * lattice.flow_rate_per_s() * report.material_time_s);
     lattice.kernels().flow(view, lattice.yield_strain(), static_cast<float>(share));
   }
   return report;

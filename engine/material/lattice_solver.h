@@ -33,6 +33,11 @@ inline constexpr double felt_stability_share = 0.75;
 // sphere of 16 mm that gripped a held gel of 4 Pa at up to 5 m/s drew it out to 28 m.
 inline constexpr double speed_cap_cells = 0.1;
 
+// Springs are linearised once a tick, and again where a node has moved further than this share of a cell
+// since. What first order misses of a spring's strain is then below half its square; a tick of a sculpting
+// hand moves nodes by a hundredth of a cell.
+inline constexpr double linear_cells = 0.1;
+
 // The largest stable symplectic Euler step for the angular frequency and damping ratio: h < (2 / w)
 // (sqrt(1 + z^2) - z), from |trace| <= 1 + determinant of the update matrix of x'' + 2 z w x' + w^2 x = 0.
 double stable_step_s(double angular_frequency, double damping_ratio);
@@ -41,7 +46,10 @@ double stable_step_s(double angular_frequency, double damping_ratio);
 // fastest frequency is `unit_frequency` at 1 Pa: frequencies grow with the root of the modulus.
 double felt_modulus_limit_pa(double unit_frequency, double damping_ratio);
 
+// Following the fastest frequency and plastic flow each cost about as much as a substep. They take turns: the
+// first in even ticks, the second in odd ones, for the material time of both.
 struct RelaxSettings {
+  std::uint64_t tick = 0;             // its number
   int iterations = 1;                 // relaxation steps
   double step_s = relaxation_step_s;  // material time of each
   double damping_per_s = 0.0;         // mass-proportional

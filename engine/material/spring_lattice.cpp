@@ -108,11 +108,15 @@ void SpringLattice::lay_out(const LatticeMesh& mesh) {
                     &power_noise_}) {
     a->assign(size, 0.0f);
   }
+  for (auto* vector : {&ahead_, &reference_, &moved_, &spring_force_}) {
+    for (Floats& a : *vector) a.assign(size, 0.0f);
+  }
   std::fill(inverse_volume_.begin(), inverse_volume_.end(), 1.0f);
   for (int d = 0; d < lattice_direction_count; ++d) {
     for (Floats* a : {&rest_y_[d], &rest_z_[d], &stiffness_[d], &square_difference_[d]}) {
       a->assign(size, 0.0f);
     }
+    tangent_[d].assign(tangent_runs * static_cast<std::size_t>(padded_count_), 0.0f);
     // Springs that do not exist have a length all the same, so that nothing divides by zero.
     for (Floats* a : {&rest_x_[d], &rest_length_[d], &first_rest_length_[d]}) a->assign(size, cell_size_);
   }
@@ -226,6 +230,8 @@ void SpringLattice::measure_fastest_frequency() {
     power_y_[n] = mixed(static_cast<std::uint32_t>(3 * n + 2));
     power_z_[n] = mixed(static_cast<std::uint32_t>(3 * n + 3));
   }
+  kernels_->look_ahead(lattice, 0.0f);
+  kernels_->linearise_springs(lattice);
   float square = 0.0f;
   for (int step = 0; step < frequency_steps; ++step) {
     square = kernels_->power_step(lattice, node_mass_.data());
@@ -245,9 +251,22 @@ LatticeView SpringLattice::view() {
   v.fx = fx_.data();
   v.fy = fy_.data();
   v.fz = fz_.data();
+  v.ahead_x = ahead_[0].data();
+  v.ahead_y = ahead_[1].data();
+  v.ahead_z = ahead_[2].data();
+  v.reference_x = reference_[0].data();
+  v.reference_y = reference_[1].data();
+  v.reference_z = reference_[2].data();
+  v.moved_x = moved_[0].data();
+  v.moved_y = moved_[1].data();
+  v.moved_z = moved_[2].data();
+  v.spring_x = spring_force_[0].data();
+  v.spring_y = spring_force_[1].data();
+  v.spring_z = spring_force_[2].data();
   v.inverse_mass = inverse_mass_.data();
   v.free_node = free_node_.data();
   v.active_block = active_block_.data();
+  v.free_block = free_block_.data();
   for (int d = 0; d < lattice_direction_count; ++d) {
     v.springs[d] = {offset_[d],
                     rest_x_[d].data(),
@@ -256,7 +275,8 @@ LatticeView SpringLattice::view() {
                     stiffness_[d].data(),
                     rest_length_[d].data(),
                     square_difference_[d].data(),
-                    first_rest_length_[d].data()};
+                    first_rest_length_[d].data(),
+                    tangent_[d].data()};
   }
   for (int c = 1; c < 8; ++c) {
     v.corner_direction[c] = direction_of(c >> 2 & 1, c >> 1 & 1, c & 1);
@@ -305,9 +325,11 @@ void SpringLattice::hold(std::span<const std::uint8_t> held) {
 
 void SpringLattice::find_active_blocks() {
   active_block_.assign(static_cast<std::size_t>(padded_count_ / lattice_block), 0);
+  free_block_ = active_block_;
   const int reach = *std::max_element(offset_, offset_ + lattice_direction_count);
   for (int n = 0; n < mesh_.node_count(); ++n) {
     if (free_node_[n] == 0.0f) continue;
+    free_block_[static_cast<std::size_t>(n / lattice_block)] = 1;
     const int first = std::max(0, n - reach) / lattice_block;
     for (int b = first; b <= n / lattice_block; ++b) active_block_[static_cast<std::size_t>(b)] = 1;
   }

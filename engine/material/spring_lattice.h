@@ -119,12 +119,14 @@ class SpringLattice {
   int offset_[lattice_direction_count] = {};
 
   Floats dx_, dy_, dz_, vx_, vy_, vz_, fx_, fy_, fz_;
+  Floats ahead_[3], reference_[3], moved_[3], spring_force_[3];
   Floats node_mass_, free_mass_, inverse_mass_, free_node_;
-  std::vector<std::uint8_t> active_block_;
+  std::vector<std::uint8_t> active_block_, free_block_;
   Floats applied_[3];
   Floats rest_x_[lattice_direction_count], rest_y_[lattice_direction_count], rest_z_[lattice_direction_count];
   Floats stiffness_[lattice_direction_count], rest_length_[lattice_direction_count];
   Floats square_difference_[lattice_direction_count], first_rest_length_[lattice_direction_count];
+  Floats tangent_[lattice_direction_count];
   Floats bulk_, inverse_volume_, rest_volume_sum_, has_cell_, inverse_cell_count_, node_dilation_;
   Floats row_sum_, stable_inverse_mass_;
   Floats power_x_, power_y_, power_z_, power_noise_;

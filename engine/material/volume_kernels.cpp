@@ -54,16 +54,25 @@ inline Vector rest_vector(const SpringArrays& s, int n) {
   return {s.rest_x[n], s.rest_y[n], s.rest_z[n]};
 }
 
-// Of the present shape: face diagonals are springs.
-inline FaceDiagonals present_diagonals(const LatticeView& view, int n) {
+// Of the shape at given displacements: face diagonals are springs.
+inline FaceDiagonals diagonals_at(const LatticeView& view, const float* dx, const float* dy, const float* dz,
+                                  int n) {
   const SpringArrays& jk = view.springs[view.corner_direction[3]];
   const SpringArrays& ik = view.springs[view.corner_direction[5]];
   const SpringArrays& ij = view.springs[view.corner_direction[6]];
   const int* o = view.corner_offset;
-  const FaceDiagonals moved = diagonals_of(view, view.dx, view.dy, view.dz, n);
+  const FaceDiagonals moved = diagonals_of(view, dx, dy, dz, n);
   return {rest_vector(jk, n + o[4]) + moved.a, rest_vector(jk, n) + moved.b,
           rest_vector(ik, n + o[2]) + moved.c, rest_vector(ij, n) + moved.d,
           rest_vector(ik, n) + moved.e,        rest_vector(ij, n + o[1]) + moved.f};
+}
+
+inline FaceDiagonals present_diagonals(const LatticeView& view, int n) {
+  return diagonals_at(view, view.dx, view.dy, view.dz, n);
+}
+
+inline FaceDiagonals diagonals_ahead(const LatticeView& view, int n) {
+  return diagonals_at(view, view.ahead_x, view.ahead_y, view.ahead_z, n);
 }
 
 // 12 V.
@@ -79,7 +88,7 @@ inline FaceDiagonals volume_gradient(const FaceDiagonals& p) {
           cross(ab, p.c) + ae, fb + cross(fd, p.a), cross(p.b, ce) + ae};
 }
 
-// The rate of 12 V at velocities (or any other field) of the nodes.
+// How 12 V changes along a field on the nodes, to first order.
 inline float volume_rate(const LatticeView& view, const FaceDiagonals& gradient, const float* x,
                          const float* y, const float* z, int n) {
   const FaceDiagonals v = diagonals_of(view, x, y, z, n);
@@ -131,16 +140,16 @@ inline float dilation_of(const LatticeView& view, const FaceDiagonals& p, int n)
 
 }  // namespace
 
-void volume_forces(const LatticeView& view, float tau) {
+void volume_forces(const LatticeView& view) {
   BlockCells cells;
   for (int start = 0; start < view.padded_count; start += block) {
     if (view.active_block[start / block] == 0) continue;
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
-      const FaceDiagonals p = present_diagonals(view, n), gradient = volume_gradient(p);
-      const float rate = volume_rate(view, gradient, view.vx, view.vy, view.vz, n);
-      const float strain = dilation_of(view, p, n) + tau * (rate * (1.0f / 12.0f) * view.inverse_volume[n]);
-      cells.set(l, -view.bulk_stiffness[n] * view.inverse_volume[n] * strain * (1.0f / 12.0f), gradient);
+      const FaceDiagonals p = diagonals_ahead(view, n);
+      cells.set(l,
+                -view.bulk_stiffness[n] * view.inverse_volume[n] * dilation_of(view, p, n) * (1.0f / 12.0f),
+                volume_gradient(p));
     }
     add_corner_forces(view, start, cells);
   }
@@ -185,16 +194,16 @@ void add_volume_row_sums(const LatticeView& view, float* sum) {
   }
 }
 
-void add_volume_stiffness(const LatticeView& view) {
+void take_volume_stiffness(const LatticeView& view) {
   BlockCells cells;
   for (int start = 0; start < view.padded_count; start += block) {
     if (view.active_block[start / block] == 0) continue;
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
-      const FaceDiagonals gradient = volume_gradient(present_diagonals(view, n));
+      const FaceDiagonals gradient = volume_gradient(diagonals_ahead(view, n));
       const float rate = volume_rate(view, gradient, view.power_x, view.power_y, view.power_z, n);
       const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
-      cells.set(l, view.bulk_stiffness[n] * inverse * inverse * rate, gradient);
+      cells.set(l, -view.bulk_stiffness[n] * inverse * inverse * rate, gradient);
     }
     add_corner_forces(view, start, cells);
   }

@@ -12,7 +12,7 @@
 namespace spoonbill::SPOONBILL_KERNELS {
 
 // See LatticeKernels::volume_forces.
-void volume_forces(const LatticeView& view, float tau_s);
+void volume_forces(const LatticeView& view);
 
 // J of the cells around each node, averaged into node_dilation.
 void average_dilations(const LatticeView& view);
@@ -20,8 +20,8 @@ void average_dilations(const LatticeView& view);
 // Adds each cell's share to the row sums, N/m.
 void add_volume_row_sums(const LatticeView& view, float* sum_n_per_m);
 
-// Adds the product of the volume stiffness and the power vector to the forces.
-void add_volume_stiffness(const LatticeView& view);
+// Takes the product of the volume stiffness, ahead in time, and the power vector from the forces.
+void take_volume_stiffness(const LatticeView& view);
 
 // See LatticeKernels::measure_rest_volumes.
 void measure_rest_volumes(const LatticeView& view);

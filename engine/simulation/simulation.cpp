@@ -233,7 +233,7 @@ TouchingTool touch(const Simulation::State& s, HeldTool& held, const Pose& pose,
 
 RelaxSettings relax_settings(const Simulation::State& s) {
   // What a body sags at rest is its weight over its stiffness: a softer one must weigh less to sag the same.
-  return {s.scene.tool.iterations, tick_s, s.scene.sculpting.damping_per_s,
+  return {s.tick, s.scene.tool.iterations, tick_s, s.scene.sculpting.damping_per_s,
           s.scene.sculpting.gravity_m_per_s2 / real_over_felt(s)};
 }
 

@@ -23,15 +23,25 @@ SpringLattice block(const Vector3& size_m, std::array<int, 3> counts, const Mate
   return std::move(lattice).value();
 }
 
+void take_forces(SpringLattice& lattice, float tau_s) {
+  const LatticeView view = lattice.view();
+  const LatticeKernels& kernels = lattice.kernels();
+  kernels.look_ahead(view, tau_s);
+  kernels.linearise_springs(view);
+  kernels.start_forces(view);
+  kernels.volume_forces(view);
+}
+
 void plain_substep(SpringLattice& lattice, float h_s, const Vector3& g) {
   const LatticeView view = lattice.view();
   const LatticeKernels& kernels = lattice.kernels();
-  kernels.clear_forces(view);
-  kernels.spring_forces(view, lattice.damping_time_s());
-  kernels.volume_forces(view, lattice.damping_time_s());
+  take_forces(lattice, lattice.damping_time_s());
   kernels.kick(view, h_s, 1.0f, static_cast<float>(g.x()), static_cast<float>(g.y()),
                static_cast<float>(g.z()));
-  kernels.drift(view, h_s, 1e6f, 0.0f, 0.0f, 0.0f);
+  Drift drift;
+  drift.h_s = h_s;
+  drift.cap_m_per_s = 1e6f;
+  kernels.drift(view, drift);
 }
 
 }  // namespace spoonbill

@@ -12,6 +12,9 @@ Material elastic_material(double youngs_modulus_pa, double poissons_ratio, doubl
 SpringLattice block(const Vector3& size_m, std::array<int, 3> counts, const Material& material,
                     InstructionSet set = InstructionSet::baseline);
 
+// Forces of the present shape, ahead by `tau_s`, with springs linearised there.
+void take_forces(SpringLattice& lattice, float tau_s);
+
 // One substep without any tool: forces, kick, drift.
 void plain_substep(SpringLattice& lattice, float h_s, const Vector3& gravity_m_per_s2 = Vector3::Zero());
 

@@ -269,11 +269,13 @@ TEST(Integration, ClayKeepsAStretchAndRubberDoesNot) {
     ToolState tool;
     RelaxSettings settings;
     settings.damping_per_s = 60.0;
-    for (int tick = 0; tick < 1000; ++tick)
-      relax(lattice, settings, std::array{TouchingTool{ToolMotion{}, &tool, &none}});
+    const auto relax_for = [&](std::uint64_t ticks) {
+      for (const std::uint64_t end = settings.tick + ticks; settings.tick < end; ++settings.tick)
+        relax(lattice, settings, std::array{TouchingTool{ToolMotion{}, &tool, &none}});
+    };
+    relax_for(1000);
     lattice.hold(std::vector<std::uint8_t>(ends.size(), 0));
-    for (int tick = 0; tick < 1500; ++tick)
-      relax(lattice, settings, std::array{TouchingTool{ToolMotion{}, &tool, &none}});
+    relax_for(1500);
     const double length =
         (lattice.position(mesh.index(2, 2, 8)) - lattice.position(mesh.index(2, 2, 0))).norm();
     const double kept = (length / 0.016 - 1.0) / 0.08;
