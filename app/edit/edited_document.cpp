@@ -4,9 +4,17 @@
 
 namespace spoonbill {
 
+EditedDocument::EditedDocument(std::optional<std::filesystem::path> state_folder, std::filesystem::path file)
+    : state_folder_(std::move(state_folder)), file_(std::move(file)), claim_(claim()) {}
+
 std::optional<Autosave> EditedDocument::autosave() const {
+  if (!claim_) return std::nullopt;
+  return claim_->autosave();
+}
+
+std::optional<AutosaveClaim> EditedDocument::claim() const {
   if (!state_folder_) return std::nullopt;
-  return Autosave(*state_folder_, file_);
+  return AutosaveClaim::take(*state_folder_, file_);
 }
 
 Result<std::optional<Document>> EditedDocument::left_over() const {
@@ -29,6 +37,8 @@ void EditedDocument::turn_to(std::filesystem::path file, LiveSession& live) {
   saved_deed_ = live.last_frame().deed;
   recovered_ = false;
   live.set_autosave(std::nullopt);
+  claim_.reset();  // first, for a file that is opened again
+  claim_ = claim();
 }
 
 void EditedDocument::begin(LiveSession& live) {
@@ -48,7 +58,10 @@ void EditedDocument::note_saved(const SavedDocument& saved, LiveSession& live) {
   file_ = saved.file;
   saved_deed_ = saved.deed;
   recovered_ = false;
-  if (renamed) live.set_autosave(autosave());
+  if (!renamed) return;
+  auto next = claim();
+  live.set_autosave(next ? std::optional(next->autosave()) : std::nullopt);
+  claim_ = std::move(next);
 }
 
 std::string EditedDocument::title(const LiveFrame& frame) const {

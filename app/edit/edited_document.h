@@ -14,8 +14,7 @@ namespace spoonbill {
 class EditedDocument {
  public:
   // `state_folder`: nothing where there is no place to autosave.
-  EditedDocument(std::optional<std::filesystem::path> state_folder, std::filesystem::path file)
-      : state_folder_(std::move(state_folder)), file_(std::move(file)) {}
+  EditedDocument(std::optional<std::filesystem::path> state_folder, std::filesystem::path file);
 
   // Empty for one that was never saved.
   const std::filesystem::path& file() const { return file_; }
@@ -44,9 +43,11 @@ class EditedDocument {
 
  private:
   std::optional<Autosave> autosave() const;
+  std::optional<AutosaveClaim> claim() const;
 
   std::optional<std::filesystem::path> state_folder_;
   std::filesystem::path file_;
+  std::optional<AutosaveClaim> claim_;
   std::uint64_t document_ = 0;  // as in LiveFrame
   std::uint64_t saved_deed_ = 0;
   bool recovered_ = false;

@@ -12,13 +12,15 @@ namespace {
 
 constexpr std::size_t bytes_limit = std::size_t{65} << 20;  // a document's, and a little
 constexpr int autosave_version = 1;
+constexpr int most_windows = 99;  // that show one document
 
 // Documents of one name in different folders must not share an autosave.
-std::string file_name_for(const std::filesystem::path& of) {
-  if (of.empty()) return "untitled.autosave.json";
+std::string file_name_for(const std::filesystem::path& of, int number) {
+  const std::string ending = (number > 1 ? "-" + std::to_string(number) : "") + ".autosave.json";
+  if (of.empty()) return "untitled" + ending;
   StateHash hash;
   for (const char c : of.string()) hash.add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
-  return of.stem().string() + "-" + hash_text(hash.value()) + ".autosave.json";
+  return of.stem().string() + "-" + hash_text(hash.value()) + ending;
 }
 
 std::filesystem::path whole_path(const std::filesystem::path& path) {
@@ -36,8 +38,8 @@ bool is_older(const std::filesystem::path& one, const std::filesystem::path& oth
 
 }  // namespace
 
-Autosave::Autosave(const std::filesystem::path& folder, const std::filesystem::path& of)
-    : of_(of.empty() ? of : whole_path(of)), file_(folder / file_name_for(of_)) {}
+Autosave::Autosave(const std::filesystem::path& folder, const std::filesystem::path& of, int number)
+    : of_(of.empty() ? of : whole_path(of)), file_(folder / file_name_for(of_, number)) {}
 
 Status Autosave::write(const Document& document) const {
   Json json{{"spoonbill_autosave", autosave_version}, {"of", of_.string()}};
@@ -74,6 +76,22 @@ void Autosave::remove() const {
   std::error_code ignored;
   std::filesystem::remove(file_, ignored);
   std::filesystem::remove(file_.string() + ".bak", ignored);
+}
+
+AutosaveClaim AutosaveClaim::take(const std::filesystem::path& folder, const std::filesystem::path& of) {
+  std::optional<AutosaveClaim> first_free;
+  for (int number = 1; number <= most_windows; ++number) {
+    Autosave autosave(folder, of, number);
+    auto lock = FileLock::take(autosave.file().string() + ".lock");
+    if (!lock) continue;
+    std::error_code problem;
+    const bool left_over = std::filesystem::exists(autosave.file(), problem);
+    AutosaveClaim claim(std::move(autosave), std::move(lock));
+    if (left_over) return claim;
+    if (!first_free) first_free = std::move(claim);
+  }
+  if (first_free) return std::move(*first_free);
+  return AutosaveClaim(Autosave(folder, of), std::nullopt);
 }
 
 }  // namespace spoonbill

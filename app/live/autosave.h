@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "app/files/file_lock.h"
 #include "engine/exchange/document.h"
 #include "engine/result.h"
 
@@ -16,8 +18,9 @@ namespace spoonbill {
 // One document's autosave. Plain value; used by one thread at a time.
 class Autosave {
  public:
-  // `of` names the document's file; empty for one that has none yet.
-  Autosave(const std::filesystem::path& folder, const std::filesystem::path& of);
+  // `of` names the document's file; empty for one that has none yet. Windows that show one document number
+  // their autosaves, from 1 on.
+  Autosave(const std::filesystem::path& folder, const std::filesystem::path& of, int number = 1);
 
   // Whole or not at all, as every document; the one before stays until then.
   Status write(const Document& document) const;
@@ -36,6 +39,23 @@ class Autosave {
  private:
   std::filesystem::path of_;
   std::filesystem::path file_;
+};
+
+// A window's right to one autosave of a document, which no other window uses as long as this lives. One
+// owner.
+class AutosaveClaim {
+ public:
+  // An autosave that was left over and belongs to nobody, else the first that is free.
+  static AutosaveClaim take(const std::filesystem::path& folder, const std::filesystem::path& of);
+
+  const Autosave& autosave() const { return autosave_; }
+
+ private:
+  AutosaveClaim(Autosave autosave, std::optional<FileLock> lock)
+      : autosave_(std::move(autosave)), lock_(std::move(lock)) {}
+
+  Autosave autosave_;
+  std::optional<FileLock> lock_;  // nothing where the folder takes no lock
 };
 
 }  // namespace spoonbill

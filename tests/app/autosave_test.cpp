@@ -6,6 +6,8 @@
 
 #include <chrono>
 #include <fstream>
+#include <iterator>
+#include <optional>
 
 #include "tests/app/workplace.h"
 #include "tests/engine/simulation/handle.h"
@@ -35,6 +37,38 @@ TEST(Autosave, DocumentsOfOneNameInTwoFoldersHaveTheirOwn) {
   const Workplace place;
   const Autosave one(place.path("."), "/a/spoon.json"), other(place.path("."), "/b/spoon.json");
   EXPECT_NE(one.file(), other.file());
+}
+
+TEST(AutosaveClaim, WindowsOnOneDocumentDoNotShareAnAutosave) {
+  const Workplace place;
+  auto one = std::optional(AutosaveClaim::take(place.path("."), "/a/spoon.json"));
+  const auto other = AutosaveClaim::take(place.path("."), "/a/spoon.json");
+  EXPECT_NE(one->autosave().file(), other.autosave().file());
+  // The first window crashes, and its work goes to the next one that opens; the second's is left to the
+  // second.
+  ASSERT_TRUE(one->autosave().write(handle("first")));
+  ASSERT_TRUE(other.autosave().write(handle("second")));
+  one.reset();
+  const auto next = AutosaveClaim::take(place.path("."), "/a/spoon.json");
+  EXPECT_EQ(next.autosave().left_over().value()->name, "first");
+}
+
+TEST(AutosaveClaim, FindsWhatASecondWindowLeft) {
+  const Workplace place;
+  ASSERT_TRUE(Autosave(place.path("."), {}, 2).write(handle("second")));
+  const auto claim = AutosaveClaim::take(place.path("."), {});
+  EXPECT_EQ(claim.autosave().left_over().value()->name, "second");
+}
+
+TEST(AutosaveClaim, LeavesNoLockBehind) {
+  const Workplace place;
+  const auto count = [&] {
+    const std::filesystem::directory_iterator all(place.path("."));
+    return std::distance(begin(all), end(all));
+  };
+  const auto before = count();
+  { const auto claim = AutosaveClaim::take(place.path("."), {}); }
+  EXPECT_EQ(count(), before);
 }
 
 TEST(Autosave, OlderThanTheDocumentIsNothing) {
