@@ -31,8 +31,10 @@ void ToolContact::prepare(const BodyMapping& mapping, const SpringLattice& latti
   collision_ = collider_.collide(mapping.current(), ToolShape::sphere(pose.position_m, radius), margin, true);
   overflow_ = collision_.overflow;
   const bool inside = collision_.found && collision_.nearest.depth_m >= 0.0;
-  // By a margin: a body that the tool has just pressed lies against it, and quivers.
-  lifted_ = lifted_ && (collision_.found || gripping);
+  // A body that the tool has just pressed lies against it, and quivers: the tool has left when it is a margin
+  // away, or hovers.
+  const bool against = hovering ? inside : collision_.found;
+  lifted_ = lifted_ && (against || gripping);
   hovered_ = hovering || (hovered_ && inside);
   if (lifted_ || hovered_) return release();
   if (tool.action == ToolAction::push) {

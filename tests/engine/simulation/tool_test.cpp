@@ -69,6 +69,23 @@ TEST(Tool, ALiftedToolActsOnlyAfterItHasLeft) {
   EXPECT_TRUE(reaction.touching);
 }
 
+TEST(Tool, ALiftedToolThatHoversJustAboveActsOnTheNextPress) {
+  Scene scene = small_handle();
+  scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+  Simulation simulation = simulate(scene);
+  ToolInput input = above(0.03, 0.02);
+  for (int tick = 0; tick < 5; ++tick) simulation.advance(input);
+  double surface = 0.02;
+  while (!simulation.advance(above(0.03, surface)).touching && surface > 0.0) surface -= 1e-4;
+  ASSERT_TRUE(simulation.apply(LiftTool{}));
+  input = above(0.03, surface + 5e-4);
+  input.hovering = true;
+  for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(simulation.advance(input).touching);
+  bool touching = false;
+  for (int tick = 0; tick < 30; ++tick) touching |= simulation.advance(above(0.03, surface - 5e-4)).touching;
+  EXPECT_TRUE(touching);
+}
+
 TEST(Tool, AHoveringToolTouchesNothingUntilItIsOutside) {
   Scene scene = small_handle();
   scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
