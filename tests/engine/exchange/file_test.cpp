@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 
 #include "engine/exchange/document.h"
@@ -91,6 +93,34 @@ TEST(File, WritesDocumentsThatReadBack) {
   const auto read = read_document(file);
   ASSERT_TRUE(read.ok()) << read.error().message;
   EXPECT_TRUE(same_bits(document, read.value()));
+}
+
+// Killed at any moment of a save, a program leaves the document as it was or as it shall be.
+TEST(File, AKillDuringASaveLeavesAWholeDocument) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "spoon.json";
+  const Document one = deformed_document(1), other = deformed_document(2);
+  ASSERT_TRUE(write_document(one, file).ok());
+  int changed = 0;
+  for (int attempt = 0; attempt < 40; ++attempt) {
+    const pid_t saver = fork();
+    if (saver == 0) {
+      while (write_document(other, file).ok() && write_document(one, file).ok()) {
+      }
+      _exit(1);
+    }
+    usleep(static_cast<useconds_t>(500 + 700 * attempt));
+    kill(saver, SIGKILL);
+    int status = 0;
+    waitpid(saver, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "the saver could not save";
+    const auto read = read_document(file);
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    const bool is_other = same_bits(other, read.value());
+    EXPECT_TRUE(is_other || same_bits(one, read.value()));
+    changed += is_other ? 1 : 0;
+  }
+  EXPECT_GT(changed, 0);  // else no save ever came through
 }
 
 TEST(File, NeverReplacesADocumentByOneThatCannotBeRead) {
