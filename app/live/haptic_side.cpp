@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/session/control_net_box.h"
+
 namespace spoonbill {
 namespace {
 
@@ -98,8 +100,13 @@ void HapticSide::take_back_if_done() {
     specification_ = lent_.session->device;
     lent_.begun_anew = false;
   }
-  if (lent_.other_document) ++document_count_;
-  lent_.other_document = false;
+  if (lent_.other_document) {
+    ++document_count_;
+    // A virtual handle's workspace moves along to the body that is shaped now.
+    const BoundingBox box = control_net_box(lent_.session->simulation.surface());
+    workspace_centre_m_ = 0.5 * (box.low_m + box.high_m);
+    lent_.other_document = false;
+  }
   if (lent_.writer != nullptr) begin_recording(std::move(lent_.writer));
   if (auto* asked = std::get_if<AskedRequest>(&command_); asked != nullptr && done) {
     record(std::move(asked->json));
@@ -115,6 +122,9 @@ void HapticSide::answer_work(bool done) {
 }
 
 void HapticSide::apply_now(AskedRequest& asked) {
+  const bool does_nothing =
+      std::holds_alternative<CancelStroke>(asked.request) && !lent_.session->history.in_stroke();
+  if (does_nothing) return;
   const Status applied = apply_request(*lent_.session, asked.request);
   if (!applied) return;
   record(std::move(asked.json));

@@ -1,6 +1,7 @@
 #include "app/live/journal.h"
 
 #include <chrono>
+#include <exception>
 #include <utility>
 
 namespace spoonbill {
@@ -43,7 +44,12 @@ std::optional<SavedDocument> Journal::take_saved() {
 void Journal::run() {
   while (true) {
     const bool stopping = stopping_.load(std::memory_order_acquire);
-    while (work()) {
+    try {
+      while (work()) {
+      }
+    } catch (const std::exception& exception) {
+      // For want of memory above all: the thread must live on, to save what can be saved later.
+      give_up_recording(Error{exception.what()});
     }
     if (stopping) return;
     std::this_thread::sleep_for(pause_between_looks);
@@ -92,8 +98,10 @@ Status Journal::write_to_recording(JournalEntry& entry) {
 }
 
 void Journal::give_up_recording(const Error& error) {
-  notices_->add(Notice::Kind::problem, "the recording has ended: " + error.message);
+  const bool recorded = writer_ != nullptr;
   writer_.reset();
+  notices_->add(Notice::Kind::problem,
+                (recorded ? "the recording has ended: " : "not saved: ") + error.message);
   gave_up_.store(true, std::memory_order_release);
 }
 

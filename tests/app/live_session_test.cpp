@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "app/program.h"
+#include "haptic/safety.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/app/workplace.h"
 #include "tests/engine/simulation/handle.h"
@@ -202,6 +203,28 @@ TEST(LiveSession, OpensAnotherDocument) {
     wait_ticks(*live, 5);
   }
   EXPECT_EQ(live->frame().works, 1U);
+}
+
+TEST(LiveSession, TheWorkspaceFollowsTheModelThatIsOpened) {
+  auto live = start_live(held_handle());
+  Document far = held_handle();
+  far.scene.planes.clear();
+  for (double& x : far.scene.body.surface.net.x) x += 2.0;
+  ASSERT_TRUE(live->open(far, "far"));
+  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.works == 1; }));
+  live->aim(at(2.05, 0.03));
+  EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) {
+    return frame.snapshot.tool.device.position_m.x() > 2.04 &&
+           (frame.safety_flags & safety_flag_outside) == 0;
+  }));
+}
+
+TEST(LiveSession, CancellingWithoutAStrokeChangesNothing) {
+  auto live = start_live(held_handle());
+  const std::uint64_t deed = live->frame().deed;
+  ASSERT_TRUE(live->ask(CancelStroke{}));
+  wait_ticks(*live, 50);
+  EXPECT_EQ(live->frame().deed, deed);
 }
 
 // A live session recorded and replayed gives the same states: the replay compares every thousandth tick and
