@@ -41,6 +41,7 @@ LATTICE_COUNTS = (8, 12, 16, 20, 24, 28, 30, 32, 34)
 
 LOOP = ("ticks of the 1 kHz loop late by 1 ms or more, the tick of the block in it; peer: cyclictest -m -p80, "
         "without work, just after; ")
+LIVE = "60 s of `spoonbill record --live --draw`, strokes and ten commands a second; "
 LATE = "p99 of how late a tick begins, as above; "
 
 FIGURES = (
@@ -77,6 +78,11 @@ FIGURES = (
     Figure("loop_missed_per_1000", "per 1,000", "ours", "at most", 1, LOOP + "a thread draws at 60 Hz", "drawing"),
     Figure("loop_p99_us", "us", "ratio", "at least", 0.5, LATE + "nothing draws", "idle"),
     Figure("loop_p99_us", "us", "ratio", "at least", 0.5, LATE + "a thread draws at 60 Hz", "drawing"),
+    Figure("live_missed_per_1000", "per 1,000", "ours", "at most", 1, LIVE + "ticks late by 1 ms or more"),
+    Figure("live_p99_us", "us", "ratio", "at least", 0.5,
+           LIVE + "p99 of how late a tick begins; peer: cyclictest beside as much drawing"),
+    Figure("live_memory_growth", "MiB", "ours", "at most", 2,
+           LIVE + "resident memory, from 10 s after the beginning to the end"),
 )
 
 NAMES = tuple(dict.fromkeys(figure.name for figure in FIGURES))

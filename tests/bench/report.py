@@ -17,6 +17,8 @@ from pathlib import Path
 from figures import FIGURES, GROWTH, HANDLE, LATTICE_COUNTS, NAMES, PAIRS, TICK_CASES
 
 LOOP_SECONDS = 20
+LIVE_SECONDS = 60
+LIVE_WARM_UP_SECONDS = 10
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -93,6 +95,48 @@ class Measurements:
             background.wait()
 
 
+    @functools.cache
+    def live(self):
+        """A live session that draws while strokes and commands fly, and cyclictest beside as much drawing."""
+        with tempfile.TemporaryDirectory() as folder:
+            script = Path(folder) / "live.script.json"
+            script.write_text(json.dumps(live_script(LIVE_SECONDS)))
+            program = subprocess.Popen(
+                [str(self.build / "app/spoonbill"), "record", str(script), "--live", "--draw", "--json", "--out",
+                 str(Path(folder) / "live.recording.jsonl")], stdout=subprocess.PIPE)
+            resident = resident_memory_of(program)
+            done = json.loads(program.stdout.read())
+            if program.wait() != 0:
+                raise RuntimeError(f"spoonbill record --live failed with {program.returncode}")
+        return done, resident, self.cyclictest("drawing")
+
+
+def live_script(seconds):
+    """Presses and lets go, with a command every tenth of a second, for so long."""
+    steps = [{"start_mm": [88, 26, 0]}, {"command": "place_plane", "point_mm": [40, 0, 0], "normal": [1, 0, 0]},
+             {"hold_s": 0.4}]
+    for stroke in range(int(seconds / 2.4)):
+        steps.append({"move_to_mm": [88, 11.5, 0], "over_s": 0.4})
+        for step in range(10):
+            radius = 8 + 0.1 * ((stroke + step) % 3)
+            steps.append({"command": "set_tool", "kind": "sphere", "action": "push", "radius_mm": radius,
+                          "iterations": 6})
+            steps.append({"move_to_mm": [88, 11.5 - step, 0], "over_s": 0.1})
+        steps += [{"move_to_mm": [88, 26, 0], "over_s": 0.5}, {"command": "undo"}, {"hold_s": 0.5}]
+    return {"spoonbill_script": 1, "model": str(ROOT / "assets/models/spoon-handle.json"), "steps": steps}
+
+
+def resident_memory_of(program):
+    """Pairs of seconds and bytes while the program runs."""
+    samples, start, page = [], time.monotonic(), os.sysconf("SC_PAGE_SIZE")
+    while program.poll() is None:
+        pages = Path(f"/proc/{program.pid}/statm").read_text().split()
+        if pages:
+            samples.append((time.monotonic() - start, page * int(pages[1])))
+        time.sleep(0.25)
+    return samples
+
+
 def lateness_of(histogram):
     """Quantiles of cyclictest's histogram of microseconds."""
     bins, beyond = [], 0
@@ -132,6 +176,29 @@ def measured_lateness(measure, figure):
             "ratio": peer["p99_us"] / ours["p99_us"] if peer else None}
 
 
+def measured_live_missed(measure, _figure):
+    ours, _, peer = measure.live()
+    return {"ours": 1000 * ours["missed"] / (ours["ticks"] + ours["missed"]),
+            "peer": 1000 * peer["missed"] / peer["ticks"] if peer else None,
+            "details": {"ours": ours, "cyclictest": peer}}
+
+
+def measured_live_lateness(measure, _figure):
+    ours, _, peer = measure.live()
+    late_us = 1e6 * ours["lateness_p99_s"]
+    return {"ours": late_us, "peer": peer["p99_us"] if peer else None,
+            "ratio": peer["p99_us"] / late_us if peer else None}
+
+
+def measured_live_memory(measure, _figure):
+    samples = measure.live()[1]
+    end = samples[-1][0]
+    early = [size for at, size in samples if LIVE_WARM_UP_SECONDS <= at < LIVE_WARM_UP_SECONDS + 5]
+    late = [size for at, size in samples if at >= end - 5]
+    return {"ours": (max(late) - max(early)) / 2**20,
+            "details": [[round(at, 1), size] for at, size in samples[::20]]}
+
+
 def measured_pair(measure, figure):
     ours, peer = PAIRS[figure.name]
     times = measure.medians([ours, peer])
@@ -165,6 +232,8 @@ def measured(measure, figure):
         return measured_pair(measure, figure)
     return {"tick_p99_us": measured_tick, "frames_per_second": measured_frames,
             "lattice_at_1khz": measured_lattice, "loop_missed_per_1000": measured_missed,
+            "live_missed_per_1000": measured_live_missed, "live_p99_us": measured_live_lateness,
+            "live_memory_growth": measured_live_memory,
             "loop_p99_us": measured_lateness}[figure.name](measure, figure)
 
 

@@ -33,6 +33,11 @@ class MadeUp:
         ours = {"ticks": 9990, "missed": 10 if load == "idle" else 30, "p99_us": 80.0}
         return ours, {"ticks": 10000, "missed": 5, "p99_us": 60}
 
+    def live(self):
+        ours = {"ticks": 60000, "missed": 30, "lateness_p99_s": 1e-4}
+        memory = [(second, 2**20 * (100 + (second > 30))) for second in range(60)]
+        return ours, memory, {"ticks": 20000, "missed": 5, "p99_us": 60}
+
 
 def run(*arguments):
     out = io.StringIO()
