@@ -16,6 +16,7 @@ struct Overlays {
   bool force = true;             // the force on the hand: an arrow with its newtons
   bool contact_normals = false;  // short lines out of the contact points
   bool fixing_planes = true;
+  bool symmetry_plane = true;  // dash-dotted
   bool tool = true;
   bool ground_grid = true;
   bool scale_bar = true;

@@ -52,7 +52,7 @@ void draw_edit(const MenuState& state, const ActionItems& item) {
 
 void draw_overlays(MenuChoice& choice) {
   if (!ImGui::BeginMenu("Overlays")) return;
-  constexpr std::array<std::pair<const char*, bool Overlays::*>, 11> all = {{
+  constexpr std::array<std::pair<const char*, bool Overlays::*>, 12> all = {{
       {"Fixed nodes", &Overlays::fixed_nodes},
       {"Touched nodes", &Overlays::touched_nodes},
       {"Lattice", &Overlays::lattice},
@@ -60,6 +60,7 @@ void draw_overlays(MenuChoice& choice) {
       {"Force", &Overlays::force},
       {"Contact normals", &Overlays::contact_normals},
       {"Fixing planes", &Overlays::fixing_planes},
+      {"Plane of symmetry", &Overlays::symmetry_plane},
       {"Tool", &Overlays::tool},
       {"Ground grid", &Overlays::ground_grid},
       {"Scale bar", &Overlays::scale_bar},

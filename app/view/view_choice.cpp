@@ -19,7 +19,7 @@ constexpr Range<double> pitch_range_deg{-89.0, 89.0};
 constexpr Range<double> field_of_view_range_deg{5.0, 90.0};
 constexpr Range<double> distance_range_m{0.001, 100.0};
 
-constexpr std::array<std::pair<const char*, bool Overlays::*>, 11> overlay_fields = {{
+constexpr std::array<std::pair<const char*, bool Overlays::*>, 12> overlay_fields = {{
     {"fixed_nodes", &Overlays::fixed_nodes},
     {"touched_nodes", &Overlays::touched_nodes},
     {"lattice", &Overlays::lattice},
@@ -27,6 +27,7 @@ constexpr std::array<std::pair<const char*, bool Overlays::*>, 11> overlay_field
     {"force", &Overlays::force},
     {"contact_normals", &Overlays::contact_normals},
     {"fixing_planes", &Overlays::fixing_planes},
+    {"symmetry_plane", &Overlays::symmetry_plane},
     {"tool", &Overlays::tool},
     {"ground_grid", &Overlays::ground_grid},
     {"scale_bar", &Overlays::scale_bar},

@@ -6,7 +6,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double overhang_share = 0.45;  // of the larger side, on each side
+constexpr double fixing_overhang_share = 0.45;  // of the larger side, on each side
 constexpr float border_width_px = 1.4f;
 
 struct PlaneAxes {
@@ -30,6 +30,13 @@ struct Extent {
   bool empty() const { return low.x() > high.x(); }
 };
 
+Extent extent_of(const PlaneSnapshot& plane, const BoundingBox& body, const PlaneAxes& axes) {
+  Extent extent;
+  for (int i = 0; i < 8 && !body.empty(); ++i) extent.include(axes, body.corner(i) - plane.point_m);
+  if (extent.empty()) extent.include(axes, Vector3::Zero());
+  return extent;
+}
+
 Extent extent_of(const PlaneSnapshot& plane, const LatticeSnapshot& lattice, const BoundingBox& body,
                  const PlaneAxes& axes) {
   Extent extent;
@@ -37,20 +44,11 @@ Extent extent_of(const PlaneSnapshot& plane, const LatticeSnapshot& lattice, con
     if (lattice.fixed[i] == 0) continue;
     extent.include(axes, Vector3(lattice.x[i], lattice.y[i], lattice.z[i]) - plane.point_m);
   }
-  if (extent.empty() && !body.empty()) {
-    for (int i = 0; i < 8; ++i) extent.include(axes, body.corner(i) - plane.point_m);
-  }
-  if (extent.empty()) extent.include(axes, Vector3::Zero());
-  return extent;
+  return extent.empty() ? extent_of(plane, body, axes) : extent;
 }
 
-}  // namespace
-
-PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const LatticeSnapshot& lattice,
-                                  const BoundingBox& body) {
-  const PlaneAxes axes = axes_of(plane);
-  Extent extent = extent_of(plane, lattice, body, axes);
-  const double overhang = overhang_share * (extent.high - extent.low).maxCoeff();
+PlaneCorners corners_of(const PlaneSnapshot& plane, const PlaneAxes& axes, Extent extent, double share) {
+  const double overhang = share * (extent.high - extent.low).maxCoeff();
   extent.low.array() -= overhang;
   extent.high.array() += overhang;
   const auto at = [&](double up, double across) {
@@ -58,6 +56,19 @@ PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const LatticeSnaps
   };
   return {at(extent.low.x(), extent.low.y()), at(extent.high.x(), extent.low.y()),
           at(extent.high.x(), extent.high.y()), at(extent.low.x(), extent.high.y())};
+}
+
+}  // namespace
+
+PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const LatticeSnapshot& lattice,
+                                  const BoundingBox& body) {
+  const PlaneAxes axes = axes_of(plane);
+  return corners_of(plane, axes, extent_of(plane, lattice, body, axes), fixing_overhang_share);
+}
+
+PlaneCorners corners_around(const PlaneSnapshot& plane, const BoundingBox& body, double overhang_share) {
+  const PlaneAxes axes = axes_of(plane);
+  return corners_of(plane, axes, extent_of(plane, body, axes), overhang_share);
 }
 
 Vector3 plane_arrow_tip(const PlaneCorners& corners, const PlaneSnapshot& plane) {

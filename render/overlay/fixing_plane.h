@@ -17,6 +17,9 @@ using PlaneCorners = std::array<Vector3, 4>;  // in order around the rectangle
 PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const LatticeSnapshot& lattice,
                                   const BoundingBox& body);
 
+// The same around the body's box alone, larger than it by `overhang_share` of the larger side, on each side.
+PlaneCorners corners_around(const PlaneSnapshot& plane, const BoundingBox& body, double overhang_share);
+
 // Where the arrow along the plane's normal ends.
 Vector3 plane_arrow_tip(const PlaneCorners& corners, const PlaneSnapshot& plane);
 

@@ -78,6 +78,9 @@ std::vector<Label> legend_of(const Snapshot& snapshot, const ViewSettings& setti
   if (on.fixing_planes && !snapshot.planes.empty()) {
     add("fixing plane", LabelSymbol::plane, palette::fixing_plane_border);
   }
+  if (on.symmetry_plane && snapshot.symmetric) {
+    add("plane of symmetry", LabelSymbol::line, palette::symmetry_plane);
+  }
   if (on.control_net) add("control net", LabelSymbol::diamond, palette::control_net);
   if (on.lattice) add("lattice", LabelSymbol::line, palette::lattice);
   if (on.contact_normals && !snapshot.contacts.empty()) {

@@ -20,6 +20,7 @@ inline constexpr Colour force{226, 116, 14};            // the arrow
 inline constexpr Colour contact_normal{112, 46, 134};   // short lines
 inline constexpr Colour fixing_plane{28, 150, 84, 40};
 inline constexpr Colour fixing_plane_border{22, 122, 70, 210};
+inline constexpr Colour symmetry_plane{38, 92, 168, 210};  // dash-dotted
 inline constexpr Colour tool{52, 118, 204};
 inline constexpr Colour ground_line{70, 78, 88};
 inline constexpr Colour scale_bar{48, 54, 62};

@@ -6,6 +6,7 @@
 #include "render/overlay/contact_normals.h"
 #include "render/overlay/fixing_plane.h"
 #include "render/overlay/force_arrow.h"
+#include "render/overlay/symmetry_plane.h"
 
 namespace spoonbill {
 namespace {
@@ -77,7 +78,12 @@ PixelArea scene_area(const Snapshot& snapshot, const ViewSettings& settings, con
   bounds.include(body);
   if (on.lattice || on.fixed_nodes || on.touched_nodes) bounds.include(lattice_box(snapshot.lattice));
   if (on.control_net) bounds.include(net_box(snapshot));
-  if (on.tool) bounds.include_sphere(snapshot.tool.proxy.position_m, snapshot.tool.radius_m);
+  if (on.tool) {
+    bounds.include_sphere(snapshot.tool.proxy.position_m, snapshot.tool.radius_m);
+    if (snapshot.symmetric) {
+      bounds.include_sphere(snapshot.mirrored_proxy.position_m, snapshot.tool.radius_m);
+    }
+  }
   if (on.contact_normals) {
     for (const ContactSnapshot& contact : snapshot.contacts) {
       bounds.include_sphere(contact.point_m, contact_normal_length_m(snapshot.tool));
@@ -93,6 +99,9 @@ PixelArea scene_area(const Snapshot& snapshot, const ViewSettings& settings, con
       for (const Vector3& corner : corners) bounds.include(corner);
       bounds.include(plane_arrow_tip(corners, plane));
     }
+  }
+  if (on.symmetry_plane && snapshot.symmetric) {
+    for (const Vector3& corner : symmetry_plane_corners(snapshot.symmetry, body)) bounds.include(corner);
   }
   constexpr double margin_px = 14.0;
   return bounds.area(margin_px * settings.interface_scale);

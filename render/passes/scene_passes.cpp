@@ -9,6 +9,7 @@
 #include "render/overlay/force_arrow.h"
 #include "render/overlay/ground_grid.h"
 #include "render/overlay/node_marks.h"
+#include "render/overlay/symmetry_plane.h"
 #include "render/passes/scene_area.h"
 
 namespace spoonbill {
@@ -110,6 +111,7 @@ void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, co
   if (translucent) draw_body();
   draw_overlays(view, snapshot, settings);
   if (settings.overlays.fixing_planes) draw_planes(view, snapshot, bodies.bounds());
+  if (settings.overlays.symmetry_plane) draw_symmetry(view, snapshot, bodies.bounds());
   if (settings.overlays.tool) draw_tools(view, snapshot);
   if (settings.overlays.touched_nodes) draw_touched(view, snapshot);
 }
@@ -166,6 +168,13 @@ void ScenePasses::draw_planes(const FrameView& view, const Snapshot& snapshot, c
     passes_.solid.draw_pane(view, pane, palette::fixing_plane);
     append_plane_border(corners, plane, lines_);
   }
+  passes_.line.draw(view, lines_, 0.0f);
+}
+
+void ScenePasses::draw_symmetry(const FrameView& view, const Snapshot& snapshot, const BoundingBox& body) {
+  if (!snapshot.symmetric) return;
+  lines_.clear();
+  append_symmetry_plane(symmetry_plane_corners(snapshot.symmetry, body), lines_);
   passes_.line.draw(view, lines_, 0.0f);
 }
 

@@ -52,6 +52,7 @@ class ScenePasses {
   void draw_force(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) const;
   void draw_overlays(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings);
   void draw_planes(const FrameView& view, const Snapshot& snapshot, const BoundingBox& body);
+  void draw_symmetry(const FrameView& view, const Snapshot& snapshot, const BoundingBox& body);
   void draw_tools(const FrameView& view, const Snapshot& snapshot) const;
   void draw_tool(const FrameView& view, const Snapshot& snapshot, const Pose& pose) const;
   void draw_touched(const FrameView& view, const Snapshot& snapshot);

@@ -112,6 +112,9 @@ TEST_F(Rendering, ALightMovedByFiveDegreesIsNoticed) {
 
 TEST_F(Rendering, EveryOverlayShows) {
   snapshot_.lattice.touched[0] = 1;
+  snapshot_.symmetric = true;
+  snapshot_.symmetry = {Vector3::Zero(), Vector3::UnitZ()};
+  snapshot_.mirrored_proxy = snapshot_.tool.proxy;
   const std::vector<std::pair<const char*, bool Overlays::*>> switches = {
       {"fixed nodes", &Overlays::fixed_nodes},
       {"touched nodes", &Overlays::touched_nodes},
@@ -120,6 +123,7 @@ TEST_F(Rendering, EveryOverlayShows) {
       {"force", &Overlays::force},
       {"contact normals", &Overlays::contact_normals},
       {"fixing planes", &Overlays::fixing_planes},
+      {"plane of symmetry", &Overlays::symmetry_plane},
       {"tool", &Overlays::tool},
       {"ground grid", &Overlays::ground_grid},
       {"scale bar", &Overlays::scale_bar}};
@@ -127,6 +131,16 @@ TEST_F(Rendering, EveryOverlayShows) {
     EXPECT_GT(change([&](ViewSettings& s) { s.overlays.*overlay = !(s.overlays.*overlay); }), tolerance)
         << name;
   }
+}
+
+TEST_F(Rendering, TheMirroredToolShowsFarFromTheOther) {
+  settings_.overlays.symmetry_plane = false;
+  const Image without = picture();
+  snapshot_.symmetric = true;
+  snapshot_.mirrored_proxy = snapshot_.tool.proxy;
+  const BoundingBox body = drawn_bounds(snapshot_);
+  snapshot_.mirrored_proxy.position_m = body.low_m - 0.2 * (body.high_m - body.low_m);
+  EXPECT_GT(worst_block_difference(without, picture())->worst, tolerance);
 }
 
 TEST_F(Rendering, ShadowSamplesAndGhostShow) {

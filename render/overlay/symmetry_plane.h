@@ -1,0 +1,14 @@
+// The plane of symmetry as a dash-dotted rectangle around the body, as drawings show one. No GL.
+#pragma once
+
+#include <vector>
+
+#include "render/overlay/fixing_plane.h"
+
+namespace spoonbill {
+
+PlaneCorners symmetry_plane_corners(const PlaneSnapshot& plane, const BoundingBox& body);
+
+void append_symmetry_plane(const PlaneCorners& corners, std::vector<OverlayLine>& lines);
+
+}  // namespace spoonbill
