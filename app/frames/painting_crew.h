@@ -1,4 +1,4 @@
-// Paints frames on two threads, each with a painter of its own, while the owner prepares the next ones. The
+// Paints frames on threads, each with a painter of its own, while the owner prepares the next ones. The
 // painters take turns in a fixed order, so the same frames come out on any machine and load. One owner, one
 // thread:
 //
