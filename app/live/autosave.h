@@ -1,4 +1,4 @@
-// Autosaved documents: what a crash leaves of unsaved work. One file a document, in the program's state
+// Autosaved documents: what a crash leaves of unsaved work. One file a window, in the program's state
 // folder, gone again once the document is saved or closed in order.
 //
 //   {"spoonbill_autosave": 1, "of": "/home/ada/spoon.json", "document": {...}}
