@@ -33,7 +33,7 @@ void apply_node_forces(const SpringLattice& lattice, const LatticeView& view) {
   }
 }
 
-// One step of the power iteration a tick follows the fastest frequency as the lattice deforms.
+// One step of the power iteration every other tick follows the fastest frequency as the lattice deforms.
 void follow_fastest_frequency(SpringLattice& lattice, const LatticeView& view) {
   const float square = lattice.kernels().power_step(view, lattice.free_mass());
   if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_frequency(std::sqrt(square));

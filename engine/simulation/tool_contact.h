@@ -22,7 +22,8 @@ class ToolContact {
   void prepare(const BodyMapping& mapping, const SpringLattice& lattice, const Tool& tool, const Pose& pose,
                bool gripping, bool hovering);
   void release();
-  // Acts on nothing from the next prepare() on until the tool has left the body and the button is free.
+  // Acts on nothing from the next prepare() on until the button is free and the tool has left the body, by a
+  // margin or hovering.
   void lift();
   bool lifted() const { return lifted_; }
   bool hovered() const { return hovered_; }

@@ -41,7 +41,7 @@ LATTICE_COUNTS = (8, 12, 16, 20, 24, 28, 30, 32, 34)
 
 LOOP = ("ticks of the 1 kHz loop late by 1 ms or more, the tick of the block in it; peer: cyclictest -m -p80, "
         "without work, just after; ")
-LIVE = "60 s of `spoonbill record --live --draw`, strokes and ten commands a second; "
+LIVE = "60 s of `spoonbill record --live --draw`, strokes, and a command every tenth of a second while they press; "
 LATE = "p99 of how late a tick begins, as above; "
 
 FIGURES = (
@@ -56,10 +56,11 @@ FIGURES = (
            "200 x 200 samples to 8 x 8 control points, three coordinates, both f32; Eigen: the dense product with "
            "the same pseudo-inverse, same flags and instruction set"),
     Figure("springs12_vs_bullet", "us", "ratio", "at least", 10,
-           "one step, 12^3 nodes, 18,788 springs; ours f32 with volume forces; Bullet: soft body, position based, "
+           "one step, 12^3 nodes, 18,788 springs; ours f32 with volume forces, the mean of a tick's six, for which springs "
+           "are linearised once; Bullet: soft body, position based, "
            "one iteration, f32, Debian's build"),
     Figure("springs24_vs_bullet", "us", "ratio", "at least", 20,
-           "one step, 24^3 nodes, 164,588 springs; ours f32 with volume forces; Bullet: deformable body, explicit, "
+           "one step, 24^3 nodes, 164,588 springs; ours f32 as above; Bullet: deformable body, explicit, "
            "f32, Debian's build"),
     Figure("sphere_vs_fcl", "us", "ratio", "at least", 100,
            "a sheet of 200 x 200 cells deforms, then all contacts with a sphere; ours on the true surface; "

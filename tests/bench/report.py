@@ -94,7 +94,6 @@ class Measurements:
         finally:
             background.wait()
 
-
     @functools.cache
     def live(self):
         """A live session that draws while strokes and commands fly, and cyclictest beside as much drawing."""
@@ -112,7 +111,7 @@ class Measurements:
 
 
 def live_script(seconds):
-    """Presses and lets go, with a command every tenth of a second, for so long."""
+    """Presses and lets go, with a command every tenth of a second while it presses, for so long."""
     steps = [{"start_mm": [88, 26, 0]}, {"command": "place_plane", "point_mm": [40, 0, 0], "normal": [1, 0, 0]},
              {"hold_s": 0.4}]
     for stroke in range(int(seconds / 2.4)):
