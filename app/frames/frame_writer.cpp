@@ -79,7 +79,7 @@ Status FrameWriter::finish() {
 }
 
 void FrameWriter::write_frames() {
-  PngEncoder encoder(PngEffort::sequence);
+  PngEncoder encoder;
   while (true) {
     std::pair<int, Image> frame;
     {

@@ -1,40 +1,33 @@
-// PNG files. Encoding is the same on every machine: the same picture and effort give the same bytes.
+// PNG files. The same picture gives the same bytes on one machine, and the same pixels on all.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "engine/result.h"
 #include "render/image/image.h"
 
-struct libdeflate_compressor;
-
 namespace spoonbill {
-
-// Sequences are written at the frames' pace; single pictures are made small.
-enum class PngEffort { sequence, single };
 
 // Encodes pictures one after another in its own working memory: one encoder a thread.
 class PngEncoder {
  public:
-  explicit PngEncoder(PngEffort effort);
+  PngEncoder();
 
   // The bytes of the file, valid until the next call. An opaque picture is stored without alpha. Refused: an
-  // empty picture.
+  // empty picture, a side above 16384 pixels.
   Result<std::span<const std::uint8_t>> encode(const Image& image);
 
  private:
-  struct Free {
-    void operator()(libdeflate_compressor* compressor) const;
-  };
   void filter(const Image& image, int channels);
   void append_chunk(const char* type, std::span<const std::uint8_t> data);
 
-  PngEffort effort_;
-  std::unique_ptr<libdeflate_compressor, Free> compressor_;
+  Result<std::size_t> compress();  // the filtered rows; the size in bytes
+
+  std::vector<std::uint8_t> deflate_memory_;
   std::vector<std::uint8_t> filtered_;
   std::vector<std::uint8_t> compressed_;
   std::vector<std::uint8_t> file_;
