@@ -18,6 +18,7 @@ namespace spoonbill {
   X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)                             \
   X(PFNGLBINDTEXTUREPROC, BindTexture)                                       \
   X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                               \
+  X(PFNGLBLENDEQUATIONPROC, BlendEquation)                                   \
   X(PFNGLBLENDFUNCPROC, BlendFunc)                                           \
   X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate)                           \
   X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer)                               \

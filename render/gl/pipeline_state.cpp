@@ -14,6 +14,7 @@ void set_pipeline_state(const GlFunctions& gl, const PipelineState& state) {
   gl.DepthMask(state.depth == Depth::test_and_write ? GL_TRUE : GL_FALSE);
   gl.DepthFunc(GL_LEQUAL);
   set_enabled(gl, GL_BLEND, state.blend != Blend::off);
+  gl.BlendEquation(state.blend == Blend::maximum ? GL_MAX : GL_FUNC_ADD);
   gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   set_enabled(gl, GL_CULL_FACE, state.cull != Cull::off);
   gl.CullFace(state.cull == Cull::front ? GL_FRONT : GL_BACK);

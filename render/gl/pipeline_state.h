@@ -7,7 +7,7 @@
 namespace spoonbill {
 
 enum class Depth { off, test, test_and_write };
-enum class Blend { off, premultiplied };  // over what is there
+enum class Blend { off, premultiplied, maximum };  // over what is there; the greater of both, by channel
 enum class Cull { off, back, front };
 
 struct PipelineState {

@@ -3,6 +3,12 @@
 #include <string>
 
 namespace spoonbill {
+namespace {
+
+// GL_PACK_INVERT_MESA of GL_MESA_pack_invert, which only Mesa has: saves turning the rows over afterwards.
+constexpr GLenum pack_top_row_first = 0x8758;
+
+}  // namespace
 
 RenderTarget::RenderTarget(const GlFunctions& gl, int width_px, int height_px, int samples)
     : gl_(&gl),
@@ -33,6 +39,11 @@ RenderTarget::RenderTarget(const GlFunctions& gl, int width_px, int height_px, i
   gl.RenderbufferStorageMultisample(GL_RENDERBUFFER, 0, GL_RGBA8, width_px, height_px);
   gl.BindFramebuffer(GL_FRAMEBUFFER, frame_.id());
   gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, frame_colour_.id());
+
+  while (gl.GetError() != GL_NO_ERROR) {
+  }
+  gl.PixelStorei(pack_top_row_first, GL_FALSE);
+  packs_top_row_first_ = gl.GetError() == GL_NO_ERROR;
 }
 
 Result<RenderTarget> RenderTarget::make(const GlFunctions& gl, int width_px, int height_px, int samples) {
@@ -53,14 +64,17 @@ Status RenderTarget::check(GLuint framebuffer) const {
                " pixels with " + std::to_string(samples_) + " samples: choose a smaller size or samples = 0"};
 }
 
-void RenderTarget::begin_scene(const PixelArea& area) const {
+void RenderTarget::begin_scene(std::span<const PixelArea> areas) const {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, scene_.id());
   gl_->Viewport(0, 0, width_px_, height_px_);
-  gl_->Enable(GL_SCISSOR_TEST);
-  gl_->Scissor(area.x, area.y, area.width, area.height);
   gl_->DepthMask(GL_TRUE);
   gl_->ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
-  gl_->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  gl_->Enable(GL_SCISSOR_TEST);
+  for (const PixelArea& area : areas) {
+    gl_->Scissor(area.x, area.y, area.width, area.height);
+    gl_->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  }
+  gl_->Disable(GL_SCISSOR_TEST);
 }
 
 void RenderTarget::begin_frame() const {
@@ -73,8 +87,13 @@ void RenderTarget::read(Image& image) const {
   image.resize(width_px_, height_px_);
   gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, frame_.id());
   gl_->PixelStorei(GL_PACK_ALIGNMENT, 1);
+  if (packs_top_row_first_) gl_->PixelStorei(pack_top_row_first, GL_TRUE);
   gl_->ReadPixels(0, 0, width_px_, height_px_, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
-  flip_rows(image);
+  if (packs_top_row_first_) {
+    gl_->PixelStorei(pack_top_row_first, GL_FALSE);
+  } else {
+    flip_rows(image);
+  }
 }
 
 void RenderTarget::copy_to_window() const {

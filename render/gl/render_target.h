@@ -4,6 +4,8 @@
 // for every sample.
 #pragma once
 
+#include <span>
+
 #include "engine/result.h"
 #include "render/gl/functions.h"
 #include "render/gl/handle.h"
@@ -27,8 +29,9 @@ class RenderTarget {
   int height_px() const { return height_px_; }
   int samples() const { return samples_; }
 
-  // Drawing goes to the scene and is confined to the area, which is transparent and of clear depth at first.
-  void begin_scene(const PixelArea& area) const;
+  // Drawing goes to the scene, which is transparent and of clear depth in these areas. What lies outside them
+  // is of an earlier frame.
+  void begin_scene(std::span<const PixelArea> areas) const;
 
   // Drawing goes to the frame, which has no depth. Every pixel must be written first.
   void begin_frame() const;
@@ -51,6 +54,7 @@ class RenderTarget {
   int width_px_;
   int height_px_;
   int samples_;
+  bool packs_top_row_first_ = false;  // what is read
   GlHandle scene_colour_;
   GlHandle scene_depth_;
   GlHandle scene_;

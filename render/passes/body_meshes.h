@@ -18,6 +18,7 @@ class BodyMeshes {
   // error is that of the first surface that cannot be tessellated.
   Status update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level);
 
+  const std::vector<TessellatedSurface>& surfaces() const { return surfaces_; }
   const std::vector<SurfaceBuffers>& buffers() const { return buffers_; }
   const BoundingBox& bounds() const { return bounds_; }
 

@@ -126,10 +126,12 @@ Lit studio_light(Look look, vec3 p, vec3 n, float key, float sky) {
   return Lit(look.base * (1.0 - look.metalness) * (1.0 - 0.4 * look.translucency) * light, mirror);
 }
 
-// The premultiplied colour for the picture. What shines through belongs to the background, what is mirrored to the
-// surface however clear it is.
-vec4 picture_colour(Lit lit, float opacity) {
-  if (opacity >= 1.0) return vec4(encode(shoulder(lit.diffuse + lit.mirror)), 1.0);
+// The colour for the picture.
+vec4 opaque_colour(Lit lit) { return vec4(encode(shoulder(lit.diffuse + lit.mirror)), 1.0); }
+
+// The same, premultiplied, of what is clear in part. What shines through belongs to the background, what is mirrored
+// to the surface however clear it is.
+vec4 clear_colour(Lit lit, float opacity) {
   vec3 own = lit.diffuse * opacity;
   vec3 gloss = encode(shoulder(own + lit.mirror)) - encode(shoulder(own));
   return vec4(encode(shoulder(lit.diffuse)) * opacity + gloss, opacity);

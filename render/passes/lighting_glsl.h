@@ -11,7 +11,8 @@ extern const char* const key_light_glsl;
 // tool_radius (0 without a tool).
 extern const char* const sphere_shadow_glsl;
 
-// studio_light(): the light that a surface point sends to the eye; picture_colour() encodes it to sRGB.
+// studio_light(): the light that a surface point sends to the eye; opaque_colour() and clear_colour() encode
+// it to sRGB.
 // Uniforms: eye, eye_right, eye_up, ground_y.
 extern const char* const studio_light_glsl;
 

@@ -41,17 +41,18 @@ ResolvePass::ResolvePass(const GlFunctions& gl, Program with_samples, Program wi
       without_samples_(std::move(without_samples)),
       vertex_array_(make_vertex_array(gl)) {}
 
-void ResolvePass::draw(const RenderTarget& target, const PixelArea& area) const {
-  if (area.empty()) return;
+void ResolvePass::draw(const RenderTarget& target, std::span<const PixelArea> areas) const {
   set_pipeline_state(*gl_, {Depth::off, Blend::premultiplied, Cull::off});
   const Program& program = target.samples() > 0 ? with_samples_ : without_samples_;
   program.use();
   program.set("scene", 0);
   gl_->ActiveTexture(GL_TEXTURE0);
   gl_->BindTexture(target.scene_texture_kind(), target.scene_texture());
-  gl_->Viewport(area.x, area.y, area.width, area.height);
   gl_->BindVertexArray(vertex_array_.id());
-  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  for (const PixelArea& area : areas) {
+    gl_->Viewport(area.x, area.y, area.width, area.height);
+    gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  }
   gl_->Viewport(0, 0, target.width_px(), target.height_px());
 }
 

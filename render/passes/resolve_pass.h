@@ -1,6 +1,8 @@
 // Averages the scene's samples and lays the result over the frame.
 #pragma once
 
+#include <span>
+
 #include "engine/result.h"
 #include "render/gl/functions.h"
 #include "render/gl/handle.h"
@@ -13,8 +15,8 @@ class ResolvePass {
  public:
   static Result<ResolvePass> make(const GlFunctions& gl);
 
-  // Within the area that the scene was drawn in. The target's frame must be bound.
-  void draw(const RenderTarget& target, const PixelArea& area) const;
+  // Within the areas that the scene was drawn in. The target's frame must be bound.
+  void draw(const RenderTarget& target, std::span<const PixelArea> areas) const;
 
  private:
   ResolvePass(const GlFunctions& gl, Program with_samples, Program without_samples);

@@ -1,7 +1,9 @@
 #include "render/passes/scene_area.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "render/overlay/contact_normals.h"
 #include "render/overlay/fixing_plane.h"
@@ -11,22 +13,41 @@
 namespace spoonbill {
 namespace {
 
-// Grows with projected points; whole once a point cannot be projected.
-class ScreenBounds {
- public:
-  ScreenBounds(const Camera& camera, const Viewport& viewport) : camera_(camera), viewport_(viewport) {}
+constexpr int strip_width_px = 64;
+constexpr double margin_px = 14.0;  // before the interface scale: for marks and the width of lines
 
-  void include(const Vector3& point_m) {
-    const auto pixel = project(camera_, viewport_, point_m);
-    if (!pixel) {
-      whole_ = true;
-      return;
+// Grows with what is projected; whole once a point cannot be.
+class Strips {
+ public:
+  explicit Strips(const FrameView& view)
+      : view_(view),
+        margin_px_(static_cast<float>(margin_px) * view.interface_scale),
+        heights_(static_cast<std::size_t>((view.viewport.width_px + strip_width_px - 1) / strip_width_px)) {}
+
+  // The hull of points is within the box around their places on the screen.
+  class Hull {
+   public:
+    explicit Hull(Strips& strips) : strips_(strips) {}
+    ~Hull() { strips_.mark(low_, high_); }
+    Hull(const Hull&) = delete;
+    Hull& operator=(const Hull&) = delete;
+
+    void include(const Eigen::Vector3f& point_m) {
+      const Eigen::Vector2f pixel = strips_.project(point_m);
+      low_ = low_.cwiseMin(pixel);
+      high_ = high_.cwiseMax(pixel);
     }
-    low_ = low_.cwiseMin(*pixel);
-    high_ = high_.cwiseMax(*pixel);
-  }
+
+   private:
+    Strips& strips_;
+    Eigen::Vector2f low_ = Eigen::Vector2f::Constant(1e30F);
+    Eigen::Vector2f high_ = Eigen::Vector2f::Constant(-1e30F);
+  };
+
   void include(const BoundingBox& box) {
-    for (int i = 0; i < 8 && !box.empty(); ++i) include(box.corner(i));
+    if (box.empty()) return;
+    Hull hull(*this);
+    for (int i = 0; i < 8; ++i) hull.include(box.corner(i).cast<float>());
   }
   void include_sphere(const Vector3& centre_m, double radius_m) {
     BoundingBox box;
@@ -34,77 +55,136 @@ class ScreenBounds {
     box.include(centre_m + Vector3::Constant(radius_m));
     include(box);
   }
+  void include_points(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z) {
+    for (std::size_t i = 0; i < x.size(); ++i) Hull(*this).include({x[i], y[i], z[i]});
+  }
+  void include_triangles(const TessellatedSurface& surface) {
+    const GridSamples<float>& at = surface.samples();
+    const std::vector<std::uint32_t>& indices = surface.indices();
+    // Two triangles a cell.
+    for (std::size_t first = 0; first + 5 < indices.size(); first += 6) {
+      Hull hull(*this);
+      for (const std::size_t corner : {0, 1, 2, 5}) {
+        const std::uint32_t v = indices[first + corner];
+        hull.include({at.x[v], at.y[v], at.z[v]});
+      }
+    }
+  }
 
-  PixelArea area(double margin_px) const {
-    const double width = viewport_.width_px, height = viewport_.height_px;
-    if (whole_) return {0, 0, viewport_.width_px, viewport_.height_px};
-    const int x0 = static_cast<int>(std::clamp(std::floor(low_.x() - margin_px), 0.0, width));
-    const int x1 = static_cast<int>(std::clamp(std::ceil(high_.x() + margin_px), 0.0, width));
-    const int top = static_cast<int>(std::clamp(std::floor(low_.y() - margin_px), 0.0, height));
-    const int bottom = static_cast<int>(std::clamp(std::ceil(high_.y() + margin_px), 0.0, height));
-    return {x0, viewport_.height_px - bottom, std::max(0, x1 - x0), std::max(0, bottom - top)};
+  std::vector<PixelArea> areas() const {
+    const int width = view_.viewport.width_px;
+    if (whole_) return {{0, 0, width, view_.viewport.height_px}};
+    std::vector<PixelArea> areas;
+    for (std::size_t s = 0; s < heights_.size(); ++s) {
+      const int x = static_cast<int>(s) * strip_width_px;
+      const auto [low, high] = heights_[s];
+      if (low < high) areas.push_back({x, low, std::min(strip_width_px, width - x), high - low});
+    }
+    return areas;
   }
 
  private:
-  const Camera& camera_;
-  const Viewport& viewport_;
-  Eigen::Vector2d low_ = Eigen::Vector2d::Constant(1e30);
-  Eigen::Vector2d high_ = Eigen::Vector2d::Constant(-1e30);
+  struct Heights {
+    int low = 1 << 20, high = 0;  // pixels from the bottom
+  };
+
+  Eigen::Vector2f project(const Eigen::Vector3f& point_m) {
+    const Eigen::Vector4f clip = view_.world_to_clip * point_m.homogeneous();
+    if (!(clip.w() > 1e-6F)) {
+      whole_ = true;
+      return Eigen::Vector2f::Zero();
+    }
+    const Eigen::Vector2f share = (clip.head<2>() / clip.w()).array() * 0.5F + 0.5F;
+    return {share.x() * static_cast<float>(view_.viewport.width_px),
+            share.y() * static_cast<float>(view_.viewport.height_px)};
+  }
+
+  void mark(const Eigen::Vector2f& low, const Eigen::Vector2f& high) {
+    const float width = static_cast<float>(view_.viewport.width_px) - 1.0F;
+    const float height = static_cast<float>(view_.viewport.height_px);
+    const float left = low.x() - margin_px_, right = high.x() + margin_px_;
+    const float bottom = std::max(low.y() - margin_px_, 0.0F), top = std::min(high.y() + margin_px_, height);
+    if (!(left <= width && right >= 0.0F && bottom < top)) return;
+    const int first = static_cast<int>(std::max(left, 0.0F)) / strip_width_px;
+    const int last = static_cast<int>(std::min(right, width)) / strip_width_px;
+    for (int s = first; s <= last; ++s) {
+      Heights& heights = heights_[static_cast<std::size_t>(s)];
+      heights.low = std::min(heights.low, static_cast<int>(bottom));
+      heights.high = std::max(heights.high, static_cast<int>(std::ceil(top)));
+    }
+  }
+
+  const FrameView& view_;
+  const float margin_px_;
+  std::vector<Heights> heights_;
   bool whole_ = false;
 };
 
-BoundingBox net_box(const Snapshot& snapshot) {
+// Its lines join points that lie far from each other.
+BoundingBox net_box(const SurfaceSnapshot& surface) {
   BoundingBox box;
-  for (const SurfaceSnapshot& s : snapshot.surfaces) {
-    for (std::size_t i = 0; i < s.x.size(); ++i) box.include(Vector3(s.x[i], s.y[i], s.z[i]));
+  for (std::size_t i = 0; i < surface.x.size(); ++i) {
+    box.include(Vector3(surface.x[i], surface.y[i], surface.z[i]));
   }
   return box;
 }
 
-BoundingBox lattice_box(const LatticeSnapshot& lattice) {
-  BoundingBox box;
-  for (std::size_t i = 0; i < lattice.x.size(); ++i) {
-    box.include(Vector3(lattice.x[i], lattice.y[i], lattice.z[i]));
+void include_planes(const Snapshot& snapshot, const Overlays& on, const BoundingBox& body, Strips& strips) {
+  if (on.fixing_planes) {
+    for (const PlaneSnapshot& plane : snapshot.planes) {
+      const PlaneCorners corners = fixing_plane_corners(plane, snapshot.lattice, body);
+      Strips::Hull hull(strips);
+      for (const Vector3& corner : corners) hull.include(corner.cast<float>());
+      hull.include(plane_arrow_tip(corners, plane).cast<float>());
+    }
   }
-  return box;
+  if (on.symmetry_plane && snapshot.symmetric) {
+    Strips::Hull hull(strips);
+    for (const Vector3& corner : symmetry_plane_corners(snapshot.symmetry, body)) {
+      hull.include(corner.cast<float>());
+    }
+  }
 }
 
 }  // namespace
 
-PixelArea scene_area(const Snapshot& snapshot, const ViewSettings& settings, const Viewport& viewport,
-                     const BoundingBox& body) {
+std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& settings,
+                                  const FrameView& view, const std::vector<TessellatedSurface>& bodies) {
   const Overlays& on = settings.overlays;
-  ScreenBounds bounds(settings.camera, viewport);
-  bounds.include(body);
-  if (on.lattice || on.fixed_nodes || on.touched_nodes) bounds.include(lattice_box(snapshot.lattice));
-  if (on.control_net) bounds.include(net_box(snapshot));
+  Strips strips(view);
+  BoundingBox body;
+  for (const TessellatedSurface& surface : bodies) {
+    strips.include_triangles(surface);
+    const BoundingBox box = surface.bounds();
+    if (box.empty()) continue;
+    body.include(box.low_m);
+    body.include(box.high_m);
+  }
+  const LatticeSnapshot& lattice = snapshot.lattice;
+  if (on.lattice || on.fixed_nodes || on.touched_nodes) {
+    strips.include_points(lattice.x, lattice.y, lattice.z);
+  }
+  if (on.control_net) {
+    for (const SurfaceSnapshot& surface : snapshot.surfaces) strips.include(net_box(surface));
+  }
   if (on.tool) {
-    bounds.include_sphere(snapshot.tool.proxy.position_m, snapshot.tool.radius_m);
+    strips.include_sphere(snapshot.tool.proxy.position_m, snapshot.tool.radius_m);
     if (snapshot.symmetric) {
-      bounds.include_sphere(snapshot.mirrored_proxy.position_m, snapshot.tool.radius_m);
+      strips.include_sphere(snapshot.mirrored_proxy.position_m, snapshot.tool.radius_m);
     }
   }
   if (on.contact_normals) {
     for (const ContactSnapshot& contact : snapshot.contacts) {
-      bounds.include_sphere(contact.point_m, contact_normal_length_m(snapshot.tool));
+      strips.include_sphere(contact.point_m, contact_normal_length_m(snapshot.tool));
     }
   }
   if (const auto arrow = force_arrow(snapshot, settings)) {
-    bounds.include(arrow->start_m);
-    bounds.include(arrow->tip_m);
+    Strips::Hull hull(strips);
+    hull.include(arrow->start_m.cast<float>());
+    hull.include(arrow->tip_m.cast<float>());
   }
-  if (on.fixing_planes) {
-    for (const PlaneSnapshot& plane : snapshot.planes) {
-      const PlaneCorners corners = fixing_plane_corners(plane, snapshot.lattice, body);
-      for (const Vector3& corner : corners) bounds.include(corner);
-      bounds.include(plane_arrow_tip(corners, plane));
-    }
-  }
-  if (on.symmetry_plane && snapshot.symmetric) {
-    for (const Vector3& corner : symmetry_plane_corners(snapshot.symmetry, body)) bounds.include(corner);
-  }
-  constexpr double margin_px = 14.0;
-  return bounds.area(margin_px * settings.interface_scale);
+  include_planes(snapshot, on, body, strips);
+  return strips.areas();
 }
 
 }  // namespace spoonbill

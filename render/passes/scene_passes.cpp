@@ -90,12 +90,12 @@ void ScenePasses::draw_shadows(const FrameView& view, const Snapshot& snapshot, 
 
 void ScenePasses::draw(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
                        const BodyMeshes& bodies, const RenderTarget& target) {
-  const PixelArea area = scene_area(snapshot, settings, view.viewport, bodies.bounds());
-  target.begin_scene(area);
+  const std::vector<PixelArea> areas = scene_area(snapshot, settings, view, bodies.surfaces());
+  target.begin_scene(areas);
   draw_scene(view, snapshot, settings, bodies);
   passes_.background.draw(target);
   draw_ground(view, settings);
-  passes_.resolve.draw(target, area);
+  passes_.resolve.draw(target, areas);
 }
 
 void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,

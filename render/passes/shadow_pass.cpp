@@ -14,8 +14,8 @@ namespace spoonbill {
 namespace {
 
 constexpr int key_side_px = 1024;
-constexpr int reduction = 4;  // as in shadow_reduce_fragment_glsl
-constexpr int ground_side_px = key_side_px / reduction;
+constexpr int cover_side_px = 256;
+constexpr int ground_side_px = 192;
 
 // How far from the body the ground under it is darkened by the hidden sky.
 constexpr float contact_reach_m = 0.007f;
@@ -58,13 +58,13 @@ void set_tool_uniforms(const Program& program, const ToolSphere& tool) {
 Result<ShadowPass> ShadowPass::make(const GlFunctions& gl) {
   auto depth = Program::make(gl, "shadow depth", shadow_depth_vertex_glsl, shadow_depth_fragment_glsl);
   if (!depth) return depth.error();
-  auto reduce = Program::make(gl, "shadow cover", whole_viewport_vertex_glsl, shadow_reduce_fragment_glsl);
-  if (!reduce) return reduce.error();
+  auto cover = Program::make(gl, "shadow cover", shadow_cover_vertex_glsl, shadow_cover_fragment_glsl);
+  if (!cover) return cover.error();
   auto ground = Program::make(gl, "ground light", whole_viewport_vertex_glsl,
                               std::string(key_light_glsl) + sphere_shadow_glsl + ground_light_fragment_glsl);
   if (!ground) return ground.error();
   return ShadowPass(gl,
-                    Programs{std::move(depth).value(), std::move(reduce).value(), std::move(ground).value()});
+                    Programs{std::move(depth).value(), std::move(cover).value(), std::move(ground).value()});
 }
 
 ShadowPass::ShadowPass(const GlFunctions& gl, Programs programs)
@@ -73,14 +73,18 @@ ShadowPass::ShadowPass(const GlFunctions& gl, Programs programs)
       vertex_array_(make_vertex_array(gl)),
       key_map_(
           make_map(gl, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, key_side_px, GL_LINEAR)),
-      sky_map_(make_map(gl, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, ground_side_px,
-                        GL_NEAREST)),
-      cover_(make_map(gl, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, ground_side_px, GL_LINEAR_MIPMAP_NEAREST)),
+      cover_(make_map(gl, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, cover_side_px, GL_LINEAR_MIPMAP_NEAREST)),
       ground_dark_(make_map(gl, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, ground_side_px, GL_LINEAR)),
       key_framebuffer_(make_map_framebuffer(gl, GL_DEPTH_ATTACHMENT, key_map_)),
-      sky_framebuffer_(make_map_framebuffer(gl, GL_DEPTH_ATTACHMENT, sky_map_)),
       cover_framebuffer_(make_map_framebuffer(gl, GL_COLOR_ATTACHMENT0, cover_)),
-      ground_framebuffer_(make_map_framebuffer(gl, GL_COLOR_ATTACHMENT0, ground_dark_)) {}
+      ground_framebuffer_(make_map_framebuffer(gl, GL_COLOR_ATTACHMENT0, ground_dark_)) {
+  gl.BindTexture(GL_TEXTURE_2D, key_map_.id());
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+}
+
+float ShadowPass::highest_m() const {
+  return std::max(area_.high_m, 1e-4f);
+}
 
 int ShadowPass::key_map_side_px() {
   return key_side_px;
@@ -89,44 +93,38 @@ int ShadowPass::key_map_side_px() {
 void ShadowPass::draw(const FrameView& view, const std::vector<SurfaceBuffers>& bodies,
                       const BoundingBox& body_box, const BoundingBox& tool_box, const ToolSphere& tool) {
   area_ = shadow_area(body_box, tool_box, view.ground_y_m, view.toward_key, key_side_px);
-  draw_depth(bodies, key_framebuffer_, key_side_px, area_.key_to_clip);
-  draw_depth(bodies, sky_framebuffer_, ground_side_px, area_.sky_to_clip);
-  reduce();
+  draw_key_map(bodies);
+  draw_cover(view, bodies);
   light_ground(view, tool);
 }
 
-void ShadowPass::draw_depth(const std::vector<SurfaceBuffers>& bodies, const GlHandle& framebuffer,
-                            int side_px, const Eigen::Matrix4f& to_clip) const {
-  gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
-  gl_->Viewport(0, 0, side_px, side_px);
+void ShadowPass::draw_key_map(const std::vector<SurfaceBuffers>& bodies) const {
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, key_framebuffer_.id());
+  gl_->Viewport(0, 0, key_side_px, key_side_px);
   set_pipeline_state(*gl_, {Depth::test_and_write, Blend::off, Cull::off});
   gl_->Clear(GL_DEPTH_BUFFER_BIT);
   programs_.depth.use();
-  programs_.depth.set("to_clip", to_clip);
+  programs_.depth.set("to_clip", area_.key_to_clip);
   for (const SurfaceBuffers& body : bodies) body.draw();
 }
 
-void ShadowPass::reduce() const {
+void ShadowPass::draw_cover(const FrameView& view, const std::vector<SurfaceBuffers>& bodies) const {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, cover_framebuffer_.id());
-  set_pipeline_state(*gl_, {});
+  gl_->Viewport(0, 0, cover_side_px, cover_side_px);
+  set_pipeline_state(*gl_, {Depth::off, Blend::maximum, Cull::off});
   gl_->ClearColor(0.0f, 0.0f, 0.0f, 1.0f);
   gl_->Clear(GL_COLOR_BUFFER_BIT);
-  gl_->Viewport(0, 0, used_px(area_.used_share.x(), ground_side_px),
-                used_px(area_.used_share.y(), ground_side_px));
-  programs_.reduce.use();
-  programs_.reduce.set("key_map", 0);
-  programs_.reduce.set("sky_map", 1);
-  programs_.reduce.set("low", area_.low_m);
-  programs_.reduce.set("high", area_.high_m);
-  programs_.reduce.set("reach", contact_reach_m);
-  gl_->BindVertexArray(vertex_array_.id());
-  gl_->ActiveTexture(GL_TEXTURE1);
-  gl_->BindTexture(GL_TEXTURE_2D, sky_map_.id());
+  const Program& program = programs_.cover;
+  program.use();
+  program.set("high", highest_m());
+  program.set("reach", contact_reach_m);
+  program.set("ground_height", view.ground_y_m);
+  for (const int overhead : {0, 1}) {
+    program.set("to_clip", overhead != 0 ? area_.sky_to_clip : area_.key_to_clip);
+    program.set("overhead", overhead);
+    for (const SurfaceBuffers& body : bodies) body.draw();
+  }
   gl_->ActiveTexture(GL_TEXTURE0);
-  gl_->BindTexture(GL_TEXTURE_2D, key_map_.id());
-  gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_NONE);
-  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
-  gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   gl_->BindTexture(GL_TEXTURE_2D, cover_.id());
   gl_->GenerateMipmap(GL_TEXTURE_2D);
 }
@@ -142,8 +140,9 @@ void ShadowPass::light_ground(const FrameView& view, const ToolSphere& tool) con
   program.set("cover", 0);
   program.set("corner", area_.corner_m);
   program.set("side", area_.side_m);
-  program.set("texels", static_cast<float>(ground_side_px));
-  program.set("high", std::max(area_.high_m, 1e-4f));
+  program.set("ground_texels", static_cast<float>(ground_side_px));
+  program.set("cover_texels", static_cast<float>(cover_side_px));
+  program.set("high", highest_m());
   program.set("spread", key_light_spread);
   program.set("reach", contact_reach_m);
   program.set("ground_height", view.ground_y_m);

@@ -42,20 +42,20 @@ class ShadowPass {
 
  private:
   struct Programs {
-    Program depth, reduce, ground;
+    Program depth, cover, ground;
   };
   ShadowPass(const GlFunctions& gl, Programs programs);
-  void draw_depth(const std::vector<SurfaceBuffers>& bodies, const GlHandle& framebuffer, int side_px,
-                  const Eigen::Matrix4f& to_clip) const;
-  void reduce() const;
+  void draw_key_map(const std::vector<SurfaceBuffers>& bodies) const;
+  void draw_cover(const FrameView& view, const std::vector<SurfaceBuffers>& bodies) const;
+  float highest_m() const;  // above the ground, more than 0
   void light_ground(const FrameView& view, const ToolSphere& tool) const;
 
   const GlFunctions* gl_;
   Programs programs_;
   ShadowArea area_;
   GlHandle vertex_array_;
-  GlHandle key_map_, sky_map_, cover_, ground_dark_;
-  GlHandle key_framebuffer_, sky_framebuffer_, cover_framebuffer_, ground_framebuffer_;
+  GlHandle key_map_, cover_, ground_dark_;
+  GlHandle key_framebuffer_, cover_framebuffer_, ground_framebuffer_;
 };
 
 }  // namespace spoonbill

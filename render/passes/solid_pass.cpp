@@ -2,7 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,38 +21,50 @@ namespace {
 constexpr const char* vertex_source = R"(
 uniform mat4 world_to_clip;
 uniform mat4 model;
+uniform mat4 normal_to_world;
 layout(location = 0) in vec3 local_position;
 layout(location = 1) in vec3 local_normal;
 out vec3 position;
 out vec3 normal;
 void main() {
   position = (model * vec4(local_position, 1.0)).xyz;
-  normal = transpose(inverse(mat3(model))) * local_normal;
+  normal = (normal_to_world * vec4(local_normal, 0.0)).xyz;
   gl_Position = world_to_clip * vec4(position, 1.0);
 }
 )";
 
-constexpr const char* fragment_source = R"(
+constexpr const char* solid_source = R"(
 uniform vec4 colour;
-uniform int finish;
 in vec3 position;
 in vec3 normal;
 out vec4 result;
 void main() {
-  if (finish == 2) {
-    result = vec4(colour.rgb * colour.a, colour.a);
-    return;
-  }
-  vec3 n = normalize(normal);
-  Look look = Look(colour.rgb, finish == 1 ? 0.20 : 0.45, 0.0, 0.0);
-  Lit lit = studio_light(look, position, n, 1.0, 1.0);
-  float grazing = 1.0 - clamp(dot(n, normalize(eye - position)), 0.0, 1.0);
-  float opacity = finish == 1 ? mix(0.44, 0.90, grazing * grazing) : 1.0;
-  result = picture_colour(lit, opacity);
+  Look look = Look(colour.rgb, 0.45, 0.0, 0.0);
+  result = opaque_colour(studio_light(look, position, normalize(normal), 1.0, 1.0));
 }
 )";
 
-constexpr int sphere_segments = 56;
+constexpr const char* glass_source = R"(
+uniform vec4 colour;
+in vec3 position;
+in vec3 normal;
+out vec4 result;
+void main() {
+  vec3 n = normalize(normal);
+  Look look = Look(colour.rgb, 0.20, 0.0, 0.0);
+  float grazing = 1.0 - clamp(dot(n, normalize(eye - position)), 0.0, 1.0);
+  result = clear_colour(studio_light(look, position, n, 1.0, 1.0), mix(0.44, 0.90, grazing * grazing));
+}
+)";
+
+constexpr const char* pane_source = R"(
+uniform vec4 colour;
+out vec4 result;
+void main() { result = vec4(colour.rgb * colour.a, colour.a); }
+)";
+
+constexpr std::array<int, 5> sphere_segments = {16, 28, 44, 68, 104};
+constexpr float sphere_sagitta_px = 0.25f;
 constexpr int arrow_segments = 28;
 
 Eigen::Matrix4f placed(const Eigen::Vector3f& origin, const Eigen::Matrix3f& axes) {
@@ -59,18 +74,32 @@ Eigen::Matrix4f placed(const Eigen::Vector3f& origin, const Eigen::Matrix3f& axe
   return model;
 }
 
+Eigen::Vector4f linear(Colour colour) {
+  return {linear_of_srgb8(colour.r), linear_of_srgb8(colour.g), linear_of_srgb8(colour.b),
+          static_cast<float>(colour.a) / 255.0f};
+}
+
+// As it goes into the picture.
+Eigen::Vector4f encoded(Colour colour) {
+  return Eigen::Vector4i(colour.r, colour.g, colour.b, colour.a).cast<float>() / 255.0f;
+}
+
 }  // namespace
 
 Result<SolidPass> SolidPass::make(const GlFunctions& gl) {
-  auto program = Program::make(gl, "solids", vertex_source,
-                               std::string(key_light_glsl) + studio_light_glsl + fragment_source);
-  if (!program) return program.error();
-  return SolidPass(gl, std::move(program).value());
+  const std::string light = std::string(key_light_glsl) + studio_light_glsl;
+  auto solid = Program::make(gl, "solid", vertex_source, light + solid_source);
+  if (!solid) return solid.error();
+  auto glass = Program::make(gl, "glass", vertex_source, light + glass_source);
+  if (!glass) return glass.error();
+  auto pane = Program::make(gl, "pane", vertex_source, pane_source);
+  if (!pane) return pane.error();
+  return SolidPass(gl, Programs{std::move(solid).value(), std::move(glass).value(), std::move(pane).value()});
 }
 
-SolidPass::SolidPass(const GlFunctions& gl, Program program)
+SolidPass::SolidPass(const GlFunctions& gl, Programs programs)
     : gl_(&gl),
-      program_(std::move(program)),
+      programs_(std::move(programs)),
       vertex_array_(make_vertex_array(gl)),
       vertices_(make_buffer(gl)) {
   std::vector<SolidVertex> vertices;
@@ -79,7 +108,7 @@ SolidPass::SolidPass(const GlFunctions& gl, Program program)
     vertices.insert(vertices.end(), more.begin(), more.end());
     return shape;
   };
-  sphere_ = add(lathe_sphere(sphere_segments));
+  for (const int segments : sphere_segments) spheres_.push_back(add(lathe_sphere(segments)));
   shaft_ = add(lathe_cylinder(arrow_segments));
   head_ = add(lathe_cone(arrow_segments));
   pane_ = add(unit_pane());
@@ -95,41 +124,47 @@ SolidPass::SolidPass(const GlFunctions& gl, Program program)
   gl.EnableVertexAttribArray(1);
 }
 
-void SolidPass::draw_shape(const FrameView& view, const Shape& shape, const Eigen::Matrix4f& model,
-                           Colour colour, Finish finish) const {
-  switch (finish) {
-    case Finish::solid:
-      set_pipeline_state(*gl_, {Depth::test_and_write, Blend::off, Cull::back});
-      break;
-    case Finish::glass:
-      set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, Cull::back});
-      break;
-    case Finish::pane:
-      set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, Cull::off});
-      break;
-  }
-  program_.use();
-  set_frame_uniforms(program_, view);
-  program_.set("model", model);
-  program_.set("finish", static_cast<int>(finish));
-  const auto channel = [&](int value) {
-    // Panes are unlit and go into the picture as they are.
-    return finish == Finish::pane ? static_cast<float>(value) / 255.0f : linear_of_srgb8(value);
-  };
-  program_.set("colour", Eigen::Vector4f(channel(colour.r), channel(colour.g), channel(colour.b),
-                                         static_cast<float>(colour.a) / 255.0f));
+void SolidPass::draw_solid(const FrameView& view, const Shape& shape, const Eigen::Matrix4f& model,
+                           Colour colour) const {
+  set_pipeline_state(*gl_, {Depth::test_and_write, Blend::off, Cull::back});
+  draw_shape(programs_.solid, view, shape, model, linear(colour));
+}
+
+void SolidPass::draw_shape(const Program& program, const FrameView& view, const Shape& shape,
+                           const Eigen::Matrix4f& model, const Eigen::Vector4f& colour) const {
+  program.use();
+  set_frame_uniforms(program, view);
+  Eigen::Matrix4f normal_to_world = Eigen::Matrix4f::Identity();
+  normal_to_world.topLeftCorner<3, 3>() = model.topLeftCorner<3, 3>().inverse().transpose();
+  program.set("model", model);
+  program.set("normal_to_world", normal_to_world);
+  program.set("colour", colour);
   gl_->BindVertexArray(vertex_array_.id());
   gl_->DrawArrays(GL_TRIANGLES, shape.first, shape.count);
 }
 
+// A chord of a circle of radius r, cut into n, lies within r (pi / n)^2 / 2 of its arc.
+const SolidPass::Shape& SolidPass::sphere_for(const FrameView& view, const Eigen::Vector3f& centre_m,
+                                              float radius_m) const {
+  const float depth = std::max((centre_m - view.eye_m).norm() - radius_m, view.nearest_depth_m);
+  const float radius_px = radius_m * view.pixel_depth_ratio / depth;
+  const float needed = std::numbers::pi_v<float> * std::sqrt(radius_px / (2.0f * sphere_sagitta_px));
+  std::size_t choice = 0;
+  while (choice + 1 < spheres_.size() && static_cast<float>(sphere_segments[choice]) < needed) ++choice;
+  return spheres_[choice];
+}
+
 void SolidPass::draw_glass_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,
                                   Colour colour) const {
-  draw_shape(view, sphere_, placed(centre_m, radius_m * Eigen::Matrix3f::Identity()), colour, Finish::glass);
+  set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, Cull::back});
+  draw_shape(programs_.glass, view, sphere_for(view, centre_m, radius_m),
+             placed(centre_m, radius_m * Eigen::Matrix3f::Identity()), linear(colour));
 }
 
 void SolidPass::draw_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,
                             Colour colour) const {
-  draw_shape(view, sphere_, placed(centre_m, radius_m * Eigen::Matrix3f::Identity()), colour, Finish::solid);
+  draw_solid(view, sphere_for(view, centre_m, radius_m),
+             placed(centre_m, radius_m * Eigen::Matrix3f::Identity()), colour);
 }
 
 void SolidPass::draw_arrow(const FrameView& view, const Eigen::Vector3f& start_m,
@@ -144,9 +179,8 @@ void SolidPass::draw_arrow(const FrameView& view, const Eigen::Vector3f& start_m
   const float shaft_length = length - head_length;
   const Eigen::Vector3f shaft_size(0.5f * width_m, shaft_length, 0.5f * width_m);
   const Eigen::Vector3f head_size(head_radius, head_length, head_radius);
-  draw_shape(view, shaft_, placed(start_m, turn * shaft_size.asDiagonal()), colour, Finish::solid);
-  draw_shape(view, head_, placed(start_m + shaft_length * along, turn * head_size.asDiagonal()), colour,
-             Finish::solid);
+  draw_solid(view, shaft_, placed(start_m, turn * shaft_size.asDiagonal()), colour);
+  draw_solid(view, head_, placed(start_m + shaft_length * along, turn * head_size.asDiagonal()), colour);
 }
 
 void SolidPass::draw_pane(const FrameView& view, const std::array<Eigen::Vector3f, 4>& corners_m,
@@ -155,7 +189,8 @@ void SolidPass::draw_pane(const FrameView& view, const std::array<Eigen::Vector3
   axes.col(0) = corners_m[1] - corners_m[0];
   axes.col(1) = corners_m[3] - corners_m[0];
   axes.col(2) = axes.col(0).cross(axes.col(1)).normalized();
-  draw_shape(view, pane_, placed(corners_m[0], axes), colour, Finish::pane);
+  set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, Cull::off});
+  draw_shape(programs_.pane, view, pane_, placed(corners_m[0], axes), encoded(colour));
 }
 
 }  // namespace spoonbill

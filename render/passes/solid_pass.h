@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <vector>
 
 #include "engine/result.h"
 #include "render/gl/functions.h"
@@ -37,17 +38,23 @@ class SolidPass {
     GLint first = 0;
     GLsizei count = 0;
   };
-  enum class Finish { solid, glass, pane };
+  struct Programs {
+    Program solid, glass, pane;
+  };
 
-  SolidPass(const GlFunctions& gl, Program program);
-  void draw_shape(const FrameView& view, const Shape& shape, const Eigen::Matrix4f& model, Colour colour,
-                  Finish finish) const;
+  SolidPass(const GlFunctions& gl, Programs programs);
+  const Shape& sphere_for(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m) const;
+  void draw_solid(const FrameView& view, const Shape& shape, const Eigen::Matrix4f& model,
+                  Colour colour) const;
+  void draw_shape(const Program& program, const FrameView& view, const Shape& shape,
+                  const Eigen::Matrix4f& model, const Eigen::Vector4f& colour) const;
 
   const GlFunctions* gl_;
-  Program program_;
+  Programs programs_;
   GlHandle vertex_array_;
   GlHandle vertices_;
-  Shape sphere_, shaft_, head_, pane_;
+  std::vector<Shape> spheres_;  // from coarse to fine
+  Shape shaft_, head_, pane_;
 };
 
 }  // namespace spoonbill

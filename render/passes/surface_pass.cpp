@@ -25,8 +25,8 @@ void main() {
 }
 )";
 
-// Five bilinear comparisons blur the edge over about a millimetre; the offset along the normal keeps the
-// surface from shadowing itself.
+// The constant `opaque` goes in front. Five bilinear comparisons blur the edge over about a millimetre; the
+// offset along the normal keeps the surface from shadowing itself.
 constexpr const char* fragment_source = R"(
 uniform sampler2DShadow key_map;
 uniform mat4 key_to_clip;
@@ -66,45 +66,52 @@ void main() {
   Lit lit = studio_light(look, position, n, key, sky);
   float grazing = 1.0 - clamp(abs(dot(n, normalize(eye - position))), 0.0, 1.0);
   float opacity = mix(1.0, 0.26 + 0.56 * grazing * grazing, translucency);
-  result = picture_colour(lit, opacity);
+  result = opaque ? opaque_colour(lit) : clear_colour(lit, opacity);
 }
 )";
+
+std::string fragment_shader(bool opaque) {
+  return std::string(opaque ? "const bool opaque = true;\n" : "const bool opaque = false;\n") +
+         key_light_glsl + sphere_shadow_glsl + studio_light_glsl + fragment_source;
+}
 
 }  // namespace
 
 Result<SurfacePass> SurfacePass::make(const GlFunctions& gl) {
-  auto program =
-      Program::make(gl, "surface", vertex_source,
-                    std::string(key_light_glsl) + sphere_shadow_glsl + studio_light_glsl + fragment_source);
-  if (!program) return program.error();
-  return SurfacePass(gl, std::move(program).value());
+  auto opaque = Program::make(gl, "opaque surface", vertex_source, fragment_shader(true));
+  if (!opaque) return opaque.error();
+  auto translucent = Program::make(gl, "translucent surface", vertex_source, fragment_shader(false));
+  if (!translucent) return translucent.error();
+  return SurfacePass(gl, std::move(opaque).value(), std::move(translucent).value());
 }
 
-void SurfacePass::set_uniforms(const FrameView& view, const SurfaceLook& look, const ToolSphere& tool,
-                               const ShadowPass* shadow) const {
-  program_.use();
-  set_frame_uniforms(program_, view);
-  set_tool_uniforms(program_, tool);
-  program_.set("base_colour", look.base_colour);
-  program_.set("roughness", look.roughness);
-  program_.set("metalness", look.metalness);
-  program_.set("translucency", look.translucency);
-  program_.set("key_map", 0);
-  program_.set("shadowed", shadow != nullptr ? 1 : 0);
+void SurfacePass::set_uniforms(const Program& program, const FrameView& view, const SurfaceLook& look,
+                               const ToolSphere& tool, const ShadowPass* shadow) const {
+  program.use();
+  set_frame_uniforms(program, view);
+  set_tool_uniforms(program, tool);
+  program.set("base_colour", look.base_colour);
+  program.set("roughness", look.roughness);
+  program.set("metalness", look.metalness);
+  program.set("translucency", look.translucency);
+  program.set("key_map", 0);
+  program.set("shadowed", shadow != nullptr ? 1 : 0);
   if (shadow == nullptr) return;
   const auto side_px = static_cast<float>(ShadowPass::key_map_side_px());
-  program_.set("key_to_clip", shadow->area().key_to_clip);
-  program_.set("texel", 1.0f / side_px);
-  program_.set("texel_m", shadow->area().side_m / side_px);
+  program.set("key_to_clip", shadow->area().key_to_clip);
+  program.set("texel", 1.0f / side_px);
+  program.set("texel_m", shadow->area().side_m / side_px);
   gl_->ActiveTexture(GL_TEXTURE0);
   gl_->BindTexture(GL_TEXTURE_2D, shadow->key_map());
 }
 
 void SurfacePass::draw(const FrameView& view, const std::vector<SurfaceBuffers>& surfaces,
                        const SurfaceLook& look, const ToolSphere& tool, const ShadowPass* shadow) const {
-  set_uniforms(view, look, tool, shadow);
-  if (look.translucency > 0.0f) {
-    program_.set("two_sided", 1);
+  const bool opaque = look.translucency <= 0.0f;
+  const Program& program = opaque ? opaque_ : translucent_;
+  set_uniforms(program, view, look, tool, shadow);
+  if (!opaque) {
+    program.set("two_sided", 1);
     for (const Cull cull : {Cull::front, Cull::back}) {
       set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, cull});
       for (const SurfaceBuffers& surface : surfaces) surface.draw();
@@ -113,7 +120,7 @@ void SurfacePass::draw(const FrameView& view, const std::vector<SurfaceBuffers>&
   }
   for (const SurfaceBuffers& surface : surfaces) {
     const bool closed = surface.is_closed();
-    program_.set("two_sided", closed ? 0 : 1);
+    program.set("two_sided", closed ? 0 : 1);
     set_pipeline_state(*gl_, {Depth::test_and_write, Blend::off, closed ? Cull::back : Cull::off});
     surface.draw();
   }

@@ -23,12 +23,14 @@ class SurfacePass {
             const ToolSphere& tool, const ShadowPass* shadow) const;
 
  private:
-  SurfacePass(const GlFunctions& gl, Program program) : gl_(&gl), program_(std::move(program)) {}
-  void set_uniforms(const FrameView& view, const SurfaceLook& look, const ToolSphere& tool,
-                    const ShadowPass* shadow) const;
+  SurfacePass(const GlFunctions& gl, Program opaque, Program translucent)
+      : gl_(&gl), opaque_(std::move(opaque)), translucent_(std::move(translucent)) {}
+  void set_uniforms(const Program& program, const FrameView& view, const SurfaceLook& look,
+                    const ToolSphere& tool, const ShadowPass* shadow) const;
 
   const GlFunctions* gl_;
-  Program program_;
+  // Two, because a software renderer computes both sides of every branch.
+  Program opaque_, translucent_;
 };
 
 }  // namespace spoonbill

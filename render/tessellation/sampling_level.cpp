@@ -2,12 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace spoonbill {
 namespace {
 
-constexpr int most_pieces = 32;
+constexpr std::array<int, 10> piece_steps = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
 
 // Too coarse by less, or too fine by no more than this is kept; see choose_sampling_level().
 constexpr double tolerated_excess = 1.15;
@@ -84,9 +85,8 @@ int choose_pieces(double needed, int previous) {
   if (previous > 0 && needed <= previous * tolerated_excess && needed > previous * tolerated_waste) {
     return previous;
   }
-  int pieces = 1;
-  while (pieces < needed && pieces < most_pieces) pieces *= 2;
-  return pieces;
+  const auto step = std::lower_bound(piece_steps.begin(), piece_steps.end(), needed);
+  return step == piece_steps.end() ? piece_steps.back() : *step;
 }
 
 std::vector<int> pieces_along(const SurfaceSnapshot& surface, bool along_u, double pixels_per_metre,

@@ -1,5 +1,5 @@
-// How finely a surface is cut for the screen: pieces for each polynomial span, powers of two, so that the
-// grid changes seldom and every span's ends are drawn.
+// How finely a surface is cut for the screen: pieces for each polynomial span, in steps of a half or a third,
+// so that the grid changes seldom. Every span's ends are drawn.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces)
 
 struct SamplingTarget {
   double longest_edge_px = 48.0;
-  double largest_sagitta_px = 0.18;  // between a chord and its arc: below what antialiasing shows
+  double largest_sagitta_px = 0.3;  // between a chord and its arc: near what four samples can show
 };
 
 // The level at which no edge is longer and no chord farther from the surface than the target allows, judged

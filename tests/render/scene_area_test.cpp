@@ -1,0 +1,88 @@
+#include "render/passes/scene_area.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/render/sample_scene.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr int width = 1280, height = 720;
+
+ViewSettings framed(const Snapshot& snapshot) {
+  ViewSettings settings;
+  settings.camera = frame(look_from({}, StandardView::perspective), drawn_bounds(snapshot),
+                          make_viewport(width, height, settings.panel_px));
+  return settings;
+}
+
+std::vector<TessellatedSurface> tessellated(const Snapshot& snapshot) {
+  std::vector<TessellatedSurface> surfaces(1);
+  const SurfaceSnapshot& surface = snapshot.surfaces[0];
+  EXPECT_TRUE(surfaces[0].update(surface, choose_sampling_level(surface, 6000.0, {})).ok());
+  return surfaces;
+}
+
+std::vector<PixelArea> areas_of(const Snapshot& snapshot, const ViewSettings& settings) {
+  return scene_area(snapshot, settings, make_frame_view(settings, width, height), tessellated(snapshot));
+}
+
+bool holds(const std::vector<PixelArea>& areas, double x, double y) {
+  return std::any_of(areas.begin(), areas.end(), [&](const PixelArea& a) {
+    return x >= a.x && x <= a.x + a.width && y >= a.y && y <= a.y + a.height;
+  });
+}
+
+int pixels(const std::vector<PixelArea>& areas) {
+  int sum = 0;
+  for (const PixelArea& area : areas) sum += area.width * area.height;
+  return sum;
+}
+
+TEST(SceneArea, HoldsEveryCornerOfTheBodyWithRoomForMarks) {
+  const Snapshot snapshot = sample_scene({.bend_rad = 0.8});
+  const ViewSettings settings = framed(snapshot);
+  const auto areas = areas_of(snapshot, settings);
+  const Viewport viewport = make_viewport(width, height, settings.panel_px);
+  const auto surfaces = tessellated(snapshot);
+  const GridSamples<float>& at = surfaces[0].samples();
+  for (std::size_t i = 0; i < at.x.size(); ++i) {
+    const auto pixel = project(settings.camera, viewport, {at.x[i], at.y[i], at.z[i]});
+    ASSERT_TRUE(pixel);
+    const double x = pixel->x(), y = height - pixel->y();
+    for (const double aside : {-12.0, 12.0}) {
+      EXPECT_TRUE(holds(areas, x + aside, y)) << x << ' ' << y;
+      EXPECT_TRUE(holds(areas, x, y + aside)) << x << ' ' << y;
+    }
+  }
+}
+
+TEST(SceneArea, LeavesOutWhatABentBodyLeavesFree) {
+  const Snapshot snapshot = sample_scene({.bend_rad = 0.8});
+  const auto areas = areas_of(snapshot, framed(snapshot));
+  int left = width, right = 0, bottom = height, top = 0;
+  for (const PixelArea& area : areas) {
+    EXPECT_FALSE(area.empty());
+    left = std::min(left, area.x);
+    right = std::max(right, area.x + area.width);
+    bottom = std::min(bottom, area.y);
+    top = std::max(top, area.y + area.height);
+  }
+  EXPECT_GE(left, 0);
+  EXPECT_LE(right, width);
+  EXPECT_GE(bottom, 0);
+  EXPECT_LE(top, height);
+  EXPECT_LT(pixels(areas), 0.8 * (right - left) * (top - bottom));
+}
+
+TEST(SceneArea, IsTheWholePictureWhereTheBodyReachesBehindTheEye) {
+  const Snapshot snapshot = sample_scene();
+  ViewSettings settings = framed(snapshot);
+  settings.camera.distance_m = 0.02;
+  EXPECT_EQ(pixels(areas_of(snapshot, settings)), width * height);
+}
+
+}  // namespace
+}  // namespace spoonbill
