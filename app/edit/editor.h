@@ -110,8 +110,8 @@ class Editor {
   SurfacePick pick_;
   MouseHand hand_;
   double strength_m_ = 0.004;
-  std::optional<Tool> before_inverting_;  // while Ctrl inverts push and pull
-  bool stroke_began_here_ = false;        // the press began on the picture, not on the panel
+  std::optional<Tool> before_stroke_;  // while Ctrl inverts push and pull, or Shift smooths
+  bool stroke_began_here_ = false;     // the press began on the picture, not on the panel
   HandTarget target_;
   bool space_mouse_leads_ = false;  // until the mouse moves again
   FrameBudget budget_;

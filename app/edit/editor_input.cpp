@@ -21,7 +21,10 @@ double dragged(double value, double moved_px, Range<double> range) {
   return std::clamp(value * std::exp(drag_growth_per_px * moved_px), range.low, range.high);
 }
 
-ToolAction other(ToolAction action) {
+// What a stroke does that begins with these keys held: Shift smooths, Ctrl inverts push and pull.
+ToolAction action_for_stroke(ToolAction action, const Pointer& pointer) {
+  if (pointer.shift) return ToolAction::smooth;
+  if (!pointer.ctrl || action == ToolAction::smooth) return action;
   return action == ToolAction::push ? ToolAction::pull : ToolAction::push;
 }
 
@@ -102,14 +105,15 @@ void Editor::show_camera() {
 void Editor::stroke(const Pointer& pointer, const LiveFrame& frame, const Viewport& viewport) {
   const bool held = pointer.left && stroke_began_here_;
   Tool tool = frame.facts.tool;
-  if (held && !hand_.pressing() && pointer.ctrl && !before_inverting_) {
-    before_inverting_ = tool;
-    tool.action = other(tool.action);
+  const ToolAction wanted = action_for_stroke(tool.action, pointer);
+  if (held && !hand_.pressing() && wanted != tool.action && !before_stroke_) {
+    before_stroke_ = tool;
+    tool.action = wanted;
     ask(Command(SetTool{tool}));
   }
-  if (!held && before_inverting_) {
-    ask(Command(SetTool{*before_inverting_}));
-    before_inverting_.reset();
+  if (!held && before_stroke_) {
+    ask(Command(SetTool{*before_stroke_}));
+    before_stroke_.reset();
   }
   if (!hand_.pressing()) pick_.update(frame.snapshot);
   const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
@@ -204,6 +208,9 @@ void Editor::act(EditAction action, const LiveFrame& frame) {
       break;
     case EditAction::tool_pull_point:
       set_tool(frame, ToolKind::point, ToolAction::pull);
+      break;
+    case EditAction::tool_smooth:
+      set_tool(frame, ToolKind::sphere, ToolAction::smooth);
       break;
     default:
       act_on_view(action);

@@ -9,7 +9,7 @@ namespace {
 
 using Action = EditAction;
 
-constexpr std::array<KeyBinding, 31> bindings = {{
+constexpr std::array<KeyBinding, 32> bindings = {{
     {Action::show_keys, GLFW_KEY_F1, false, false, "F1", "Show or hide these keys"},
     {Action::open, GLFW_KEY_O, true, false, "Ctrl+O", "Open a model"},
     {Action::new_document, GLFW_KEY_N, true, false, "Ctrl+N", "Begin anew with the spoon handle"},
@@ -23,6 +23,7 @@ constexpr std::array<KeyBinding, 31> bindings = {{
     {Action::tool_pull_sphere, GLFW_KEY_2, false, false, "2", "Sphere that pulls"},
     {Action::tool_push_point, GLFW_KEY_3, false, false, "3", "Point that pushes"},
     {Action::tool_pull_point, GLFW_KEY_4, false, false, "4", "Point that pulls"},
+    {Action::tool_smooth, GLFW_KEY_5, false, false, "5", "Sphere that smooths"},
     {Action::toggle_symmetry, GLFW_KEY_X, false, false, "X", "Symmetry on or off"},
     {Action::place_plane, GLFW_KEY_P, false, false, "P", "Fix the model behind a plane at the tool"},
     {Action::remove_planes, GLFW_KEY_P, false, true, "Shift+P", "Remove the fixing planes"},
@@ -43,10 +44,11 @@ constexpr std::array<KeyBinding, 31> bindings = {{
     {Action::show_keys, GLFW_KEY_SLASH, false, true, "?", "Show or hide these keys"},
 }};
 
-constexpr std::array<HeldKey, 6> held = {{
+constexpr std::array<HeldKey, 7> held = {{
     {"Left button", "Stroke: press in, drag along the screen"},
     {"Wheel, pressed", "Deeper, or nearer"},
     {"Ctrl, pressed", "Pull instead of push, and the reverse"},
+    {"Shift, pressed", "Smooth"},
     {"F and drag", "Tool radius"},
     {"Shift+F and drag", "Strength: how deep a press goes"},
     {"Right button", "Turn the camera; Shift pans, Ctrl or wheel zooms"},

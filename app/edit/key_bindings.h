@@ -30,6 +30,7 @@ enum class EditAction {
   tool_pull_sphere,
   tool_push_point,
   tool_pull_point,
+  tool_smooth,
   quit,
 };
 

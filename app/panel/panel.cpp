@@ -54,7 +54,7 @@ void draw_tool(const PanelModel& model, const Theme& theme, Requests& requests) 
   int kind = static_cast<int>(tool.kind);
   int action = static_cast<int>(tool.action);
   bool changed = choice_row("Kind", kind, {"Point", "Sphere"});
-  changed |= choice_row("Action", action, {"Push", "Pull"});
+  changed |= choice_row("Action", action, {"Push", "Pull", "Smooth"});
   tool.kind = static_cast<ToolKind>(kind);
   tool.action = static_cast<ToolAction>(action);
   ImGui::BeginDisabled(tool.kind == ToolKind::point);

@@ -99,7 +99,8 @@ void add_material_fields(const Material& material, Json& json) {
 Tool read_tool(FieldReader& reader) {
   Tool tool;
   tool.kind = reader.choice<ToolKind>("kind", {{"point", ToolKind::point}, {"sphere", ToolKind::sphere}});
-  tool.action = reader.choice<ToolAction>("action", {{"push", ToolAction::push}, {"pull", ToolAction::pull}});
+  tool.action = reader.choice<ToolAction>(
+      "action", {{"push", ToolAction::push}, {"pull", ToolAction::pull}, {"smooth", ToolAction::smooth}});
   tool.radius_m = reader.length_m("radius_mm", tool_radius_range_m);
   tool.iterations = reader.integer("iterations", tool_iterations_range);
   return tool;
@@ -107,7 +108,7 @@ Tool read_tool(FieldReader& reader) {
 
 void add_tool(const Tool& tool, Json& json) {
   json["kind"] = tool.kind == ToolKind::point ? "point" : "sphere";
-  json["action"] = tool.action == ToolAction::push ? "push" : "pull";
+  json["action"] = name_of(tool.action);
   json["radius_mm"] = length_to_json(tool.radius_m);
   json["iterations"] = tool.iterations;
 }

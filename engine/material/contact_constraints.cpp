@@ -98,7 +98,7 @@ void ContactConstraints::solve(const LatticeView& lattice, ToolState& tool, floa
   follow_hand(tool, h, fraction);
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
-    if (constraint.compliance + tool_compliance_ == 0.0) continue;
+    if (compliance_of(constraint) + tool_compliance_ == 0.0) continue;
     if (constraint.kind == Kind::grip) {
       solve_grip(lattice, constraint, tool, h, cap);
     } else {
@@ -106,6 +106,10 @@ void ContactConstraints::solve(const LatticeView& lattice, ToolState& tool, floa
     }
   }
   tool.position_m += static_cast<double>(h) * tool.velocity_m_per_s;
+}
+
+double ContactConstraints::compliance_of(const Constraint& constraint) const {
+  return motion_.body_yields ? constraint.compliance : 0.0;
 }
 
 // The coupling spring and its critical damper, implicit in the tool's velocity: x'' = w^2 (hand - x) + 2 w
@@ -125,7 +129,7 @@ void ContactConstraints::follow_hand(ToolState& tool, double h, double fraction)
 
 void ContactConstraints::exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                   const Vector3& impulse) {
-  apply_impulse(lattice, constraint.point, impulse);
+  if (motion_.body_yields) apply_impulse(lattice, constraint.point, impulse);
   tool.velocity_m_per_s -= tool_compliance_ * impulse;
   tool_impulse_ -= impulse;
   constraint.acted = true;
@@ -147,7 +151,7 @@ void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& cons
   const double separating = relative.dot(normal);
   const double wanted = gap > 0.0 ? -gap / h : std::min(-gap * correction_share / h, cap);
   if (separating >= wanted) return;
-  const double mass = 1.0 / (constraint.compliance + tool_compliance_);
+  const double mass = 1.0 / (compliance_of(constraint) + tool_compliance_);
   const double push = (wanted - separating) * mass;
   const Vector3 sliding = relative - separating * normal;
   const double slide = sliding.norm() * mass;
@@ -166,7 +170,7 @@ void ContactConstraints::solve_grip(const LatticeView& lattice, Constraint& cons
   if (speed > cap) wanted *= cap / speed;
   const Vector3 velocity = embedded_sum(constraint.point, lattice.vx, lattice.vy, lattice.vz);
   exchange(lattice, constraint, tool,
-           (tool.velocity_m_per_s + wanted - velocity) / (constraint.compliance + tool_compliance_));
+           (tool.velocity_m_per_s + wanted - velocity) / (compliance_of(constraint) + tool_compliance_));
 }
 
 void ContactConstraints::mark_touched(std::uint8_t* touched) const {

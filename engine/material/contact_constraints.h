@@ -37,6 +37,7 @@ struct ToolMotion {
   double friction = 0.0;  // Coulomb's coefficient between tool and body
   // The spring by which the hand holds the tool, critically damped; 0 = held rigidly.
   double coupling_n_per_m = 0.0;
+  bool body_yields = true;  // false: the tool meets the body as it would a wall
 };
 
 // Working memory for the contacts of one tick. One owner, one thread; allocates only in its constructor.
@@ -81,6 +82,7 @@ class ContactConstraints {
     bool acted = false;
   };
   bool add(const SpringLattice& lattice, const EmbeddedPoint& point, Kind kind, const Vector3& direction);
+  double compliance_of(const Constraint& constraint) const;
   void follow_hand(ToolState& tool, double h, double fraction) const;
   void solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
   void solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);

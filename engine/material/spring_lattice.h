@@ -61,6 +61,10 @@ class SpringLattice {
   Vector3 velocity(int node) const { return {vx_[node], vy_[node], vz_[node]}; }
   void set_displacement(int node, const Vector3& d);
   void set_velocity(int node, const Vector3& v);
+  // Moves a node for good: its springs and cells take their new lengths and volumes as their rest, so that no
+  // strain changes. False, and nothing changed, where a spring would leave half to twice its first length, as
+  // in flow, or a cell a quarter to four times its first volume.
+  bool reform(int node, const Vector3& move_m);
   // A force on a node that stays until changed, N.
   void set_node_force(int node, const Vector3& force_n);
 
@@ -75,12 +79,14 @@ class SpringLattice {
   const float* applied_force(int axis) const { return applied_[axis].data(); }
   bool has_applied_force() const { return has_applied_force_; }
 
-  // Calls visit(const float*, count) on each array of the shape: displacements, velocities, rest lengths.
+  // Calls visit(const float*, count) on each array of the shape: displacements, velocities, rest lengths and
+  // volumes.
   template <class Visitor>
   void visit_shape(Visitor&& visit) const {
     for (const auto* a : {&dx_, &dy_, &dz_, &vx_, &vy_, &vz_}) visit(a->data(), a->size());
     for (const auto& a : rest_length_) visit(a.data(), a.size());
     for (const auto& a : square_difference_) visit(a.data(), a.size());
+    visit(rest_volume_sum_.data(), rest_volume_sum_.size());
   }
   // The same, and what else the next step depends on.
   template <class Visitor>
@@ -105,6 +111,10 @@ class SpringLattice {
   void store_springs(int direction, const Assembly& sum);
   void measure_fastest_frequency();
   void find_active_blocks();
+  // The springs and cells around a node, and what they become where it moves.
+  struct Reforming;
+  bool reform_springs(int node, const Vector3& move, Reforming& next) const;
+  bool reform_cells(int node, const Vector3& move, Reforming& next) const;
 
   using Floats = AlignedVector<float>;
 

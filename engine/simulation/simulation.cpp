@@ -9,6 +9,7 @@
 #include "engine/material/lattice_solver.h"
 #include "engine/material/tube_lattice.h"
 #include "engine/simulation/body_mapping.h"
+#include "engine/simulation/smoothing.h"
 #include "engine/simulation/snapshot_parts.h"
 #include "engine/simulation/state_hash.h"
 #include "engine/simulation/symmetry.h"
@@ -37,6 +38,7 @@ struct Simulation::State {
   InstructionSet set;
   SpringLattice lattice;
   BodyMapping mapping;
+  Smoothing smoothing;
   HeldTool tool;
   HeldTool mirrored;
   std::vector<std::uint8_t> held, touched;
@@ -93,9 +95,9 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
   HeldTool tool{ToolContact(mapping.value())};
   HeldTool mirrored{ToolContact(mapping.value())};
   std::vector<std::uint8_t> touched(held.size(), 0);
-  return Simulation(std::make_unique<State>(State{std::move(scene), set, std::move(lattice).value(),
-                                                  std::move(mapping).value(), std::move(tool),
-                                                  std::move(mirrored), std::move(held), std::move(touched)}));
+  return Simulation(std::make_unique<State>(State{
+      std::move(scene), set, std::move(lattice).value(), std::move(mapping).value(), Smoothing(mesh.value()),
+      std::move(tool), std::move(mirrored), std::move(held), std::move(touched)}));
 }
 
 Simulation::Simulation(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -168,6 +170,7 @@ struct CommandApplier {
     Result<BodyMapping> mapping =
         BodyMapping::make(surface, surface, lattice.value(), state.scene.planes, state.set);
     if (!mapping.ok()) return mapping.error();
+    state.smoothing = Smoothing(mesh);
     state.lattice = std::move(lattice).value();
     set_mapping(std::move(mapping).value());
     return {};
@@ -218,6 +221,7 @@ ToolMotion motion_of(const Simulation::State& s, const Pose& from, const Pose& t
   motion.orientation = to.orientation;
   motion.radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
   motion.coupling_n_per_m = coupling_n_per_m / real_over_felt(s);
+  motion.body_yields = tool.action != ToolAction::smooth;
   return motion;
 }
 
@@ -229,6 +233,19 @@ TouchingTool touch(const Simulation::State& s, HeldTool& held, const Pose& pose,
   const ToolMotion motion = motion_of(s, held.hand, pose, input.coupling_n_per_m);
   held.hand = pose;
   return {motion, &held.state, &held.contact.constraints()};
+}
+
+// The surface under the tool, as far as the tool reaches, or as a few cells do where it is small.
+void smooth(Simulation::State& s, const HeldTool& held) {
+  constexpr double least_reach_cells = 2.5;
+  const CollisionResult& collision = held.contact.collision();
+  const ContactConstraints& constraints = held.contact.constraints();
+  const bool rests_on_it = constraints.acted() || (collision.found && collision.nearest.depth_m >= 0.0);
+  if (constraints.count() == 0 || !rests_on_it) return;
+  const Tool& tool = s.scene.tool;
+  const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
+  const double least = least_reach_cells * static_cast<double>(s.lattice.cell_size_m());
+  s.smoothing.apply(s.lattice, {collision.nearest.point_m, std::max(radius, least)}, s.tick);
 }
 
 RelaxSettings relax_settings(const Simulation::State& s) {
@@ -255,6 +272,10 @@ Reaction Simulation::advance(const ToolInput& input) {
   tools[0] = touch(s, s.tool, input.pose, input);
   if (both) tools[1] = touch(s, s.mirrored, mirrored_pose(s.scene.symmetry, input.pose), input);
   s.relaxed = relax(s.lattice, relax_settings(s), std::span<const TouchingTool>(tools.data(), both ? 2 : 1));
+  if (s.scene.tool.action == ToolAction::smooth) {
+    smooth(s, s.tool);
+    if (both) smooth(s, s.mirrored);
+  }
   s.mapping.update(s.lattice);
   ++s.tick;
 

@@ -36,8 +36,8 @@ struct Reaction {
   std::uint32_t flags = tick_flag_none;
 };
 
-// Everything that a stroke can change, for undo, bit for bit: the lattice's displacements, velocities and
-// rest lengths. Control points follow from them.
+// Everything that a stroke can change, for undo, bit for bit: the lattice's displacements, velocities, rest
+// lengths and volumes. Control points follow from them.
 struct ShapeState {
   std::vector<float> lattice;
   friend bool operator==(const ShapeState&, const ShapeState&) = default;

@@ -12,7 +12,12 @@
 namespace spoonbill {
 
 enum class ToolKind { point, sphere };
-enum class ToolAction { push, pull };
+enum class ToolAction { push, pull, smooth };
+
+// As files and labels call it.
+constexpr const char* name_of(ToolAction action) {
+  return action == ToolAction::push ? "push" : action == ToolAction::pull ? "pull" : "smooth";
+}
 
 struct SurfaceSnapshot {
   KnotVector u, v;

@@ -37,7 +37,7 @@ void ToolContact::prepare(const BodyMapping& mapping, const SpringLattice& latti
   lifted_ = lifted_ && (against || gripping);
   hovered_ = hovering || (hovered_ && inside);
   if (lifted_ || hovered_) return release();
-  if (tool.action == ToolAction::push) {
+  if (tool.action != ToolAction::pull) {
     constraints_.clear();
     if (collision_.found) add_pushes(mapping, lattice);
     return;

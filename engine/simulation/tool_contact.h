@@ -17,7 +17,8 @@ class ToolContact {
   explicit ToolContact(const BodyMapping& mapping);
 
   // Finds the contact of the tool at `pose` and sets the constraints of this tick. A push lets go as the tool
-  // leaves; a pull grips what it first touches while `gripping` and holds it until the button is released.
+  // leaves, and so does smoothing, which slides; a pull grips what it first touches while `gripping` and
+  // holds it until the button is released.
   // While `hovering`, and then until it is outside the body, the tool acts on nothing.
   void prepare(const BodyMapping& mapping, const SpringLattice& lattice, const Tool& tool, const Pose& pose,
                bool gripping, bool hovering);

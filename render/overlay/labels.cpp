@@ -64,8 +64,7 @@ std::vector<Label> legend_of(const Snapshot& snapshot, const ViewSettings& setti
   const std::size_t touched = count_set(snapshot.lattice.touched);
   if (on.tool) {
     const bool sphere = snapshot.tool.kind == ToolKind::sphere;
-    const bool push = snapshot.tool.action == ToolAction::push;
-    add(std::string(sphere ? "sphere tool" : "point tool") + (push ? ", push" : ", pull"),
+    add(std::string(sphere ? "sphere tool, " : "point tool, ") + name_of(snapshot.tool.action),
         LabelSymbol::sphere, palette::tool);
   }
   if (force_arrow(snapshot, settings)) add("force on the hand", LabelSymbol::arrow, palette::force);

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <sstream>
 #include <thread>
 
 #include "app/live/autosave.h"
@@ -161,6 +163,25 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   ASSERT_TRUE(again) << again.error().message;
   EXPECT_EQ(largest_difference(again->header.document, redone), 0.0);
   EXPECT_EQ(run({"replay", place_.text("again.jsonl"), "--no-frames"}).code, exit_done);
+}
+
+TEST_F(EditWindow, ShiftSmoothsUntilTheButtonIsLetGo) {
+  ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
+  start({place_.text("handle.json"), "--record", place_.text("session.jsonl")});
+  ASSERT_TRUE(hands("keydown shift"));
+  stroke();
+  ASSERT_TRUE(hands("keyup shift"));
+  std::this_thread::sleep_for(1s);
+  saved("handle.json", time_of("handle.json"));
+  ASSERT_TRUE(hands("key ctrl+q"));
+  EXPECT_EQ(wait_for_end(), exit_done);
+  std::ostringstream text;
+  text << std::ifstream(place_.path("session.jsonl")).rdbuf();
+  const std::string recorded = text.str();
+  const auto smooth = recorded.find("smooth");
+  ASSERT_NE(smooth, std::string::npos);
+  EXPECT_NE(recorded.find("push", smooth), std::string::npos);
+  EXPECT_EQ(run({"replay", place_.text("session.jsonl"), "--no-frames"}).code, exit_done);
 }
 
 TEST_F(EditWindow, KilledInAStrokeItLosesASecondAtMost) {

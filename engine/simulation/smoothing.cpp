@@ -1,0 +1,174 @@
+#include "engine/simulation/smoothing.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace spoonbill {
+namespace {
+
+// Nodes that take their turn in a tick.
+constexpr std::size_t turns_a_tick = 24;
+
+// The share of a bump that goes in one turn. The flow's largest eigenvalue is 8 (two lines, 4 each), so that
+// an explicit step is stable below 2 / 8.
+constexpr double share_a_turn = 0.15;
+
+// The same for the nodes inside, which follow to where they lay between their six neighbours, so that cells
+// stay even; stable below 1.
+constexpr double inner_share_a_turn = 0.3;
+
+// No turn moves a node further than this share of a cell.
+constexpr double largest_move_cells = 0.05;
+
+}  // namespace
+
+Smoothing::Smoothing(const LatticeMesh& mesh)
+    : shell_(static_cast<std::size_t>(mesh.node_count())),
+      rest_per_m_(shell_.size()),
+      rest_middle_(shell_.size(), Vector3::Zero()),
+      stride_{mesh.count[1], 1, mesh.count[0] * mesh.count[1]} {
+  near_.reserve(shell_.size());
+  const auto at_rest = [&](int node) { return mesh.nodes[static_cast<std::size_t>(node)]; };
+  for (int n = 0; n < mesh.node_count(); ++n) connect(mesh, n);
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    const auto index = static_cast<std::size_t>(n);
+    if (shell_[index].pair_count == 0) {
+      const Middle middle = middle_at(n, at_rest);
+      rest_middle_[index] = middle.across.inverse() * middle.offset;  // no cell is folded over
+    } else if (const auto curvature = curvature_at(n, at_rest)) {
+      rest_per_m_[index] = curvature->per_m;
+    }
+  }
+}
+
+// The pairs in the order that makes their cross product point out of the body.
+void Smoothing::connect(const LatticeMesh& mesh, int node) {
+  const std::array<int, 3> at = mesh.place(node);
+  ShellNode& shell = shell_[static_cast<std::size_t>(node)];
+  std::array<int, 3> inward{};  // the neighbours into the body, first those along i and j
+  std::size_t ends = 0;
+  Vector3 outward = Vector3::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool low = at[axis] == 0, high = at[axis] == mesh.count[axis] - 1;
+    if (!low && !high) continue;
+    inward[ends] = low ? node + stride_[axis] : node - stride_[axis];
+    outward += (mesh.nodes[node] - mesh.nodes[inward[ends]]).normalized();
+    ++ends;
+  }
+  if (ends == 0) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool between = at[axis] > 0 && at[axis] < mesh.count[axis] - 1;
+    if (between) shell.pairs[shell.pair_count++] = {node - stride_[axis], node + stride_[axis]};
+  }
+  // Over an edge of the block; at a corner along the ring, which i and j make.
+  if (ends >= 2) shell.pairs[shell.pair_count++] = {inward[0], inward[1]};
+  const auto curvature = curvature_at(node, [&](int n) { return mesh.nodes[static_cast<std::size_t>(n)]; });
+  if (curvature && curvature->normal.dot(outward) < 0.0) std::swap(shell.pairs[0][0], shell.pairs[0][1]);
+}
+
+template <class PositionOf>
+std::optional<Smoothing::Curvature> Smoothing::curvature_at(int node, const PositionOf& position_of) const {
+  const ShellNode& shell = shell_[static_cast<std::size_t>(node)];
+  if (shell.pair_count < 2) return std::nullopt;
+  const Vector3 here = position_of(node);
+  std::array<Vector3, 2> along, over_middle;
+  Curvature curvature;
+  for (std::size_t p = 0; p < 2; ++p) {
+    const Vector3 a = position_of(shell.pairs[p][0]), b = position_of(shell.pairs[p][1]);
+    const double to_a = (here - a).norm(), to_b = (here - b).norm();
+    if (!(to_a > 0.0 && to_b > 0.0)) return std::nullopt;
+    along[p] = b - a;
+    over_middle[p] = here - (to_b * a + to_a * b) / (to_a + to_b);
+    // A point of a circle lies over the chord between points at distances a and b by a b / 2 times 1 / r.
+    curvature.height_factor[p] = 0.5 * to_a * to_b;
+  }
+  const Vector3 across = along[0].cross(along[1]);
+  const double length = across.norm();
+  if (!(length > 0.0)) return std::nullopt;
+  curvature.normal = across / length;
+  for (std::size_t p = 0; p < 2; ++p) {
+    curvature.per_m[p] = over_middle[p].dot(curvature.normal) / curvature.height_factor[p];
+  }
+  return curvature;
+}
+
+std::optional<Smoothing::Curvature> Smoothing::bend_at(const SpringLattice& lattice, int node) const {
+  auto bend = curvature_at(node, [&](int n) { return lattice.position(n); });
+  if (!bend) return std::nullopt;
+  const std::array<double, 2>& rest = rest_per_m_[static_cast<std::size_t>(node)];
+  for (std::size_t p = 0; p < 2; ++p) bend->per_m[p] -= rest[p];
+  return bend;
+}
+
+std::optional<double> Smoothing::bend_toward(const SpringLattice& lattice, int neighbour, int node,
+                                             double& height_factor) const {
+  const auto bend = bend_at(lattice, neighbour);
+  if (!bend) return std::nullopt;
+  const ShellNode& shell = shell_[static_cast<std::size_t>(neighbour)];
+  for (std::size_t p = 0; p < 2; ++p) {
+    if (shell.pairs[p][0] != node && shell.pairs[p][1] != node) continue;
+    height_factor = std::min(height_factor, bend->height_factor[p]);
+    return bend->per_m[p];
+  }
+  return std::nullopt;
+}
+
+Vector3 Smoothing::off_the_form(const SpringLattice& lattice, int node) const {
+  const auto own = bend_at(lattice, node);
+  if (!own) return Vector3::Zero();
+  const ShellNode& shell = shell_[static_cast<std::size_t>(node)];
+  const Vector3 here = lattice.position(node);
+  double height = 0.0;
+  for (std::size_t p = 0; p < 2; ++p) {
+    const auto [a, b] = shell.pairs[p];
+    double height_factor = own->height_factor[p];  // the least of the three: stable where cells differ
+    const auto at_a = bend_toward(lattice, a, node, height_factor);
+    const auto at_b = bend_toward(lattice, b, node, height_factor);
+    if (!at_a || !at_b) continue;
+    const double to_a = (here - lattice.position(a)).norm(), to_b = (here - lattice.position(b)).norm();
+    height += height_factor * (own->per_m[p] - (to_b * *at_a + to_a * *at_b) / (to_a + to_b));
+  }
+  return height * own->normal;
+}
+
+template <class PositionOf>
+Smoothing::Middle Smoothing::middle_at(int node, const PositionOf& position_of) const {
+  Middle middle{position_of(node), {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector3 before = position_of(node - stride_[axis]), after = position_of(node + stride_[axis]);
+    middle.offset -= (before + after) / 6.0;
+    middle.across.col(axis) = after - before;
+  }
+  return middle;
+}
+
+Vector3 Smoothing::off_the_middle(const SpringLattice& lattice, int node) const {
+  const Middle middle = middle_at(node, [&](int n) { return lattice.position(n); });
+  return middle.offset - middle.across * rest_middle_[static_cast<std::size_t>(node)];
+}
+
+void Smoothing::apply(SpringLattice& lattice, const SmoothingBrush& brush, std::uint64_t tick) {
+  const double reach_square = brush.reach_m * brush.reach_m;
+  near_.clear();
+  for (int n = 0; n < static_cast<int>(shell_.size()); ++n) {
+    if (lattice.is_held(n)) continue;
+    if ((lattice.position(n) - brush.centre_m).squaredNorm() < reach_square) near_.push_back(n);
+  }
+  const std::size_t rounds = (near_.size() + turns_a_tick - 1) / turns_a_tick;
+  if (rounds == 0) return;
+  const double largest_m = largest_move_cells * static_cast<double>(lattice.cell_size_m());
+  for (std::size_t i = tick % rounds; i < near_.size(); i += rounds) {
+    const int node = near_[i];
+    const bool inner = shell_[static_cast<std::size_t>(node)].pair_count == 0;
+    const double inside = 1.0 - (lattice.position(node) - brush.centre_m).squaredNorm() / reach_square;
+    const double weight = inside * inside * (inner ? inner_share_a_turn : share_a_turn);
+    Vector3 move = -weight * (inner ? off_the_middle(lattice, node) : off_the_form(lattice, node));
+    const double length = move.norm();
+    if (length > largest_m) move *= largest_m / length;
+    lattice.reform(node, move);
+  }
+}
+
+}  // namespace spoonbill

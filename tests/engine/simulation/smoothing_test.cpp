@@ -1,0 +1,179 @@
+// Evening out: bumps and dents go, the form stays, no force arises.
+#include "engine/simulation/smoothing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/material/lattice_solver.h"
+#include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+Scene smoothed_by(Scene scene, double radius_m) {
+  scene.tool.action = ToolAction::smooth;
+  scene.tool.radius_m = radius_m;
+  return scene;
+}
+
+// Where the plane z = 0 cuts the handle, above or below.
+Vector3 middle_line(const Surface& surface, double v, double low, double high) {
+  const bool rises = evaluate(surface, low, v).position_m.z() < evaluate(surface, high, v).position_m.z();
+  for (int step = 0; step < 40; ++step) {
+    const double middle = 0.5 * (low + high);
+    ((evaluate(surface, middle, v).position_m.z() < 0.0) == rises ? low : high) = middle;
+  }
+  return evaluate(surface, low, v).position_m;
+}
+Vector3 top(const Surface& surface, double v) {
+  return middle_line(surface, v, 0.6, 0.9);
+}
+double thickness_m(const Surface& surface, double v) {
+  return (top(surface, v) - middle_line(surface, v, 0.1, 0.4)).norm();
+}
+
+// By how much the handle is thinner within 7 mm than it is there at rest; a bend counts nothing.
+double dent_m(const Simulation& simulation, double v) {
+  double deepest = 0.0;
+  for (int i = -14; i <= 14; ++i) {
+    const double at = v + 0.0005 * i;
+    deepest = std::max(deepest,
+                       thickness_m(small_handle().body.surface, at) - thickness_m(simulation.surface(), at));
+  }
+  return deepest;
+}
+
+// A point has pressed a dent while both ends were held; now only the left one is.
+Simulation dented(double v) {
+  Scene scene = small_handle();
+  scene.tool.kind = ToolKind::point;
+  scene.tool.iterations = 1;
+  const FixingPlane left{Vector3(0.012, 0, 0), Vector3::UnitX()};
+  scene.planes = {left, {Vector3(0.048, 0, 0), -Vector3::UnitX()}};
+  Simulation simulation = simulate(scene);
+  for (int tick = 0; tick < 400; ++tick) simulation.advance(above(v, 0.004 - 2e-5 * tick));
+  for (int tick = 0; tick < 600; ++tick) simulation.advance(above(v, 0.02));
+  EXPECT_TRUE(simulation.apply(RemovePlanes{}).ok());
+  EXPECT_TRUE(simulation.apply(PlacePlane{left}).ok());
+  for (int tick = 0; tick < 1000; ++tick) simulation.advance(above(v, 0.02));
+  return simulation;
+}
+
+void choose(Simulation& simulation, ToolAction action, double radius_m) {
+  Tool tool = simulation.scene().tool;
+  tool.kind = ToolKind::sphere;
+  tool.action = action;
+  tool.radius_m = radius_m;
+  ASSERT_TRUE(simulation.apply(SetTool{tool}).ok());
+}
+
+// The hand of a device, which holds the tool by a spring, a little inside the body.
+ToolInput resting(double x_m, double y_m) {
+  ToolInput input = above(x_m, y_m);
+  input.coupling_n_per_m = 400.0;
+  return input;
+}
+
+TEST(Smoothing, TakesADentOutAndLeavesTheRestInPlace) {
+  const double v = 0.03, radius = 0.008;
+  Simulation simulation = dented(v);
+  const double before = dent_m(simulation, v);
+  ASSERT_GT(before, 3e-4);
+  const Surface dent = simulation.surface();
+  const Vector3 tip = top(simulation.surface(), 0.058);
+  choose(simulation, ToolAction::smooth, radius);
+  for (int tick = 0; tick < 3000; ++tick) {
+    const double x = v + 0.006 * std::sin(tick * 2.0 * std::numbers::pi / 1000.0);
+    simulation.advance(resting(x, top(simulation.surface(), x).y() + radius - 0.001));
+  }
+  EXPECT_LT(dent_m(simulation, v), 0.35 * before);
+  for (int tick = 0; tick < 1000; ++tick) simulation.advance(resting(v, 0.03));
+  EXPECT_LT(dent_m(simulation, v), 0.35 * before) << "it springs back";
+  // A tenth of the dent: the handle bends no further.
+  EXPECT_LT((top(simulation.surface(), 0.058) - tip).norm(), 0.1 * before);
+  EXPECT_EQ((top(simulation.surface(), 0.010) - top(dent, 0.010)).norm(), 0.0);
+}
+
+TEST(Smoothing, TheBodyIsAWallToTheToolAndARodStaysARod) {
+  Scene scene = smoothed_by(small_handle(), 0.006);
+  ControlNet& net = scene.body.surface.net;
+  for (int i = 0; i < net.rows; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / net.rows;
+    for (int j = 0; j < net.columns; ++j) {
+      const Vector3 point = net.point(i, j);
+      const double radius = 0.004 * net.point(0, j).z() / net.point(0, net.columns / 2).z();
+      net.set_point(i, j, {point.x(), -radius * std::sin(angle), radius * std::cos(angle)});
+    }
+  }
+  Simulation simulation = simulate(scene);
+  const Surface before = simulation.surface();
+  const double surface_y = top(before, 0.03).y();
+  Reaction reaction;
+  for (int tick = 0; tick < 2000; ++tick) reaction = simulation.advance(resting(0.03, surface_y + 0.005));
+  EXPECT_TRUE(reaction.touching);
+  // A spring of 400 N/m, stretched by 1 mm, less the tenth that its implicit step takes.
+  EXPECT_NEAR(reaction.force_n.y(), 0.36, 0.03);
+  double largest = 0.0;
+  for (int a = 0; a < 24; ++a) {
+    for (int b = 0; b <= 40; ++b) {
+      const double u = a / 24.0, v = 0.01 + 0.001 * b;
+      largest = std::max(
+          largest,
+          (evaluate(simulation.surface(), u, v).position_m - evaluate(before, u, v).position_m).norm());
+    }
+  }
+  // Twelve control points make a circle to a hundredth of its radius: that much may still be evened.
+  EXPECT_LT(largest, 0.01 * 0.004);
+}
+
+class Reform : public ::testing::Test {
+ protected:
+  Reform()
+      : lattice_(SpringLattice::make(box_mesh({0.012, 0.012, 0.03}, {5, 5, 11}), small_handle().body.material,
+                                     100.0, InstructionSet::baseline)
+                     .value()) {}
+  SpringLattice lattice_;
+};
+
+TEST_F(Reform, StrainsNothing) {
+  Random random(5);
+  for (int i = 0; i < 300; ++i) {
+    const int node = random.integer(0, lattice_.mesh().node_count() - 1);
+    lattice_.reform(node, 2e-4 * Vector3(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
+                                         random.uniform(-1.0, 1.0)));
+  }
+  std::vector<Vector3> before;
+  for (int n = 0; n < lattice_.mesh().node_count(); ++n) before.push_back(lattice_.position(n));
+  for (std::uint64_t tick = 0; tick < 500; ++tick) relax(lattice_, {tick}, {});
+  double largest = 0.0;
+  for (int n = 0; n < lattice_.mesh().node_count(); ++n) {
+    largest = std::max(largest, (lattice_.position(n) - before[static_cast<std::size_t>(n)]).norm());
+  }
+  // Rounding alone: strains of 1e-6, over 3 cm.
+  EXPECT_LT(largest, 1e-6);
+}
+
+TEST_F(Reform, RefusesToCrushACellAndThenChangesNothing) {
+  const int inner = lattice_.mesh().index(2, 2, 5);
+  const std::vector<float> before = lattice_.shape();
+  EXPECT_FALSE(lattice_.reform(inner, {0.0, 0.0, 0.0029}));
+  EXPECT_EQ(lattice_.shape(), before);
+  EXPECT_TRUE(lattice_.reform(inner, {0.0, 0.0, 0.001}));
+  EXPECT_NE(lattice_.shape(), before);
+}
+
+TEST_F(Reform, IsUndoneWithTheShape) {
+  const std::vector<float> before = lattice_.shape();
+  const double volume = lattice_.volume_m3();
+  ASSERT_TRUE(lattice_.reform(0, {-0.001, -0.001, -0.001}));
+  EXPECT_GT(lattice_.volume_m3(), volume);
+  ASSERT_TRUE(lattice_.set_shape(before));
+  for (std::uint64_t tick = 0; tick < 20; ++tick) relax(lattice_, {tick}, {});
+  EXPECT_EQ(lattice_.shape(), before);
+}
+
+}  // namespace
+}  // namespace spoonbill
