@@ -66,9 +66,10 @@ FIGURES = (
            "a sheet of 200 x 200 cells deforms, then all contacts with a sphere; ours on the true surface; "
            "FCL: AABB tree refitted (vertices given), which knows nothing of the grid"),
     Figure("tick_p99_us", "us", "ours", "at most", 250,
-           "the whole tick while touching, p99 of the thread's own time", "handle"),
+           "the whole tick while touching, p99 over ticks of the thread's own time, each the median of five rounds",
+           "handle"),
     Figure("tick_p99_us", "us", "ours", "at most", 250,
-           "the whole tick while touching, 6 relaxation steps, p99 of the thread's own time", "block 12x12x12"),
+           "the whole tick while touching, 6 relaxation steps, p99 as above", "block 12x12x12"),
     Figure("frames_per_second", "1/s", "ours", "at least", 30,
            "`spoonbill replay` of the bundled recording to PNG, 1280x720, antialiasing, shadow and panel"),
     Figure("png_ms", "ms", "ours", "at most", 8, "one frame of 1280x720 to PNG; peer: stb_image_write"),

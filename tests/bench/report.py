@@ -57,7 +57,7 @@ class Measurements:
             raise RuntimeError(f"not measured: {', '.join(sorted(missing))}")
         return times
 
-    def ticks(self, case, rounds=3):
+    def ticks(self, case, rounds=5):
         case = str(ROOT / case) if case.endswith(".jsonl") else case
         return json.loads(output_of([self.build / "tests/bench/tick_bench", rounds, case]))[case]
 
