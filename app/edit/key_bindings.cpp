@@ -48,7 +48,7 @@ constexpr std::array<HeldKey, 7> held = {{
     {"Left button", "Stroke: press in, drag along the screen"},
     {"Wheel, pressed", "Deeper, or nearer"},
     {"Ctrl, pressed", "Pull instead of push, and the reverse"},
-    {"Shift, pressed", "Smooth"},
+    {"Shift, pressed", "Smooth what strokes have done"},
     {"F and drag", "Tool radius"},
     {"Shift+F and drag", "Strength: how deep a press goes"},
     {"Right button", "Turn the camera; Shift pans, Ctrl or wheel zooms"},
