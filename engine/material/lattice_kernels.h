@@ -25,9 +25,9 @@ struct SpringArrays {
   const float* rest_y = nullptr;
   const float* rest_z = nullptr;
   const float* stiffness = nullptr;          // N/m
-  float* rest_length = nullptr;              // m; flows where the material is plastic
-  float* square_difference = nullptr;        // |rest vector|^2 - rest_length^2, m^2; exactly 0 until flow
-  const float* first_rest_length = nullptr;  // before any flow, m
+  float* rest_length = nullptr;              // m; changed by flow and reforming
+  float* square_difference = nullptr;        // |rest vector|^2 - rest_length^2, m^2; exactly 0 until then
+  const float* first_rest_length = nullptr;  // as built, m
   float* tangent = nullptr;                  // see tangent_runs
 };
 
@@ -55,9 +55,9 @@ struct LatticeView {
   int corner_direction[8] = {};           // the spring direction from the first corner to each; [0] unused
   const float* bulk_stiffness = nullptr;  // K_v V0, J
   const float* inverse_volume = nullptr;  // 1/V0, 1/m^3
-  float* rest_volume_sum =
-      nullptr;                      // 12 V0 as volume_forces() computes it, so that rest has no strain at all
-  const float* has_cell = nullptr;  // 1 or 0
+  float* rest_volume_sum = nullptr;  // 12 V0 as volume_forces() computes it, so that rest has no strain at
+                                     // all; reforming changes it
+  const float* has_cell = nullptr;   // 1 or 0
   const float* inverse_cell_count = nullptr;  // of the cells around a node
   float* node_dilation = nullptr;             // working memory of flow(): J averaged over them
   float* power_x = nullptr;                   // the vector of the running power iteration
