@@ -48,6 +48,10 @@ std::vector<double> row_magnitudes(const BlendingMatrix& matrix, double length) 
   return sums;
 }
 
+double largest_of(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end());
+}
+
 double domain_length(const KnotVector& knots) {
   return knots.domain_end() - knots.domain_start();
 }
@@ -92,11 +96,15 @@ bool coincide(const NetView<Real>& net, int first, int step, int count, Real tol
   return true;
 }
 
-// What rounding may leave of a derivative that is zero, squared.
+// What rounding may leave of a derivative that is zero.
+template <class Real>
+double noise(double largest_coordinate, double magnitude) {
+  return 8.0 * std::numeric_limits<Real>::epsilon() * largest_coordinate * magnitude;
+}
 template <class Real>
 Real noise_squared(double largest_coordinate, double magnitude) {
-  const double noise = 8.0 * std::numeric_limits<Real>::epsilon() * largest_coordinate * magnitude;
-  return static_cast<Real>(noise * noise);
+  const double of_derivative = noise<Real>(largest_coordinate, magnitude);
+  return static_cast<Real>(of_derivative * of_derivative);
 }
 
 template <class Real>
@@ -136,7 +144,11 @@ void copy_points(const EvaluateOutput<Real>& from, int j, int count, const Evalu
 
 template <class Real>
 GridEvaluator<Real>::GridEvaluator(const Grid& grid, InstructionSet set)
-    : grid_(&grid), kernels_(&kernels_for<Real>(set)), blocks_(blocks_for(grid.columns() + 2)) {
+    : grid_(&grid),
+      kernels_(&kernels_for<Real>(set)),
+      u_bound_(grid.u.knots),
+      v_bound_(grid.v.knots),
+      blocks_(blocks_for(grid.columns() + 2)) {
   set_up_rows(grid.u);
   set_up_columns(grid.v);
   const std::size_t blocks = static_cast<std::size_t>(blocks_);
@@ -156,7 +168,8 @@ void GridEvaluator<Real>::set_up_rows(const GridDirection& u) {
   u_magnitude_ = row_magnitudes(u.first_derivatives, length);
 }
 
-// Dense blocks, so that loads are contiguous however few samples a span has.
+// Dense blocks, so that loads are contiguous however few samples a span has. The last column fills its block,
+// so that what pads a row is as regular as the row.
 template <class Real>
 void GridEvaluator<Real>::set_up_columns(const GridDirection& v) {
   const double length = domain_length(v.knots);
@@ -165,6 +178,10 @@ void GridEvaluator<Real>::set_up_columns(const GridDirection& v) {
   Eigen::MatrixXd derivatives = values;
   values.topRows(v.values.rows) = v.values.dense();
   derivatives.topRows(v.values.rows) = v.first_derivatives.dense() * length;
+  for (int j = v.values.rows; j < blocks_for(v.values.rows) * evaluate_block; ++j) {
+    values.row(j) = values.row(v.values.rows - 1);
+    derivatives.row(j) = derivatives.row(v.values.rows - 1);
+  }
   for (int control = 0; control < v.values.columns; ++control) {
     for (int block = 0; block < blocks_; ++block) {
       const auto block_values = values.col(control).segment<evaluate_block>(block * evaluate_block);
@@ -188,10 +205,12 @@ void GridEvaluator<Real>::points_and_normals(const Real* x, const Real* y, const
     dv_noise_squared_[j] = noise_squared<Real>(extent.largest_coordinate, v_magnitude_[j]);
   }
   set_up_limit_columns(edges);
+  const Real regular_above = surely_regular(net, extent.largest_coordinate);
 
   int allowed = extent.reach > 0 ? 4 * (grid_->rows() + grid_->columns()) : 0;
   for (int row = 0; row < grid_->rows(); ++row) {
     EvaluateRow<Real> task = row_task(row);
+    task.surely_regular = regular_above;
     task.du_noise_squared = noise_squared<Real>(extent.largest_coordinate, u_magnitude_[row]);
     const int degenerate = compute_row(task, row, edges, samples);
     if (row == 0) take_limit_row(task, row, edges.first_row, samples);
@@ -229,6 +248,21 @@ auto GridEvaluator<Real>::collapsed_edges(const NetView<Real>& net, Real reach) 
   if (starts_on_edge(grid_->v) && collapsed(0, columns, rows)) edges.first_column = 1;
   if (ends_on_edge(grid_->v) && collapsed(columns - 1, columns, rows)) edges.last_column = -1;
   return edges;
+}
+
+// The kernels compare |du x dv|^2 with noise(du)^2 |dv|^2 + noise(dv)^2 |du|^2. The least normal number
+// stands above whatever underflow may round up.
+template <class Real>
+Real GridEvaluator<Real>::surely_regular(const NetView<Real>& net, double largest_coordinate) const {
+  const int rows = grid_->u.knots.control_point_count(), columns = net.columns;
+  const double du = u_bound_.longest(ControlLines<Real>{net.x, net.y, net.z, columns, columns, 1});
+  const double dv = v_bound_.longest(ControlLines<Real>{net.x, net.y, net.z, 1, rows, columns});
+  const double du_noise = noise<Real>(largest_coordinate, largest_of(u_magnitude_));
+  const double dv_noise = noise<Real>(largest_coordinate, largest_of(v_magnitude_));
+  const double u_part = du_noise * (dv + dv_noise), v_part = dv_noise * (du + du_noise);
+  constexpr double above_rounding = 1.01;
+  return static_cast<Real>(std::max<double>(above_rounding * (u_part * u_part + v_part * v_part),
+                                            std::numeric_limits<Real>::min()));
 }
 
 template <class Real>
@@ -279,10 +313,12 @@ EvaluateRow<Real> GridEvaluator<Real>::row_task(int row) const {
           u_values_.data() + first_value,
           u_derivatives_.data() + first_value,
           Real(0),
-          dv_noise_squared_.data()};
+          dv_noise_squared_.data(),
+          Real(0)};
 }
 
-// Whole blocks go straight to the samples; the columns left over, and the limit columns, by way of the spare
+// A row that is surely regular goes straight to the samples, what pads it over the next row's, which come
+// after. Of others, whole blocks do; the columns left over, and the limit columns, go by way of the spare
 // row. Returns how many samples of the row are left without a normal.
 template <class Real>
 int GridEvaluator<Real>::compute_row(const EvaluateRow<Real>& task, int row, const CollapsedEdges& edges,
@@ -291,18 +327,21 @@ int GridEvaluator<Real>::compute_row(const EvaluateRow<Real>& task, int row, con
   const int limits = edges.first_column != 0 || edges.last_column != 0 ? 2 : 0;
   const int blocks = blocks_for(columns + limits) - whole, left = columns - whole * evaluate_block;
   const EvaluateOutput<Real> out = sample_row(samples, row, columns), spare = spare_row(spare_);
+  const int padded = blocks_for(columns);
+  const bool has_room = (grid_->rows() - row) * columns >= padded * evaluate_block;
+  if (limits == 0 && has_room && kernels_->points_and_normals_if_regular(task, 0, padded, out)) return 0;
+
   int degenerate = kernels_->points_and_normals(task, 0, whole, out);
   if (blocks == 0) return degenerate;
 
-  const int padding = blocks * evaluate_block - left;
-  degenerate += kernels_->points_and_normals(task, whole, blocks, spare) - padding;
+  kernels_->points_and_normals(task, whole, blocks, spare);
+  for (int j = 0; j < left; ++j) degenerate += has_normal(spare, j) ? 0 : 1;
   copy_points(spare, 0, left, out, whole * evaluate_block);
   copy_normals(spare, 0, left, out, whole * evaluate_block);
-  const int edge_columns[] = {0, columns - 1};
-  for (int edge = 0; edge < limits; ++edge) {
-    // Without a normal, it was counted among the padding.
-    if (!has_normal(spare, left + edge)) continue;
-    degenerate += has_normal(out, edge_columns[edge]) ? 1 : 0;
+  const int edge_columns[] = {0, columns - 1}, inward[] = {edges.first_column, edges.last_column};
+  for (int edge = 0; edge < 2; ++edge) {
+    if (inward[edge] == 0 || !has_normal(spare, left + edge)) continue;
+    degenerate -= has_normal(out, edge_columns[edge]) ? 0 : 1;
     copy_normals(spare, left + edge, 1, out, edge_columns[edge]);
   }
   return degenerate;

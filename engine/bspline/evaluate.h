@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/aligned_vector.h"
+#include "engine/bspline/derivative_bound.h"
 #include "engine/bspline/evaluate_kernels.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/surface.h"
@@ -56,6 +57,7 @@ class GridEvaluator {
   void blend_control_rows(const NetView<Real>& net);
   void set_up_limit_columns(const CollapsedEdges& edges);
   EvaluateRow<Real> row_task(int row) const;
+  Real surely_regular(const NetView<Real>& net, double largest_coordinate) const;
   int compute_row(const EvaluateRow<Real>& task, int row, const CollapsedEdges& edges,
                   GridSamples<Real>& samples);
   void take_limit_row(EvaluateRow<Real> task, int row, int inward, GridSamples<Real>& samples);
@@ -65,7 +67,8 @@ class GridEvaluator {
   const EvaluateKernels<Real>* kernels_;
   std::vector<Real> u_values_, u_derivatives_;     // rows x bandwidth, derivatives by domain length
   std::vector<double> u_magnitude_, v_magnitude_;  // sums of the derivatives' magnitudes
-  int blocks_ = 0;                                 // for the columns and two limit columns
+  DerivativeBound u_bound_, v_bound_;
+  int blocks_ = 0;  // for the columns and two limit columns
   std::vector<EvaluateReach> reaches_;
   AlignedVector<Real> v_values_, v_derivatives_;
   AlignedVector<Real> blended_;           // control rows x blocks

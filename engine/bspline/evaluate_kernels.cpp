@@ -82,11 +82,14 @@ void points_row(const EvaluateRow<Real>& row, int first_block, int blocks, const
   }
 }
 
-template <class Real, int bandwidth>
+enum class Care { full, if_regular };
+
+// Returns the number of irregular samples.
+template <class Real, int bandwidth, Care care>
 int points_and_normals_row(const EvaluateRow<Real>& row, int first_block, int blocks,
                            const EvaluateOutput<Real>& out) {
   const Weights<Real, bandwidth> w = weights_of<Real, bandwidth>(row, first_block);
-  const Real du_noise = row.du_noise_squared;
+  const Real du_noise = row.du_noise_squared, surely_regular = row.surely_regular;
   const Real* __restrict const dv_noise = row.dv_noise_squared + first_block * evaluate_block;
   Real* __restrict const x = out.x;
   Real* __restrict const y = out.y;
@@ -94,7 +97,7 @@ int points_and_normals_row(const EvaluateRow<Real>& row, int first_block, int bl
   Real* __restrict const nx = out.nx;
   Real* __restrict const ny = out.ny;
   Real* __restrict const nz = out.nz;
-  Real regular[evaluate_block] = {};
+  int irregular[evaluate_block] = {};
   for (long b = 0; b < blocks; ++b) {
     const long in = b * evaluate_block_size, to = b * evaluate_block;
 #pragma GCC ivdep
@@ -112,19 +115,25 @@ int points_and_normals_row(const EvaluateRow<Real>& row, int first_block, int bl
       const Real cy = uz * vx - ux * vz;
       const Real cz = ux * vy - uy * vx;
       const Real squared = cx * cx + cy * cy + cz * cz;
-      const Real noise =
-          du_noise * (vx * vx + vy * vy + vz * vz) + dv_noise[to + j] * (ux * ux + uy * uy + uz * uz);
-      const Real kept = squared > noise ? Real(1) : Real(0);
-      const Real scale = kept / square_root(squared > noise ? squared : Real(1));
+      Real scale = 0;
+      if constexpr (care == Care::full) {
+        const Real noise =
+            du_noise * (vx * vx + vy * vy + vz * vz) + dv_noise[to + j] * (ux * ux + uy * uy + uz * uz);
+        const bool regular = squared > noise;
+        scale = (regular ? Real(1) : Real(0)) / square_root(regular ? squared : Real(1));
+        irregular[j] += regular ? 0 : 1;
+      } else {
+        scale = Real(1) / square_root(squared);
+        irregular[j] += squared > surely_regular ? 0 : 1;
+      }
       nx[to + j] = cx * scale;
       ny[to + j] = cy * scale;
       nz[to + j] = cz * scale;
-      regular[j] += kept;
     }
   }
-  int degenerate = blocks * evaluate_block;
-  for (int j = 0; j < evaluate_block; ++j) degenerate -= static_cast<int>(regular[j]);
-  return degenerate;
+  int sum = 0;
+  for (int j = 0; j < evaluate_block; ++j) sum += irregular[j];
+  return sum;
 }
 
 template <class Real>
@@ -151,33 +160,46 @@ void points(const EvaluateRow<Real>& row, int first_block, int blocks, const Eva
   }
 }
 
-template <class Real>
-int points_and_normals(const EvaluateRow<Real>& row, int first_block, int blocks,
-                       const EvaluateOutput<Real>& out) {
+template <class Real, Care care>
+int irregular_points_and_normals(const EvaluateRow<Real>& row, int first_block, int blocks,
+                                 const EvaluateOutput<Real>& out) {
   switch (row.bandwidth) {
     case 2:
-      return points_and_normals_row<Real, 2>(row, first_block, blocks, out);
+      return points_and_normals_row<Real, 2, care>(row, first_block, blocks, out);
     case 3:
-      return points_and_normals_row<Real, 3>(row, first_block, blocks, out);
+      return points_and_normals_row<Real, 3, care>(row, first_block, blocks, out);
     case 4:
-      return points_and_normals_row<Real, 4>(row, first_block, blocks, out);
+      return points_and_normals_row<Real, 4, care>(row, first_block, blocks, out);
     case 5:
-      return points_and_normals_row<Real, 5>(row, first_block, blocks, out);
+      return points_and_normals_row<Real, 5, care>(row, first_block, blocks, out);
     case 6:
-      return points_and_normals_row<Real, 6>(row, first_block, blocks, out);
+      return points_and_normals_row<Real, 6, care>(row, first_block, blocks, out);
     case 7:
-      return points_and_normals_row<Real, 7>(row, first_block, blocks, out);
+      return points_and_normals_row<Real, 7, care>(row, first_block, blocks, out);
     case 8:
-      return points_and_normals_row<Real, 8>(row, first_block, blocks, out);
+      return points_and_normals_row<Real, 8, care>(row, first_block, blocks, out);
     case 9:
-      return points_and_normals_row<Real, 9>(row, first_block, blocks, out);
+      return points_and_normals_row<Real, 9, care>(row, first_block, blocks, out);
     default:
-      return points_and_normals_row<Real, 10>(row, first_block, blocks, out);
+      return points_and_normals_row<Real, 10, care>(row, first_block, blocks, out);
   }
 }
 
 template <class Real>
-constexpr EvaluateKernels<Real> kernels{blend<Real>, points<Real>, points_and_normals<Real>};
+int points_and_normals(const EvaluateRow<Real>& row, int first_block, int blocks,
+                       const EvaluateOutput<Real>& out) {
+  return irregular_points_and_normals<Real, Care::full>(row, first_block, blocks, out);
+}
+
+template <class Real>
+bool points_and_normals_if_regular(const EvaluateRow<Real>& row, int first_block, int blocks,
+                                   const EvaluateOutput<Real>& out) {
+  return irregular_points_and_normals<Real, Care::if_regular>(row, first_block, blocks, out) == 0;
+}
+
+template <class Real>
+constexpr EvaluateKernels<Real> kernels{blend<Real>, points<Real>, points_and_normals<Real>,
+                                        points_and_normals_if_regular<Real>};
 
 }  // namespace
 

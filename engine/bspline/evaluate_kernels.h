@@ -41,6 +41,7 @@ struct EvaluateRow {
   const Real* derivatives;
   Real du_noise_squared;         // rounding error of du in this row
   const Real* dv_noise_squared;  // of dv in each column
+  Real surely_regular;           // |du x dv|^2 above it is above the rounding error in every column
 };
 
 // Where blocks of a row of samples begin. Blocks need not be aligned there.
@@ -64,6 +65,11 @@ struct EvaluateKernels {
   // Returns the number of samples whose du x dv is no more than rounding error; their normals are zero.
   int (*points_and_normals)(const EvaluateRow<Real>& row, int first_block, int blocks,
                             const EvaluateOutput<Real>& out);
+
+  // The same bits at a fraction of the cost where every sample is surely regular, which it returns. Where
+  // not, the normals mean nothing.
+  bool (*points_and_normals_if_regular)(const EvaluateRow<Real>& row, int first_block, int blocks,
+                                        const EvaluateOutput<Real>& out);
 };
 
 namespace kernels_baseline {

@@ -115,6 +115,63 @@ TEST(GridEvaluator, PointsAloneAreTheSameBits) {
   }
 }
 
+// A sheet squeezed until, in single precision, some of its normals are rounding noise and some just not.
+Surface squeezed_sheet(Random& random) {
+  Surface surface = random_surface(random);
+  const double squeeze = std::pow(10.0, random.uniform(-8.0, 0.0)), away_m = random.uniform(0.0, 2.0);
+  for (double& x : surface.net.x) x = squeeze * x + away_m;
+  for (double& z : surface.net.z) z *= squeeze;
+  return surface;
+}
+
+int index_of(const GridDirection& direction, double parameter) {
+  const auto found = std::find(direction.parameters.begin(), direction.parameters.end(), parameter);
+  return static_cast<int>(found - direction.parameters.begin());
+}
+
+std::vector<double> some_of(Random& random, const std::vector<double>& values, int count) {
+  std::vector<double> some = values;
+  while (static_cast<int>(some.size()) > count) {
+    some.erase(some.begin() + random.integer(0, static_cast<int>(some.size()) - 1));
+  }
+  return some;
+}
+
+// Two rows of seven samples have no room for a block: they go with full care, while most rows of the whole
+// grid are computed as surely regular ones. Four rows stay below the number of unit_normal() calls of a pass.
+void expect_same_bits_in_parts(Random& random, const Surface& surface) {
+  const Grid grid = random_grid(random, surface, 4, random.integer(7, 60));
+  const Grid part = make_grid(surface.u, surface.v, some_of(random, grid.u.parameters, 2),
+                              some_of(random, grid.v.parameters, 7))
+                        .value();
+  for (const InstructionSet set : available_instruction_sets()) {
+    const auto whole = samples_of<float>(surface, grid, set), alone = samples_of<float>(surface, part, set);
+    for (int k = 0; k < part.rows() * part.columns(); ++k) {
+      const int in_whole = index_of(grid.u, part.u.parameters[k / part.columns()]) * grid.columns() +
+                           index_of(grid.v, part.v.parameters[k % part.columns()]);
+      EXPECT_EQ(point_of(alone, k), point_of(whole, in_whole));
+      EXPECT_EQ(normal_of(alone, k), normal_of(whole, in_whole));
+    }
+  }
+}
+
+TEST(GridEvaluator, EveryPartOfAGridHasTheBitsOfTheWhole) {
+  Random random(23);
+  for (int repeat = 0; repeat < 300; ++repeat) expect_same_bits_in_parts(random, squeezed_sheet(random));
+}
+
+// Every sample of a parallelogram is as regular as the others, and passes into noise with them.
+TEST(GridEvaluator, APartOfANarrowParallelogramHasTheBitsOfTheWhole) {
+  Random random(24);
+  const KnotVector line = KnotVector::clamped_uniform(1, 2).value();
+  for (double width_m = 1e-7; width_m < 1e-3; width_m *= 1.02) {
+    ControlNet net(2, 2);
+    net.x = {1, 2, 2, 3};
+    net.y = {0, width_m, 0, width_m};
+    expect_same_bits_in_parts(random, make_surface(line, line, net).value());
+  }
+}
+
 TEST(GridEvaluator, TheSeamIsTheSameSampleTwice) {
   const Surface tube = ellipsoid_tube(10, 8);
   const Grid grid =
