@@ -23,5 +23,6 @@ CommandEntry add_record(CLI::App& root);
 CommandEntry add_edit(CLI::App& root);
 CommandEntry add_info(CLI::App& root);
 CommandEntry add_sample(CLI::App& root);
+CommandEntry add_collide(CLI::App& root);
 
 }  // namespace spoonbill

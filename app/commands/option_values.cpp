@@ -1,7 +1,12 @@
 #include "app/commands/option_values.h"
 
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <optional>
+#include <utility>
+
+#include "engine/simulation/scene.h"
 
 namespace spoonbill {
 namespace {
@@ -11,6 +16,49 @@ std::optional<int> whole_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size()) return {};
   return number;
+}
+
+struct NumberAndRest {
+  double number = 0.0;
+  std::string_view rest;
+};
+
+std::optional<NumberAndRest> leading_number(std::string_view text) {
+  NumberAndRest result;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result.number);
+  if (error != std::errc() || !std::isfinite(result.number)) return {};
+  result.rest = text.substr(static_cast<std::size_t>(end - text.data()));
+  return result;
+}
+
+std::optional<double> length_m(std::string_view text) {
+  constexpr std::pair<std::string_view, double> units[] = {
+      {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"in", 0.0254}};
+  const auto length = leading_number(text);
+  if (!length) return {};
+  if (length->rest.empty() && length->number == 0.0) return 0.0;
+  for (const auto& [name, metres] : units) {
+    if (length->rest == name) return length->number * metres;
+  }
+  return {};
+}
+
+std::optional<double> plain_number(std::string_view text) {
+  const auto number = leading_number(text);
+  return number && number->rest.empty() ? std::optional(number->number) : std::nullopt;
+}
+
+// The parts between commas; nothing where they are not as many.
+template <std::size_t count>
+std::optional<std::array<std::string_view, count>> split(std::string_view text) {
+  std::array<std::string_view, count> parts;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t comma = text.find(',');
+    if ((comma == std::string_view::npos) != (k + 1 == count)) return {};
+    parts[k] = text.substr(0, comma);
+    if (k + 1 < count) text.remove_prefix(comma + 1);
+  }
+  return parts;
 }
 
 }  // namespace
@@ -24,6 +72,32 @@ Result<Extent> parse_extent(std::string_view text, Range<int> range) {
                  std::to_string(range.low) + " to " + std::to_string(range.high)};
   }
   return Extent{*width, *height};
+}
+
+Result<Pose> parse_pose(std::string_view text) {
+  const Error refusal{
+      "'" + std::string(text.substr(0, 80)) +
+      "' is not a pose like 10mm,0,0,1,0,0,0: a position of at most 100 m with units (mm, cm, m "
+      "or in), then a quaternion w,x,y,z"};
+  const auto parts = split<7>(text);
+  if (!parts) return refusal;
+  Pose pose;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto length = length_m((*parts)[axis]);
+    if (!length || !position_range_m.contains(*length)) return refusal;
+    pose.position_m[axis] = *length;
+  }
+  std::array<double, 4> turn{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto number = plain_number((*parts)[3 + k]);
+    if (!number) return refusal;
+    turn[k] = *number;
+  }
+  const Quaternion orientation(turn[0], turn[1], turn[2], turn[3]);
+  const double length = orientation.coeffs().stableNorm();
+  if (!(length > 1e-100 && length < 1e100)) return refusal;
+  pose.orientation = Quaternion(orientation.coeffs() / length);
+  return pose;
 }
 
 }  // namespace spoonbill

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "engine/pose.h"
 #include "engine/range.h"
 #include "engine/result.h"
 
@@ -16,5 +17,9 @@ struct Extent {
 
 // "1280x720", both numbers within the range.
 Result<Extent> parse_extent(std::string_view text, Range<int> range);
+
+// "10mm,0,0,1,0,0,0": x, y and z, each with its unit unless it is 0, within position_range_m; then the turn
+// as a quaternion w,x,y,z of any length but 0.
+Result<Pose> parse_pose(std::string_view text);
 
 }  // namespace spoonbill

@@ -43,6 +43,15 @@ Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net) {
   return Surface{std::move(u), std::move(v), std::move(net)};
 }
 
+Surface placed(Surface surface, const Pose& pose) {
+  for (int i = 0; i < surface.net.rows; ++i) {
+    for (int j = 0; j < surface.net.columns; ++j) {
+      surface.net.set_point(i, j, pose.orientation * surface.net.point(i, j) + pose.position_m);
+    }
+  }
+  return surface;
+}
+
 SurfacePoint evaluate(const Surface& surface, double u, double v) {
   const BasisFunctions bu = basis_functions(surface.u, surface.u.into_domain(u));
   const BasisFunctions bv = basis_functions(surface.v, surface.v.into_domain(v));

@@ -42,6 +42,9 @@ struct Surface {
 // Refused: a net whose size differs from the knots' control point counts, non-finite coordinates.
 Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net);
 
+// The surface as a rigid thing at a pose; at the identity, as it was.
+Surface placed(Surface surface, const Pose& pose);
+
 // One point of a surface with its derivatives by the parameters, in double.
 struct SurfacePoint {
   Vector3 position_m;

@@ -18,8 +18,6 @@ constexpr int deepest_patch = 24;
 constexpr double nearest_tolerance_m = 2e-5;
 // Below this, a step of Newton's method gains nothing but rounding.
 constexpr double least_gain_m = 1e-15;
-// Whether anything touches at all is decided to this.
-constexpr double touch_tolerance_m = 1e-6;
 
 // A lower bound of the tool's distance over a box.
 double lower_bound(const ToolShape& tool, const SurfaceBounds::Box& box) {
@@ -34,7 +32,7 @@ double lower_bound(const ToolShape& tool, const SurfaceBounds::Box& box) {
 // surface within `bulge` of that, and no point of a hull is nearer than its foremost corner along any one
 // direction. Unlike a ball's, this bound is off by the square of the patch's size, so that few patches are
 // cut again.
-double lower_bound(const ToolShape& tool, const std::array<Vector3, 4>& corners, double bulge) {
+double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bulge) {
   Vector3 direction = tool.normal;
   if (tool.kind == ToolShape::Kind::sphere) {
     direction = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]) - tool.centre_m;
@@ -51,71 +49,15 @@ double lower_bound(const ToolShape& tool, const std::array<Vector3, 4>& corners,
 
 }  // namespace
 
-Result<NestedGrid> make_nested_grid(const KnotVector& u, const KnotVector& v, int levels) {
-  NestedParameters in_u = nested_parameters(u, 1, levels), in_v = nested_parameters(v, 1, levels);
-  Result<Grid> grid = make_grid(u, v, std::move(in_u.parameters), std::move(in_v.parameters));
-  if (!grid.ok()) return grid.error();
-  return NestedGrid{std::move(grid).value(), levels, levels};
-}
-
-SurfaceCollider::SurfaceCollider(const NestedGrid& nested)
-    : nested_(&nested), bounds_(nested.grid.u.knots, nested.grid.v.knots) {
+SurfaceCollider::SurfaceCollider(const NestedGrid& nested) : levels_(nested) {
   const std::size_t count =
       static_cast<std::size_t>(nested.grid.rows()) * static_cast<std::size_t>(nested.grid.columns());
-  samples_.resize(count);
-  sampled_at_.assign(count, 0);
   near_at_.assign(count, 0);
-  lines_.resize(static_cast<std::size_t>(nested.grid.u.knots.control_point_count()));
-  column_bound_.assign(static_cast<std::size_t>(bounds_.elements_v()), 0.0);
+  column_bound_.assign(static_cast<std::size_t>(levels_.bounds().elements_v()), 0.0);
   cells_.reserve(cell_capacity);
   finest_.reserve(cell_capacity);
   patches_.reserve(patch_capacity);
   near_.reserve(near_capacity);
-}
-
-const Vector3& SurfaceCollider::sample(const Surface& surface, int index) {
-  if (sampled_at_[index] == query_) return samples_[index];
-  const Grid& grid = nested_->grid;
-  const BlendingMatrix& a_u = grid.u.values;
-  const BlendingMatrix& a_v = grid.v.values;
-  const int row = index / grid.columns(), column = index % grid.columns();
-  Vector3 point = Vector3::Zero();
-  for (int a = 0; a < a_u.bandwidth; ++a) {
-    const int i = a_u.column(row, a);
-    Vector3 line = Vector3::Zero();
-    for (int b = 0; b < a_v.bandwidth; ++b) {
-      line += a_v.values[column * a_v.bandwidth + b] * surface.net.point(i, a_v.column(column, b));
-    }
-    point += a_u.values[row * a_u.bandwidth + a] * line;
-  }
-  ++samples_evaluated_;
-  samples_[index] = point;
-  sampled_at_[index] = query_;
-  return samples_[index];
-}
-
-// The coarsest samples of one column, which share their sums along v.
-void SurfaceCollider::sample_column(const Surface& surface, int column) {
-  const Grid& grid = nested_->grid;
-  const BlendingMatrix& a_u = grid.u.values;
-  const BlendingMatrix& a_v = grid.v.values;
-  for (int i = 0; i < surface.net.rows; ++i) {
-    lines_[i].setZero();
-    for (int b = 0; b < a_v.bandwidth; ++b) {
-      lines_[i] += a_v.values[column * a_v.bandwidth + b] * surface.net.point(i, a_v.column(column, b));
-    }
-  }
-  for (int row = 0; row < grid.rows(); row += 1 << nested_->levels_u) {
-    const int index = row * grid.columns() + column;
-    if (sampled_at_[index] == query_) continue;
-    Vector3 point = Vector3::Zero();
-    for (int a = 0; a < a_u.bandwidth; ++a) {
-      point += a_u.values[row * a_u.bandwidth + a] * lines_[a_u.column(row, a)];
-    }
-    ++samples_evaluated_;
-    samples_[index] = point;
-    sampled_at_[index] = query_;
-  }
 }
 
 double SurfaceCollider::reach(double margin) const {
@@ -137,11 +79,10 @@ CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape
   ++query_;
   near_.clear();
   best_distance_ = std::numeric_limits<double>::infinity();
-  samples_evaluated_ = 0;
-  bounds_.begin();
-  descend(surface, tool, margin_m, result);
+  levels_.begin(surface);
+  descend(tool, margin_m, result);
   polish(surface, tool);
-  result.samples_evaluated = samples_evaluated_;
+  result.samples_evaluated = levels_.samples_evaluated();
   search_between_samples(surface, tool, result);
   const Vector3 normal = unit_normal(surface, best_u_, best_v_);
   const bool inside =
@@ -154,37 +95,37 @@ CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape
 
 // The coarsest samples, but for elements too far for any to count: first along the nearest box, whose samples
 // show how far that is.
-void SurfaceCollider::offer_coarsest(const Surface& surface, const ToolShape& tool, double margin) {
-  const Grid& grid = nested_->grid;
-  const int stride_u = 1 << nested_->levels_u, stride_v = 1 << nested_->levels_v;
+void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
+  const Grid& grid = levels_.nested().grid;
+  const int stride = levels_.step(0);
   const auto offer_column = [&](int j) {
-    sample_column(surface, j);
-    for (int i = 0; i < grid.rows(); i += stride_u) {
-      offer(tool, grid.u.parameters[i], grid.v.parameters[j], samples_[i * grid.columns() + j]);
+    levels_.sample_column(j);
+    for (int i = 0; i < grid.rows(); i += stride) {
+      offer(tool, grid.u.parameters[i], grid.v.parameters[j], levels_.sample(i * grid.columns() + j));
     }
   };
-  bounds_.take_boxes(surface.net);
-  for (int e = 0; e < bounds_.elements_v(); ++e) column_bound_[e] = lower_bound(tool, bounds_.box(e));
+  SurfaceBounds& bounds = levels_.bounds();
+  bounds.take_boxes(levels_.surface().net);
+  for (int e = 0; e < bounds.elements_v(); ++e) column_bound_[e] = lower_bound(tool, bounds.box(e));
   const auto nearest = std::min_element(column_bound_.begin(), column_bound_.end()) - column_bound_.begin();
-  offer_column(static_cast<int>(nearest) * stride_v);
-  offer_column((static_cast<int>(nearest) + 1) * stride_v);
-  for (int e = 0; e < bounds_.elements_v(); ++e) {
+  offer_column(static_cast<int>(nearest) * stride);
+  offer_column((static_cast<int>(nearest) + 1) * stride);
+  for (int e = 0; e < bounds.elements_v(); ++e) {
     if (column_bound_[e] > reach(margin)) continue;
-    offer_column(e * stride_v);
-    offer_column((e + 1) * stride_v);
+    offer_column(e * stride);
+    offer_column((e + 1) * stride);
   }
 }
 
-void SurfaceCollider::descend(const Surface& surface, const ToolShape& tool, double margin,
-                              CollisionResult& result) {
-  const Grid& grid = nested_->grid;
-  const int stride_u = 1 << nested_->levels_u, stride_v = 1 << nested_->levels_v;
+void SurfaceCollider::descend(const ToolShape& tool, double margin, CollisionResult& result) {
+  const Grid& grid = levels_.nested().grid;
+  const int stride = levels_.step(0);
   cells_.clear();
   finest_.clear();
-  offer_coarsest(surface, tool, margin);
-  for (int i = 0; i + stride_u < grid.rows(); i += stride_u) {
-    for (int j = 0; j + stride_v < grid.columns(); j += stride_v) {
-      if (column_bound_[j / stride_v] > reach(margin)) continue;
+  offer_coarsest(tool, margin);
+  for (int i = 0; i + stride < grid.rows(); i += stride) {
+    for (int j = 0; j + stride < grid.columns(); j += stride) {
+      if (column_bound_[j / stride] > reach(margin)) continue;
       if (cells_.size() < cell_capacity) {
         cells_.push_back({i, j, 0});
       } else {
@@ -193,15 +134,18 @@ void SurfaceCollider::descend(const Surface& surface, const ToolShape& tool, dou
     }
   }
   // Breadth first: a coarse level's best distance prunes the finer ones.
-  for (std::size_t at = 0; at < cells_.size(); ++at) {
-    visit_cell(surface, tool, cells_[at], reach(margin), result);
-  }
-  for (const Cell& cell : finest_) {
+  for (std::size_t at = 0; at < cells_.size(); ++at) visit_cell(tool, cells_[at], reach(margin), result);
+  take_near_samples(tool, margin, result);
+}
+
+void SurfaceCollider::take_near_samples(const ToolShape& tool, double margin, CollisionResult& result) {
+  const int columns = levels_.nested().grid.columns();
+  for (const LevelCell& cell : finest_) {
     for (int corner = 0; corner < 4; ++corner) {
-      const int index = (cell.i + (corner >> 1)) * grid.columns() + cell.j + (corner & 1);
+      const int index = (cell.i + (corner >> 1)) * columns + cell.j + (corner & 1);
       if (near_at_[index] == query_) continue;
       near_at_[index] = query_;
-      const double distance = tool.distance(sample(surface, index));
+      const double distance = tool.distance(levels_.sample(index));
       if (distance > margin) continue;
       if (near_.size() == near_capacity) {
         result.overflow = true;
@@ -212,37 +156,18 @@ void SurfaceCollider::descend(const Surface& surface, const ToolShape& tool, dou
   }
 }
 
-SurfaceCollider::Cover SurfaceCollider::cover(const Surface& surface, int i, int j, int level) {
-  const Grid& grid = nested_->grid;
-  const int step_u = 1 << std::max(0, nested_->levels_u - level),
-            step_v = 1 << std::max(0, nested_->levels_v - level);
-  const int index = i * grid.columns() + j;
-  const std::array<Vector3, 4> corners = {sample(surface, index), sample(surface, index + step_v),
-                                          sample(surface, index + step_u * grid.columns()),
-                                          sample(surface, index + step_u * grid.columns() + step_v)};
-  const Vector3 centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-  double radius = 0.0;
-  for (const Vector3& corner : corners) radius = std::max(radius, (corner - centre).norm());
-  const double h_u = grid.u.parameters[i + step_u] - grid.u.parameters[i];
-  const double h_v = grid.v.parameters[j + step_v] - grid.v.parameters[j];
-  bounds_.update(surface.net, j >> nested_->levels_v);
-  return {centre, radius + bounds_.bulge(i >> nested_->levels_u, j >> nested_->levels_v, h_u, h_v)};
-}
-
-void SurfaceCollider::visit_cell(const Surface& surface, const ToolShape& tool, const Cell& cell,
-                                 double reach, CollisionResult& result) {
-  const Cover sphere = cover(surface, cell.i, cell.j, cell.level);
+void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, double reach,
+                                 CollisionResult& result) {
+  const CoverSphere sphere = levels_.cover(cell);
   if (tool.distance(sphere.centre) - sphere.radius > reach) return;
-  const Grid& grid = nested_->grid;
-  const int step_u = 1 << std::max(0, nested_->levels_u - cell.level);
-  const int step_v = 1 << std::max(0, nested_->levels_v - cell.level);
-  if (step_u == 1 && step_v == 1) {
+  if (levels_.is_finest(cell)) {
     finest_.push_back(cell);
     return;
   }
-  const int half_u = std::max(1, step_u / 2), half_v = std::max(1, step_v / 2);
-  for (int i = cell.i; i < cell.i + step_u; i += half_u) {
-    for (int j = cell.j; j < cell.j + step_v; j += half_v) {
+  const Grid& grid = levels_.nested().grid;
+  const int step = levels_.step(cell.level), half = step / 2;
+  for (int i = cell.i; i < cell.i + step; i += half) {
+    for (int j = cell.j; j < cell.j + step; j += half) {
       if (cells_.size() == cell_capacity) {
         result.overflow = true;
         return;
@@ -250,9 +175,9 @@ void SurfaceCollider::visit_cell(const Surface& surface, const ToolShape& tool, 
       cells_.push_back({i, j, cell.level + 1});
     }
   }
-  for (int i = cell.i; i <= cell.i + step_u; i += half_u) {
-    for (int j = cell.j; j <= cell.j + step_v; j += half_v) {
-      offer(tool, grid.u.parameters[i], grid.v.parameters[j], sample(surface, i * grid.columns() + j));
+  for (int i = cell.i; i <= cell.i + step; i += half) {
+    for (int j = cell.j; j <= cell.j + step; j += half) {
+      offer(tool, grid.u.parameters[i], grid.v.parameters[j], levels_.sample(i * grid.columns() + j));
     }
   }
 }
@@ -260,25 +185,18 @@ void SurfaceCollider::visit_cell(const Surface& surface, const ToolShape& tool, 
 // Branch and bound below the finest samples, over the cells that could still hide a nearer point.
 void SurfaceCollider::search_between_samples(const Surface& surface, const ToolShape& tool,
                                              CollisionResult& result) {
-  const Grid& grid = nested_->grid;
-  for (const Cell& cell : finest_) {
-    const int index = cell.i * grid.columns() + cell.j;
+  const Grid& grid = levels_.nested().grid;
+  const int levels = levels_.nested().levels;
+  for (const LevelCell& cell : finest_) {
     patches_.clear();
-    patches_.push_back(
-        {grid.u.parameters[cell.i],
-         grid.u.parameters[cell.i + 1],
-         grid.v.parameters[cell.j],
-         grid.v.parameters[cell.j + 1],
-         {sample(surface, index), sample(surface, index + 1), sample(surface, index + grid.columns()),
-          sample(surface, index + grid.columns() + 1)},
-         cell.i >> nested_->levels_u,
-         cell.j >> nested_->levels_v,
-         0});
+    patches_.push_back({grid.u.parameters[cell.i], grid.u.parameters[cell.i + 1], grid.v.parameters[cell.j],
+                        grid.v.parameters[cell.j + 1], levels_.corners(cell), cell.i >> levels,
+                        cell.j >> levels, 0});
     while (!patches_.empty()) {
       const Patch patch = patches_.back();
       patches_.pop_back();
       const double bulge =
-          bounds_.bulge(patch.element_u, patch.element_v, patch.u1 - patch.u0, patch.v1 - patch.v0);
+          levels_.bounds().bulge(patch.element_u, patch.element_v, patch.u1 - patch.u0, patch.v1 - patch.v0);
       const double low = lower_bound(tool, patch.corners, bulge);
       const bool could_touch = best_distance_ >= 0.0 && low < -touch_tolerance_m;
       if (!could_touch && low >= best_distance_ - nearest_tolerance_m) continue;

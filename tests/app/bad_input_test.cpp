@@ -20,6 +20,8 @@ void expect_refusals(const Workplace& place, const std::string& file) {
   const std::vector<std::vector<std::string>> uses = {
       {"info", file},
       {"sample", file, "--grid", "3x3", "--out", place.text("points.csv")},
+      {"collide", file, place.text("model.json")},
+      {"collide", place.text("model.json"), file},
       {"record", file, "--out", place.text("out.jsonl")},
       {"replay", file, "--out", place.text("pictures")},
   };

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "app/program.h"
@@ -53,6 +54,59 @@ TEST(Info, TellsOfRecordingScriptAndMaterial) {
   const Json material = json_of(run({"info", place.text("material.json"), "--json"}).out);
   EXPECT_EQ(material["kind"], "material");
   EXPECT_EQ(material["material"]["youngs_modulus_pa"], document->scene.body.material.youngs_modulus_pa);
+}
+
+TEST(Collide, TellsTheDistanceAndThenTheDepth) {
+  const Workplace place;
+  const std::string model = place.text("model.json");
+  const Json apart = json_of(run({"collide", model, model, "--pose", "0,1m,0,1,0,0,0", "--json"}).out);
+  EXPECT_EQ(apart["touching"], false);
+  EXPECT_TRUE(apart["contacts"].empty());
+  const double distance = apart["distance_m"];
+  EXPECT_GT(distance, 0.9);
+  EXPECT_LT(distance, 1.0);
+  const Json& nearest = apart["nearest"];
+  EXPECT_NEAR(nearest["b"]["point_m"][1].get<double>() - nearest["a"]["point_m"][1].get<double>(), distance,
+              1e-9);
+
+  // Brought nearer by the distance and a tenth of a millimetre.
+  const std::string pose = std::to_string(1000.0 - distance * 1e3 - 0.1) + "mm,";
+  const Json deep =
+      json_of(run({"collide", model, model, "--pose", "0," + pose + "0,1,0,0,0", "--json"}).out);
+  EXPECT_EQ(deep["touching"], true);
+  EXPECT_EQ(deep["contained"], false);
+  EXPECT_FALSE(deep.contains("distance_m"));
+  // The pose above has six decimals of a millimetre.
+  EXPECT_NEAR(deep["depth_m"].get<double>(), 1e-4, 1e-9);
+  const Json& contact = deep["contacts"][0];
+  EXPECT_NEAR(contact["normal"][1].get<double>(), -1.0, 1e-6);
+  for (const char* side : {"a", "b"}) {
+    const Json& at = contact[side];
+    EXPECT_LE(at["u_range"][0], at["u"]);
+    EXPECT_LE(at["u"], at["u_range"][1]);
+  }
+  const std::string text = run({"collide", model, model, "--pose", "0," + pose + "0,1,0,0,0"}).out;
+  EXPECT_NE(text.find("Depth     0.1 mm"), std::string::npos) << text;
+  EXPECT_NE(text.find("way out"), std::string::npos) << text;
+}
+
+TEST(Collide, OneModelInsideAnother) {
+  const Workplace place;
+  auto small = read_document(place.path("model.json"));
+  ASSERT_TRUE(small);
+  for (std::vector<double>* values : {&small->scene.body.surface.net.x, &small->scene.body.surface.net.y,
+                                      &small->scene.body.surface.net.z}) {
+    const double middle = 0.5 * (*std::min_element(values->begin(), values->end()) +
+                                 *std::max_element(values->begin(), values->end()));
+    for (double& value : *values) value = middle + 0.5 * (value - middle);
+  }
+  place.write("small.json", json_to_page(document_to_json(small.value())));
+  const Json facts =
+      json_of(run({"collide", place.text("small.json"), place.text("model.json"), "--json"}).out);
+  EXPECT_EQ(facts["touching"], true);
+  EXPECT_EQ(facts["contained"], true);
+  EXPECT_EQ(facts["contacts"].size(), 1U);
+  EXPECT_GT(facts["depth_m"], 0.0);
 }
 
 TEST(Sample, WritesPointsOfTheSurfaceWithBothEnds) {

@@ -67,7 +67,7 @@ TEST(SurfaceCollider, SpheresCoverTheirPatches) {
       const int step = 1 << (2 - level);
       const int i = random.integer(0, (grid.rows() - 1) / step - 1) * step;
       const int j = random.integer(0, (grid.columns() - 1) / step - 1) * step;
-      const SurfaceCollider::Cover cover = collider.cover(surface, i, j, level);
+      const CoverSphere cover = collider.levels().cover({i, j, level});
       for (int s = 0; s < 200; ++s) {
         const double u = random.uniform(grid.u.parameters[i], grid.u.parameters[i + step]);
         const double v = random.uniform(grid.v.parameters[j], grid.v.parameters[j + step]);

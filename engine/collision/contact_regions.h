@@ -1,0 +1,37 @@
+// Groups of pairs of cells that hang together: each is one region of contact.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/collision/cell_pairs.h"
+
+namespace spoonbill {
+
+// One owner, one thread; allocates only when made.
+class ContactRegions {
+ public:
+  ContactRegions(const SurfaceLevels& first, const SurfaceLevels& second);
+
+  struct Region {
+    std::size_t begin, end;  // into the pairs
+  };
+
+  // Orders the pairs by their region. Two pairs hang together where their cells are the same or neighbours on
+  // both surfaces, across a seam too. Regions beyond the capacity are joined to the last.
+  const std::vector<Region>& group(std::vector<CellPair>& pairs);
+
+ private:
+  int root(int pair);
+  void join_neighbours(const std::vector<CellPair>& pairs, int pair);
+
+  const SurfaceLevels* first_;
+  const SurfaceLevels* second_;
+  std::vector<int> parent_;               // of each pair
+  std::vector<int> first_pair_;           // by cell_index() of the first surface's cell
+  std::vector<std::uint32_t> paired_at_;  // the group() in which such a cell was in a pair
+  std::uint32_t group_ = 0;
+  std::vector<Region> regions_;
+};
+
+}  // namespace spoonbill

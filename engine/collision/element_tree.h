@@ -1,0 +1,76 @@
+// A tree of boxes over the elements of a surface, from its control points alone: which ranges of parameters
+// can meet another surface at all (the paper's parameter limits of the overlapping hulls).
+#pragma once
+
+#include <vector>
+
+#include "engine/bspline/surface.h"
+
+namespace spoonbill {
+
+struct Box {
+  Vector3 low, high;
+
+  // Between the nearest points; 0 where they overlap.
+  double gap(const Box& other) const {
+    const Vector3 apart = (low - other.high).cwiseMax(other.low - high).cwiseMax(0.0);
+    return apart.norm();
+  }
+  bool holds(const Box& other) const {
+    return (low.array() <= other.low.array()).all() && (other.high.array() <= high.array()).all();
+  }
+  double size() const { return (high - low).norm(); }
+};
+
+// One owner, one thread; allocates only when made.
+class ElementTree {
+ public:
+  ElementTree(const KnotVector& u, const KnotVector& v);
+
+  struct Node {
+    int first_u, end_u, first_v, end_v;  // elements
+    int left = -1, right = -1;           // -1 in a leaf, which is one element
+    bool is_leaf() const { return left < 0; }
+  };
+
+  // Takes the boxes of the present control points; they must follow the moving ones.
+  void update(const ControlNet& net);
+
+  // Makes the boxes smaller: tighter(element_u, element_v) holds the element too, where its box is within
+  // `reach_m` of `other`.
+  template <class Tighter>
+  void tighten(const Box& other, double reach_m, const Tighter& tighter) {
+    for (std::size_t index = 0; index < nodes_.size(); ++index) {
+      Box& box = boxes_[index];
+      if (!nodes_[index].is_leaf() || box.gap(other) > reach_m) continue;
+      const Box held = tighter(nodes_[index].first_u, nodes_[index].first_v);
+      box = {box.low.cwiseMax(held.low), box.high.cwiseMin(held.high)};
+    }
+    join_boxes();
+  }
+
+  int root() const { return 0; }
+  const Node& node(int index) const { return nodes_[index]; }
+  const Box& box(int index) const { return boxes_[index]; }
+
+ private:
+  struct Direction {
+    int degree;
+    std::vector<int> first_control;  // of each element, into `control`
+    std::vector<int> control;        // unrolled index to control index
+    int elements() const { return static_cast<int>(first_control.size()); }
+  };
+  static Direction unroll(const KnotVector& knots);
+  int add(const Node& range);
+  void take_strip(const ControlNet& net, int element_u);
+  void join_boxes();
+
+  Direction u_, v_;
+  std::vector<Node> nodes_;  // parents before their children
+  std::vector<Box> boxes_;
+  std::vector<int> leaf_;  // of each element
+  std::vector<double> low_[3],
+      high_[3];  // working memory: of the rows of one element in u, by control column
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,87 @@
+// Levels of detail of one surface (section 4.1 of Pungotra et al. 2013): samples at nested strides of its
+// blending matrices, evaluated as they are asked for, and spheres that provably cover the patches between.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/bspline/grid.h"
+#include "engine/bspline/surface.h"
+#include "engine/collision/surface_bounds.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+// Whether anything touches is decided to this.
+inline constexpr double touch_tolerance_m = 1e-6;
+
+struct NestedGrid {
+  Grid grid;
+  int levels = 0;  // strides halve level by level until they are 1
+};
+
+// Parameters nested so that no cell holds a knot inside and each element has 2^levels cells a direction.
+Result<NestedGrid> make_nested_grid(const KnotVector& u, const KnotVector& v, int levels);
+
+// The patch between the samples (i, j) and (i + step, j + step), where the step is 2^(levels - level).
+struct LevelCell {
+  int i, j, level;
+};
+
+struct CoverSphere {
+  Vector3 centre;
+  double radius;
+};
+
+// Corners in the order (low u, low v), (low u, high v), (high u, low v), (high u, high v).
+using PatchCorners = std::array<Vector3, 4>;
+
+// One owner, one thread; allocates only when made. The grid must outlive it.
+class SurfaceLevels {
+ public:
+  explicit SurfaceLevels(const NestedGrid& nested);
+
+  // To be called whenever the control points have moved; forgets the samples of before. The surface must have
+  // the grid's knots and outlive the calls below.
+  void begin(const Surface& surface);
+
+  const Surface& surface() const { return *surface_; }
+  const NestedGrid& nested() const { return *nested_; }
+  SurfaceBounds& bounds() { return bounds_; }
+  int samples_evaluated() const { return samples_evaluated_; }
+
+  // index: row * columns + column of the finest grid.
+  const Vector3& sample(int index);
+  // The coarsest samples of one column, which share their sums along v.
+  void sample_column(int column);
+
+  int step(int level) const { return 1 << (nested_->levels - level); }
+  bool is_finest(const LevelCell& cell) const { return cell.level >= nested_->levels; }
+  PatchCorners corners(const LevelCell& cell);
+
+  // How far the surface can leave the bilinear patch through the corners of the cell.
+  double bulge(const LevelCell& cell);
+  const CoverSphere& cover(const LevelCell& cell);
+
+  // Cells of all levels, counted through; those of one level follow each other.
+  int cell_index(const LevelCell& cell) const;
+  int cell_count(int level) const;
+  int all_cells() const { return static_cast<int>(covers_.size()); }
+
+ private:
+  const NestedGrid* nested_;
+  const Surface* surface_ = nullptr;
+  SurfaceBounds bounds_;
+  std::vector<Vector3> samples_;
+  std::vector<std::uint32_t> column_at_;   // the same of the coarsest samples of a column
+  std::vector<Vector3> lines_;             // working memory: a column's sums along v, one a control row
+  std::vector<std::uint32_t> sampled_at_;  // the begin() since which a sample was evaluated
+  std::vector<CoverSphere> covers_;        // by cell_index()
+  std::vector<std::uint32_t> covered_at_;
+  std::vector<int> first_cell_;  // of each level
+  std::uint32_t begun_ = 0;
+  int samples_evaluated_ = 0;
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,284 @@
+#include "engine/collision/surface_pair_collider.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spoonbill {
+namespace {
+
+constexpr std::size_t contact_capacity = 64;
+// Of the smaller surface's size: that no other points are nearer is proven to this.
+constexpr double nearest_tolerance = 1e-4;
+// Candidates of a region from which Newton's method looks for a touch before all of it is searched.
+constexpr std::size_t region_seeds = 8;
+constexpr std::size_t depth_seeds = 8;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+PairParameters centre_of(const SurfaceLevels& first, const SurfaceLevels& second, const CellPair& pair) {
+  const auto middle = [](const SurfaceLevels& levels, const std::vector<double>& parameters, int at,
+                         int level) { return 0.5 * (parameters[at] + parameters[at + levels.step(level)]); };
+  const Grid& a = first.nested().grid;
+  const Grid& b = second.nested().grid;
+  return {middle(first, a.u.parameters, pair.first.i, pair.first.level),
+          middle(first, a.v.parameters, pair.first.j, pair.first.level),
+          middle(second, b.u.parameters, pair.second.i, pair.second.level),
+          middle(second, b.v.parameters, pair.second.j, pair.second.level)};
+}
+
+void widen(ParameterRange& range, const SurfaceLevels& levels, const LevelCell& cell) {
+  const Grid& grid = levels.nested().grid;
+  const int step = levels.step(cell.level);
+  range.u0 = std::min(range.u0, grid.u.parameters[cell.i]);
+  range.u1 = std::max(range.u1, grid.u.parameters[cell.i + step]);
+  range.v0 = std::min(range.v0, grid.v.parameters[cell.j]);
+  range.v1 = std::max(range.v1, grid.v.parameters[cell.j + step]);
+}
+
+// The mean of parameters, those of a periodic direction taken the short way from the first.
+class ParameterMean {
+ public:
+  explicit ParameterMean(const KnotVector& knots) : knots_(&knots) {}
+  void add(double parameter) {
+    if (count_ == 0) first_ = parameter;
+    const double length = knots_->domain_end() - knots_->domain_start();
+    double apart = parameter - first_;
+    if (knots_->is_periodic()) apart -= length * std::round(apart / length);
+    sum_ += apart;
+    ++count_;
+  }
+  double mean() const { return knots_->into_domain(first_ + sum_ / count_); }
+
+ private:
+  const KnotVector* knots_;
+  double first_ = 0.0, sum_ = 0.0;
+  int count_ = 0;
+};
+
+// How long the control net is along a direction.
+double length_along(const ControlNet& net, const Vector3& direction) {
+  double least = infinity, most = -infinity;
+  for (int i = 0; i < net.rows; ++i) {
+    for (int j = 0; j < net.columns; ++j) {
+      const double along = direction.dot(net.point(i, j));
+      least = std::min(least, along);
+      most = std::max(most, along);
+    }
+  }
+  return most - least;
+}
+
+double sign_of(double number) {
+  return number < 0.0 ? -1.0 : 1.0;
+}
+
+}  // namespace
+
+SurfacePairCollider::SurfacePairCollider(const NestedGrid& first, const NestedGrid& second)
+    : first_(first),
+      second_(second),
+      cells_(first_, second_),
+      regions_(first_, second_),
+      search_(first_, second_) {
+  contacts_.reserve(contact_capacity);
+}
+
+PairResult SurfacePairCollider::collide(const Surface& first, const Surface& second, const PairQuery& query) {
+  PairResult result;
+  contacts_.clear();
+  first_.begin(first);
+  second_.begin(second);
+  cells_.begin();
+  search_.begin();
+  Pairs& pairs = cells_.within(0.0);
+  result.overflow = cells_.overflow();
+  for (const Region& region : regions_.group(pairs)) {
+    if (touches(pairs, region)) contacts_.push_back(contact_of(pairs, region, query));
+  }
+  result.touching = !contacts_.empty();
+  if (!result.touching) find_nearest(query, result);
+  result.overflow = result.overflow || search_.overflow();
+  result.samples_evaluated = first_.samples_evaluated() + second_.samples_evaluated();
+  return result;
+}
+
+// First from a few places, which mostly finds a touch at once; then everywhere, to be sure that there is
+// none.
+bool SurfacePairCollider::touches(const Pairs& pairs, const Region& region) {
+  search_.forget_best();
+  const std::size_t count = region.end - region.begin, seeds = std::min(count, region_seeds);
+  for (std::size_t k = 0; k < seeds; ++k) {
+    // From the middle outwards, where a region is most likely to be deep.
+    const std::size_t at = region.begin + (count / 2 + k * count / seeds) % count;
+    search_.offer(centre_of(first_, second_, pairs[at]));
+    if (search_.best_distance_m() <= touch_tolerance_m) return true;
+  }
+  for (std::size_t k = region.begin; k < region.end; ++k) {
+    search_.search(pairs[k].first, pairs[k].second, infinity, touch_tolerance_m);
+    if (search_.best_distance_m() <= touch_tolerance_m) return true;
+  }
+  return false;
+}
+
+PairContact SurfacePairCollider::contact_of(const Pairs& pairs, const Region& region,
+                                            const PairQuery& query) const {
+  const Surface& first = first_.surface();
+  const Surface& second = second_.surface();
+  PairContact contact;
+  contact.first = contact.second = {infinity, -infinity, infinity, -infinity};
+  ParameterMean u(first.u), v(first.v), s(second.u), t(second.v);
+  for (std::size_t k = region.begin; k < region.end; ++k) {
+    widen(contact.first, first_, pairs[k].first);
+    widen(contact.second, second_, pairs[k].second);
+    const PairParameters centre = centre_of(first_, second_, pairs[k]);
+    u.add(centre.u);
+    v.add(centre.v);
+    s.add(centre.s);
+    t.add(centre.t);
+  }
+  contact.pair = search_.best();
+  const PairParameters& touch = contact.pair.at;
+  contact.normal = unit_normal(second, touch.s, touch.t);
+  // An open surface has no inside: of both its sides, the one with the shorter way out counts.
+  double shortest = infinity;
+  for (const double outside : {1.0, -1.0}) {
+    if (outside < 0.0 && query.second_closed) continue;
+    PairContact way = contact;
+    settle(way, deepest_seed(pairs, region, outside), outside, query.first_closed);
+    if (!(way.depth_m > 0.0)) {
+      settle(way, {u.mean(), v.mean(), s.mean(), t.mean()}, outside, query.first_closed);
+    }
+    if (!(way.depth_m > 0.0 && way.depth_m < shortest)) continue;
+    shortest = way.depth_m;
+    contact = way;
+  }
+  const bool bodies = query.first_closed && query.second_closed;
+  if (shortest == infinity && bodies) take_inner_touch(pairs, region, contact);
+  return contact;
+}
+
+// Of a few places of the region and the point of touch, the one where the first surface is deepest.
+PairParameters SurfacePairCollider::deepest_seed(const Pairs& pairs, const Region& region,
+                                                 double outside) const {
+  const std::size_t count = region.end - region.begin, seeds = std::min(count, depth_seeds);
+  PairParameters deepest = search_.best().at;
+  double depth = 0.0;
+  for (std::size_t k = 0; k < seeds; ++k) {
+    const PairParameters at = centre_of(first_, second_, pairs[region.begin + k * count / seeds]);
+    const double here = depth_behind(first_.surface(), second_.surface(), at, outside);
+    if (!(here > depth)) continue;
+    depth = here;
+    deepest = at;
+  }
+  return deepest;
+}
+
+// Where bodies touch with their outsides on the same side, one is inside the other there. Of a few such
+// places the one whose common wall gives the shortest way out counts.
+void SurfacePairCollider::take_inner_touch(const Pairs& pairs, const Region& region,
+                                           PairContact& contact) const {
+  const Surface& first = first_.surface();
+  const Surface& second = second_.surface();
+  const std::size_t count = region.end - region.begin, seeds = std::min(count, depth_seeds);
+  double shortest = infinity;
+  for (std::size_t k = 0; k <= seeds; ++k) {
+    const PairParameters from =
+        k == seeds ? search_.best().at : centre_of(first_, second_, pairs[region.begin + k * count / seeds]);
+    const SurfacePair pair = nearest_pair(first, second, from);
+    if (pair.distance_m() > touch_tolerance_m) continue;
+    const Vector3 normal = unit_normal(second, pair.at.s, pair.at.t);
+    if (!(normal.dot(unit_normal(first, pair.at.u, pair.at.v)) > 0.0)) continue;
+    const double of_first = length_along(first.net, normal), of_second = length_along(second.net, normal);
+    if (!(std::min(of_first, of_second) < shortest)) continue;
+    shortest = std::min(of_first, of_second);
+    contact.pair = pair;
+    contact.normal = of_first <= of_second ? normal : Vector3(-normal);
+    contact.depth_m = shortest;
+  }
+}
+
+// How deep either surface is behind the other: the less of both moves them apart. Kept where it is deeper
+// than what is known.
+void SurfacePairCollider::settle(PairContact& contact, const PairParameters& from, double outside,
+                                 bool first_closed) const {
+  const Surface& first = first_.surface();
+  const Surface& second = second_.surface();
+  const DeepestPair of_first = deepest_pair(first, second, from, outside);
+  if (!(of_first.depth_m > contact.depth_m)) return;
+  // The surfaces face each other where they are deep.
+  const PairParameters& deep = of_first.pair.at;
+  const double outside_first = -sign_of(of_first.normal.dot(unit_normal(first, deep.u, deep.v)));
+  if (first_closed && outside_first < 0.0) return;
+  const DeepestPair of_second = deepest_pair(second, first, {deep.s, deep.t, deep.u, deep.v}, outside_first);
+  if (!(of_second.depth_m > contact.depth_m)) return;
+  if (of_first.depth_m <= of_second.depth_m) {
+    contact.pair = of_first.pair;
+    contact.normal = of_first.normal;
+    contact.depth_m = of_first.depth_m;
+  } else {
+    const SurfacePair& pair = of_second.pair;
+    contact.pair = {{pair.at.s, pair.at.t, pair.at.u, pair.at.v}, pair.second_m, pair.first_m};
+    contact.normal = -of_second.normal;
+    contact.depth_m = of_second.depth_m;
+  }
+}
+
+// One body is inside the other only where its box is.
+double SurfacePairCollider::reach_of(const PairQuery& query) const {
+  const Box& first = cells_.first_tree().box(cells_.first_tree().root());
+  const Box& second = cells_.second_tree().box(cells_.second_tree().root());
+  const bool nested =
+      (query.second_closed && second.holds(first)) || (query.first_closed && first.holds(second));
+  return nested ? infinity : query.reach_m;
+}
+
+void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& result) {
+  const double reach = reach_of(query);
+  const ElementTree& first = cells_.first_tree();
+  const ElementTree& second = cells_.second_tree();
+  if (reach <= 0.0 || first.box(first.root()).gap(second.box(second.root())) > reach) return;
+  search_.forget_best();
+  const double tolerance =
+      nearest_tolerance * std::min(first.box(first.root()).size(), second.box(second.root()).size());
+  cells_.visit_elements(
+      [&] { return std::min(reach, search_.best_distance_m() - tolerance); },
+      [&](const CellPair& pair) { search_.search(pair.first, pair.second, tolerance, touch_tolerance_m); });
+  if (search_.best_distance_m() > reach) return;
+  if (is_contained(query)) {
+    contacts_.push_back(containment());
+    result.touching = result.contained = true;
+  } else if (search_.best_distance_m() <= query.reach_m) {
+    result.nearest = search_.best();
+    result.distance_m = search_.best_distance_m();
+  }
+}
+
+// Of bodies whose surfaces do not meet, the nearest points tell: the point of the one inside lies behind the
+// other's surface.
+bool SurfacePairCollider::is_contained(const PairQuery& query) const {
+  const SurfacePair& best = search_.best();
+  const Vector3 apart = best.first_m - best.second_m;
+  const bool first_inside =
+      query.second_closed && apart.dot(unit_normal(second_.surface(), best.at.s, best.at.t)) < 0.0;
+  const bool second_inside =
+      query.first_closed && apart.dot(unit_normal(first_.surface(), best.at.u, best.at.v)) > 0.0;
+  return first_inside || second_inside;
+}
+
+// Through the nearest wall: by the distance to it and by how long the inner one is along that way.
+PairContact SurfacePairCollider::containment() const {
+  const Surface& first = first_.surface();
+  const Surface& second = second_.surface();
+  PairContact contact;
+  contact.pair = search_.best();
+  const Vector3 between = contact.pair.second_m - contact.pair.first_m, way = between.normalized();
+  contact.normal = way;
+  contact.depth_m = between.norm() + std::min(length_along(first.net, way), length_along(second.net, way));
+  contact.first = {first.u.domain_start(), first.u.domain_end(), first.v.domain_start(),
+                   first.v.domain_end()};
+  contact.second = {second.u.domain_start(), second.u.domain_end(), second.v.domain_start(),
+                    second.v.domain_end()};
+  return contact;
+}
+
+}  // namespace spoonbill

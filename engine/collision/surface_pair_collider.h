@@ -1,0 +1,82 @@
+// Contact of two B-spline surfaces through levels of detail of their blending matrices (section 4.1 of
+// Pungotra et al. 2013): the cells that could meet are found from coarse to fine, grouped to regions, and
+// what they do is settled on the true surfaces.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "engine/collision/cell_pairs.h"
+#include "engine/collision/contact_regions.h"
+#include "engine/collision/pair_search.h"
+
+namespace spoonbill {
+
+// Around cells of a grid. On a periodic direction it is the whole domain where the cells lie at both its
+// ends.
+struct ParameterRange {
+  double u0, u1, v0, v1;
+};
+
+// One region in which the surfaces cross or touch.
+struct PairContact {
+  SurfacePair pair;              // the deepest points, one on each surface
+  Vector3 normal;                // unit, along which the first surface leaves the second
+  double depth_m = 0.0;          // how far; 0 where they only touch
+  ParameterRange first, second;  // all of the region is within
+};
+
+struct PairQuery {
+  // Whether they bound bodies: du x dv then points outwards, and one body may be inside the other. An open
+  // surface has two sides, and the shorter way out counts.
+  bool first_closed = false, second_closed = false;
+  // Up to which distance the nearest points of surfaces that do not touch are searched for.
+  double reach_m = 0.0;
+};
+
+struct PairResult {
+  bool touching = false;   // decided to touch_tolerance_m
+  bool contained = false;  // touching, with one inside the other: the one contact says how it gets out
+  // Of surfaces that do not touch, infinite beyond the reach. No points are nearer by more than a
+  // ten-thousandth of the smaller surface's size.
+  double distance_m = std::numeric_limits<double>::infinity();
+  SurfacePair nearest;
+  // A capacity was met, and a contact may be missing. Remedy: surfaces of fewer elements or a smaller reach.
+  bool overflow = false;
+  int samples_evaluated = 0;
+};
+
+// One owner, one thread; allocates only when made. The grids must outlive it.
+class SurfacePairCollider {
+ public:
+  SurfacePairCollider(const NestedGrid& first, const NestedGrid& second);
+  SurfacePairCollider(const SurfacePairCollider&) = delete;
+  SurfacePairCollider& operator=(const SurfacePairCollider&) = delete;
+
+  PairResult collide(const Surface& first, const Surface& second, const PairQuery& query);
+
+  // Of the last collide().
+  const std::vector<PairContact>& contacts() const { return contacts_; }
+
+ private:
+  using Pairs = std::vector<CellPair>;
+  using Region = ContactRegions::Region;
+
+  bool touches(const Pairs& pairs, const Region& region);
+  PairContact contact_of(const Pairs& pairs, const Region& region, const PairQuery& query) const;
+  PairParameters deepest_seed(const Pairs& pairs, const Region& region, double outside) const;
+  void take_inner_touch(const Pairs& pairs, const Region& region, PairContact& contact) const;
+  void settle(PairContact& contact, const PairParameters& from, double outside, bool first_closed) const;
+  void find_nearest(const PairQuery& query, PairResult& result);
+  double reach_of(const PairQuery& query) const;
+  bool is_contained(const PairQuery& query) const;
+  PairContact containment() const;
+
+  SurfaceLevels first_, second_;
+  CellPairs cells_;
+  ContactRegions regions_;
+  PairSearch search_;
+  std::vector<PairContact> contacts_;
+};
+
+}  // namespace spoonbill
