@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
@@ -12,6 +13,7 @@
 #include "app/report/contact_facts.h"
 #include "engine/collision/surface_pair_collider.h"
 #include "engine/exchange/document.h"
+#include "engine/material/tube_lattice.h"
 
 namespace spoonbill {
 namespace {
@@ -24,23 +26,33 @@ struct CollideOptions {
 
 constexpr int levels = 2;
 
+Result<Surface> read_body(const std::filesystem::path& file) {
+  auto document = read_document(file);
+  if (!document) return document.error();
+  Surface surface = std::move(document->scene.body.surface);
+  if (Status closed = check_closed_tube(surface); !closed) {
+    return Error{file.string() + ": " + closed.error().message};
+  }
+  return surface;
+}
+
 Status collide(const CollideOptions& options, Console& console) {
-  const auto first = read_document(options.first);
+  const auto first = read_body(options.first);
   if (!first) return first.error();
-  const auto second = read_document(options.second);
+  const auto second = read_body(options.second);
   if (!second) return second.error();
-  const Surface& a = first->scene.body.surface;
-  const Surface b = placed(second->scene.body.surface, options.pose);
+  const Surface& a = first.value();
+  const Surface b = placed(second.value(), options.pose);
   const auto grid_a = make_nested_grid(a.u, a.v, levels), grid_b = make_nested_grid(b.u, b.v, levels);
   if (!grid_a) return grid_a.error();
   if (!grid_b) return grid_b.error();
 
   SurfacePairCollider collider(grid_a.value(), grid_b.value());
   PairQuery query;
-  query.first_closed = query.second_closed = true;  // as the bodies of documents are
+  query.first_closed = query.second_closed = true;
   query.reach_m = std::numeric_limits<double>::infinity();
   const PairResult result = collider.collide(a, b, query);
-  if (result.overflow) {
+  if (result.overflow && !result.touching) {
     return Error{
         "these surfaces come near each other in more places than can be searched: " + options.first.string() +
         " and " + options.second.string() + "; give them fewer control points or another --pose"};

@@ -52,6 +52,9 @@ void add_contact_facts(FactSheet& facts, const PairResult& result, const std::ve
   facts.add("Touching", result.touching ? (result.contained ? "yes, one inside the other" : "yes") : "no",
             "touching", result.touching);
   facts.add("", "", "contained", result.contained);
+  facts.add(result.overflow ? "Notice" : "",
+            "they meet in more places than are listed; give them fewer control points", "complete",
+            !result.overflow);
   Json list = Json::array();
   if (result.touching) {
     double deepest = 0.0;

@@ -7,7 +7,7 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t contact_capacity = 64;
-// Of the smaller surface's size: that no other points are nearer is proven to this.
+// Of the smaller surface's size or of the distance: that no other points are nearer is proven to this.
 constexpr double nearest_tolerance = 1e-4;
 // Candidates of a region from which Newton's method looks for a touch before all of it is searched.
 constexpr std::size_t region_seeds = 8;
@@ -224,27 +224,42 @@ void SurfacePairCollider::settle(PairContact& contact, const PairParameters& fro
 }
 
 // One body is inside the other only where its box is.
-double SurfacePairCollider::reach_of(const PairQuery& query) const {
+bool SurfacePairCollider::may_contain(const PairQuery& query) const {
   const Box& first = cells_.first_tree().box(cells_.first_tree().root());
   const Box& second = cells_.second_tree().box(cells_.second_tree().root());
-  const bool nested =
-      (query.second_closed && second.holds(first)) || (query.first_closed && first.holds(second));
-  return nested ? infinity : query.reach_m;
+  return (query.second_closed && second.holds(first)) || (query.first_closed && first.holds(second));
+}
+
+double SurfacePairCollider::tolerance() const {
+  const ElementTree& first = cells_.first_tree();
+  const ElementTree& second = cells_.second_tree();
+  const double size = std::min(first.box(first.root()).size(), second.box(second.root()).size());
+  const double best = search_.best_distance_m();
+  return nearest_tolerance * (std::isfinite(best) ? std::max(size, best) : size);
+}
+
+// Returns the largest tolerance that was used.
+double SurfacePairCollider::search_all(double reach) {
+  double largest = 0.0;
+  cells_.visit_elements([&] { return std::min(reach, search_.best_distance_m() - tolerance()); },
+                        [&](const CellPair& pair) {
+                          const double used = tolerance();
+                          largest = std::max(largest, used);
+                          search_.search(pair.first, pair.second, used, touch_tolerance_m);
+                        });
+  return largest;
 }
 
 void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& result) {
-  const double reach = reach_of(query);
-  const ElementTree& first = cells_.first_tree();
-  const ElementTree& second = cells_.second_tree();
-  if (reach <= 0.0 || first.box(first.root()).gap(second.box(second.root())) > reach) return;
+  const bool nested = may_contain(query);
+  const double reach = nested ? infinity : query.reach_m;
+  const Box& first = cells_.first_tree().box(cells_.first_tree().root());
+  const Box& second = cells_.second_tree().box(cells_.second_tree().root());
+  if (reach <= 0.0 || first.gap(second) > reach) return;
   search_.forget_best();
-  const double tolerance =
-      nearest_tolerance * std::min(first.box(first.root()).size(), second.box(second.root()).size());
-  cells_.visit_elements(
-      [&] { return std::min(reach, search_.best_distance_m() - tolerance); },
-      [&](const CellPair& pair) { search_.search(pair.first, pair.second, tolerance, touch_tolerance_m); });
-  if (search_.best_distance_m() > reach) return;
-  if (is_contained(query)) {
+  // Beside a first guess far too long, nearer points were let go: once more, beside the one found.
+  while (search_all(reach) > 2.0 * tolerance()) continue;
+  if (nested && is_contained(query)) {
     contacts_.push_back(containment());
     result.touching = result.contained = true;
   } else if (search_.best_distance_m() <= query.reach_m) {

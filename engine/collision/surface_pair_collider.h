@@ -38,7 +38,7 @@ struct PairResult {
   bool touching = false;   // decided to touch_tolerance_m
   bool contained = false;  // touching, with one inside the other: the one contact says how it gets out
   // Of surfaces that do not touch, infinite beyond the reach. No points are nearer by more than a
-  // ten-thousandth of the smaller surface's size.
+  // ten-thousandth of it or of the smaller surface's size.
   double distance_m = std::numeric_limits<double>::infinity();
   SurfacePair nearest;
   // A capacity was met, and a contact may be missing. Remedy: surfaces of fewer elements or a smaller reach.
@@ -68,7 +68,9 @@ class SurfacePairCollider {
   void take_inner_touch(const Pairs& pairs, const Region& region, PairContact& contact) const;
   void settle(PairContact& contact, const PairParameters& from, double outside, bool first_closed) const;
   void find_nearest(const PairQuery& query, PairResult& result);
-  double reach_of(const PairQuery& query) const;
+  bool may_contain(const PairQuery& query) const;
+  double tolerance() const;
+  double search_all(double reach);
   bool is_contained(const PairQuery& query) const;
   PairContact containment() const;
 

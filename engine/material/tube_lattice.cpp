@@ -6,11 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "engine/number_text.h"
+
 namespace spoonbill {
 namespace {
 
 constexpr int ring_samples = 256;
 constexpr int along_samples = 400;
+// Of the width: flatter bodies have cells that no spring holds open.
+constexpr double least_thickness = 1e-4;
 
 // A monotone table from one quantity to another, looked up linearly.
 struct Table {
@@ -263,11 +267,13 @@ void fill_ring(const Surface& surface, const RingParameters& ring, LatticeMesh& 
 std::array<int, 3> near_cubic_counts(double width, double thickness, double length, int budget) {
   double edge = std::cbrt(width * thickness * length / budget);
   for (;; edge *= 1.01) {
+    // More than the budget in one direction is too many, however many more.
     const auto cells = [&](double size, int least) {
-      return std::max(least, static_cast<int>(std::lround(size / edge)));
+      return std::max(least, static_cast<int>(std::lround(std::min(size / edge, 1.0 * budget))));
     };
     const std::array<int, 3> counts = {cells(width, 2) + 1, cells(thickness, 2) + 1, cells(length, 2) + 1};
-    if (counts[0] * counts[1] * counts[2] <= budget || counts[0] + counts[1] + counts[2] == 9) return counts;
+    const double nodes = 1.0 * counts[0] * counts[1] * counts[2];
+    if (nodes <= budget || counts[0] + counts[1] + counts[2] == 9) return counts;
   }
 }
 
@@ -310,6 +316,11 @@ Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& r
       (sample_ring(surface, profile.v[last_rim]).centre - sample_ring(surface, profile.v[first_rim]).centre)
           .normalized();
   const CrossSection section = principal_axes(middle, axis);
+  if (!(section.thickness >= least_thickness * section.width)) {
+    return Error{"surface: " + number_text(section.thickness * 1e3) + " mm thick in the middle where it is " +
+                 number_text(section.width * 1e3) +
+                 " mm wide: too flat for a lattice; make it at least a ten-thousandth as thick"};
+  }
   LatticeMesh mesh;
   mesh.count = request.counts ? *request.counts
                               : near_cubic_counts(section.width, section.thickness,

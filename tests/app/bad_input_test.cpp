@@ -61,6 +61,45 @@ TEST(BadInput, DamagedModels) {
   }
 }
 
+// Writes the model with all its control points moved.
+template <class Move>
+std::string moved_model(const Workplace& place, const std::string& name, const Move& move) {
+  auto document = read_document(place.path("model.json"));
+  EXPECT_TRUE(document);
+  ControlNet& net = document->scene.body.surface.net;
+  for (int i = 0; i < net.rows; ++i) {
+    for (int j = 0; j < net.columns; ++j) net.set_point(i, j, move(net.point(i, j)));
+  }
+  return place.write(name, json_to_page(document_to_json(document.value()))).string();
+}
+
+void expect_refusal(const std::vector<std::string>& arguments, const std::string& reason) {
+  const Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.code, exit_failed) << testing::PrintToString(arguments);
+  EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+  EXPECT_NE(outcome.err.find(reason), std::string::npos) << outcome.err;
+}
+
+TEST(BadInput, BodiesInsideOutHaveNoOutside) {
+  const Workplace place;
+  const std::string mirrored =
+      moved_model(place, "mirrored.json", [](const Vector3& p) { return Vector3(p.x(), p.y(), -p.z()); });
+  expect_refusal({"info", mirrored}, "mirrored.json: surface: normals point inward");
+  expect_refusal({"collide", mirrored, place.text("model.json")},
+                 "mirrored.json: surface: normals point inward");
+  expect_refusal({"collide", place.text("model.json"), mirrored},
+                 "mirrored.json: surface: normals point inward");
+}
+
+TEST(BadInput, BodiesWithoutThicknessHoldNoLattice) {
+  const Workplace place;
+  for (const double thickness : {1e-6, 1e-9, 1e-13, 0.0}) {
+    const std::string flat = moved_model(
+        place, "flat.json", [&](const Vector3& p) { return Vector3(p.x(), thickness * p.y(), p.z()); });
+    expect_refusal({"info", flat}, thickness > 0.0 ? "flat.json: surface: " : "flat.json: ");
+  }
+}
+
 TEST(BadInput, DamagedRecordings) {
   const Workplace place;
   const std::string recording = content_of(place.record("good.jsonl"));
