@@ -60,8 +60,11 @@ CellPairs::CellPairs(SurfaceLevels& first, SurfaceLevels& second)
   counted_at_.assign(static_cast<std::size_t>(first.all_cells() + second.all_cells()), 0);
 }
 
-void CellPairs::begin() {
+void CellPairs::begin_first() {
   first_tree_.update(first_->surface().net);
+}
+
+void CellPairs::begin_second() {
   second_tree_.update(second_->surface().net);
 }
 

@@ -25,8 +25,9 @@ class CellPairs {
  public:
   CellPairs(SurfaceLevels& first, SurfaceLevels& second);
 
-  // The control points have moved; after SurfaceLevels::begin() of both.
-  void begin();
+  // The control points of one have moved; after SurfaceLevels::begin() of it.
+  void begin_first();
+  void begin_second();
 
   // All pairs of cells that can be within `reach_m` of each other: of the finest level, or of one where every
   // cell of both surfaces is in some of many pairs, below which spheres tell nothing apart.

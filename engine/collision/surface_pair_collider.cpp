@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/collision/convex_hull.h"
+
 namespace spoonbill {
 namespace {
 
@@ -86,20 +88,32 @@ SurfacePairCollider::SurfacePairCollider(const NestedGrid& first, const NestedGr
 PairResult SurfacePairCollider::collide(const Surface& first, const Surface& second, const PairQuery& query) {
   PairResult result;
   contacts_.clear();
-  first_.begin(first);
-  second_.begin(second);
-  cells_.begin();
+  if (query.first_moved) {
+    first_.begin(first);
+    cells_.begin_first();
+  }
+  if (query.second_moved) {
+    second_.begin(second);
+    cells_.begin_second();
+  }
+  const int samples_before = first_.samples_evaluated() + second_.samples_evaluated();
   search_.begin();
-  Pairs& pairs = cells_.within(0.0);
-  result.overflow = cells_.overflow();
-  for (const Region& region : regions_.group(pairs)) {
-    if (touches(pairs, region)) contacts_.push_back(contact_of(pairs, region, query));
+  if (!hulls_are_apart(first.net, second.net)) {
+    take_contacts(query);
+    result.overflow = cells_.overflow();
   }
   result.touching = !contacts_.empty();
   if (!result.touching) find_nearest(query, result);
   result.overflow = result.overflow || search_.overflow();
-  result.samples_evaluated = first_.samples_evaluated() + second_.samples_evaluated();
+  result.samples_evaluated = first_.samples_evaluated() + second_.samples_evaluated() - samples_before;
   return result;
+}
+
+void SurfacePairCollider::take_contacts(const PairQuery& query) {
+  Pairs& pairs = cells_.within(0.0);
+  for (const Region& region : regions_.group(pairs)) {
+    if (touches(pairs, region)) contacts_.push_back(contact_of(pairs, region, query));
+  }
 }
 
 // First from a few places, which mostly finds a touch at once; then everywhere, to be sure that there is

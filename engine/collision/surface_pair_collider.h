@@ -32,6 +32,9 @@ struct PairQuery {
   bool first_closed = false, second_closed = false;
   // Up to which distance the nearest points of surfaces that do not touch are searched for.
   double reach_m = 0.0;
+  // Whether the control points have moved since the last collide(), which must have been of the same surfaces
+  // where they have not: what was evaluated of them is used again.
+  bool first_moved = true, second_moved = true;
 };
 
 struct PairResult {
@@ -62,6 +65,7 @@ class SurfacePairCollider {
   using Pairs = std::vector<CellPair>;
   using Region = ContactRegions::Region;
 
+  void take_contacts(const PairQuery& query);
   bool touches(const Pairs& pairs, const Region& region);
   PairContact contact_of(const Pairs& pairs, const Region& region, const PairQuery& query) const;
   PairParameters deepest_seed(const Pairs& pairs, const Region& region, double outside) const;

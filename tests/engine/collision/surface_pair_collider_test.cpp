@@ -162,13 +162,34 @@ TEST(SurfacePair, PolesMeet) {
   EXPECT_LT((answer.contacts[0].normal - Vector3(0, 0, 1)).norm(), 1e-5);
 }
 
+TEST(SurfacePair, WhatHasNotMovedIsNotEvaluatedAgain) {
+  Random random(79);
+  const Surface first = random_surface(random), second = random_surface(random);
+  const NestedGrid a = make_nested_grid(first.u, first.v, 2).value();
+  const NestedGrid b = make_nested_grid(second.u, second.v, 2).value();
+  SurfacePairCollider collider(a, b);
+  PairQuery query;
+  EXPECT_GT(collider.collide(first, second, query).samples_evaluated, 0);
+  const std::vector<PairContact> before = collider.contacts();
+  ASSERT_FALSE(before.empty());
+  query.first_moved = query.second_moved = false;
+  EXPECT_EQ(collider.collide(first, second, query).samples_evaluated, 0);
+  ASSERT_EQ(collider.contacts().size(), before.size());
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    EXPECT_EQ(collider.contacts()[k].depth_m, before[k].depth_m);
+    EXPECT_EQ(collider.contacts()[k].pair.first_m, before[k].pair.first_m);
+  }
+}
+
 TEST(SurfacePair, AllocatesNothing) {
   const Surface first = paraboloid(0.9, 0.7, -0.02), second = paraboloid(0, 0, 0);
   const NestedGrid a = make_nested_grid(first.u, first.v, 3).value();
   SurfacePairCollider collider(a, a);
   const std::size_t before = allocation_count();
   collider.collide(first, second, {});
-  collider.collide(first, second, {false, false, infinity});
+  PairQuery far;
+  far.reach_m = infinity;
+  collider.collide(first, second, far);
   EXPECT_EQ(allocation_count(), before);
 }
 
