@@ -24,6 +24,7 @@ struct CollideOptions {
   bool json = false;
 };
 
+// Cells a quarter of an element wide: regions are told that closely.
 constexpr int levels = 2;
 
 Result<Surface> read_body(const std::filesystem::path& file) {
@@ -71,9 +72,8 @@ CommandEntry add_collide(CLI::App& root) {
   auto options = std::make_shared<CollideOptions>();
   CLI::App* parser = root.add_subcommand("collide", "Tell whether and how deep two models touch");
   parser->footer(
-      "Found on the B-spline surfaces themselves, to a micrometre: where they touch, how deep, the way out "
-      "of\n"
-      "B for A, and the parameters on both; where they do not, the distance and the nearest points.\n"
+      "Found on the B-spline surfaces themselves, to a micrometre: where they touch, how deep, which way A\n"
+      "gets out, and the parameters on both; where they do not, the distance and the nearest points.\n"
       "Example: spoonbill collide assets/models/spoon-handle.json assets/models/spoon-handle.json "
       "--pose 0,5mm,0,1,0,0,0");
   parser->add_option("A", options->first, "A document (.json)")->required();

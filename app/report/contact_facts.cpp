@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -15,15 +16,18 @@ Json vector_json(const Vector3& vector) {
   return {vector.x() + 0.0, vector.y() + 0.0, vector.z() + 0.0};
 }
 
-std::string vector_text(const Vector3& vector, double scale, const char* form) {
+std::string vector_text(const Vector3& vector, int decimals) {
+  const double places = std::pow(10.0, decimals);
+  // Rounded first, so that nothing reads -0.0.
+  const auto rounded = [&](double number) { return std::round(number * places) / places + 0.0; };
   std::array<char, 96> text{};
-  const Vector3 v = scale * vector;
-  std::snprintf(text.data(), text.size(), form, v.x(), v.y(), v.z());
+  std::snprintf(text.data(), text.size(), "(%.*f, %.*f, %.*f)", decimals, rounded(vector.x()), decimals,
+                rounded(vector.y()), decimals, rounded(vector.z()));
   return text.data();
 }
 
 std::string point_text(const Vector3& point_m) {
-  return vector_text(point_m, 1e3, "(%.1f, %.1f, %.1f) mm");
+  return vector_text(1e3 * point_m, 1) + " mm";
 }
 
 Json place_json(double u, double v, const Vector3& point_m) {
@@ -63,7 +67,7 @@ void add_contact_facts(FactSheet& facts, const PairResult& result, const std::ve
     for (const PairContact& contact : contacts) {
       facts.add("Contact",
                 millimetres_text(contact.depth_m) + " deep at " + point_text(contact.pair.first_m) +
-                    ", way out " + vector_text(contact.normal, 1.0, "(%.3f, %.3f, %.3f)"),
+                    ", way out " + vector_text(contact.normal, 3),
                 "", {});
       list.push_back(contact_json(contact));
     }

@@ -1,5 +1,5 @@
-// A tree of boxes over the elements of a surface, from its control points alone: which ranges of parameters
-// can meet another surface at all (the paper's parameter limits of the overlapping hulls).
+// A tree of boxes over the elements of a surface: which ranges of parameters can meet another surface at all
+// (the limits of parameters that section 4.1 of Pungotra et al. 2013 takes from overlapping hulls).
 #pragma once
 
 #include <vector>
@@ -33,7 +33,7 @@ class ElementTree {
     bool is_leaf() const { return left < 0; }
   };
 
-  // Takes the boxes of the present control points; they must follow the moving ones.
+  // Takes the boxes of the present control points, which needs no sample; they must follow the moving ones.
   void update(const ControlNet& net);
 
   // Makes the boxes smaller: tighter(element_u, element_v) holds the element too, where its box is within
@@ -69,8 +69,8 @@ class ElementTree {
   std::vector<Node> nodes_;  // parents before their children
   std::vector<Box> boxes_;
   std::vector<int> leaf_;  // of each element
-  std::vector<double> low_[3],
-      high_[3];  // working memory: of the rows of one element in u, by control column
+  // Working memory: over the control rows of one element in u, by control column.
+  std::vector<double> low_[3], high_[3];
 };
 
 }  // namespace spoonbill

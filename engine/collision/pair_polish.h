@@ -20,7 +20,7 @@ struct SurfacePair {
 // A damped Newton's method on half the squared distance; parameters stay within the domains.
 SurfacePair nearest_pair(const Surface& first, const Surface& second, PairParameters from);
 
-// The same for a point, from the parameters of `from`.
+// The same for a point and a surface, from its parameters u, v.
 struct NearestPoint {
   double u, v;
   Vector3 point_m;

@@ -74,9 +74,9 @@ class SurfaceLevels {
   const Surface* surface_ = nullptr;
   SurfaceBounds bounds_;
   std::vector<Vector3> samples_;
-  std::vector<std::uint32_t> column_at_;   // the same of the coarsest samples of a column
   std::vector<Vector3> lines_;             // working memory: a column's sums along v, one a control row
   std::vector<std::uint32_t> sampled_at_;  // the begin() since which a sample was evaluated
+  std::vector<std::uint32_t> column_at_;   // the same for the coarsest samples of a whole column
   std::vector<CoverSphere> covers_;        // by cell_index()
   std::vector<std::uint32_t> covered_at_;
   std::vector<int> first_cell_;  // of each level
