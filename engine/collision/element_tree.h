@@ -4,23 +4,10 @@
 
 #include <vector>
 
+#include "engine/box.h"
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {
-
-struct Box {
-  Vector3 low, high;
-
-  // Between the nearest points; 0 where they overlap.
-  double gap(const Box& other) const {
-    const Vector3 apart = (low - other.high).cwiseMax(other.low - high).cwiseMax(0.0);
-    return apart.norm();
-  }
-  bool holds(const Box& other) const {
-    return (low.array() <= other.low.array()).all() && (other.high.array() <= high.array()).all();
-  }
-  double size() const { return (high - low).norm(); }
-};
 
 // One owner, one thread; allocates only when made.
 class ElementTree {

@@ -124,7 +124,7 @@ void SurfaceBounds::take_boxes(const ControlNet& net) {
   }
 }
 
-SurfaceBounds::Box SurfaceBounds::box(int element_v) const {
+Box SurfaceBounds::box(int element_v) const {
   Box box{Vector3::Constant(std::numeric_limits<double>::infinity()),
           Vector3::Constant(-std::numeric_limits<double>::infinity())};
   for (int j = span_v_[element_v] - degree_v_; j <= span_v_[element_v]; ++j) {

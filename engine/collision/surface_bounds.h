@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/box.h"
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {
@@ -28,9 +29,6 @@ class SurfaceBounds {
   void update(const ControlNet& net, int element_v);
 
   // A box about the elements (., element_v): the hull of their control points, as of the last take_boxes().
-  struct Box {
-    Vector3 low, high;
-  };
   void take_boxes(const ControlNet& net);
   Box box(int element_v) const;
 

@@ -20,7 +20,7 @@ constexpr double nearest_tolerance_m = 2e-5;
 constexpr double least_gain_m = 1e-15;
 
 // A lower bound of the tool's distance over a box.
-double lower_bound(const ToolShape& tool, const SurfaceBounds::Box& box) {
+double lower_bound(const ToolShape& tool, const Box& box) {
   if (tool.kind == ToolShape::Kind::sphere) {
     return (tool.centre_m - tool.centre_m.cwiseMax(box.low).cwiseMin(box.high)).norm() - tool.radius_m;
   }

@@ -1,0 +1,22 @@
+// Boxes along the axes, in metres.
+#pragma once
+
+#include "engine/pose.h"
+
+namespace spoonbill {
+
+struct Box {
+  Vector3 low, high;
+
+  // Between the nearest points; 0 where they overlap.
+  double gap(const Box& other) const {
+    const Vector3 apart = (low - other.high).cwiseMax(other.low - high).cwiseMax(0.0);
+    return apart.norm();
+  }
+  bool holds(const Box& other) const {
+    return (low.array() <= other.low.array()).all() && (other.high.array() <= high.array()).all();
+  }
+  double size() const { return (high - low).norm(); }
+};
+
+}  // namespace spoonbill

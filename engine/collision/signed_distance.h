@@ -1,0 +1,35 @@
+// Solids as signed distances with their gradient: what a tool may be made of.
+#pragma once
+
+#include "engine/box.h"
+
+namespace spoonbill {
+
+struct DistanceSample {
+  double distance_m = 0.0;              // negative inside
+  Vector3 gradient = Vector3::UnitY();  // unit; where several ways lead to the surface, that of one of them
+};
+
+// A solid in its own frame. Never changes once made, so any thread may ask; at() allocates nothing and never
+// throws.
+class SignedDistance {
+ public:
+  virtual ~SignedDistance() = default;
+
+  // Changes by at most the distance moved, which is what makes a ball's bound at(centre) - radius.
+  virtual DistanceSample at(const Vector3& point_m) const = 0;
+
+  // Of a convex solid the distance lies above each of its tangents: at(a) + gradient . (b - a) <= at(b),
+  // which bounds it far better than the way moved alone.
+  virtual bool is_convex() const = 0;
+
+  // About the solid; infinite where the solid is.
+  virtual Box bounds() const = 0;
+
+ protected:
+  SignedDistance() = default;
+  SignedDistance(const SignedDistance&) = default;
+  SignedDistance& operator=(const SignedDistance&) = default;
+};
+
+}  // namespace spoonbill
