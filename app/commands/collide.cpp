@@ -30,7 +30,7 @@ constexpr int levels = 2;
 Result<Surface> read_body(const std::filesystem::path& file) {
   auto document = read_document(file);
   if (!document) return document.error();
-  Surface surface = std::move(document->scene.body.surface);
+  Surface surface = std::move(document->scene.bodies[0].surface);
   if (Status closed = check_closed_tube(surface); !closed) {
     return Error{file.string() + ": " + closed.error().message};
   }

@@ -76,7 +76,7 @@ Status sample_body(const Body& body, Extent counts, Write write) {
 Status sample(const SampleOptions& options, Console& console) {
   const auto document = read_document(options.model);
   if (!document) return document.error();
-  const Body& body = document->scene.body;
+  const Body& body = document->scene.bodies[0];
   if (options.out == "-") {
     return sample_body(body, options.grid, [&](const std::string& text) -> Status {
       console.out << text;

@@ -64,7 +64,7 @@ Result<std::unique_ptr<Editor>> Editor::make(const EditSettings& settings) {
   LiveSettings live_settings;
   live_settings.instruction_set = settings.instruction_set;
   live_settings.real_time = settings.real_time;
-  live_settings.start.pose.position_m = resting_place(document->scene.body.surface);
+  live_settings.start.pose.position_m = resting_place(document->scene.bodies[0].surface);
   auto live = LiveSession::start(document.value(), model.string(), live_settings);
   if (!live) return live.error();
   auto state = state_folder();

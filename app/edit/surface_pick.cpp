@@ -42,13 +42,13 @@ double ball_radius(const TessellatedSurface& surface) {
 }  // namespace
 
 void SurfacePick::update(const Snapshot& snapshot) {
-  surfaces_.resize(snapshot.surfaces.size());
+  surfaces_.resize(snapshot.bodies.size());
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     Sampled& sampled = surfaces_[i];
     const SamplingLevel level =
-        choose_sampling_level(snapshot.surfaces[i], picking_px_per_m, sampled.surface.level(), target);
-    const bool evaluated =
-        check_net(snapshot.surfaces[i]).ok() && sampled.surface.update(snapshot.surfaces[i], level).ok();
+        choose_sampling_level(snapshot.bodies[i].surface, picking_px_per_m, sampled.surface.level(), target);
+    const bool evaluated = check_net(snapshot.bodies[i].surface).ok() &&
+                           sampled.surface.update(snapshot.bodies[i].surface, level).ok();
     if (!evaluated) sampled = Sampled();
     sampled.ball_m = ball_radius(sampled.surface);
   }

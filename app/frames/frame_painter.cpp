@@ -17,7 +17,8 @@ std::unique_lock<std::mutex> take_turn(std::mutex* interface_turn) {
 
 BoundingBox framed_box(const Snapshot& start) {
   BoundingBox box;
-  for (const SurfaceSnapshot& surface : start.surfaces) {
+  for (const BodySnapshot& body : start.bodies) {
+    const SurfaceSnapshot& surface = body.surface;
     for (std::size_t i = 0; i < surface.x.size(); ++i) {
       box.include({surface.x[i], surface.y[i], surface.z[i]});
     }

@@ -19,7 +19,7 @@ DeviceSpecification device_for(const Surface& surface) {
 
 Result<std::unique_ptr<Session>> make_session(const Document& document, const std::string& source,
                                               InstructionSet set) {
-  auto session = Session::make(document, source, device_for(document.scene.body.surface), set);
+  auto session = Session::make(document, source, device_for(document.scene.bodies[0].surface), set);
   if (!session) return session.error();
   return std::make_unique<Session>(std::move(session).value());
 }

@@ -14,13 +14,14 @@ PanelModel panel_of(const SessionFacts& facts, const Snapshot& snapshot, const V
   model.tool = facts.tool;
   model.sculpting = facts.sculpting;
   model.material = facts.material;
-  model.felt_youngs_modulus_pa = snapshot.material.felt_youngs_modulus_pa;
-  model.mass_kg = snapshot.material.mass_kg;
-
-  const auto& fixed = snapshot.lattice.fixed;
+  model.felt_youngs_modulus_pa = snapshot.bodies.front().material.felt_youngs_modulus_pa;
   model.plane_count = static_cast<int>(snapshot.planes.size());
-  model.fixed_node_count = static_cast<int>(std::count(fixed.begin(), fixed.end(), std::uint8_t{1}));
-  model.node_count = static_cast<int>(fixed.size());
+  for (const BodySnapshot& body : snapshot.bodies) {
+    const auto& fixed = body.lattice.fixed;
+    model.mass_kg += body.material.mass_kg;
+    model.fixed_node_count += static_cast<int>(std::count(fixed.begin(), fixed.end(), std::uint8_t{1}));
+    model.node_count += static_cast<int>(fixed.size());
+  }
 
   model.overlays = view.overlays;
   model.see_through_body = view.see_through_body;

@@ -55,7 +55,7 @@ std::string size_text(const Vector3& size_m) {
 }  // namespace
 
 void add_document_facts(FactSheet& facts, const Document& document) {
-  const Body& body = document.scene.body;
+  const Body& body = document.scene.bodies[0];
   const Vector3 size = size_of(body.surface);
   facts.add("Name", document.name, "name", document.name);
   facts.add("Unit", "mm (of the file's lengths)", "unit", "mm");
@@ -79,16 +79,17 @@ void add_material_facts(FactSheet& facts, const Material& material) {
 }
 
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot) {
-  const LatticeSnapshot& lattice = snapshot.lattice;
+  const LatticeSnapshot& lattice = snapshot.bodies[0].lattice;
   const auto fixed = std::count(lattice.fixed.begin(), lattice.fixed.end(), std::uint8_t{1});
   const Json counts = {lattice.count[0], lattice.count[1], lattice.count[2]};
   facts.add("Lattice",
             std::to_string(lattice.count[0]) + " x " + std::to_string(lattice.count[1]) + " x " +
                 std::to_string(lattice.count[2]) + " nodes, " + std::to_string(fixed) + " of them fixed",
             "lattice", {{"nodes", counts}, {"node_count", lattice.x.size()}, {"fixed_node_count", fixed}});
-  facts.add("Mass", grams_text(snapshot.material.mass_kg), "mass_kg", snapshot.material.mass_kg);
-  facts.add("Felt E", modulus_text(snapshot.material.felt_youngs_modulus_pa), "felt_youngs_modulus_pa",
-            snapshot.material.felt_youngs_modulus_pa);
+  facts.add("Mass", grams_text(snapshot.bodies[0].material.mass_kg), "mass_kg",
+            snapshot.bodies[0].material.mass_kg);
+  facts.add("Felt E", modulus_text(snapshot.bodies[0].material.felt_youngs_modulus_pa),
+            "felt_youngs_modulus_pa", snapshot.bodies[0].material.felt_youngs_modulus_pa);
 }
 
 }  // namespace spoonbill

@@ -6,7 +6,7 @@ void write_facts(const Session& session, SessionFacts& facts) {
   const Scene& scene = session.simulation.scene();
   facts.title = session.title;
   facts.tool = scene.tool;
-  facts.material = scene.body.material;
+  facts.material = scene.bodies[0].material;
   facts.sculpting = scene.sculpting;
   facts.symmetry = scene.symmetry;
   facts.can_undo = session.history.can_undo();

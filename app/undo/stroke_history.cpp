@@ -5,7 +5,8 @@
 namespace spoonbill {
 
 StrokeHistory::StrokeHistory(const Simulation& simulation) : untouched_(simulation.shape()) {
-  const std::size_t bytes = std::max<std::size_t>(1, untouched_.lattice.size() * sizeof(float));
+  std::size_t bytes = 1;
+  for (const std::vector<float>& lattice : untouched_.lattices) bytes += lattice.size() * sizeof(float);
   shapes_.assign(std::clamp<std::size_t>(memory_limit_bytes / bytes, 3, shape_limit), untouched_);
 }
 

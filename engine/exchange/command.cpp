@@ -14,11 +14,17 @@ constexpr std::array<std::string_view, 9> command_names = {"place_plane",  "remo
                                                            "set_material", "set_sculpting", "set_symmetry",
                                                            "reset_proxy",  "lift_tool",     "keep_shape"};
 
+SetMaterial read_set_material(FieldReader& reader) {
+  SetMaterial command{read_material_fields(reader)};
+  if (reader.has("body")) command.body = reader.integer("body", {0, body_count_range.high - 1});
+  return command;
+}
+
 Command read_named(std::string_view name, FieldReader& reader) {
   if (name == "place_plane") return PlacePlane{read_fixing_plane(reader)};
   if (name == "remove_planes") return RemovePlanes{};
   if (name == "set_tool") return SetTool{read_tool(reader)};
-  if (name == "set_material") return SetMaterial{read_material_fields(reader)};
+  if (name == "set_material") return read_set_material(reader);
   if (name == "set_sculpting") return SetSculpting{read_sculpting(reader)};
   if (name == "set_symmetry") return SetSymmetry{read_symmetry(reader)};
   if (name == "reset_proxy") return ResetProxy{};
@@ -47,6 +53,7 @@ struct FieldsOf {
   Json operator()(const SetMaterial& command) const {
     Json json{{"command", "set_material"}};
     add_material_fields(command.material, json);
+    if (command.body != 0) json["body"] = command.body;
     return json;
   }
   Json operator()(const SetSculpting& command) const {

@@ -29,6 +29,25 @@ std::optional<Body> read_body(FieldReader reader) {
   return Body{std::move(name), *std::move(surface), std::move(material), lattice};
 }
 
+// Those of a document with one body are in no list.
+std::optional<std::vector<Body>> read_bodies(FieldReader& reader) {
+  std::vector<Body> bodies;
+  const auto take = [&](std::optional<Body> body) {
+    if (body) bodies.push_back(*std::move(body));
+    return body.has_value();
+  };
+  if (!take(read_body(reader.inner("body")))) return std::nullopt;
+  if (!reader.has("other_bodies")) {
+    reader.ignore("other_bodies");
+    return bodies;
+  }
+  const Range<int> others{0, body_count_range.high - 1};
+  for (const Json& item : reader.list("other_bodies", others)) {
+    if (!take(read_body(reader.element(item, "other_bodies", bodies.size() - 1)))) return std::nullopt;
+  }
+  return bodies;
+}
+
 std::vector<FixingPlane> read_planes(FieldReader& reader) {
   std::vector<FixingPlane> planes;
   if (!reader.has("fixing_planes")) {
@@ -78,7 +97,7 @@ Result<Document> document_from_json(const Json& json, const std::string& source)
   FieldReader reader(json, source);
   reader.version("spoonbill_document", document_version);
   std::string name = reader.text("name");
-  std::optional<Body> body = read_body(reader.inner("body"));
+  std::optional<std::vector<Body>> bodies = read_bodies(reader);
   std::vector<FixingPlane> planes = read_planes(reader);
   FieldReader tool_reader = reader.inner("tool");
   const Tool tool = read_tool(tool_reader);
@@ -90,8 +109,8 @@ Result<Document> document_from_json(const Json& json, const std::string& source)
   Json view = reader.has("view") ? reader.object("view") : Json::object();
   reader.ignore("view");
   reader.finish();
-  if (!body || !reader.status().ok()) return reader.status().error();
-  return Document{std::move(name), Scene{*std::move(body), std::move(planes), tool, sculpting, symmetry},
+  if (!bodies || !reader.status().ok()) return reader.status().error();
+  return Document{std::move(name), Scene{*std::move(bodies), std::move(planes), tool, sculpting, symmetry},
                   std::move(view)};
 }
 
@@ -99,7 +118,11 @@ Json document_to_json(const Document& document) {
   Json json;
   json["spoonbill_document"] = document_version;
   json["name"] = document.name;
-  json["body"] = body_to_json(document.scene.body);
+  const std::vector<Body>& bodies = document.scene.bodies;
+  json["body"] = body_to_json(bodies.front());
+  for (std::size_t other = 1; other < bodies.size(); ++other) {
+    json["other_bodies"].push_back(body_to_json(bodies[other]));
+  }
   Json& planes = json["fixing_planes"] = Json::array();
   for (const FixingPlane& plane : document.scene.planes) add_fixing_plane(plane, planes.emplace_back());
   add_tool(document.scene.tool, json["tool"]);

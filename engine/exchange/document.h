@@ -12,6 +12,7 @@
 //        "density_kg_per_m3": 1700, "damping_ratio": 0.1, "plastic": true, "yield_strain": 0.02,
 //        "flow_rate_per_s": 40},
 //      "lattice": {"node_budget": 2000}},                        or {"nodes": [4, 8, 60]}
+//    "other_bodies": [{"name": ...}, ...],                       each as "body"; may be left out
 //    "fixing_planes": [{"point_mm": [20, 0, 0], "normal": [1, 0, 0]}],    may be left out
 //    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6},
 //    "sculpting": {"damping_per_s": 4, "gravity_m_per_s2": [0, 0, 0], "force_scale": 1},
@@ -61,10 +62,12 @@ Result<Material> material_from_json(const Json& json, const std::string& source)
 Json material_to_json(const Material& material);
 Result<Material> read_material(const std::filesystem::path& file);
 
-// One form a command, every field required (those of tool, material and sculpting are the document's):
+// One form a command, every field required unless said (those of tool, material and sculpting are the
+// document's):
 //   {"command": "place_plane", "point_mm": [x, y, z], "normal": [x, y, z]}      {"command": "remove_planes"}
 //   {"command": "set_tool", "kind", "action", "radius_mm", "iterations"}         {"command": "keep_shape"}
 //   {"command": "set_material", "name", "source", "youngs_modulus_pa", ...}
+//     and, but for the first, "body": 1, its place in the list of all bodies
 //   {"command": "set_sculpting", "damping_per_s", "gravity_m_per_s2", "force_scale"}
 //   {"command": "set_symmetry", "on", "point_mm", "normal"}     {"command": "reset_proxy"}
 //   {"command": "lift_tool"}

@@ -1,54 +1,18 @@
 #include "engine/material/contact_constraints.h"
 
-#include <algorithm>
+#include "engine/material/contact_push.h"
 
 namespace spoonbill {
 namespace {
 
-// The share of a penetration that one substep takes back: below 1, so that neighbouring points that push the
-// same node do not overshoot together.
-constexpr double correction_share = 0.3;
+// A correction below 1, so that neighbouring points that push the same node do not overshoot together.
+constexpr ContactPace pace{1.0, 0.3};
 
 // How fast a tool on its coupling spring follows the hand, rad/s of material time: its mass follows from
 // that, a few nodes' worth in clay, so that neither drags the other about.
 constexpr double coupling_frequency = 60.0;
 
-Vector3 embedded_sum(const EmbeddedPoint& point, const float* x, const float* y, const float* z) {
-  Vector3 sum = Vector3::Zero();
-  for (int i = 0; i < point.count; ++i) {
-    const int n = point.node[i];
-    sum += static_cast<double>(point.weight[i]) * Vector3(x[n], y[n], z[n]);
-  }
-  return sum;
-}
-
-// Gives the point the velocity change impulse / effective mass by spreading the impulse over its nodes.
-void apply_impulse(const LatticeView& lattice, const EmbeddedPoint& point, const Vector3& impulse) {
-  for (int i = 0; i < point.count; ++i) {
-    const int n = point.node[i];
-    const double share = static_cast<double>(point.weight[i]) * static_cast<double>(lattice.inverse_mass[n]);
-    lattice.vx[n] += static_cast<float>(share * impulse.x());
-    lattice.vy[n] += static_cast<float>(share * impulse.y());
-    lattice.vz[n] += static_cast<float>(share * impulse.z());
-  }
-}
-
 }  // namespace
-
-bool EmbeddedPoint::add(const EmbeddedPoint& other, float share) {
-  for (int i = 0; i < other.count; ++i) {
-    int at = 0;
-    while (at < count && node[at] != other.node[i]) ++at;
-    if (at == capacity) return false;
-    if (at == count) {
-      node[at] = other.node[i];
-      weight[at] = 0.0f;
-      ++count;
-    }
-    weight[at] += share * other.weight[i];
-  }
-  return true;
-}
 
 ContactConstraints::ContactConstraints(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {}
 
@@ -56,30 +20,25 @@ void ContactConstraints::clear() {
   count_ = 0;
 }
 
-bool ContactConstraints::add_push(const SpringLattice& lattice, const EmbeddedPoint& point) {
-  return add(lattice, point, Kind::sphere_push, Vector3::Zero());
+bool ContactConstraints::add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point) {
+  return add(Kind::sphere_push, body, lattice, point, Vector3::Zero());
 }
 
-bool ContactConstraints::add_plane_push(const SpringLattice& lattice, const EmbeddedPoint& point,
+bool ContactConstraints::add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
                                         const Vector3& normal) {
-  return add(lattice, point, Kind::plane_push, normal);
+  return add(Kind::plane_push, body, lattice, point, normal);
 }
 
-bool ContactConstraints::add_grip(const SpringLattice& lattice, const EmbeddedPoint& point,
+bool ContactConstraints::add_grip(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
                                   const Vector3& offset_m) {
-  return add(lattice, point, Kind::grip, offset_m);
+  return add(Kind::grip, body, lattice, point, offset_m);
 }
 
-bool ContactConstraints::add(const SpringLattice& lattice, const EmbeddedPoint& point, Kind kind,
+bool ContactConstraints::add(Kind kind, int body, const SpringLattice& lattice, const EmbeddedPoint& point,
                              const Vector3& direction) {
   if (count_ == static_cast<int>(constraints_.size())) return false;
-  Constraint& constraint = constraints_[count_++];
-  constraint = {kind, point, Vector3::Zero(), direction, 0.0, false};
-  for (int i = 0; i < point.count; ++i) {
-    const double weight = point.weight[i];
-    constraint.rest_m += weight * lattice.mesh().nodes[point.node[i]];
-    constraint.compliance += weight * weight * lattice.inverse_mass(point.node[i]);
-  }
+  constraints_[count_++] = {kind, body, point, point.rest_m(lattice), direction, point.compliance(lattice),
+                            false};
   return true;
 }
 
@@ -88,17 +47,19 @@ void ContactConstraints::begin(const ToolMotion& motion, double material_time_s)
   hand_velocity_ = (motion.end_m - motion.start_m) / material_time_s;
   const bool coupled = motion.coupling_n_per_m > 0.0;
   tool_compliance_ = coupled ? coupling_frequency * coupling_frequency / motion.coupling_n_per_m : 0.0;
-  tool_impulse_.setZero();
+  tool_impulse_.fill(Vector3::Zero());
   acted_ = false;
   for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
 }
 
-void ContactConstraints::solve(const LatticeView& lattice, ToolState& tool, float h, double fraction,
-                               float cap) {
+void ContactConstraints::solve(std::span<const LatticeView> lattices, ToolState& tool, float h,
+                               double fraction, std::span<const float> caps) {
   follow_hand(tool, h, fraction);
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
     if (compliance_of(constraint) + tool_compliance_ == 0.0) continue;
+    const LatticeView& lattice = lattices[constraint.body];
+    const double cap = caps[constraint.body];
     if (constraint.kind == Kind::grip) {
       solve_grip(lattice, constraint, tool, h, cap);
     } else {
@@ -129,56 +90,44 @@ void ContactConstraints::follow_hand(ToolState& tool, double h, double fraction)
 
 void ContactConstraints::exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                   const Vector3& impulse) {
-  if (motion_.body_yields) apply_impulse(lattice, constraint.point, impulse);
+  if (motion_.body_yields) constraint.point.push(lattice, impulse);
   tool.velocity_m_per_s -= tool_compliance_ * impulse;
-  tool_impulse_ -= impulse;
+  tool_impulse_[constraint.body] -= impulse;
   constraint.acted = true;
   acted_ = true;
 }
 
 void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                     double h, double cap) {
-  const Vector3 position =
-      constraint.rest_m + embedded_sum(constraint.point, lattice.dx, lattice.dy, lattice.dz);
+  const Vector3 position = constraint.rest_m + constraint.point.displacement_m(lattice);
   const bool plane = constraint.kind == Kind::plane_push;
   const Vector3 from_centre = position - tool.position_m;
   const double distance = plane ? -from_centre.dot(constraint.direction) : from_centre.norm();
   if (!plane && !(distance > 0.0)) return;
   const Vector3 normal = plane ? Vector3(-constraint.direction) : Vector3(from_centre / distance);
   const double gap = distance - motion_.radius_m;
-  const Vector3 velocity = embedded_sum(constraint.point, lattice.vx, lattice.vy, lattice.vz);
-  const Vector3 relative = velocity - tool.velocity_m_per_s;
-  const double separating = relative.dot(normal);
-  const double wanted = gap > 0.0 ? -gap / h : std::min(-gap * correction_share / h, cap);
-  if (separating >= wanted) return;
-  const double mass = 1.0 / (compliance_of(constraint) + tool_compliance_);
-  const double push = (wanted - separating) * mass;
-  const Vector3 sliding = relative - separating * normal;
-  const double slide = sliding.norm() * mass;
-  // Coulomb: friction stops the sliding where it can, and is the coefficient times the push where it cannot.
-  const double drag = std::min(slide, motion_.friction * push);
-  exchange(lattice, constraint, tool, push * normal - (slide > 0.0 ? drag / slide : 0.0) * mass * sliding);
+  const ContactPush push{gap, normal, constraint.point.velocity_m_per_s(lattice) - tool.velocity_m_per_s,
+                         1.0 / (compliance_of(constraint) + tool_compliance_)};
+  if (const auto impulse = push.impulse(h, pace, cap, motion_.friction)) {
+    exchange(lattice, constraint, tool, *impulse);
+  }
 }
 
 void ContactConstraints::solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                     double h, double cap) {
-  const Vector3 position =
-      constraint.rest_m + embedded_sum(constraint.point, lattice.dx, lattice.dy, lattice.dz);
+  const Vector3 position = constraint.rest_m + constraint.point.displacement_m(lattice);
   const Vector3 miss = tool.position_m + motion_.orientation * constraint.direction - position;
-  Vector3 wanted = miss * (correction_share / h);
+  Vector3 wanted = miss * (pace.correction / h);
   const double speed = wanted.norm();
   if (speed > cap) wanted *= cap / speed;
-  const Vector3 velocity = embedded_sum(constraint.point, lattice.vx, lattice.vy, lattice.vz);
+  const Vector3 velocity = constraint.point.velocity_m_per_s(lattice);
   exchange(lattice, constraint, tool,
            (tool.velocity_m_per_s + wanted - velocity) / (compliance_of(constraint) + tool_compliance_));
 }
 
-void ContactConstraints::mark_touched(std::uint8_t* touched) const {
+void ContactConstraints::mark_touched(int body, std::uint8_t* touched) const {
   for (int c = 0; c < count_; ++c) {
-    if (!constraints_[c].acted) continue;
-    for (int i = 0; i < constraints_[c].point.count; ++i) {
-      if (constraints_[c].point.weight[i] > 0.05f) touched[constraints_[c].point.node[i]] = 1;
-    }
+    if (constraints_[c].acted && constraints_[c].body == body) constraints_[c].point.mark(touched);
   }
 }
 

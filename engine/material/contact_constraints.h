@@ -1,25 +1,18 @@
-// What a tool does to a lattice: velocity constraints on points of the body's surface, solved within each
-// substep. Stable for every stiffness, where a penalty force would need its own step limit.
+// What a tool does to the lattices it touches: velocity constraints on points of their surfaces, solved
+// within each substep. Stable for every stiffness, where a penalty force would need its own step limit.
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
+#include "engine/material/embedded_point.h"
 #include "engine/material/spring_lattice.h"
 
 namespace spoonbill {
 
-// A surface point as a weighted sum of lattice nodes. Weights sum to 1; a few may be slightly negative where
-// the surface bulges out of its cells.
-struct EmbeddedPoint {
-  static constexpr int capacity = 32;
-  int count = 0;
-  std::array<int, capacity> node{};
-  std::array<float, capacity> weight{};
-
-  // Adds share * the other point's weights, merging equal nodes. False when the capacity is exceeded.
-  bool add(const EmbeddedPoint& other, float share);
-};
+// How many lattices are stepped together.
+inline constexpr int lattice_capacity = 9;
 
 // Where the tool is and moves: the proxy, which the material holds off the hand. Plain data, kept from tick
 // to tick.
@@ -46,34 +39,39 @@ class ContactConstraints {
   explicit ContactConstraints(int capacity);
 
   void clear();
-  // A point that the tool's sphere may push outward but never pulls. False when full.
-  bool add_push(const SpringLattice& lattice, const EmbeddedPoint& point);
+  // Each is false when full. `body` is the lattice's place in the views that solve() gets.
+  //
+  // A point that the tool's sphere may push outward but never pulls.
+  bool add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point);
   // A point that must stay behind the tool's foremost tangent plane: `normal` is the surface's unit normal
   // there, and the plane passes through the tool's centre less the radius along it. Serves tools smaller than
-  // a cell, a point among them. False when full.
-  bool add_plane_push(const SpringLattice& lattice, const EmbeddedPoint& point, const Vector3& normal);
-  // A point gripped by the tool at `offset_m` from its centre, in the tool's frame. False when full.
-  bool add_grip(const SpringLattice& lattice, const EmbeddedPoint& point, const Vector3& offset_m);
+  // a cell, a point among them.
+  bool add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
+                      const Vector3& normal);
+  // A point gripped by the tool at `offset_m` from its centre, in the tool's frame.
+  bool add_grip(int body, const SpringLattice& lattice, const EmbeddedPoint& point, const Vector3& offset_m);
 
   // Begins a tick of `material_time_s`.
   void begin(const ToolMotion& motion, double material_time_s);
 
   // After the kick and before the drift of a substep of h_s that begins at `fraction` [0 to 1) of the tick.
   // Pushes on nodes and tool are equal and opposite; then the tool moves.
-  void solve(const LatticeView& lattice, ToolState& tool, float h_s, double fraction,
-             float push_speed_cap_m_per_s);
+  void solve(std::span<const LatticeView> lattices, ToolState& tool, float h_s, double fraction,
+             std::span<const float> push_speed_caps_m_per_s);
 
   int count() const { return count_; }
-  // Over the ticks since begin(): the sum of the impulses on the tool, N s, and whether any acted.
-  const Vector3& tool_impulse() const { return tool_impulse_; }
+  // Over the ticks since begin(): the sum of the impulses that a body gave the tool, N s, and whether any
+  // acted.
+  const Vector3& tool_impulse(int body) const { return tool_impulse_[body]; }
   bool acted() const { return acted_; }
-  // Marks the nodes of constraints that acted.
-  void mark_touched(std::uint8_t* touched) const;
+  // Marks the nodes of a body's constraints that acted.
+  void mark_touched(int body, std::uint8_t* touched) const;
 
  private:
   enum class Kind { sphere_push, plane_push, grip };
   struct Constraint {
     Kind kind = Kind::sphere_push;
+    int body = 0;
     EmbeddedPoint point;
     Vector3 rest_m = Vector3::Zero();  // of the undeformed embedding
     Vector3 direction =
@@ -81,7 +79,8 @@ class ContactConstraints {
     double compliance = 0.0;  // 1/kg of the point; 0 when every node is held
     bool acted = false;
   };
-  bool add(const SpringLattice& lattice, const EmbeddedPoint& point, Kind kind, const Vector3& direction);
+  bool add(Kind kind, int body, const SpringLattice& lattice, const EmbeddedPoint& point,
+           const Vector3& direction);
   double compliance_of(const Constraint& constraint) const;
   void follow_hand(ToolState& tool, double h, double fraction) const;
   void solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
@@ -93,7 +92,7 @@ class ContactConstraints {
   ToolMotion motion_;
   Vector3 hand_velocity_ = Vector3::Zero();  // m/s of material time
   double tool_compliance_ = 0.0;             // 1/kg; 0 where the hand holds it rigidly
-  Vector3 tool_impulse_ = Vector3::Zero();
+  std::array<Vector3, lattice_capacity> tool_impulse_;
   bool acted_ = false;
 };
 

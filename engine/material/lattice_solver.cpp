@@ -1,6 +1,7 @@
 #include "engine/material/lattice_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace spoonbill {
@@ -80,17 +81,73 @@ void take_forces(const SpringLattice& lattice, const LatticeView& view, float mo
   apply_node_forces(lattice, view);
 }
 
-Drifted substep(SpringLattice& lattice, const LatticeView& view, const RelaxSettings& settings, float h,
-                double fraction, std::span<const TouchingTool> tools) {
+// The lattices of one tick, as far as they differ.
+struct Relaxation {
+  std::span<const RelaxedLattice> lattices;
+  std::array<LatticeView, lattice_capacity> view;
+  std::array<float, lattice_capacity> cap{};  // m/s
+  std::array<Drifted, lattice_capacity> drifted{};
+
+  std::size_t count() const { return lattices.size(); }
+  SpringLattice& lattice(std::size_t at) const { return *lattices[at].lattice; }
+};
+
+void kick(Relaxation& relaxation, const RelaxSettings& settings, float h) {
   const float decay = 1.0f / (1.0f + h * static_cast<float>(settings.damping_per_s));
-  const Vector3& g = settings.gravity_m_per_s2;
-  lattice.kernels().kick(view, h, decay, static_cast<float>(g.x()), static_cast<float>(g.y()),
-                         static_cast<float>(g.z()));
-  const float cap = speed_cap(lattice, h);
-  for (const TouchingTool& tool : tools) {
-    tool.contacts->solve(view, *tool.state, h, fraction, 0.5f * cap);
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    const SpringLattice& lattice = relaxation.lattice(at);
+    const LatticeView& view = relaxation.view[at];
+    const Vector3& g = relaxation.lattices[at].gravity_m_per_s2;
+    take_forces(lattice, view, relaxation.drifted[at].moved_square);
+    lattice.kernels().kick(view, h, decay, static_cast<float>(g.x()), static_cast<float>(g.y()),
+                           static_cast<float>(g.z()));
   }
-  return drift(lattice, view, h, cap);
+}
+
+void solve_contacts(const Relaxation& relaxation, float h, double fraction,
+                    std::span<const TouchingTool> tools, BodyContacts* between) {
+  const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
+  std::array<float, lattice_capacity> push_caps{};
+  for (std::size_t at = 0; at < relaxation.count(); ++at) push_caps[at] = 0.5f * relaxation.cap[at];
+  for (const TouchingTool& tool : tools) tool.contacts->solve(views, *tool.state, h, fraction, push_caps);
+  if (between) between->solve(views, h, push_caps);
+}
+
+// Returns whether a node met the speed cap.
+bool drift(Relaxation& relaxation, float h) {
+  bool capped = false;
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    relaxation.drifted[at] = drift(relaxation.lattice(at), relaxation.view[at], h, relaxation.cap[at]);
+    capped |= relaxation.drifted[at].speed_square > 1.0f;
+  }
+  return capped;
+}
+
+Substeps choose_substeps(const Relaxation& relaxation, double step_s) {
+  Substeps most{0, 0.0, false};
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    const Substeps wanted = choose_substeps(relaxation.lattice(at), step_s);
+    most.slowed |= wanted.slowed;
+    if (wanted.count > most.count) most = {wanted.count, wanted.h, most.slowed};
+  }
+  return most;
+}
+
+void steady_strained_nodes(Relaxation& relaxation, float h) {
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    SpringLattice& lattice = relaxation.lattice(at);
+    relaxation.view[at].inverse_mass = lattice.steady_strained_nodes(h, static_cast<float>(stability_share));
+    linearise(lattice, relaxation.view[at]);  // velocities changed
+  }
+}
+
+void flow(Relaxation& relaxation, double material_time_s) {
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    const SpringLattice& lattice = relaxation.lattice(at);
+    if (!lattice.plastic()) continue;
+    const double share = std::min(largest_flow_share, 2.0 * lattice.flow_rate_per_s() * material_time_s);
+    lattice.kernels().flow(relaxation.view[at], lattice.yield_strain(), static_cast<float>(share));
+  }
 }
 
 }  // namespace
@@ -104,35 +161,34 @@ double felt_modulus_limit_pa(double unit_frequency, double damping_ratio) {
   return root * root;
 }
 
-RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings,
-                  std::span<const TouchingTool> tools) {
-  LatticeView view = lattice.view();
-  linearise(lattice, view);
+RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
+                  std::span<const TouchingTool> tools, BodyContacts* between) {
+  Relaxation relaxation{lattices, {}, {}, {}};
   const bool flows = settings.tick % 2 == 1;
-  if (!flows) follow_fastest_frequency(lattice, view);
-  const Substeps substeps = choose_substeps(lattice, settings.step_s);
+  for (std::size_t at = 0; at < lattices.size(); ++at) {
+    SpringLattice& lattice = *lattices[at].lattice;
+    relaxation.view[at] = lattice.view();
+    linearise(lattice, relaxation.view[at]);
+    if (!flows) follow_fastest_frequency(lattice, relaxation.view[at]);
+  }
+  const Substeps substeps = choose_substeps(relaxation, settings.step_s);
   RelaxReport report;
   report.substeps = substeps.count;
   report.nodes_slowed = substeps.slowed;
   report.material_time_s = settings.iterations * substeps.count * substeps.h;
   for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, report.material_time_s);
   const float h = static_cast<float>(substeps.h);
-  if (substeps.slowed) {
-    view.inverse_mass = lattice.steady_strained_nodes(h, static_cast<float>(stability_share));
-    linearise(lattice, view);  // velocities changed
+  for (std::size_t at = 0; at < lattices.size(); ++at) {
+    relaxation.cap[at] = speed_cap(relaxation.lattice(at), h);
   }
+  if (substeps.slowed) steady_strained_nodes(relaxation, h);
   const int total = settings.iterations * substeps.count;
-  Drifted drifted;
   for (int s = 0; s < total; ++s) {
-    take_forces(lattice, view, drifted.moved_square);
-    drifted = substep(lattice, view, settings, h, static_cast<double>(s) / total, tools);
-    report.speed_capped |= drifted.speed_square > 1.0f;
+    kick(relaxation, settings, h);
+    solve_contacts(relaxation, h, static_cast<double>(s) / total, tools, between);
+    report.speed_capped |= drift(relaxation, h);
   }
-  if (flows && lattice.plastic()) {
-    const double share =
-        std::min(largest_flow_share, 2.0 * lattice.flow_rate_per_s() * report.material_time_s);
-    lattice.kernels().flow(view, lattice.yield_strain(), static_cast<float>(share));
-  }
+  if (flows) flow(relaxation, report.material_time_s);
   return report;
 }
 

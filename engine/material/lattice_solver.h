@@ -1,10 +1,12 @@
-// Steps a lattice through one tick: relaxation steps of fixed material time, cut into symplectic Euler
-// substeps by the stability limit, with the tool's constraints inside. Allocates nothing.
+// Steps lattices through one tick together: relaxation steps of fixed material time, cut into symplectic
+// Euler substeps by the stability limit, with the constraints of tools and between bodies inside. Allocates
+// nothing.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
+#include "engine/material/body_contacts.h"
 #include "engine/material/contact_constraints.h"
 #include "engine/material/spring_lattice.h"
 
@@ -53,6 +55,10 @@ struct RelaxSettings {
   int iterations = 1;                 // relaxation steps
   double step_s = relaxation_step_s;  // material time of each
   double damping_per_s = 0.0;         // mass-proportional
+};
+
+struct RelaxedLattice {
+  SpringLattice* lattice;
   Vector3 gravity_m_per_s2 = Vector3::Zero();
 };
 
@@ -70,8 +76,10 @@ struct TouchingTool {
   ContactConstraints* contacts;
 };
 
-// Advances the lattice; the tools act in their order. Denormals must be flushed by the caller for the speed's
-// sake (see DenormalsFlushed).
-RelaxReport relax(SpringLattice& lattice, const RelaxSettings& settings, std::span<const TouchingTool> tools);
+// Advances at most lattice_capacity lattices, by as many substeps as the one that needs most. The tools act
+// in their order, then the bodies on each other. Denormals must be flushed by the caller for the speed's sake
+// (see DenormalsFlushed).
+RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
+                  std::span<const TouchingTool> tools, BodyContacts* between = nullptr);
 
 }  // namespace spoonbill

@@ -368,31 +368,4 @@ const float* SpringLattice::steady_strained_nodes(float h_s, float share) {
   return stable_inverse_mass_.data();
 }
 
-void SpringLattice::write_shape(std::vector<float>& shape) const {
-  shape.clear();
-  visit_shape([&](const float* data, std::size_t count) { shape.insert(shape.end(), data, data + count); });
-}
-
-std::vector<float> SpringLattice::shape() const {
-  std::vector<float> all;
-  visit_shape([&](const float* data, std::size_t count) { all.insert(all.end(), data, data + count); });
-  return all;
-}
-
-bool SpringLattice::set_shape(std::span<const float> shape) {
-  std::size_t size = 0;
-  visit_shape([&](const float*, std::size_t count) { size += count; });
-  if (size != shape.size()) return false;
-  const float* from = shape.data();
-  const auto take = [&](Floats& to) {
-    std::copy(from, from + to.size(), to.begin());
-    from += to.size();
-  };
-  for (Floats* a : {&dx_, &dy_, &dz_, &vx_, &vy_, &vz_}) take(*a);
-  for (Floats& a : rest_length_) take(a);
-  for (Floats& a : square_difference_) take(a);
-  take(rest_volume_sum_);
-  return true;
-}
-
 }  // namespace spoonbill

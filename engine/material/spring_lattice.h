@@ -98,6 +98,7 @@ class SpringLattice {
   std::vector<float> shape() const;
   // Allocates only where `shape` has not held one of this lattice before.
   void write_shape(std::vector<float>& shape) const;
+  std::size_t shape_size() const;
   // False, and nothing changed, when the sizes differ.
   bool set_shape(std::span<const float> shape);
 

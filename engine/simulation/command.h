@@ -18,6 +18,7 @@ struct SetTool {
 };
 struct SetMaterial {
   Material material;
+  int body = 0;  // in the scene
 };
 struct SetSculpting {
   Sculpting sculpting;

@@ -15,7 +15,7 @@
 
 namespace spoonbill {
 
-// A fixing plane: every node on its far side (opposite to the normal) is held.
+// A fixing plane: every node of any body on its far side (opposite to the normal) is held.
 struct FixingPlane {
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitX();  // unit
@@ -51,7 +51,7 @@ struct Symmetry {
 };
 
 struct Scene {
-  Body body;
+  std::vector<Body> bodies;  // those that touch push each other
   std::vector<FixingPlane> planes;
   Tool tool;
   Sculpting sculpting;
@@ -63,6 +63,7 @@ inline constexpr Range<double> position_range_m{-100.0, 100.0};  // each coordin
 inline constexpr Range<int> control_point_count_range{2, 200};   // in each direction
 inline constexpr Range<int> node_budget_range{50, 40000};
 inline constexpr Range<int> node_count_range{2, 64};  // in each direction
+inline constexpr Range<int> body_count_range{1, 8};
 inline constexpr Range<int> fixing_plane_count_range{0, 64};
 inline constexpr Range<double> tool_radius_range_m{0.0, 0.5};
 inline constexpr Range<int> tool_iterations_range{1, 8};

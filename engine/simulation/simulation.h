@@ -26,7 +26,7 @@ struct ToolInput {
   bool hovering = false;  // only points: the tool acts on nothing, until it is outside the body again
 };
 
-// What the material answers. The force is that of the real stiffness: sculpting computes with the felt one,
+// What the bodies answer. The force is that of the real stiffness: sculpting computes with the felt one,
 // and a quasi-static force is proportional to it.
 struct Reaction {
   Vector3 force_n = Vector3::Zero();  // on the tool, averaged over the tick's material time
@@ -39,7 +39,7 @@ struct Reaction {
 // Everything that a stroke can change, for undo, bit for bit: the lattice's displacements, velocities, rest
 // lengths and volumes. Control points follow from them.
 struct ShapeState {
-  std::vector<float> lattice;
+  std::vector<std::vector<float>> lattices;  // one a body
   friend bool operator==(const ShapeState&, const ShapeState&) = default;
 };
 
@@ -60,7 +60,7 @@ class Simulation {
   // points. Allocates nothing, never throws.
   Reaction advance(const ToolInput& input);
 
-  // The scene as it was set. Its surface is that of the last change of structure: surface() is the one of
+  // The scene as it was set. Its surfaces are those of the last change of structure: surface() is the one of
   // now.
   const Scene& scene() const;
   // What would be saved now. Allocates only where `scene` is of another structure.
@@ -79,9 +79,9 @@ class Simulation {
   // Refused when the state is of another lattice.
   Status restore(const ShapeState& shape);
 
-  // For studies and tests: the lattice, and the surface as it is now.
-  const SpringLattice& lattice() const;
-  const Surface& surface() const;
+  // For studies and tests: a body's lattice, and its surface as it is now.
+  const SpringLattice& lattice(int body = 0) const;
+  const Surface& surface(int body = 0) const;
 
   struct State;
 

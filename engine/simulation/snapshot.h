@@ -69,6 +69,12 @@ struct MaterialSnapshot {
   double mass_kg = 0.0;  // of the body
 };
 
+struct BodySnapshot {
+  SurfaceSnapshot surface;
+  LatticeSnapshot lattice;
+  MaterialSnapshot material;
+};
+
 struct DeviceSnapshot {
   std::string name;
   double force_limit_n = 0.0;
@@ -87,8 +93,7 @@ enum TickFlag : std::uint32_t {
 
 struct Snapshot {
   std::uint64_t tick = 0;
-  std::vector<SurfaceSnapshot> surfaces;
-  LatticeSnapshot lattice;
+  std::vector<BodySnapshot> bodies;
   ToolSnapshot tool;
   std::vector<PlaneSnapshot> planes;
   bool symmetric = false;  // a second tool mirrors the first
@@ -96,7 +101,6 @@ struct Snapshot {
   Pose mirrored_proxy;  // of the second tool, when symmetric
   std::vector<ContactSnapshot> contacts;
   Vector3 force_n = Vector3::Zero();  // on the hand, after scale and limit
-  MaterialSnapshot material;
   DeviceSnapshot device;
   int substeps = 0;  // of the last tick
   std::uint32_t flags = tick_flag_none;

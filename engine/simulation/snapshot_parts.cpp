@@ -1,6 +1,7 @@
 #include "engine/simulation/snapshot_parts.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "engine/simulation/state_hash.h"
 
@@ -21,20 +22,13 @@ std::uint64_t structure_of(const Surface& surface) {
   return hash.value();
 }
 
-}  // namespace
-
-void write_surface(const Surface& surface, std::vector<SurfaceSnapshot>& out) {
-  const std::uint64_t structure = structure_of(surface);
-  if (out.size() != 1 || out[0].structure != structure) {
-    out.clear();
-    out.push_back({surface.u, surface.v, structure, {}, {}, {}});
-  }
+void write_surface(const Surface& surface, SurfaceSnapshot& out) {
   const auto copy = [](const std::vector<double>& from, std::vector<float>& to) {
     to.assign(from.begin(), from.end());
   };
-  copy(surface.net.x, out[0].x);
-  copy(surface.net.y, out[0].y);
-  copy(surface.net.z, out[0].z);
+  copy(surface.net.x, out.x);
+  copy(surface.net.y, out.y);
+  copy(surface.net.z, out.z);
 }
 
 void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>& held,
@@ -61,16 +55,34 @@ void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>
   }
 }
 
-void write_material(const Scene& scene, const SpringLattice& lattice, MaterialSnapshot& out) {
-  const Material& material = scene.body.material;
+void write_material(const Material& material, const Sculpting& sculpting, const SpringLattice& lattice,
+                    MaterialSnapshot& out) {
   out.name = material.name;
   out.youngs_modulus_pa = material.youngs_modulus_pa;
   out.felt_youngs_modulus_pa = lattice.youngs_modulus_pa();
   out.poissons_ratio = material.poissons_ratio;
   out.density_kg_per_m3 = material.density_kg_per_m3;
-  out.damping_per_s = scene.sculpting.damping_per_s;
+  out.damping_per_s = sculpting.damping_per_s;
   out.plastic = material.plastic;
   out.mass_kg = lattice.mass_kg();
+}
+
+}  // namespace
+
+void write_bodies(const std::vector<BodyState>& bodies, const Scene& scene, std::vector<BodySnapshot>& out) {
+  if (out.size() > bodies.size()) out.clear();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Surface& surface = bodies[b].mapping.current();
+    const std::uint64_t structure = structure_of(surface);
+    if (b == out.size()) {
+      out.push_back({{surface.u, surface.v, structure, {}, {}, {}}, {}, {}});
+    } else if (out[b].surface.structure != structure) {
+      out[b].surface = {surface.u, surface.v, structure, {}, {}, {}};
+    }
+    write_surface(surface, out[b].surface);
+    write_lattice(bodies[b].lattice, bodies[b].held, bodies[b].touched, out[b].lattice);
+    write_material(scene.bodies[b].material, scene.sculpting, bodies[b].lattice, out[b].material);
+  }
 }
 
 }  // namespace spoonbill

@@ -9,10 +9,16 @@ constexpr int constraint_capacity = 1024;
 // surface that collides and the lattice that gives way.
 constexpr double margin_cells = 0.5;
 
+bool is_inside(const CollisionResult& collision) {
+  return collision.found && collision.nearest.depth_m >= 0.0;
+}
+
 }  // namespace
 
-ToolContact::ToolContact(const BodyMapping& mapping)
-    : collider_(mapping.nested()), constraints_(constraint_capacity) {}
+ToolContact::ToolContact(std::span<const BodyState> bodies) : constraints_(constraint_capacity) {
+  contacts_.reserve(bodies.size());
+  for (const BodyState& body : bodies) contacts_.emplace_back(body.mapping);
+}
 
 void ToolContact::release() {
   constraints_.clear();
@@ -24,53 +30,72 @@ void ToolContact::lift() {
   lifted_ = true;
 }
 
-void ToolContact::prepare(const BodyMapping& mapping, const SpringLattice& lattice, const Tool& tool,
-                          const Pose& pose, bool gripping, bool hovering) {
+int ToolContact::deepest_body() const {
+  const auto depth = [&](std::size_t body) {
+    const CollisionResult& collision = contacts_[body].collision;
+    return collision.found ? collision.nearest.depth_m : -1e300;
+  };
+  std::size_t deepest = 0;
+  for (std::size_t body = 1; body < contacts_.size(); ++body) {
+    if (depth(body) > depth(deepest)) deepest = body;
+  }
+  return static_cast<int>(deepest);
+}
+
+void ToolContact::prepare(std::span<const BodyState> bodies, const Tool& tool, const Pose& pose,
+                          bool gripping, bool hovering) {
   const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
-  const double margin = margin_cells * static_cast<double>(lattice.cell_size_m());
-  collision_ = collider_.collide(mapping.current(), ToolShape::sphere(pose.position_m, radius), margin, true);
-  overflow_ = collision_.overflow;
-  const bool inside = collision_.found && collision_.nearest.depth_m >= 0.0;
+  const ToolShape shape = ToolShape::sphere(pose.position_m, radius);
+  overflow_ = false;
+  bool inside = false, near = false;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const double margin = margin_cells * static_cast<double>(bodies[b].lattice.cell_size_m());
+    CollisionResult& collision = contacts_[b].collision;
+    collision = contacts_[b].collider.collide(bodies[b].mapping.current(), shape, margin, true);
+    overflow_ |= collision.overflow;
+    inside |= is_inside(collision);
+    near |= collision.found;
+  }
   // A body that the tool has just pressed lies against it, and quivers: the tool has left when it is a margin
   // away, or hovers.
-  const bool against = hovering ? inside : collision_.found;
+  const bool against = hovering ? inside : near;
   lifted_ = lifted_ && (against || gripping);
   hovered_ = hovering || (hovered_ && inside);
   if (lifted_ || hovered_) return release();
-  if (tool.action != ToolAction::pull) {
-    constraints_.clear();
-    if (collision_.found) add_pushes(mapping, lattice);
-    return;
+  const bool pulls = tool.action == ToolAction::pull;
+  if (pulls && !gripping) return release();
+  const bool grips = pulls && !gripped_ && inside;
+  if (!pulls || grips) constraints_.clear();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const int body = static_cast<int>(b);
+    if (!pulls && contacts_[b].collision.found) add_pushes(body, bodies[b]);
+    if (grips && is_inside(contacts_[b].collision)) add_grips(body, bodies[b], pose);
   }
-  if (!gripping) {
-    release();
-  } else if (!gripped_ && inside) {
-    add_grips(mapping, lattice, pose);
-    gripped_ = true;
+  gripped_ |= grips;
+}
+
+void ToolContact::add_pushes(int body, const BodyState& state) {
+  const SurfaceContact& nearest = contacts_[body].collision.nearest;
+  overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping.at(nearest.u, nearest.v),
+                                            nearest.normal);
+  for (const NearSample& sample : contacts_[body].collider.near_samples()) {
+    overflow_ |= !constraints_.add_push(body, state.lattice, state.mapping.sample(sample.index));
   }
 }
 
-void ToolContact::add_pushes(const BodyMapping& mapping, const SpringLattice& lattice) {
-  const SurfaceContact& nearest = collision_.nearest;
-  overflow_ |= !constraints_.add_plane_push(lattice, mapping.at(nearest.u, nearest.v), nearest.normal);
-  for (const NearSample& sample : collider_.near_samples()) {
-    overflow_ |= !constraints_.add_push(lattice, mapping.sample(sample.index));
-  }
-}
-
-void ToolContact::add_grips(const BodyMapping& mapping, const SpringLattice& lattice, const Pose& pose) {
-  constraints_.clear();
+void ToolContact::add_grips(int body, const BodyState& state, const Pose& pose) {
   const auto grip = [&](const EmbeddedPoint& point) {
     Vector3 position = Vector3::Zero();
     for (int i = 0; i < point.count; ++i) {
-      position += static_cast<double>(point.weight[i]) * lattice.position(point.node[i]);
+      position += static_cast<double>(point.weight[i]) * state.lattice.position(point.node[i]);
     }
     const Vector3 offset = pose.orientation.conjugate() * (position - pose.position_m);
-    overflow_ |= !constraints_.add_grip(lattice, point, offset);
+    overflow_ |= !constraints_.add_grip(body, state.lattice, point, offset);
   };
-  grip(mapping.at(collision_.nearest.u, collision_.nearest.v));
-  for (const NearSample& sample : collider_.near_samples()) {
-    if (sample.distance_m <= 0.0) grip(mapping.sample(sample.index));
+  const CollisionResult& collision = contacts_[body].collision;
+  grip(state.mapping.at(collision.nearest.u, collision.nearest.v));
+  for (const NearSample& sample : contacts_[body].collider.near_samples()) {
+    if (sample.distance_m <= 0.0) grip(state.mapping.sample(sample.index));
   }
 }
 

@@ -37,12 +37,15 @@ Extent extent_of(const PlaneSnapshot& plane, const BoundingBox& body, const Plan
   return extent;
 }
 
-Extent extent_of(const PlaneSnapshot& plane, const LatticeSnapshot& lattice, const BoundingBox& body,
+Extent extent_of(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies, const BoundingBox& body,
                  const PlaneAxes& axes) {
   Extent extent;
-  for (std::size_t i = 0; i < lattice.x.size(); ++i) {
-    if (lattice.fixed[i] == 0) continue;
-    extent.include(axes, Vector3(lattice.x[i], lattice.y[i], lattice.z[i]) - plane.point_m);
+  for (const BodySnapshot& held : bodies) {
+    const LatticeSnapshot& lattice = held.lattice;
+    for (std::size_t i = 0; i < lattice.x.size(); ++i) {
+      if (lattice.fixed[i] == 0) continue;
+      extent.include(axes, Vector3(lattice.x[i], lattice.y[i], lattice.z[i]) - plane.point_m);
+    }
   }
   return extent.empty() ? extent_of(plane, body, axes) : extent;
 }
@@ -60,10 +63,10 @@ PlaneCorners corners_of(const PlaneSnapshot& plane, const PlaneAxes& axes, Exten
 
 }  // namespace
 
-PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const LatticeSnapshot& lattice,
+PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies,
                                   const BoundingBox& body) {
   const PlaneAxes axes = axes_of(plane);
-  return corners_of(plane, axes, extent_of(plane, lattice, body, axes), fixing_overhang_share);
+  return corners_of(plane, axes, extent_of(plane, bodies, body, axes), fixing_overhang_share);
 }
 
 PlaneCorners corners_around(const PlaneSnapshot& plane, const BoundingBox& body, double overhang_share) {

@@ -14,7 +14,7 @@ using PlaneCorners = std::array<Vector3, 4>;  // in order around the rectangle
 
 // Upright, sized by the fixed nodes, which do not move while the rest bends; by the body's box where none are
 // fixed.
-PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const LatticeSnapshot& lattice,
+PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies,
                                   const BoundingBox& body);
 
 // The same around the body's box alone, larger than it by `overhang_share` of the larger side, on each side.

@@ -60,8 +60,11 @@ std::vector<Label> legend_of(const Snapshot& snapshot, const ViewSettings& setti
     colour.a = 255;
     legend.push_back({std::move(text), {}, {}, symbol, colour});
   };
-  const std::size_t fixed = count_set(snapshot.lattice.fixed);
-  const std::size_t touched = count_set(snapshot.lattice.touched);
+  std::size_t fixed = 0, touched = 0;
+  for (const BodySnapshot& body : snapshot.bodies) {
+    fixed += count_set(body.lattice.fixed);
+    touched += count_set(body.lattice.touched);
+  }
   if (on.tool) {
     const bool sphere = snapshot.tool.kind == ToolKind::sphere;
     add(std::string(sphere ? "sphere tool, " : "point tool, ") + name_of(snapshot.tool.action),

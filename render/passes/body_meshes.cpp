@@ -3,12 +3,12 @@
 namespace spoonbill {
 
 Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level) {
-  surfaces_.resize(snapshot.surfaces.size());
+  surfaces_.resize(snapshot.bodies.size());
   while (buffers_.size() > surfaces_.size()) buffers_.pop_back();
   while (buffers_.size() < surfaces_.size()) buffers_.emplace_back(*gl_);
   bounds_ = {};
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    const SurfaceSnapshot& surface = snapshot.surfaces[i];
+    const SurfaceSnapshot& surface = snapshot.bodies[i].surface;
     if (Status net = check_net(surface); !net) return net;
     const SamplingLevel last = keep_level ? surfaces_[i].level() : SamplingLevel();
     const SamplingLevel level = choose_sampling_level(surface, pixels_per_metre, last);

@@ -132,7 +132,7 @@ BoundingBox net_box(const SurfaceSnapshot& surface) {
 void include_planes(const Snapshot& snapshot, const Overlays& on, const BoundingBox& body, Strips& strips) {
   if (on.fixing_planes) {
     for (const PlaneSnapshot& plane : snapshot.planes) {
-      const PlaneCorners corners = fixing_plane_corners(plane, snapshot.lattice, body);
+      const PlaneCorners corners = fixing_plane_corners(plane, snapshot.bodies, body);
       Strips::Hull hull(strips);
       for (const Vector3& corner : corners) hull.include(corner.cast<float>());
       hull.include(plane_arrow_tip(corners, plane).cast<float>());
@@ -160,12 +160,12 @@ std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& 
     body.include(box.low_m);
     body.include(box.high_m);
   }
-  const LatticeSnapshot& lattice = snapshot.lattice;
-  if (on.lattice || on.fixed_nodes || on.touched_nodes) {
-    strips.include_points(lattice.x, lattice.y, lattice.z);
-  }
-  if (on.control_net) {
-    for (const SurfaceSnapshot& surface : snapshot.surfaces) strips.include(net_box(surface));
+  for (const BodySnapshot& each : snapshot.bodies) {
+    const LatticeSnapshot& lattice = each.lattice;
+    if (on.lattice || on.fixed_nodes || on.touched_nodes) {
+      strips.include_points(lattice.x, lattice.y, lattice.z);
+    }
+    if (on.control_net) strips.include(net_box(each.surface));
   }
   if (on.tool) {
     strips.include_sphere(snapshot.tool.proxy.position_m, snapshot.tool.radius_m);

@@ -24,8 +24,8 @@ constexpr float ghost_translucency = 0.85f;
 constexpr float lift_share_of_cell = 0.4f;
 constexpr float lift_without_lattice_m = 0.0002f;
 
-float lift_m(const LatticeSnapshot& lattice) {
-  const float cell = mean_edge_m(lattice);
+float lift_m(const Snapshot& snapshot) {
+  const float cell = snapshot.bodies.empty() ? 0.0f : mean_edge_m(snapshot.bodies.front().lattice);
   return cell > 0.0f ? lift_share_of_cell * cell : lift_without_lattice_m;
 }
 
@@ -42,8 +42,8 @@ ToolSphere tool_sphere(const FrameView& view, const Snapshot& snapshot, const Vi
   return {centre, pixels_at(view, centre, smallest_tool_px)};
 }
 
-SurfaceLook look_of(const Snapshot& snapshot, const ViewSettings& settings) {
-  SurfaceLook look = look_of_material(snapshot.material.name);
+SurfaceLook look_of(const BodySnapshot& body, const ViewSettings& settings) {
+  SurfaceLook look = look_of_material(body.material.name);
   if (settings.see_through_body) {
     look.translucency = ghost_translucency;
     look.metalness = 0.0f;
@@ -101,14 +101,17 @@ void ScenePasses::draw(const FrameView& view, const Snapshot& snapshot, const Vi
 void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
                              const BodyMeshes& bodies) {
   const ToolSphere tool = tool_sphere(view, snapshot, settings);
-  const SurfaceLook look = look_of(snapshot, settings);
   const ShadowPass* shadow = settings.shadow ? &passes_.shadow : nullptr;
-  const auto draw_body = [&] { passes_.surface.draw(view, bodies.buffers(), look, tool, shadow); };
-  const bool translucent = look.translucency > 0.0f;
-
-  if (!translucent) draw_body();
+  const auto draw_bodies = [&](bool translucent) {
+    for (std::size_t b = 0; b < bodies.buffers().size(); ++b) {
+      const SurfaceLook look = look_of(snapshot.bodies[b], settings);
+      if ((look.translucency > 0.0f) != translucent) continue;
+      passes_.surface.draw(view, bodies.buffers()[b], look, tool, shadow);
+    }
+  };
+  draw_bodies(false);
   draw_force(view, snapshot, settings);
-  if (translucent) draw_body();
+  draw_bodies(true);
   draw_overlays(view, snapshot, settings);
   if (settings.overlays.fixing_planes) draw_planes(view, snapshot, bodies.bounds());
   if (settings.overlays.symmetry_plane) draw_symmetry(view, snapshot, bodies.bounds());
@@ -146,15 +149,15 @@ void ScenePasses::draw_overlays(const FrameView& view, const Snapshot& snapshot,
   const Overlays& on = settings.overlays;
   lines_.clear();
   marks_.clear();
-  if (on.lattice) append_lattice_lines(snapshot.lattice, settings.see_through_body, lines_);
-  if (on.control_net) {
-    for (const SurfaceSnapshot& surface : snapshot.surfaces) append_control_net(surface, lines_, marks_);
+  for (const BodySnapshot& body : snapshot.bodies) {
+    if (on.lattice) append_lattice_lines(body.lattice, settings.see_through_body, lines_);
+    if (on.control_net) append_control_net(body.surface, lines_, marks_);
+    if (on.fixed_nodes) append_fixed_marks(body.lattice, settings.see_through_body, marks_);
   }
   if (on.contact_normals) {
     append_contact_normals(snapshot.contacts, contact_normal_length_m(snapshot.tool), lines_);
   }
-  if (on.fixed_nodes) append_fixed_marks(snapshot.lattice, settings.see_through_body, marks_);
-  const float lift = lift_m(snapshot.lattice);
+  const float lift = lift_m(snapshot);
   passes_.line.draw(view, lines_, lift);
   passes_.mark.draw(view, marks_, lift);
 }
@@ -162,7 +165,7 @@ void ScenePasses::draw_overlays(const FrameView& view, const Snapshot& snapshot,
 void ScenePasses::draw_planes(const FrameView& view, const Snapshot& snapshot, const BoundingBox& body) {
   lines_.clear();
   for (const PlaneSnapshot& plane : snapshot.planes) {
-    const PlaneCorners corners = fixing_plane_corners(plane, snapshot.lattice, body);
+    const PlaneCorners corners = fixing_plane_corners(plane, snapshot.bodies, body);
     std::array<Eigen::Vector3f, 4> pane;
     for (std::size_t i = 0; i < pane.size(); ++i) pane[i] = corners[i].cast<float>();
     passes_.solid.draw_pane(view, pane, palette::fixing_plane);
@@ -195,8 +198,8 @@ void ScenePasses::draw_tool(const FrameView& view, const Snapshot& snapshot, con
 // After the tool, which would otherwise tint the nodes under it.
 void ScenePasses::draw_touched(const FrameView& view, const Snapshot& snapshot) {
   marks_.clear();
-  append_touched_marks(snapshot.lattice, marks_);
-  passes_.mark.draw(view, marks_, lift_m(snapshot.lattice));
+  for (const BodySnapshot& body : snapshot.bodies) append_touched_marks(body.lattice, marks_);
+  passes_.mark.draw(view, marks_, lift_m(snapshot));
 }
 
 }  // namespace spoonbill

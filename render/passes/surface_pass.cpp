@@ -105,8 +105,8 @@ void SurfacePass::set_uniforms(const Program& program, const FrameView& view, co
   gl_->BindTexture(GL_TEXTURE_2D, shadow->key_map());
 }
 
-void SurfacePass::draw(const FrameView& view, const std::vector<SurfaceBuffers>& surfaces,
-                       const SurfaceLook& look, const ToolSphere& tool, const ShadowPass* shadow) const {
+void SurfacePass::draw(const FrameView& view, const SurfaceBuffers& surface, const SurfaceLook& look,
+                       const ToolSphere& tool, const ShadowPass* shadow) const {
   const bool opaque = look.translucency <= 0.0f;
   const Program& program = opaque ? opaque_ : translucent_;
   set_uniforms(program, view, look, tool, shadow);
@@ -114,16 +114,14 @@ void SurfacePass::draw(const FrameView& view, const std::vector<SurfaceBuffers>&
     program.set("two_sided", 1);
     for (const Cull cull : {Cull::front, Cull::back}) {
       set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, cull});
-      for (const SurfaceBuffers& surface : surfaces) surface.draw();
+      surface.draw();
     }
     return;
   }
-  for (const SurfaceBuffers& surface : surfaces) {
-    const bool closed = surface.is_closed();
-    program.set("two_sided", closed ? 0 : 1);
-    set_pipeline_state(*gl_, {Depth::test_and_write, Blend::off, closed ? Cull::back : Cull::off});
-    surface.draw();
-  }
+  const bool closed = surface.is_closed();
+  program.set("two_sided", closed ? 0 : 1);
+  set_pipeline_state(*gl_, {Depth::test_and_write, Blend::off, closed ? Cull::back : Cull::off});
+  surface.draw();
 }
 
 }  // namespace spoonbill

@@ -1,7 +1,5 @@
-// Draws the body's surfaces in the studio's light.
+// Draws a body's surface in the studio's light.
 #pragma once
-
-#include <vector>
 
 #include "engine/result.h"
 #include "render/gl/functions.h"
@@ -19,7 +17,7 @@ class SurfacePass {
 
   // Opaque looks write depth; translucent ones are blended, back faces first, and belong after the ground.
   // `shadow` is null when shadows are off.
-  void draw(const FrameView& view, const std::vector<SurfaceBuffers>& surfaces, const SurfaceLook& look,
+  void draw(const FrameView& view, const SurfaceBuffers& surface, const SurfaceLook& look,
             const ToolSphere& tool, const ShadowPass* shadow) const;
 
  private:

@@ -124,7 +124,8 @@ BoundingBox TessellatedSurface::bounds() const {
 BoundingBox drawn_bounds(const Snapshot& snapshot) {
   constexpr int fine_enough = 4;
   BoundingBox box;
-  for (const SurfaceSnapshot& surface : snapshot.surfaces) {
+  for (const BodySnapshot& body : snapshot.bodies) {
+    const SurfaceSnapshot& surface = body.surface;
     TessellatedSurface tessellated;
     if (!check_net(surface)) continue;
     if (!tessellated.update(surface, uniform_sampling_level(surface, fine_enough))) continue;

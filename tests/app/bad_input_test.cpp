@@ -66,7 +66,7 @@ template <class Move>
 std::string moved_model(const Workplace& place, const std::string& name, const Move& move) {
   auto document = read_document(place.path("model.json"));
   EXPECT_TRUE(document);
-  ControlNet& net = document->scene.body.surface.net;
+  ControlNet& net = document->scene.bodies[0].surface.net;
   for (int i = 0; i < net.rows; ++i) {
     for (int j = 0; j < net.columns; ++j) net.set_point(i, j, move(net.point(i, j)));
   }

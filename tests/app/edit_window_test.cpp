@@ -109,7 +109,7 @@ class EditWindow : public testing::Test {
 };
 
 double largest_difference(const Document& a, const Document& b) {
-  const ControlNet &one = a.scene.body.surface.net, &other = b.scene.body.surface.net;
+  const ControlNet &one = a.scene.bodies[0].surface.net, &other = b.scene.bodies[0].surface.net;
   if (one.size() != other.size()) return HUGE_VAL;
   double largest = 0.0;
   for (int i = 0; i < one.rows; ++i) {

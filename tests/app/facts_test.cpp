@@ -50,10 +50,10 @@ TEST(Info, TellsOfRecordingScriptAndMaterial) {
 
   const auto document = read_document(place.path("model.json"));
   ASSERT_TRUE(document);
-  place.write("material.json", json_to_page(material_to_json(document->scene.body.material)));
+  place.write("material.json", json_to_page(material_to_json(document->scene.bodies[0].material)));
   const Json material = json_of(run({"info", place.text("material.json"), "--json"}).out);
   EXPECT_EQ(material["kind"], "material");
-  EXPECT_EQ(material["material"]["youngs_modulus_pa"], document->scene.body.material.youngs_modulus_pa);
+  EXPECT_EQ(material["material"]["youngs_modulus_pa"], document->scene.bodies[0].material.youngs_modulus_pa);
 }
 
 TEST(Collide, TellsTheDistanceAndThenTheDepth) {
@@ -94,8 +94,9 @@ TEST(Collide, OneModelInsideAnother) {
   const Workplace place;
   auto small = read_document(place.path("model.json"));
   ASSERT_TRUE(small);
-  for (std::vector<double>* values : {&small->scene.body.surface.net.x, &small->scene.body.surface.net.y,
-                                      &small->scene.body.surface.net.z}) {
+  for (std::vector<double>* values :
+       {&small->scene.bodies[0].surface.net.x, &small->scene.bodies[0].surface.net.y,
+        &small->scene.bodies[0].surface.net.z}) {
     const double middle = 0.5 * (*std::min_element(values->begin(), values->end()) +
                                  *std::max_element(values->begin(), values->end()));
     for (double& value : *values) value = middle + 0.5 * (value - middle);
@@ -113,7 +114,7 @@ TEST(Sample, WritesPointsOfTheSurfaceWithBothEnds) {
   const Workplace place;
   const auto document = read_document(place.path("model.json"));
   ASSERT_TRUE(document);
-  const Surface& surface = document->scene.body.surface;
+  const Surface& surface = document->scene.bodies[0].surface;
   const Outcome outcome = run({"sample", place.text("model.json"), "--grid", "7x5", "--out", "-"});
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;
   const auto lines = split(outcome.out, '\n');
@@ -122,7 +123,7 @@ TEST(Sample, WritesPointsOfTheSurfaceWithBothEnds) {
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const auto fields = split(lines[i], ',');
     ASSERT_EQ(fields.size(), 10U);
-    EXPECT_EQ(fields[0], document->scene.body.name);
+    EXPECT_EQ(fields[0], document->scene.bodies[0].name);
     const double u = std::stod(fields[2]);
     const double v = std::stod(fields[3]);
     const Vector3 point(std::stod(fields[4]), std::stod(fields[5]), std::stod(fields[6]));

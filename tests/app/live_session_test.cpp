@@ -64,7 +64,7 @@ void stroke(LiveSession& live) {
 }
 
 double tip_height_m(const LiveFrame& frame) {
-  const LatticeSnapshot& lattice = frame.snapshot.lattice;
+  const LatticeSnapshot& lattice = frame.snapshot.bodies[0].lattice;
   double lowest = 1.0;
   for (const float y : lattice.y) lowest = std::min(lowest, static_cast<double>(y));
   return lowest;
@@ -106,7 +106,7 @@ TEST(LiveSession, WhatRebuildsIsDoneWhileTheLoopGoesOn) {
   auto live = start_live({"small handle", small_handle(), Json::object()});
   ASSERT_TRUE(live->ask(Command(PlacePlane{{Vector3(0.02, 0, 0), Vector3::UnitX()}})));
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.snapshot.planes.size() == 1; }));
-  Material stiffer = small_handle().body.material;
+  Material stiffer = small_handle().bodies[0].material;
   stiffer.poissons_ratio = 0.3;
   ASSERT_TRUE(live->ask(Command(SetMaterial{stiffer})));
   EXPECT_TRUE(
@@ -115,7 +115,7 @@ TEST(LiveSession, WhatRebuildsIsDoneWhileTheLoopGoesOn) {
 
 TEST(LiveSession, ARefusedRequestIsSaidAndChangesNothing) {
   auto live = start_live(held_handle());
-  Material wrong = small_handle().body.material;
+  Material wrong = small_handle().bodies[0].material;
   wrong.poissons_ratio = 0.7;
   ASSERT_TRUE(live->ask(Command(SetMaterial{wrong})));
   std::vector<Notice> notices;
@@ -140,8 +140,8 @@ TEST(LiveSession, SavesWhatTheShapeIsNow) {
   const auto saved = read_document(place.path("bent.json"));
   ASSERT_TRUE(saved) << saved.error().message;
   double lowest = 1.0, lowest_before = 1.0;
-  for (const double y : saved->scene.body.surface.net.y) lowest = std::min(lowest, y);
-  for (const double y : small_handle().body.surface.net.y) lowest_before = std::min(lowest_before, y);
+  for (const double y : saved->scene.bodies[0].surface.net.y) lowest = std::min(lowest, y);
+  for (const double y : small_handle().bodies[0].surface.net.y) lowest_before = std::min(lowest_before, y);
   EXPECT_LT(lowest, lowest_before - 1e-4);
   EXPECT_EQ(saved->scene.planes.size(), 1U);
 }
@@ -199,7 +199,7 @@ TEST(LiveSession, OpensAnotherDocument) {
   EXPECT_TRUE(live->frame().snapshot.planes.empty());
   // Without the plane its knots are fewer; the slots between the threads held those of the first document.
   for (int frame = 0; frame < 6; ++frame) {
-    ASSERT_TRUE(check_net(live->frame().snapshot.surfaces[0]));
+    ASSERT_TRUE(check_net(live->frame().snapshot.bodies[0].surface));
     wait_ticks(*live, 5);
   }
   EXPECT_EQ(live->frame().works, 1U);
@@ -209,7 +209,7 @@ TEST(LiveSession, TheWorkspaceFollowsTheModelThatIsOpened) {
   auto live = start_live(held_handle());
   Document far = held_handle();
   far.scene.planes.clear();
-  for (double& x : far.scene.body.surface.net.x) x += 2.0;
+  for (double& x : far.scene.bodies[0].surface.net.x) x += 2.0;
   ASSERT_TRUE(live->open(far, "far"));
   ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.works == 1; }));
   live->aim(at(2.05, 0.03));

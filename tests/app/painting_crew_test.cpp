@@ -31,7 +31,7 @@ class Crew : public ::testing::Test {
     SessionFacts facts;
     write_facts(session_, facts);
     job.panel = panel_of(facts, job.snapshot, job.view);
-    SurfaceSnapshot& surface = job.snapshot.surfaces[0];
+    SurfaceSnapshot& surface = job.snapshot.bodies[0].surface;
     // Away from the ends, which stay closed.
     const int raised = surface.v.control_point_count() / 2;
     surface.y[static_cast<std::size_t>(raised)] += 0.002F * static_cast<float>(frame);
@@ -75,7 +75,7 @@ TEST_F(Crew, PaintsInOrderWhatOnePainterPaints) {
 TEST_F(Crew, APainterThatCannotPaintSaysSo) {
   PaintingCrew crew(width_px, height_px);
   PaintingJob broken = job(0);
-  broken.snapshot.surfaces[0].y.clear();
+  broken.snapshot.bodies[0].surface.y.clear();
   crew.start(std::move(broken));
   EXPECT_FALSE(crew.take());
 }

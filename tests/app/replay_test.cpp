@@ -44,8 +44,8 @@ TEST(Replay, MakesTheFilesThatTheRecordingAskedFor) {
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;
   const auto saved = read_document(place.path("out/saved-as_it_was.json"));
   ASSERT_TRUE(saved) << saved.error().message;
-  EXPECT_EQ(saved->scene.body.surface.net.x,
-            read_document(place.path("model.json"))->scene.body.surface.net.x);
+  EXPECT_EQ(saved->scene.bodies[0].surface.net.x,
+            read_document(place.path("model.json"))->scene.bodies[0].surface.net.x);
   // The screenshot stands at tick 50, which frame 3 shows.
   const auto picture = read_png(place.path("out/picture-first.png"));
   const auto frame = read_png(place.path("out/frame-0003.png"));

@@ -64,7 +64,7 @@ Result<Press> recorded_press(const std::filesystem::path& file) {
 }
 
 Press block_press(int count, int iterations) {
-  Press press{Scene{Body{"block", box_like_tube(), clay(), LatticeRequest{40000, {{count, count, count}}}},
+  Press press{Scene{{Body{"block", box_like_tube(), clay(), LatticeRequest{40000, {{count, count, count}}}}},
                     {},
                     Tool{},
                     Sculpting{}},

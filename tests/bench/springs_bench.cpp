@@ -39,8 +39,8 @@ void springs_ours(benchmark::State& state) {
   settings.step_s = 0.5 * stable_step_s(omega, 0.5 * lattice.damping_time_s() * omega);
   while (state.KeepRunningBatch(substeps_a_tick)) {
     const int step = substeps_a_tick * static_cast<int>(settings.tick);
-    settings.gravity_m_per_s2 = {0.0, block_shaking_m_per_s2(step), 0.0};
-    relax(lattice, settings, {});
+    const Vector3 gravity_m_per_s2(0.0, block_shaking_m_per_s2(step), 0.0);
+    relax(std::array{RelaxedLattice{&lattice, gravity_m_per_s2}}, settings, {});
     ++settings.tick;
   }
   const int last = lattice.mesh().node_count() - 1;

@@ -106,8 +106,8 @@ TEST(Passivity, ARigidWallOfTheHighestStiffnessGivesBackNoMoreThanItTook) {
 
 Scene scene_to_press() {
   Scene scene = small_handle();
-  scene.body.material.youngs_modulus_pa = 1e6;
-  scene.body.material.plastic = false;
+  scene.bodies[0].material.youngs_modulus_pa = 1e6;
+  scene.bodies[0].material.plastic = false;
   scene.planes.push_back({Vector3(0.03, 0, 0), Vector3::UnitX()});
   return scene;
 }

@@ -173,7 +173,7 @@ TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
 
 Scene random_scene(Random& random) {
   Scene scene = small_handle();
-  Material& material = scene.body.material;
+  Material& material = scene.bodies[0].material;
   material.youngs_modulus_pa = random.scaled(1e4, 1e9);
   material.poissons_ratio = random.between(0.26, 0.45);
   material.density_kg_per_m3 = random.scaled(500.0, 8000.0);

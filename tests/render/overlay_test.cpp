@@ -53,7 +53,8 @@ TEST(Labels, TheLegendSaysWhatIsOnAndThere) {
 
   settings.overlays.control_net = true;
   settings.overlays.fixed_nodes = false;
-  std::fill(snapshot.lattice.touched.begin(), snapshot.lattice.touched.end(), std::uint8_t{0});
+  std::fill(snapshot.bodies[0].lattice.touched.begin(), snapshot.bodies[0].lattice.touched.end(),
+            std::uint8_t{0});
   labels = overlay_labels(snapshot, settings, 1280, 720);
   EXPECT_TRUE(has_line(labels.legend, "control net"));
   EXPECT_FALSE(has_line(labels.legend, "fixed nodes"));
@@ -104,15 +105,15 @@ TEST(ScaleBar, IsOfARoundLengthAndStaysInTheFreeRectangle) {
 TEST(NodeMarks, FixedAreSquaresTouchedAreDiscs) {
   const Snapshot snapshot = sample_scene();
   std::vector<OverlayMark> marks;
-  append_fixed_marks(snapshot.lattice, false, marks);
+  append_fixed_marks(snapshot.bodies[0].lattice, false, marks);
   ASSERT_FALSE(marks.empty());
   for (const OverlayMark& mark : marks) EXPECT_EQ(mark.shape, static_cast<float>(MarkShape::square));
   const std::size_t on_shell = marks.size();
   marks.clear();
-  append_fixed_marks(snapshot.lattice, true, marks);
+  append_fixed_marks(snapshot.bodies[0].lattice, true, marks);
   EXPECT_GT(marks.size(), on_shell);
   marks.clear();
-  append_touched_marks(snapshot.lattice, marks);
+  append_touched_marks(snapshot.bodies[0].lattice, marks);
   ASSERT_FALSE(marks.empty());
   for (const OverlayMark& mark : marks) EXPECT_EQ(mark.shape, static_cast<float>(MarkShape::disc));
 }
@@ -120,7 +121,7 @@ TEST(NodeMarks, FixedAreSquaresTouchedAreDiscs) {
 TEST(FixingPlane, LiesInItsPlaneAroundTheFixedNodes) {
   const Snapshot snapshot = sample_scene();
   const PlaneCorners corners =
-      fixing_plane_corners(snapshot.planes[0], snapshot.lattice, drawn_bounds(snapshot));
+      fixing_plane_corners(snapshot.planes[0], snapshot.bodies, drawn_bounds(snapshot));
   BoundingBox box;
   for (const Vector3& corner : corners) {
     EXPECT_NEAR((corner - snapshot.planes[0].point_m).dot(snapshot.planes[0].normal), 0.0, 1e-12);

@@ -111,7 +111,7 @@ TEST_F(Rendering, ALightMovedByFiveDegreesIsNoticed) {
 }
 
 TEST_F(Rendering, EveryOverlayShows) {
-  snapshot_.lattice.touched[0] = 1;
+  snapshot_.bodies[0].lattice.touched[0] = 1;
   snapshot_.symmetric = true;
   snapshot_.symmetry = {Vector3::Zero(), Vector3::UnitZ()};
   snapshot_.mirrored_proxy = snapshot_.tool.proxy;
@@ -152,7 +152,7 @@ TEST_F(Rendering, ShadowSamplesAndGhostShow) {
 TEST_F(Rendering, MaterialsDiffer) {
   const Image clay = picture();
   for (const char* material : {"steel-304", "jelly"}) {
-    snapshot_.material.name = material;
+    snapshot_.bodies[0].material.name = material;
     EXPECT_GT(worst_block_difference(clay, picture())->worst, 10.0) << material;
   }
 }
@@ -182,14 +182,14 @@ TEST_F(Rendering, ABrokenSurfaceOrSettingIsAnErrorNotACrash) {
   ViewSettings odd = settings_;
   odd.samples = 3;
   EXPECT_FALSE(renderer_->draw(snapshot_, odd, nullptr).ok());
-  snapshot_.surfaces[0].y.clear();
+  snapshot_.bodies[0].surface.y.clear();
   EXPECT_FALSE(renderer_->draw(snapshot_, settings_, nullptr).ok());
-  snapshot_.surfaces.clear();
+  snapshot_.bodies.clear();
   EXPECT_TRUE(renderer_->draw(snapshot_, settings_, nullptr).ok());
 }
 
 TEST_F(Rendering, AWildPoseDrawsNothingButEndsNothing) {
-  for (float& x : snapshot_.surfaces[0].x) x = std::numeric_limits<float>::quiet_NaN();
+  for (float& x : snapshot_.bodies[0].surface.x) x = std::numeric_limits<float>::quiet_NaN();
   snapshot_.tool.proxy.position_m = Vector3::Constant(1e9);
   EXPECT_TRUE(renderer_->draw(snapshot_, settings_, nullptr).ok());
 }

@@ -103,8 +103,9 @@ void touch(const ToolSnapshot& tool, LatticeSnapshot& lattice) {
 Snapshot sample_scene(const SampleSceneOptions& options) {
   const Surface handle = make_handle(options.bend_rad);
   Snapshot snapshot;
-  snapshot.surfaces.push_back(snapshot_of(handle));
-  snapshot.lattice = make_lattice(handle, options);
+  snapshot.bodies.push_back({snapshot_of(handle), make_lattice(handle, options), {}});
+  BodySnapshot& body = snapshot.bodies.back();
+  body.material.name = options.material;
 
   const Vector3 touched = bent({0.088, thickness_m, 0.0}, options.bend_rad);
   const Vector3 normal(std::sin(options.bend_rad), std::cos(options.bend_rad), 0.0);
@@ -114,10 +115,9 @@ Snapshot sample_scene(const SampleSceneOptions& options) {
   snapshot.tool.device = snapshot.tool.proxy;
   snapshot.contacts.push_back({touched, normal, 0.0002, 0.25, 0.88});
   snapshot.force_n = 1.84 * normal;
-  touch(snapshot.tool, snapshot.lattice);
+  touch(snapshot.tool, body.lattice);
 
   snapshot.planes.push_back({Vector3(length_m * fixed_share, 0.5 * thickness_m, 0.0), Vector3::UnitX()});
-  snapshot.material.name = options.material;
   return snapshot;
 }
 

@@ -20,7 +20,7 @@ ViewSettings framed(const Snapshot& snapshot) {
 
 std::vector<TessellatedSurface> tessellated(const Snapshot& snapshot) {
   std::vector<TessellatedSurface> surfaces(1);
-  const SurfaceSnapshot& surface = snapshot.surfaces[0];
+  const SurfaceSnapshot& surface = snapshot.bodies[0].surface;
   EXPECT_TRUE(surfaces[0].update(surface, choose_sampling_level(surface, 6000.0, {})).ok());
   return surfaces;
 }

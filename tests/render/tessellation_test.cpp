@@ -52,7 +52,7 @@ TessellatedSurface tessellated(const SurfaceSnapshot& surface, double pixels_per
 }
 
 TEST(Tessellation, ATubeWithPolesIsWatertight) {
-  const auto surface = tessellated(sample_scene({.bend_rad = 0.5}).surfaces[0], 6000.0);
+  const auto surface = tessellated(sample_scene({.bend_rad = 0.5}).bodies[0].surface, 6000.0);
   EXPECT_TRUE(surface.is_closed());
   const auto edges = directed_edges(surface);
   ASSERT_GT(edges.size(), 1000u);
@@ -64,7 +64,7 @@ TEST(Tessellation, ATubeWithPolesIsWatertight) {
 
 TEST(Tessellation, NormalsAreOutwardAndAgreeWithTheTriangles) {
   for (const bool mirrored : {false, true}) {
-    SurfaceSnapshot snapshot = sample_scene().surfaces[0];
+    SurfaceSnapshot snapshot = sample_scene().bodies[0].surface;
     if (mirrored) {
       for (float& z : snapshot.z) z = -z;
     }
@@ -87,7 +87,7 @@ TEST(Tessellation, NormalsAreOutwardAndAgreeWithTheTriangles) {
 }
 
 TEST(Tessellation, ChordsStayWithinTheTarget) {
-  const SurfaceSnapshot snapshot = sample_scene({.bend_rad = 0.6}).surfaces[0];
+  const SurfaceSnapshot snapshot = sample_scene({.bend_rad = 0.6}).bodies[0].surface;
   const double pixels_per_metre = 6000.0;
   const SamplingTarget target;
   const auto surface = tessellated(snapshot, pixels_per_metre);
@@ -113,7 +113,7 @@ TEST(Tessellation, ChordsStayWithinTheTarget) {
 }
 
 TEST(Tessellation, RebuildsOnlyWhenKnotsOrLevelChange) {
-  SurfaceSnapshot snapshot = sample_scene().surfaces[0];
+  SurfaceSnapshot snapshot = sample_scene().bodies[0].surface;
   TessellatedSurface surface;
   const SamplingLevel level = choose_sampling_level(snapshot, 6000.0, {});
   ASSERT_TRUE(surface.update(snapshot, level).ok());
@@ -126,7 +126,7 @@ TEST(Tessellation, RebuildsOnlyWhenKnotsOrLevelChange) {
 }
 
 TEST(Tessellation, TheLevelFollowsTheScreenButNotEveryPixel) {
-  const SurfaceSnapshot snapshot = sample_scene().surfaces[0];
+  const SurfaceSnapshot snapshot = sample_scene().bodies[0].surface;
   const SamplingLevel far = choose_sampling_level(snapshot, 1000.0, {});
   const SamplingLevel near = choose_sampling_level(snapshot, 40000.0, {});
   const auto cells = [](const std::vector<int>& pieces) {
@@ -163,7 +163,7 @@ TEST(Tessellation, AnOpenSheetKeepsItsEdges) {
 }
 
 TEST(Tessellation, ANetThatDoesNotFitItsKnotsIsRefused) {
-  SurfaceSnapshot snapshot = sample_scene().surfaces[0];
+  SurfaceSnapshot snapshot = sample_scene().bodies[0].surface;
   const SamplingLevel level = choose_sampling_level(snapshot, 6000.0, {});
   snapshot.x.pop_back();
   TessellatedSurface surface;
@@ -174,8 +174,9 @@ TEST(DrawnBounds, AreThoseOfTheSurfaceNotOfItsNet) {
   const Snapshot snapshot = sample_scene();
   const BoundingBox box = drawn_bounds(snapshot);
   EXPECT_NEAR(box.high_m.x() - box.low_m.x(), 0.100, 1e-4);
-  EXPECT_GT(box.low_m.y(),
-            *std::min_element(snapshot.surfaces[0].y.begin(), snapshot.surfaces[0].y.end()) + 1e-6);
+  EXPECT_GT(
+      box.low_m.y(),
+      *std::min_element(snapshot.bodies[0].surface.y.begin(), snapshot.bodies[0].surface.y.end()) + 1e-6);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ TEST(Command, ReadsWhatItWrites) {
   const Command commands[] = {PlacePlane{scene.planes.front()},
                               RemovePlanes{},
                               SetTool{scene.tool},
-                              SetMaterial{scene.body.material},
+                              SetMaterial{scene.bodies[0].material},
                               SetSculpting{scene.sculpting},
                               SetSymmetry{{true, Vector3(0.01, 0, 0), Vector3::UnitX()}},
                               ResetProxy{},

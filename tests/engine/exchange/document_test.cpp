@@ -82,7 +82,7 @@ TEST(Document, NamesUnknownAndMissingFields) {
   EXPECT_EQ(refusal([](Json& j) { j["tool"].erase("radius_mm"); }), "sample.json: tool.radius_mm is missing");
   EXPECT_EQ(refusal([](Json& j) { j.erase("body"); }), "sample.json: body is missing");
   EXPECT_EQ(refusal([](Json& j) { j["extra"] = 1; }),
-            "sample.json: has an unknown field \"extra\"; known: spoonbill_document, name, body, "
+            "sample.json: has an unknown field \"extra\"; known: spoonbill_document, name, body, other_bodies, "
             "fixing_planes, tool, "
             "sculpting, view");
 }

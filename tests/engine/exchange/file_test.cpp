@@ -129,7 +129,7 @@ TEST(File, NeverReplacesADocumentByOneThatCannotBeRead) {
   ASSERT_TRUE(write_document(sample_document(), file).ok());
   const std::string before = content_of(file);
   Document broken = sample_document();
-  broken.scene.body.surface.net.x[3] = std::numeric_limits<double>::quiet_NaN();
+  broken.scene.bodies[0].surface.net.x[3] = std::numeric_limits<double>::quiet_NaN();
   const Status status = write_document(broken, file);
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().message,
@@ -141,7 +141,7 @@ TEST(File, NeverReplacesADocumentByOneThatCannotBeRead) {
 
 TEST(File, ReadsMaterials) {
   const TemporaryFolder folder;
-  const Material clay = sample_document().scene.body.material;
+  const Material clay = sample_document().scene.bodies[0].material;
   const auto file = folder.write("clay.json", json_to_page(material_to_json(clay)));
   const auto read = read_material(file);
   ASSERT_TRUE(read.ok()) << read.error().message;

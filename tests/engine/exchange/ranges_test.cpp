@@ -9,15 +9,15 @@ namespace {
 
 TEST(Ranges, AcceptTheSample) {
   const Scene scene = sample_document().scene;
-  EXPECT_TRUE(check_material(scene.body.material).ok());
+  EXPECT_TRUE(check_material(scene.bodies[0].material).ok());
   EXPECT_TRUE(check_tool(scene.tool).ok());
   EXPECT_TRUE(check_sculpting(scene.sculpting).ok());
-  EXPECT_TRUE(check_lattice_request(scene.body.lattice).ok());
+  EXPECT_TRUE(check_lattice_request(scene.bodies[0].lattice).ok());
   EXPECT_TRUE(check_fixing_plane(scene.planes.front()).ok());
 }
 
 TEST(Ranges, NameFieldValueAndRange) {
-  Material material = sample_document().scene.body.material;
+  Material material = sample_document().scene.bodies[0].material;
   material.poissons_ratio = 0.2;
   EXPECT_EQ(check_material(material).error().message,
             "material modelling-clay: poissons_ratio is 0.2, must be 0.25 to 0.49");
@@ -33,7 +33,7 @@ TEST(Ranges, NameFieldValueAndRange) {
 }
 
 TEST(Ranges, AskForAYieldStrainOnlyWhereMaterialFlows) {
-  Material material = sample_document().scene.body.material;
+  Material material = sample_document().scene.bodies[0].material;
   material.yield_strain = 0.0;
   EXPECT_FALSE(check_material(material).ok());
   material.plastic = false;

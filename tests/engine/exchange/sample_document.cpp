@@ -37,7 +37,7 @@ void append(std::vector<double>& values, const Vector3& vector) {
 
 std::vector<double> numbers_of(const Document& document) {
   const Scene& scene = document.scene;
-  const Material& material = scene.body.material;
+  const Material& material = scene.bodies[0].material;
   std::vector<double> numbers = {
       material.youngs_modulus_pa, material.poissons_ratio,       material.density_kg_per_m3,
       material.damping_ratio,     material.yield_strain,         material.flow_rate_per_s,
@@ -47,7 +47,7 @@ std::vector<double> numbers_of(const Document& document) {
     append(numbers, plane.point_m);
     append(numbers, plane.normal);
   }
-  const Surface& surface = scene.body.surface;
+  const Surface& surface = scene.bodies[0].surface;
   for (const auto* values :
        {&surface.u.knots(), &surface.v.knots(), &surface.net.x, &surface.net.y, &surface.net.z}) {
     numbers.insert(numbers.end(), values->begin(), values->end());
@@ -62,7 +62,7 @@ Document sample_document() {
                                  KnotVector::clamped_uniform(3, along).value(), tube())
                         .value();
   const Material clay{"modelling-clay", "for tests", 2e5, 0.45, 1700.0, 0.1, true, 0.02, 40.0};
-  Scene scene{Body{"stub", std::move(surface), clay, {}}, {}, {}, {}};
+  Scene scene{{Body{"stub", std::move(surface), clay, {}}}, {}, {}, {}};
   scene.planes.push_back({Vector3(0.01, 0.0, 0.0), Vector3::UnitX()});
   return {"stub", std::move(scene), Json{{"camera", {{"distance_mm", 250}}}}};
 }
@@ -75,7 +75,7 @@ Document deformed_document(unsigned seed) {
     const double magnitude = std::ldexp(mantissa, static_cast<int>(random() % 20) - 18);
     return random() % 2 == 0 ? magnitude : -magnitude;
   };
-  ControlNet& net = document.scene.body.surface.net;
+  ControlNet& net = document.scene.bodies[0].surface.net;
   for (auto* values : {&net.x, &net.y, &net.z}) {
     for (double& value : *values) value = length_m();
   }
@@ -83,7 +83,7 @@ Document deformed_document(unsigned seed) {
   plane.point_m = {length_m(), length_m(), -0.0};
   plane.normal = Vector3(length_m(), length_m(), length_m()).normalized();
   document.scene.tool.radius_m = std::abs(length_m()) / 8.0;
-  document.scene.body.lattice.counts = {4, 8, 60};
+  document.scene.bodies[0].lattice.counts = {4, 8, 60};
   return document;
 }
 
@@ -93,7 +93,7 @@ bool same_bits(const Document& a, const Document& b) {
   for (std::size_t i = 0; i < left.size(); ++i) {
     if (std::bit_cast<std::uint64_t>(left[i]) != std::bit_cast<std::uint64_t>(right[i])) return false;
   }
-  const Body &body = a.scene.body, &other = b.scene.body;
+  const Body &body = a.scene.bodies[0], &other = b.scene.bodies[0];
   const Tool &tool = a.scene.tool, &other_tool = b.scene.tool;
   return a.name == b.name && a.view == b.view && body.name == other.name &&
          body.surface.u == other.surface.u && body.surface.v == other.surface.v &&

@@ -26,15 +26,15 @@ Scene small_handle() {
   std::vector<double> knots = {0, 0, 0};
   for (int k = 0; k <= along - 3; ++k) knots.push_back(length * k / (along - 3));
   knots.insert(knots.end(), 3, length);
-  Scene scene{Body{"handle",
-                   make_surface(KnotVector::periodic_uniform(3, around).value(),
-                                KnotVector::open(3, knots).value(), net)
-                       .value(),
-                   Material{}, LatticeRequest{500, {}}},
+  Scene scene{{Body{"handle",
+                    make_surface(KnotVector::periodic_uniform(3, around).value(),
+                                 KnotVector::open(3, knots).value(), net)
+                        .value(),
+                    Material{}, LatticeRequest{500, {}}}},
               {},
               Tool{},
               Sculpting{}};
-  Material& clay = scene.body.material;
+  Material& clay = scene.bodies[0].material;
   clay.name = "clay";
   clay.source = "test";
   clay.youngs_modulus_pa = 1e5;

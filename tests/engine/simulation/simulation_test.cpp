@@ -129,10 +129,10 @@ TEST(Simulation, APointToolPressesADent) {
 
 TEST(Simulation, ForceIsThatOfTheRealStiffness) {
   Scene scene = small_handle();
-  scene.body.material.plastic = false;
+  scene.bodies[0].material.plastic = false;
   double force[2];
   for (const int which : {0, 1}) {
-    scene.body.material.youngs_modulus_pa = which == 0 ? 1e5 : 2e5;
+    scene.bodies[0].material.youngs_modulus_pa = which == 0 ? 1e5 : 2e5;
     Simulation simulation = simulate(scene);
     EXPECT_LT(simulation.lattice().youngs_modulus_pa(), 1e4);
     Reaction reaction;
@@ -153,12 +153,12 @@ TEST(Simulation, RestoreGivesBackTheShapeBitForBit) {
   ASSERT_TRUE(simulation.restore(before).ok());
   EXPECT_EQ(simulation.shape(), before);
   EXPECT_EQ(simulation.surface().net.y, net.y);
-  EXPECT_FALSE(simulation.restore(ShapeState{{1.0f}}).ok());
+  EXPECT_FALSE(simulation.restore(ShapeState{{{1.0f}}}).ok());
 }
 
 TEST(Simulation, KeepShapeMakesThePresentTheRestShape) {
   Scene scene = small_handle();
-  scene.body.material.plastic = false;
+  scene.bodies[0].material.plastic = false;
   Simulation simulation = simulate(scene);
   ASSERT_TRUE(simulation.apply(PlacePlane{{Vector3(0.02, 0, 0), Vector3::UnitX()}}).ok());
   for (int tick = 0; tick < 600; ++tick) simulation.advance(above(0.05, 0.009 - 1e-5 * tick));
@@ -174,7 +174,7 @@ TEST(Simulation, CommandsOutOfRangeChangeNothing) {
   Tool tool;
   tool.radius_m = std::nan("");
   EXPECT_FALSE(simulation.apply(SetTool{tool}).ok());
-  Material material = simulation.scene().body.material;
+  Material material = simulation.scene().bodies[0].material;
   material.poissons_ratio = 0.5;
   EXPECT_FALSE(simulation.apply(SetMaterial{material}).ok());
   EXPECT_FALSE(simulation.apply(PlacePlane{{Vector3::Zero(), Vector3::Zero()}}).ok());
@@ -183,11 +183,11 @@ TEST(Simulation, CommandsOutOfRangeChangeNothing) {
 
 TEST(Simulation, RefusesBodiesThatAreNotClosedTubes) {
   Scene open = small_handle();
-  for (int i = 0; i < open.body.surface.net.rows; ++i)
-    open.body.surface.net.set_point(i, 0, {0.0, 1e-3 * i, 0.0});
+  for (int i = 0; i < open.bodies[0].surface.net.rows; ++i)
+    open.bodies[0].surface.net.set_point(i, 0, {0.0, 1e-3 * i, 0.0});
   EXPECT_NE(Simulation::make(open, InstructionSet::baseline).error().message.find("pole"), std::string::npos);
   Scene inward = small_handle();
-  for (double& z : inward.body.surface.net.z) z = -z;
+  for (double& z : inward.bodies[0].surface.net.z) z = -z;
   EXPECT_NE(Simulation::make(inward, InstructionSet::baseline).error().message.find("inward"),
             std::string::npos);
 }
@@ -232,7 +232,7 @@ TEST(Simulation, NoSettingBlowsItUp) {
   Random random(77);
   for (int trial = 0; trial < trials; ++trial) {
     Scene scene = small_handle();
-    Material& material = scene.body.material;
+    Material& material = scene.bodies[0].material;
     material.youngs_modulus_pa = std::pow(10.0, random.uniform(0.5, 11.5));
     material.poissons_ratio = random.uniform(0.25, 0.49);
     material.density_kg_per_m3 = std::pow(10.0, random.uniform(1.0, 4.0));
@@ -272,7 +272,7 @@ TEST(Simulation, AnUndampedGelStaysNearWhateverHitsIt) {
   Random random(9);
   for (int trial = 0; trial < trials; ++trial) {
     Scene scene = small_handle();
-    Material& material = scene.body.material;
+    Material& material = scene.bodies[0].material;
     material.youngs_modulus_pa = std::pow(10.0, random.uniform(0.0, 3.5));
     material.poissons_ratio = random.uniform(0.25, 0.35);
     material.density_kg_per_m3 = std::pow(10.0, random.uniform(1.0, 4.0));

@@ -40,8 +40,8 @@ double dent_m(const Simulation& simulation, double v) {
   double deepest = 0.0;
   for (int i = -14; i <= 14; ++i) {
     const double at = v + 0.0005 * i;
-    deepest = std::max(deepest,
-                       thickness_m(small_handle().body.surface, at) - thickness_m(simulation.surface(), at));
+    deepest = std::max(
+        deepest, thickness_m(small_handle().bodies[0].surface, at) - thickness_m(simulation.surface(), at));
   }
   return deepest;
 }
@@ -99,7 +99,7 @@ TEST(Smoothing, TakesADentOutAndLeavesTheRestInPlace) {
 
 TEST(Smoothing, TheBodyIsAWallToTheToolAndARodStaysARod) {
   Scene scene = smoothed_by(small_handle(), 0.006);
-  ControlNet& net = scene.body.surface.net;
+  ControlNet& net = scene.bodies[0].surface.net;
   for (int i = 0; i < net.rows; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / net.rows;
     for (int j = 0; j < net.columns; ++j) {
@@ -132,8 +132,8 @@ TEST(Smoothing, TheBodyIsAWallToTheToolAndARodStaysARod) {
 class Reform : public ::testing::Test {
  protected:
   Reform()
-      : lattice_(SpringLattice::make(box_mesh({0.012, 0.012, 0.03}, {5, 5, 11}), small_handle().body.material,
-                                     100.0, InstructionSet::baseline)
+      : lattice_(SpringLattice::make(box_mesh({0.012, 0.012, 0.03}, {5, 5, 11}),
+                                     small_handle().bodies[0].material, 100.0, InstructionSet::baseline)
                      .value()) {}
   SpringLattice lattice_;
 };
@@ -147,7 +147,7 @@ TEST_F(Reform, StrainsNothing) {
   }
   std::vector<Vector3> before;
   for (int n = 0; n < lattice_.mesh().node_count(); ++n) before.push_back(lattice_.position(n));
-  for (std::uint64_t tick = 0; tick < 500; ++tick) relax(lattice_, {tick}, {});
+  for (std::uint64_t tick = 0; tick < 500; ++tick) relax(std::array{RelaxedLattice{&lattice_}}, {tick}, {});
   double largest = 0.0;
   for (int n = 0; n < lattice_.mesh().node_count(); ++n) {
     largest = std::max(largest, (lattice_.position(n) - before[static_cast<std::size_t>(n)]).norm());
@@ -171,7 +171,7 @@ TEST_F(Reform, IsUndoneWithTheShape) {
   ASSERT_TRUE(lattice_.reform(0, {-0.001, -0.001, -0.001}));
   EXPECT_GT(lattice_.volume_m3(), volume);
   ASSERT_TRUE(lattice_.set_shape(before));
-  for (std::uint64_t tick = 0; tick < 20; ++tick) relax(lattice_, {tick}, {});
+  for (std::uint64_t tick = 0; tick < 20; ++tick) relax(std::array{RelaxedLattice{&lattice_}}, {tick}, {});
   EXPECT_EQ(lattice_.shape(), before);
 }
 

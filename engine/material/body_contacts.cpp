@@ -1,0 +1,88 @@
+#include "engine/material/body_contacts.h"
+
+#include <algorithm>
+
+#include "engine/material/contact_push.h"
+
+namespace spoonbill {
+namespace {
+
+// The surfaces follow their nodes through the refit, a little more or less than the points do that the
+// constraints know: a gap that closes by half at most leaves room for that.
+constexpr ContactPace pace{0.5, 0.7};
+
+Vector3 displacement_now(const BodyPoint& side) {
+  Vector3 sum = Vector3::Zero();
+  for (int i = 0; i < side.point.count; ++i) {
+    sum += static_cast<double>(side.point.weight[i]) * side.lattice->displacement(side.point.node[i]);
+  }
+  return sum;
+}
+
+}  // namespace
+
+BodyContacts::BodyContacts(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {}
+
+void BodyContacts::clear() {
+  count_ = 0;
+}
+
+bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m) {
+  if (count_ == static_cast<int>(constraints_.size())) return false;
+  const double moved = normal.dot(displacement_now(first) - displacement_now(second));
+  constraints_[count_++] = {first.body,
+                            second.body,
+                            first.point,
+                            second.point,
+                            normal,
+                            first.point.compliance(*first.lattice),
+                            second.point.compliance(*second.lattice),
+                            gap_m - moved,
+                            false};
+  return true;
+}
+
+void BodyContacts::begin(double friction) {
+  friction_ = friction;
+  for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
+}
+
+void BodyContacts::solve(std::span<const LatticeView> lattices, float h, std::span<const float> caps) {
+  for (int c = 0; c < count_; ++c) {
+    Constraint& constraint = constraints_[c];
+    if (constraint.first_compliance + constraint.second_compliance == 0.0) continue;
+    solve(lattices, constraint, h, std::min(caps[constraint.first_body], caps[constraint.second_body]));
+  }
+}
+
+void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& constraint, double h,
+                         double cap) {
+  const LatticeView& first = lattices[constraint.first_body];
+  const LatticeView& second = lattices[constraint.second_body];
+  const Vector3 apart = constraint.first.displacement_m(first) - constraint.second.displacement_m(second);
+  const Vector3 relative =
+      constraint.first.velocity_m_per_s(first) - constraint.second.velocity_m_per_s(second);
+  const ContactPush push{constraint.base_m + constraint.normal.dot(apart), constraint.normal, relative,
+                         1.0 / (constraint.first_compliance + constraint.second_compliance)};
+  const auto impulse = push.impulse(h, pace, cap, friction_);
+  if (!impulse) return;
+  constraint.first.push(first, *impulse);
+  constraint.second.push(second, -*impulse);
+  constraint.acted = true;
+}
+
+bool BodyContacts::acted() const {
+  return std::any_of(constraints_.begin(), constraints_.begin() + count_,
+                     [](const Constraint& constraint) { return constraint.acted; });
+}
+
+void BodyContacts::mark_touched(int body, std::uint8_t* touched) const {
+  for (int c = 0; c < count_; ++c) {
+    const Constraint& constraint = constraints_[c];
+    if (!constraint.acted) continue;
+    if (constraint.first_body == body) constraint.first.mark(touched);
+    if (constraint.second_body == body) constraint.second.mark(touched);
+  }
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,44 @@
+#include "engine/simulation/body_state.h"
+
+#include <algorithm>
+
+#include "engine/material/lattice_solver.h"
+#include "engine/material/tube_lattice.h"
+
+namespace spoonbill {
+
+Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material& material,
+                                        InstructionSet set) {
+  // Measured at 1 Pa: frequencies scale with the root of the modulus, the springs with the modulus.
+  Result<SpringLattice> unit = SpringLattice::make(mesh, material, 1.0, set);
+  if (!unit.ok()) return unit;
+  const double unit_limit = felt_modulus_limit_pa(unit->fastest_frequency(), material.damping_ratio);
+  return SpringLattice::make(mesh, material, std::min(material.youngs_modulus_pa, unit_limit), set);
+}
+
+std::vector<std::uint8_t> nodes_behind(const SpringLattice& lattice, const std::vector<FixingPlane>& planes) {
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(lattice.mesh().node_count()), 0);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    for (const FixingPlane& plane : planes) {
+      if (plane.normal.dot(lattice.position(n) - plane.point_m) <= 0.0) held[static_cast<std::size_t>(n)] = 1;
+    }
+  }
+  return held;
+}
+
+Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
+                                  InstructionSet set) {
+  Result<LatticeMesh> mesh = tube_lattice(body.surface, body.lattice);
+  if (!mesh.ok()) return mesh.error();
+  Result<SpringLattice> lattice = sculpting_lattice(mesh.value(), body.material, set);
+  if (!lattice.ok()) return lattice.error();
+  std::vector<std::uint8_t> held = nodes_behind(lattice.value(), planes);
+  lattice->hold(held);
+  Result<BodyMapping> mapping = BodyMapping::make(body.surface, body.surface, lattice.value(), planes, set);
+  if (!mapping.ok()) return mapping.error();
+  std::vector<std::uint8_t> touched(held.size(), 0);
+  return BodyState{std::move(lattice).value(), std::move(mapping).value(), Smoothing(mesh.value()),
+                   std::move(held), std::move(touched)};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,35 @@
+// One body of a simulation: its lattice, its surface and what holds it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/instruction_set.h"
+#include "engine/material/spring_lattice.h"
+#include "engine/result.h"
+#include "engine/simulation/body_mapping.h"
+#include "engine/simulation/scene.h"
+#include "engine/simulation/smoothing.h"
+
+namespace spoonbill {
+
+// Plain data, one owner: the simulation.
+struct BodyState {
+  SpringLattice lattice;
+  BodyMapping mapping;
+  Smoothing smoothing;
+  std::vector<std::uint8_t> held, touched;  // one byte a node
+};
+
+// Refused with the field named where the body cannot be simulated.
+Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
+                                  InstructionSet set);
+
+// The lattice of a body at the stiffness that sculpting can hold.
+Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material& material,
+                                        InstructionSet set);
+
+// One byte a node, 1 where a plane holds it.
+std::vector<std::uint8_t> nodes_behind(const SpringLattice& lattice, const std::vector<FixingPlane>& planes);
+
+}  // namespace spoonbill

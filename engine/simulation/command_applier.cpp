@@ -1,0 +1,140 @@
+#include "engine/simulation/command_applier.h"
+
+#include <string>
+#include <utility>
+
+namespace spoonbill {
+
+std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies) {
+  std::vector<BodyPairContact> pairs;
+  for (std::size_t second = 1; second < bodies.size(); ++second) {
+    for (std::size_t first = 0; first < second; ++first) {
+      pairs.emplace_back(bodies[first].mapping, bodies[second].mapping);
+    }
+  }
+  return pairs;
+}
+
+Status CommandApplier::operator()(const PlacePlane& command) {
+  if (Status status = check_fixing_plane(command.plane); !status.ok()) return status;
+  std::vector<FixingPlane> planes = state.scene.planes;
+  planes.push_back(command.plane);
+  if (Status status = check_range("fixing planes", static_cast<int>(planes.size()), fixing_plane_count_range);
+      !status.ok()) {
+    return status;
+  }
+  return set_planes(std::move(planes));
+}
+
+Status CommandApplier::operator()(const RemovePlanes&) {
+  return set_planes({});
+}
+
+Status CommandApplier::operator()(const SetTool& command) {
+  if (Status status = check_tool(command.tool); !status.ok()) return status;
+  state.scene.tool = command.tool;
+  release();
+  return {};
+}
+
+Status CommandApplier::operator()(const SetSymmetry& command) {
+  if (Status status = check_symmetry(command.symmetry); !status.ok()) return status;
+  state.scene.symmetry = command.symmetry;
+  state.mirrored.contact.release();
+  state.mirrored.placed = false;
+  return {};
+}
+
+Status CommandApplier::operator()(const ResetProxy&) {
+  release();
+  state.tool.placed = state.mirrored.placed = false;
+  return {};
+}
+
+Status CommandApplier::operator()(const LiftTool&) {
+  state.tool.contact.lift();
+  state.mirrored.contact.lift();
+  return {};
+}
+
+Status CommandApplier::operator()(const SetSculpting& command) {
+  if (Status status = check_sculpting(command.sculpting); !status.ok()) return status;
+  state.scene.sculpting = command.sculpting;
+  return {};
+}
+
+Status CommandApplier::operator()(const SetMaterial& command) {
+  const int count = static_cast<int>(state.bodies.size());
+  if (command.body < 0 || command.body >= count) {
+    return Error{"body: is " + std::to_string(command.body) + ", must be 0 to " + std::to_string(count - 1)};
+  }
+  const std::size_t at = static_cast<std::size_t>(command.body);
+  BodyState& body = state.bodies[at];
+  Result<SpringLattice> lattice = sculpting_lattice(body.lattice.mesh(), command.material, state.set);
+  if (!lattice.ok()) return lattice.error();
+  lattice->set_shape(body.lattice.shape());
+  lattice->hold(body.held);
+  body.lattice = std::move(lattice).value();
+  state.scene.bodies[at].material = command.material;
+  release();
+  return {};
+}
+
+Status CommandApplier::operator()(const KeepShape&) {
+  std::vector<SpringLattice> lattices;
+  std::vector<BodyMapping> mappings;
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    const BodyState& body = state.bodies[b];
+    LatticeMesh mesh = body.lattice.mesh();
+    for (int n = 0; n < mesh.node_count(); ++n) mesh.nodes[n] = body.lattice.position(n);
+    Result<SpringLattice> lattice = sculpting_lattice(mesh, state.scene.bodies[b].material, state.set);
+    if (!lattice.ok()) return lattice.error();
+    lattice->hold(body.held);
+    const Surface& surface = body.mapping.current();
+    Result<BodyMapping> mapping =
+        BodyMapping::make(surface, surface, lattice.value(), state.scene.planes, state.set);
+    if (!mapping.ok()) return mapping.error();
+    lattices.push_back(std::move(lattice).value());
+    mappings.push_back(std::move(mapping).value());
+  }
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    state.bodies[b].smoothing = Smoothing(lattices[b].mesh());
+    state.bodies[b].lattice = std::move(lattices[b]);
+  }
+  set_mappings(std::move(mappings));
+  return {};
+}
+
+void CommandApplier::release() {
+  state.tool.contact.release();
+  state.mirrored.contact.release();
+}
+
+Status CommandApplier::set_planes(std::vector<FixingPlane> planes) {
+  std::vector<BodyMapping> mappings;
+  for (const BodyState& body : state.bodies) {
+    Result<BodyMapping> mapping =
+        BodyMapping::make(body.mapping.rest(), body.mapping.current(), body.lattice, planes, state.set);
+    if (!mapping.ok()) return mapping.error();
+    mappings.push_back(std::move(mapping).value());
+  }
+  for (BodyState& body : state.bodies) {
+    body.held = nodes_behind(body.lattice, planes);
+    body.lattice.hold(body.held);
+  }
+  state.scene.planes = std::move(planes);
+  set_mappings(std::move(mappings));
+  return {};
+}
+
+void CommandApplier::set_mappings(std::vector<BodyMapping> mappings) {
+  for (std::size_t b = 0; b < mappings.size(); ++b) {
+    state.bodies[b].mapping = std::move(mappings[b]);
+    state.scene.bodies[b].surface = state.bodies[b].mapping.current();
+  }
+  state.tool.contact = ToolContact(state.bodies);
+  state.mirrored.contact = ToolContact(state.bodies);
+  state.pairs = make_pairs(state.bodies);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,194 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "engine/collision/surface_pair_collider.h"
+#include "engine/denormals.h"
+#include "engine/material/lattice_solver.h"
+#include "engine/simulation/body_pair_contact.h"
+#include "tests/engine/allocations.h"
+#include "tests/engine/bspline/tube.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+Material rubber() {
+  Material material = small_handle().bodies[0].material;
+  material.name = "silicone";
+  material.plastic = false;
+  material.damping_ratio = 0.2;
+  return material;
+}
+
+// 40 x 20 x 100 mm, its flat side up.
+Body pebble(const Vector3& centre, int nodes) {
+  return {"pebble", ellipsoid_tube(12, 12, centre), rubber(), {nodes, {}}};
+}
+
+// Two bodies on each other and nothing else.
+class Impact {
+ public:
+  Impact(const Body& first, const Body& second)
+      : bodies_{make_body_state(first, {}, InstructionSet::baseline).value(),
+                make_body_state(second, {}, InstructionSet::baseline).value()},
+        pair_(bodies_[0].mapping, bodies_[1].mapping) {}
+
+  void throw_at(int body, const Vector3& velocity) {
+    SpringLattice& lattice = bodies_[body].lattice;
+    for (int n = 0; n < lattice.mesh().node_count(); ++n) lattice.set_velocity(n, velocity);
+  }
+
+  bool tick() {
+    const DenormalsFlushed flushed;
+    contacts_.clear();
+    EXPECT_TRUE(pair_.add_contacts({0, &bodies_[0]}, {1, &bodies_[1]}, contacts_));
+    contacts_.begin(0.0);
+    relax(std::array{RelaxedLattice{&bodies_[0].lattice}, RelaxedLattice{&bodies_[1].lattice}}, {tick_++}, {},
+          &contacts_);
+    for (BodyState& body : bodies_) body.mapping.update(body.lattice);
+    return contacts_.acted();
+  }
+
+  Vector3 momentum_of(int body, double* sum_of_sizes = nullptr) const {
+    const SpringLattice& lattice = bodies_[body].lattice;
+    Vector3 sum = Vector3::Zero();
+    for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+      const Vector3 each = static_cast<double>(lattice.mass(n)) * lattice.velocity(n);
+      sum += each;
+      if (sum_of_sizes) *sum_of_sizes += each.norm();
+    }
+    return sum;
+  }
+
+  const BodyState& body(int number) const { return bodies_[number]; }
+  // By the collider that knows nothing of constraints.
+  double depth_m() const {
+    const Surface &a = bodies_[0].mapping.current(), &b = bodies_[1].mapping.current();
+    const NestedGrid first = make_nested_grid(a.u, a.v, 2).value();
+    const NestedGrid second = make_nested_grid(b.u, b.v, 2).value();
+    SurfacePairCollider collider(first, second);
+    PairQuery query;
+    query.first_closed = query.second_closed = true;
+    const PairResult result = collider.collide(a, b, query);
+    EXPECT_FALSE(result.contained);
+    double deepest = 0.0;
+    for (const PairContact& contact : collider.contacts()) deepest = std::max(deepest, contact.depth_m);
+    return deepest;
+  }
+
+ private:
+  std::array<BodyState, 2> bodies_;
+  BodyPairContact pair_;
+  BodyContacts contacts_{8192};
+  std::uint64_t tick_ = 0;
+};
+
+// Flat on flat and off the middle, so that they also begin to turn.
+TEST(Bodies, ThatCollideKeepTheirMomentum) {
+  Impact impact(pebble({0, 0, 0}, 400), pebble({0.012, 0.0235, 0.02}, 700));
+  impact.throw_at(1, {0.01, -0.06, 0.005});
+  double sum_of_sizes = 0.0, deepest = 0.0;
+  const Vector3 before = impact.momentum_of(1, &sum_of_sizes);
+  int touching = 0;
+  for (int tick = 0; tick < 400; ++tick) {
+    touching += impact.tick() ? 1 : 0;
+    if (tick % 5 == 0) deepest = std::max(deepest, impact.depth_m());
+  }
+  EXPECT_GT(touching, 50);
+  EXPECT_FALSE(impact.tick()) << "they have parted";
+  const Vector3 change = impact.momentum_of(0) + impact.momentum_of(1) - before;
+  EXPECT_LT(change.norm(), 1e-5 * sum_of_sizes);
+  EXPECT_LT(impact.momentum_of(0).y(), 0.25 * before.y()) << "the one that was hit took some of it over";
+  // What the control nets can follow of a dent that is a cell wide; see BodyPairContact.
+  const double cell = static_cast<double>(impact.body(0).lattice.cell_size_m());
+  EXPECT_LT(deepest, body_depth_limit_cells * cell);
+}
+
+TEST(Bodies, ThatBeginInEachOtherPart) {
+  Impact impact(pebble({0, 0, 0}, 400), pebble({0.0, 0.0215, 0.0}, 400));
+  EXPECT_GT(impact.depth_m(), 0.5e-3) << "they begin in each other";
+  for (int tick = 0; tick < 100; ++tick) impact.tick();
+  EXPECT_LT(impact.depth_m(), 0.1e-3);
+  EXPECT_LT(impact.momentum_of(0).y(), 0.0);
+  EXPECT_GT(impact.momentum_of(1).y(), 0.0);
+}
+
+// Two handles one above the other, the lower one held: what the tool does to the upper one reaches it.
+Scene stacked_handles() {
+  Scene scene = small_handle();
+  Body upper = scene.bodies[0];
+  upper.name = "upper";
+  for (double& y : upper.surface.net.y) y += 0.006;
+  scene.bodies.push_back(std::move(upper));
+  scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+  return scene;
+}
+
+double lowest(const Surface& surface) {
+  return *std::min_element(surface.net.y.begin(), surface.net.y.end());
+}
+
+TEST(Bodies, PassAPushOn) {
+  Simulation simulation = simulate(stacked_handles());
+  const double before = lowest(simulation.surface(0));
+  const double top = 0.006 + 0.0025 + 0.006;
+  bool touching = false;
+  for (int tick = 0; tick < 400; ++tick) {
+    touching |= simulation.advance(above(0.055, top - 1e-5 * tick)).touching;
+  }
+  EXPECT_TRUE(touching);
+  EXPECT_LT(lowest(simulation.surface(0)), before - 0.5e-3);
+  Snapshot snapshot;
+  simulation.write_snapshot(snapshot);
+  ASSERT_EQ(snapshot.bodies.size(), 2u);
+  for (const BodySnapshot& body : snapshot.bodies) {
+    EXPECT_GT(std::count(body.lattice.touched.begin(), body.lattice.touched.end(), std::uint8_t{1}), 0);
+  }
+}
+
+TEST(Bodies, AreSavedUndoneAndHashedTogether) {
+  Simulation simulation = simulate(stacked_handles());
+  const ShapeState before = simulation.shape();
+  const std::uint64_t hash = simulate(stacked_handles()).state_hash();
+  EXPECT_EQ(simulation.state_hash(), hash);
+  for (int tick = 0; tick < 300; ++tick) simulation.advance(above(0.055, 0.0145 - 1e-5 * tick));
+  ASSERT_NE(simulation.shape().lattices[0], before.lattices[0]);
+  ASSERT_NE(simulation.shape().lattices[1], before.lattices[1]);
+  Scene saved = simulation.scene();
+  simulation.write_scene(saved);
+  EXPECT_EQ(saved.bodies[1].surface.net.y, simulation.surface(1).net.y);
+  ASSERT_TRUE(simulation.restore(before).ok());
+  EXPECT_EQ(simulation.shape(), before);
+}
+
+TEST(Bodies, EachTakesItsOwnMaterial) {
+  Simulation simulation = simulate(stacked_handles());
+  ASSERT_TRUE(simulation.apply(SetMaterial{rubber(), 1}).ok());
+  EXPECT_EQ(simulation.scene().bodies[0].material.name, "clay");
+  EXPECT_EQ(simulation.scene().bodies[1].material.name, "silicone");
+  const Status refused = simulation.apply(SetMaterial{rubber(), 2});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message, "body: is 2, must be 0 to 1");
+}
+
+TEST(Bodies, AreAtMostEight) {
+  Scene scene = small_handle();
+  scene.bodies.resize(9, scene.bodies[0]);
+  const auto refused = Simulation::make(scene, InstructionSet::baseline);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("bodies"), std::string::npos) << refused.error().message;
+}
+
+TEST(Bodies, OnEachOtherAllocateNothingInATick) {
+  Simulation simulation = simulate(stacked_handles());
+  simulation.advance(above(0.055, 0.0145));
+  const std::size_t before = allocation_count();
+  for (int tick = 0; tick < 200; ++tick) simulation.advance(above(0.055, 0.0145 - 2e-5 * tick));
+  EXPECT_EQ(allocation_count(), before);
+}
+
+}  // namespace
+}  // namespace spoonbill
