@@ -1,6 +1,8 @@
 // Solids as signed distances with their gradient: what a tool may be made of.
 #pragma once
 
+#include <limits>
+
 #include "engine/box.h"
 
 namespace spoonbill {
@@ -25,6 +27,13 @@ class SignedDistance {
 
   // About the solid; infinite where the solid is.
   virtual Box bounds() const = 0;
+
+  // K per metre, such that at(a) + gradient . (b - a) - K |b - a|^2 / 2 <= at(b) within the ball: how far a
+  // tangent can fail a solid that is not convex. Infinite where that is not known.
+  virtual double concavity(const Vector3& centre_m, double radius_m) const {
+    (void)centre_m, (void)radius_m;
+    return is_convex() ? 0.0 : std::numeric_limits<double>::infinity();
+  }
 
  protected:
   SignedDistance() = default;

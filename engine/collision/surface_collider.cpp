@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/collision/tool_bounds.h"
+
 namespace spoonbill {
 namespace {
 
@@ -16,35 +18,21 @@ constexpr int deepest_patch = 24;
 // this, less than a hand's device resolves (0.055 mm); a tighter bound costs most where surface and tool fit
 // snugly and all points are as near.
 constexpr double nearest_tolerance_m = 2e-5;
+// For a solid of which no more is known than that its distance changes by at most the way moved: patches must
+// then be cut to the size of the tolerance.
+constexpr double unbent_tolerance_m = 5e-5;
+// Of a solid's whole search, so that a tick has an end.
+constexpr int cut_capacity = 20000;
+constexpr double clearance_share = 0.75;
 // Below this, a step of Newton's method gains nothing but rounding.
 constexpr double least_gain_m = 1e-15;
 
-// A lower bound of the tool's distance over a box.
-double lower_bound(const ToolShape& tool, const Box& box) {
-  if (tool.kind == ToolShape::Kind::sphere) {
-    return (tool.centre_m - tool.centre_m.cwiseMax(box.low).cwiseMin(box.high)).norm() - tool.radius_m;
-  }
-  const Vector3 foremost = (tool.normal.array() > 0.0).select(box.low, box.high);
-  return tool.distance(foremost);
-}
-
-// A lower bound of the tool's distance over a patch: the bilinear patch lies in the hull of its corners, the
-// surface within `bulge` of that, and no point of a hull is nearer than its foremost corner along any one
-// direction. Unlike a ball's, this bound is off by the square of the patch's size, so that few patches are
-// cut again.
-double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bulge) {
-  Vector3 direction = tool.normal;
-  if (tool.kind == ToolShape::Kind::sphere) {
-    direction = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]) - tool.centre_m;
-    const double length = direction.norm();
-    if (!(length > 0.0)) return -tool.radius_m - bulge;
-    direction /= length;
-  }
-  double foremost = std::numeric_limits<double>::infinity();
-  for (const Vector3& corner : corners) foremost = std::min(foremost, direction.dot(corner - tool.centre_m));
-  // Behind the centre the direction says nothing; the distance to a point is never below zero.
-  if (tool.kind == ToolShape::Kind::sphere) foremost = std::max(foremost, 0.0);
-  return foremost - tool.radius_m - bulge;
+double tolerance_of(const ToolShape& tool) {
+  if (!tool.is_solid() || tool.made_of->is_convex()) return nearest_tolerance_m;
+  const Box bounds = tool.made_of->bounds();
+  const Vector3 far_m = bounds.high + (bounds.high - bounds.low);
+  const bool bent = std::isfinite(tool.made_of->concavity(far_m, 0.0));
+  return bent ? nearest_tolerance_m : unbent_tolerance_m;
 }
 
 }  // namespace
@@ -58,39 +46,72 @@ SurfaceCollider::SurfaceCollider(const NestedGrid& nested) : levels_(nested) {
   finest_.reserve(cell_capacity);
   patches_.reserve(patch_capacity);
   near_.reserve(near_capacity);
+  reserve_regions();
 }
 
 double SurfaceCollider::reach(double margin) const {
-  return std::max(margin, best_distance_);
+  return std::max(margin, best_.distance_m);
 }
 
 void SurfaceCollider::offer(const ToolShape& tool, double u, double v, const Vector3& point) {
   const double distance = tool.distance(point);
-  if (distance >= best_distance_) return;
-  best_distance_ = distance;
-  best_u_ = u;
-  best_v_ = v;
-  best_point_ = point;
+  if (distance >= best_.distance_m) return;
+  best_ = {u, v, point, distance};
 }
 
 CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape& tool, double margin_m,
                                          bool closed) {
   CollisionResult result;
+  find_nearest(surface, tool, margin_m, Proof::deepest, result);
+  take_near_samples(tool, margin_m, result);
+  result.nearest = contact_at(surface, best_);
+  const double inside = closed ? depth_inside(tool, result.nearest) : 0.0;
+  if (inside > 0.0) result.nearest.depth_m = inside;
+  result.found = inside > 0.0 || best_.distance_m <= margin_m;
+  return result;
+}
+
+void SurfaceCollider::find_nearest(const Surface& surface, const ToolShape& tool, double margin, Proof proof,
+                                   CollisionResult& result) {
   ++query_;
   near_.clear();
-  best_distance_ = std::numeric_limits<double>::infinity();
+  best_ = {};
+  best_.distance_m = std::numeric_limits<double>::infinity();
+  proof_ = proof;
+  tolerance_ = tolerance_of(tool);
+  cuts_left_ = tool.is_solid() ? cut_capacity : std::numeric_limits<int>::max();
   levels_.begin(surface);
-  descend(tool, margin_m, result);
+  descend(tool, margin, result);
   polish(surface, tool);
   result.samples_evaluated = levels_.samples_evaluated();
-  search_between_samples(surface, tool, result);
-  const Vector3 normal = unit_normal(surface, best_u_, best_v_);
-  const bool inside =
-      closed && tool.kind == ToolShape::Kind::sphere && (tool.centre_m - best_point_).dot(normal) < 0.0;
-  const double depth = inside ? 2.0 * tool.radius_m + best_distance_ : -best_distance_;
-  result.found = inside || best_distance_ <= margin_m;
-  result.nearest = {best_u_, best_v_, best_point_, normal, depth};
-  return result;
+  for (const LevelCell& cell : finest_) search_between_samples(surface, tool, cell, result.overflow);
+}
+
+Clearance SurfaceCollider::clearance(const Surface& surface, const ToolShape& tool) {
+  CollisionResult result;
+  find_nearest(surface, tool, 0.0, Proof::clearance, result);
+  const bool touching = best_.distance_m <= touch_tolerance_m;
+  return {touching ? 0.0 : clearance_share * best_.distance_m, contact_at(surface, best_), result.overflow};
+}
+
+// How far a tool in the inside of a closed surface must go along the nearest wall's normal to be outside; 0
+// where it is not inside. A sphere is inside with its centre. A convex solid that touches the wall is so with
+// the middle of its bounds; one that touches nothing is where its nearest point is.
+double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact& nearest) const {
+  if (tool.kind == ToolShape::Kind::sphere) {
+    const bool inside = (tool.centre_m - nearest.point_m).dot(nearest.normal) < 0.0;
+    return inside ? std::max(2.0 * tool.radius_m + best_.distance_m, 0.0) : 0.0;
+  }
+  if (!tool.is_solid()) return 0.0;
+  const Box bounds = tool.made_of->bounds();
+  if (!(bounds.size() < std::numeric_limits<double>::infinity())) return 0.0;
+  Vector3 into_tool = -tool.at(nearest.point_m).gradient;
+  if (!(best_.distance_m > 0.0)) {
+    if (!tool.made_of->is_convex()) return 0.0;
+    into_tool = tool.centre_m + tool.turn * (0.5 * (bounds.low + bounds.high)) - nearest.point_m;
+  }
+  if (!(into_tool.dot(nearest.normal) < 0.0)) return 0.0;
+  return std::max(depth_behind(tool, nearest.point_m, nearest.normal), -best_.distance_m);
 }
 
 // The coarsest samples, but for elements too far for any to count: first along the nearest box, whose samples
@@ -135,7 +156,6 @@ void SurfaceCollider::descend(const ToolShape& tool, double margin, CollisionRes
   }
   // Breadth first: a coarse level's best distance prunes the finer ones.
   for (std::size_t at = 0; at < cells_.size(); ++at) visit_cell(tool, cells_[at], reach(margin), result);
-  take_near_samples(tool, margin, result);
 }
 
 void SurfaceCollider::take_near_samples(const ToolShape& tool, double margin, CollisionResult& result) {
@@ -182,39 +202,58 @@ void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, d
   }
 }
 
-// Branch and bound below the finest samples, over the cells that could still hide a nearer point.
+// The bound from which a patch hides nothing that counts.
+double SurfaceCollider::enough() const {
+  const double best = best_.distance_m;
+  if (proof_ == Proof::clearance) {
+    return best > touch_tolerance_m ? clearance_share * best : -std::numeric_limits<double>::infinity();
+  }
+  return best >= 0.0 ? std::max(best - tolerance_, -touch_tolerance_m) : best - tolerance_;
+}
+
+// Branch and bound below the finest samples of a cell that could still hide a nearer point.
 void SurfaceCollider::search_between_samples(const Surface& surface, const ToolShape& tool,
-                                             CollisionResult& result) {
-  const Grid& grid = levels_.nested().grid;
-  const int levels = levels_.nested().levels;
-  for (const LevelCell& cell : finest_) {
-    patches_.clear();
-    patches_.push_back({grid.u.parameters[cell.i], grid.u.parameters[cell.i + 1], grid.v.parameters[cell.j],
-                        grid.v.parameters[cell.j + 1], levels_.corners(cell), cell.i >> levels,
-                        cell.j >> levels, 0});
-    while (!patches_.empty()) {
-      const Patch patch = patches_.back();
-      patches_.pop_back();
-      const double bulge =
-          levels_.bounds().bulge(patch.element_u, patch.element_v, patch.u1 - patch.u0, patch.v1 - patch.v0);
-      const double low = lower_bound(tool, patch.corners, bulge);
-      const bool could_touch = best_distance_ >= 0.0 && low < -touch_tolerance_m;
-      if (!could_touch && low >= best_distance_ - nearest_tolerance_m) continue;
-      if (patch.depth == deepest_patch || patches_.size() + 4 > patch_capacity) {
-        result.overflow = true;
-        continue;
-      }
-      cut(surface, tool, patch);
+                                             const LevelCell& cell, bool& overflow) {
+  patches_.clear();
+  patches_.push_back(whole(cell));
+  while (!patches_.empty()) {
+    const Patch patch = patches_.back();
+    patches_.pop_back();
+    const double needed = enough();
+    if (lower_bound(tool, patch.corners, bulge(patch), needed) >= needed) continue;
+    if (!can_cut(patch)) {
+      overflow = true;
+      continue;
     }
+    const double u = 0.5 * (patch.u0 + patch.u1), v = 0.5 * (patch.v0 + patch.v1);
+    const Vector3 centre = position(surface, u, v);
+    const double before = best_.distance_m;
+    offer(tool, u, v, centre);
+    if (best_.distance_m < before) polish(surface, tool);
+    cut(surface, patch, centre);
   }
 }
 
-void SurfaceCollider::cut(const Surface& surface, const ToolShape& tool, const Patch& patch) {
+SurfaceCollider::Patch SurfaceCollider::whole(const LevelCell& cell) {
+  const Grid& grid = levels_.nested().grid;
+  const int levels = levels_.nested().levels;
+  return {grid.u.parameters[cell.i], grid.u.parameters[cell.i + 1],
+          grid.v.parameters[cell.j], grid.v.parameters[cell.j + 1],
+          levels_.corners(cell),     cell.i >> levels,
+          cell.j >> levels,          0};
+}
+
+double SurfaceCollider::bulge(const Patch& patch) {
+  return levels_.bounds().bulge(patch.element_u, patch.element_v, patch.u1 - patch.u0, patch.v1 - patch.v0);
+}
+
+bool SurfaceCollider::can_cut(const Patch& patch) const {
+  return patch.depth < deepest_patch && patches_.size() + 4 <= patch_capacity && cuts_left_ > 0;
+}
+
+void SurfaceCollider::cut(const Surface& surface, const Patch& patch, const Vector3& centre) {
+  --cuts_left_;
   const double u = 0.5 * (patch.u0 + patch.u1), v = 0.5 * (patch.v0 + patch.v1);
-  const Vector3 centre = position(surface, u, v);
-  const double before = best_distance_;
-  offer(tool, u, v, centre);
-  if (best_distance_ < before) polish(surface, tool);
   const Vector3 low_u = position(surface, patch.u0, v), high_u = position(surface, patch.u1, v),
                 low_v = position(surface, u, patch.v0), high_v = position(surface, u, patch.v1);
   const auto& [p00, p01, p10, p11] = patch.corners;
@@ -225,11 +264,22 @@ void SurfaceCollider::cut(const Surface& surface, const ToolShape& tool, const P
   patches_.push_back({u, patch.u1, v, patch.v1, {centre, high_v, high_u, p11}, eu, ev, depth});
 }
 
+void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
+  const SurfaceSpot before = best_;
+  if (tool.is_solid()) {
+    best_ = polished_on_solid(surface, tool, best_);
+  } else {
+    polish_by_form(surface, tool);
+  }
+  // It may have come down elsewhere.
+  if (region_ >= 0 && region_at(best_.u, best_.v) != region_) best_ = before;
+}
+
 // Newton's method on the parameters from the best point so far; a step that does not come nearer is halved,
 // and the gradient takes over where the curvature has the wrong sign.
-void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
+void SurfaceCollider::polish_by_form(const Surface& surface, const ToolShape& tool) {
   const bool sphere = tool.kind == ToolShape::Kind::sphere;
-  SurfacePoint at = evaluate(surface, best_u_, best_v_);
+  SurfacePoint at = evaluate(surface, best_.u, best_.v);
   for (int step = 0; step < 20; ++step) {
     const Vector3 towards = sphere ? Vector3(at.position_m - tool.centre_m) : tool.normal;
     const double gu = towards.dot(at.du), gv = towards.dot(at.dv);
@@ -248,13 +298,13 @@ void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
     // Where no more than rounding can be gained, the last step is not worth halving.
     const double gain = -(move_u * gu + move_v * gv) / towards.norm();
     const int tries = gain > least_gain_m ? 12 : 1;
-    const double before = best_distance_;
-    for (int half = 0; half < tries && best_distance_ >= before; ++half, move_u *= 0.5, move_v *= 0.5) {
-      const double u = surface.u.into_domain(best_u_ + move_u), v = surface.v.into_domain(best_v_ + move_v);
+    const double before = best_.distance_m;
+    for (int half = 0; half < tries && best_.distance_m >= before; ++half, move_u *= 0.5, move_v *= 0.5) {
+      const double u = surface.u.into_domain(best_.u + move_u), v = surface.v.into_domain(best_.v + move_v);
       at = evaluate(surface, u, v);
       offer(tool, u, v, at.position_m);
     }
-    if (!(best_distance_ < before - least_gain_m)) return;
+    if (!(best_.distance_m < before - least_gain_m)) return;
   }
 }
 

@@ -8,17 +8,12 @@
 #include <vector>
 
 #include "engine/bspline/surface.h"
+#include "engine/collision/solid_polish.h"
+#include "engine/collision/surface_contact.h"
 #include "engine/collision/surface_levels.h"
 #include "engine/collision/tool_shape.h"
 
 namespace spoonbill {
-
-struct SurfaceContact {
-  double u = 0.0, v = 0.0;
-  Vector3 point_m = Vector3::Zero();  // on the surface
-  Vector3 normal = Vector3::UnitY();  // unit, along du x dv
-  double depth_m = 0.0;               // of the tool in the surface's inside; negative where they are apart
-};
 
 // A sample of the finest level within the margin of the tool.
 struct NearSample {
@@ -27,10 +22,20 @@ struct NearSample {
 };
 
 struct CollisionResult {
-  bool found = false;      // whether the surface comes within the margin (or encloses the tool), to 1e-6 m
-  SurfaceContact nearest;  // the deepest contact: none is deeper by 2e-5 m; valid when found
-  bool overflow = false;   // a capacity was met; `nearest` is still the best of what was searched
+  bool found = false;  // whether the surface comes within the margin (or encloses the tool), to 1e-6 m
+  // The deepest contact, valid when found: none is deeper by 2e-5 m, or by 5e-5 m in a solid that is not
+  // convex and does not know its concavity.
+  SurfaceContact nearest;
+  bool overflow = false;  // a capacity was met; `nearest` is still the best of what was searched
   int samples_evaluated = 0;
+};
+
+// How far a tool surely is from the surface: three quarters of the way to the nearest point; 0 where they
+// touch, to touch_tolerance_m.
+struct Clearance {
+  double surely_m = 0.0;
+  SurfaceContact nearest;
+  bool overflow = false;  // a capacity was met, and nothing is sure
 };
 
 // One owner, one thread; allocates only when made. The grid must outlive it.
@@ -38,9 +43,19 @@ class SurfaceCollider {
  public:
   explicit SurfaceCollider(const NestedGrid& nested);
 
-  // The surface must have the grid's knots. `closed` says that the surface bounds a body, so that a sphere's
-  // centre may be inside it. Samples nearer than `margin_m` are in near_samples() afterwards.
+  // The surface must have the grid's knots. `closed` says that the surface bounds a body, so that the tool
+  // may be inside it: its depth is then the way along the nearest wall's normal that takes it out. Samples
+  // nearer than `margin_m` are in near_samples() afterwards.
   CollisionResult collide(const Surface& surface, const ToolShape& tool, double margin_m, bool closed);
+
+  // After collide() of the same surface and tool: every region of the surface that the tool touches, the
+  // deepest first. Valid until the next call of anything here.
+  const std::vector<ToolContactRegion>& take_regions(const Surface& surface, const ToolShape& tool);
+  // Whether a capacity was met in the last take_regions(), and regions or parts of them may be missing.
+  bool regions_overflow() const { return regions_overflow_; }
+
+  // For the same surface, without its inside.
+  Clearance clearance(const Surface& surface, const ToolShape& tool);
 
   const std::vector<NearSample>& near_samples() const { return near_; }
 
@@ -54,15 +69,35 @@ class SurfaceCollider {
     int element_u, element_v, depth;
   };
 
+  // What a search must prove: the deepest contact to the tolerance, or a clearance.
+  enum class Proof { deepest, clearance };
+
+  void find_nearest(const Surface& surface, const ToolShape& tool, double margin, Proof proof,
+                    CollisionResult& result);
   void offer_coarsest(const ToolShape& tool, double margin);
   void descend(const ToolShape& tool, double margin, CollisionResult& result);
   void take_near_samples(const ToolShape& tool, double margin, CollisionResult& result);
   void visit_cell(const ToolShape& tool, const LevelCell& cell, double reach, CollisionResult& result);
-  void search_between_samples(const Surface& surface, const ToolShape& tool, CollisionResult& result);
-  void cut(const Surface& surface, const ToolShape& tool, const Patch& patch);
+  double enough() const;
+  void search_between_samples(const Surface& surface, const ToolShape& tool, const LevelCell& cell,
+                              bool& overflow);
+  Patch whole(const LevelCell& cell);
+  double bulge(const Patch& patch);
+  bool can_cut(const Patch& patch) const;
+  void cut(const Surface& surface, const Patch& patch, const Vector3& centre);
   void offer(const ToolShape& tool, double u, double v, const Vector3& point);
   void polish(const Surface& surface, const ToolShape& tool);
+  void polish_by_form(const Surface& surface, const ToolShape& tool);
+  double depth_inside(const ToolShape& tool, const SurfaceContact& nearest) const;
   double reach(double margin) const;
+
+  void reserve_regions();
+  int finest_index(int i, int j) const;
+  int region_at(double u, double v) const;
+  bool touches(const Surface& surface, const ToolShape& tool, const LevelCell& cell);
+  void take_touched(const Surface& surface, const ToolShape& tool);
+  void join_neighbours(int first, int region);
+  void add_region(const Surface& surface, const ToolShape& tool, int begin, int end);
 
   SurfaceLevels levels_;
   std::vector<double> column_bound_;  // of the tool's distance, for the elements of each span of v
@@ -71,8 +106,23 @@ class SurfaceCollider {
   std::vector<NearSample> near_;
   std::vector<std::uint32_t> near_at_;  // the query in which a sample was looked at
   std::uint32_t query_ = 0;
-  double best_distance_ = 0.0, best_u_ = 0.0, best_v_ = 0.0;
-  Vector3 best_point_ = Vector3::Zero();
+  SurfaceSpot best_;
+  Proof proof_ = Proof::deepest;
+  double tolerance_ = 0.0;
+  int cuts_left_ = 0;
+
+  // The finest cells that the tool touches, those of a region beside each other once they are grouped.
+  struct TouchedCell {
+    LevelCell cell;
+    int region;  // -1 before it is known
+  };
+  std::vector<TouchedCell> touched_;
+  std::vector<int> grouped_;               // into touched_
+  std::vector<int> touched_index_;         // by finest_index(), into touched_
+  std::vector<std::uint32_t> touched_at_;  // the query in which the tool touched the cell
+  std::vector<ToolContactRegion> regions_;
+  int region_ = -1;  // which the search must not leave
+  bool regions_overflow_ = false;
 };
 
 }  // namespace spoonbill

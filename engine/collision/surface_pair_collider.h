@@ -9,14 +9,9 @@
 #include "engine/collision/cell_pairs.h"
 #include "engine/collision/contact_regions.h"
 #include "engine/collision/pair_search.h"
+#include "engine/collision/parameter_range.h"
 
 namespace spoonbill {
-
-// Around cells of a grid. On a periodic direction it is the whole domain where the cells lie at both its
-// ends.
-struct ParameterRange {
-  double u0, u1, v0, v1;
-};
 
 // One region in which the surfaces cross or touch.
 struct PairContact {

@@ -1,30 +1,61 @@
 // The shapes of tools as signed distances: negative inside the tool.
 #pragma once
 
+#include <Eigen/Core>
+
+#include "engine/collision/signed_distance.h"
 #include "engine/pose.h"
 
 namespace spoonbill {
 
 // A sphere about `centre_m`; a point where the radius is 0; or the half-space behind a plane through
-// `centre_m` with the unit normal `normal`.
+// `centre_m` with the unit normal `normal`; or any solid, its frame at `centre_m` and turned by `turn`.
 struct ToolShape {
-  enum class Kind { sphere, half_space };
+  enum class Kind { sphere, half_space, solid };
   Kind kind = Kind::sphere;
   Vector3 centre_m = Vector3::Zero();
   double radius_m = 0.0;
   Vector3 normal = Vector3::UnitX();
+  const SignedDistance* made_of = nullptr;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
 
   static ToolShape sphere(const Vector3& centre_m, double radius_m) {
-    return {Kind::sphere, centre_m, radius_m, Vector3::UnitX()};
+    ToolShape tool;
+    tool.centre_m = centre_m;
+    tool.radius_m = radius_m;
+    return tool;
   }
   static ToolShape half_space(const Vector3& point_m, const Vector3& normal) {
-    return {Kind::half_space, point_m, 0.0, normal};
+    ToolShape tool;
+    tool.kind = Kind::half_space;
+    tool.centre_m = point_m;
+    tool.normal = normal;
+    return tool;
   }
+  // The solid must outlive the tool.
+  static ToolShape solid(const SignedDistance& made_of, const Pose& pose) {
+    ToolShape tool;
+    tool.kind = Kind::solid;
+    tool.centre_m = pose.position_m;
+    tool.made_of = &made_of;
+    tool.turn = pose.orientation.normalized().toRotationMatrix();
+    return tool;
+  }
+
+  bool is_solid() const { return kind == Kind::solid; }
 
   // Changes by at most the distance moved, which is what makes a ball's bound distance(centre) - radius.
   double distance(const Vector3& point) const {
+    if (is_solid()) return made_of->at(into_frame(point)).distance_m;
     return kind == Kind::sphere ? (point - centre_m).norm() - radius_m : normal.dot(point - centre_m);
   }
+
+  // Of a solid alone, in the world frame.
+  DistanceSample at(const Vector3& point) const {
+    const DistanceSample sample = made_of->at(into_frame(point));
+    return {sample.distance_m, turn * sample.gradient};
+  }
+  Vector3 into_frame(const Vector3& point) const { return turn.transpose() * (point - centre_m); }
 };
 
 }  // namespace spoonbill

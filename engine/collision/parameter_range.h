@@ -1,0 +1,12 @@
+// A rectangle of a surface's parameters.
+#pragma once
+
+namespace spoonbill {
+
+// Around cells of a grid. On a periodic direction it is the whole domain where the cells lie at both its
+// ends.
+struct ParameterRange {
+  double u0, u1, v0, v1;
+};
+
+}  // namespace spoonbill
