@@ -44,12 +44,17 @@ Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net) {
 }
 
 Surface placed(Surface surface, const Pose& pose) {
-  for (int i = 0; i < surface.net.rows; ++i) {
-    for (int j = 0; j < surface.net.columns; ++j) {
-      surface.net.set_point(i, j, pose.orientation * surface.net.point(i, j) + pose.position_m);
+  place(surface.net, pose.orientation.toRotationMatrix(), pose.position_m, surface.net);
+  return surface;
+}
+
+void place(const ControlNet& net, const Eigen::Matrix3d& turn, const Vector3& position_m,
+           ControlNet& placed) {
+  for (int i = 0; i < net.rows; ++i) {
+    for (int j = 0; j < net.columns; ++j) {
+      placed.set_point(i, j, turn * net.point(i, j) + position_m);
     }
   }
-  return surface;
 }
 
 SurfacePoint evaluate(const Surface& surface, double u, double v) {

@@ -44,6 +44,8 @@ Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net);
 
 // The surface as a rigid thing at a pose; at the identity, as it was.
 Surface placed(Surface surface, const Pose& pose);
+// The same of its control net, over one of the same structure: turned, perhaps mirrored too, then moved.
+void place(const ControlNet& net, const Eigen::Matrix3d& turn, const Vector3& position_m, ControlNet& placed);
 
 // One point of a surface with its derivatives by the parameters, in double.
 struct SurfacePoint {

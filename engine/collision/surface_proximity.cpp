@@ -58,7 +58,8 @@ SurfaceProximity::Side::Side(const NestedGrid& nested) : levels(nested) {
 SurfaceProximity::SurfaceProximity(const NestedGrid& first, const NestedGrid& second)
     : first_(first), second_(second), cells_(first_.levels, second_.levels) {}
 
-void SurfaceProximity::find(const Surface& first, const Surface& second, double margin_m) {
+void SurfaceProximity::find(const Surface& first, const Surface& second, double margin_m,
+                            double second_outside) {
   ++search_;
   least_gap_m_ = infinity;
   overflow_ = false;
@@ -75,10 +76,10 @@ void SurfaceProximity::find(const Surface& first, const Surface& second, double 
     offer_corners(second_, pair.second, first_, pair.first);
   }
   overflow_ |= cells_.overflow();
-  settle(first_, second, margin_m);
-  settle(second_, first, margin_m);
-  add_between_samples(first_, first, second);
-  add_between_samples(second_, second, first);
+  settle(first_, second, second_outside, margin_m);
+  settle(second_, first, 1.0, margin_m);
+  add_between_samples(first_, first, second, second_outside);
+  add_between_samples(second_, second, first, 1.0);
 }
 
 // The corners of a cell against a cell of the other surface.
@@ -115,13 +116,13 @@ void SurfaceProximity::offer_corners(Side& side, const LevelCell& cell, Side& ot
 }
 
 // Each near sample against the other surface's point nearest to it; those that are not near after all go.
-void SurfaceProximity::settle(Side& side, const Surface& other, double margin) {
+void SurfaceProximity::settle(Side& side, const Surface& other, double outside, double margin) {
   std::size_t kept = 0;
   for (NearPoint near : side.near) {
     const NearestPoint nearest = nearest_point(other, near.point_m, near.other_u, near.other_v);
     near.other_u = nearest.u;
     near.other_v = nearest.v;
-    near.normal = unit_normal(other, nearest.u, nearest.v);
+    near.normal = outside * unit_normal(other, nearest.u, nearest.v);
     near.gap_m = (near.point_m - nearest.point_m).dot(near.normal);
     if (near.gap_m > margin) {
       side.placed_at[near.sample] = 0;
@@ -150,7 +151,7 @@ bool SurfaceProximity::is_local_deepest(const Side& side, const NearPoint& near)
 
 // Between its samples a surface may be nearer than at any: from the nearest ones, on both surfaces
 // themselves. deepest_pair() climbs from before the other surface too, where a gap is a depth below zero.
-void SurfaceProximity::add_between_samples(Side& side, const Surface& surface, const Surface& other) {
+void SurfaceProximity::add_between_samples(Side& side, const Surface& surface, const Surface& other, double outside) {
   const std::size_t samples = side.near.size();
   for (std::size_t s = 0; s < samples; ++s) {
     const NearPoint& near = side.near[s];
@@ -160,7 +161,7 @@ void SurfaceProximity::add_between_samples(Side& side, const Surface& surface, c
       return;
     }
     const DeepestPair deepest =
-        deepest_pair(surface, other, {near.u, near.v, near.other_u, near.other_v}, 1.0);
+        deepest_pair(surface, other, {near.u, near.v, near.other_u, near.other_v}, outside);
     const PairParameters& at = deepest.pair.at;
     side.near.push_back({-1, at.u, at.v, at.s, at.t, deepest.pair.first_m, deepest.normal, -deepest.depth_m});
     least_gap_m_ = std::min(least_gap_m_, -deepest.depth_m);

@@ -29,8 +29,8 @@ class SurfaceProximity {
   SurfaceProximity& operator=(const SurfaceProximity&) = delete;
 
   // All that is within `margin_m`. The surfaces must have the grids' knots and bound bodies: du x dv points
-  // outwards.
-  void find(const Surface& first, const Surface& second, double margin_m);
+  // outwards, or inwards of the second where `second_outside` is -1, as of a mirrored surface.
+  void find(const Surface& first, const Surface& second, double margin_m, double second_outside = 1.0);
 
   // Of the last find(): the points of one surface.
   const std::vector<NearPoint>& of_first() const { return first_.near; }
@@ -48,8 +48,8 @@ class SurfaceProximity {
     std::vector<NearPoint> near;
   };
   void offer_corners(Side& side, const LevelCell& cell, Side& other, const LevelCell& patch);
-  void settle(Side& side, const Surface& other, double margin);
-  void add_between_samples(Side& side, const Surface& surface, const Surface& other);
+  void settle(Side& side, const Surface& other, double outside, double margin);
+  void add_between_samples(Side& side, const Surface& surface, const Surface& other, double outside);
   bool is_local_deepest(const Side& side, const NearPoint& near) const;
 
   Side first_, second_;

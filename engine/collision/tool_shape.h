@@ -34,11 +34,16 @@ struct ToolShape {
   }
   // The solid must outlive the tool.
   static ToolShape solid(const SignedDistance& made_of, const Pose& pose) {
+    return solid(made_of, pose.position_m, pose.orientation.normalized().toRotationMatrix());
+  }
+  // Its frame may also be mirrored.
+  static ToolShape solid(const SignedDistance& made_of, const Vector3& centre_m,
+                         const Eigen::Matrix3d& turn) {
     ToolShape tool;
     tool.kind = Kind::solid;
-    tool.centre_m = pose.position_m;
+    tool.centre_m = centre_m;
     tool.made_of = &made_of;
-    tool.turn = pose.orientation.normalized().toRotationMatrix();
+    tool.turn = turn;
     return tool;
   }
 

@@ -71,9 +71,10 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
   constraint.acted = true;
 }
 
-bool BodyContacts::acted() const {
-  return std::any_of(constraints_.begin(), constraints_.begin() + count_,
-                     [](const Constraint& constraint) { return constraint.acted; });
+bool BodyContacts::acted(int body) const {
+  return std::any_of(constraints_.begin(), constraints_.begin() + count_, [&](const Constraint& constraint) {
+    return constraint.acted && (constraint.first_body == body || constraint.second_body == body);
+  });
 }
 
 void BodyContacts::mark_touched(int body, std::uint8_t* touched) const {

@@ -34,8 +34,8 @@ class BodyContacts {
              std::span<const float> push_speed_caps_m_per_s);
 
   int count() const { return count_; }
-  // Whether any has acted since begin().
-  bool acted() const;
+  // Whether any of a body's has acted since begin().
+  bool acted(int body) const;
   // Marks the nodes of a body's constraints that acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 

@@ -21,24 +21,24 @@ void ContactConstraints::clear() {
 }
 
 bool ContactConstraints::add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point) {
-  return add(Kind::sphere_push, body, lattice, point, Vector3::Zero());
+  return add(Kind::sphere_push, body, lattice, point, Vector3::Zero(), 0.0);
 }
 
 bool ContactConstraints::add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
-                                        const Vector3& normal) {
-  return add(Kind::plane_push, body, lattice, point, normal);
+                                        const Vector3& normal, double offset_m) {
+  return add(Kind::plane_push, body, lattice, point, normal, offset_m);
 }
 
 bool ContactConstraints::add_grip(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
                                   const Vector3& offset_m) {
-  return add(Kind::grip, body, lattice, point, offset_m);
+  return add(Kind::grip, body, lattice, point, offset_m, 0.0);
 }
 
 bool ContactConstraints::add(Kind kind, int body, const SpringLattice& lattice, const EmbeddedPoint& point,
-                             const Vector3& direction) {
+                             const Vector3& direction, double offset_m) {
   if (count_ == static_cast<int>(constraints_.size())) return false;
-  constraints_[count_++] = {kind, body, point, point.rest_m(lattice), direction, point.compliance(lattice),
-                            false};
+  constraints_[count_++] = {
+      kind, body, point, point.rest_m(lattice), direction, offset_m, point.compliance(lattice), false};
   return true;
 }
 
@@ -100,12 +100,17 @@ void ContactConstraints::exchange(const LatticeView& lattice, Constraint& constr
 void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                     double h, double cap) {
   const Vector3 position = constraint.rest_m + constraint.point.displacement_m(lattice);
-  const bool plane = constraint.kind == Kind::plane_push;
   const Vector3 from_centre = position - tool.position_m;
-  const double distance = plane ? -from_centre.dot(constraint.direction) : from_centre.norm();
-  if (!plane && !(distance > 0.0)) return;
-  const Vector3 normal = plane ? Vector3(-constraint.direction) : Vector3(from_centre / distance);
-  const double gap = distance - motion_.radius_m;
+  Vector3 normal = constraint.direction;
+  double gap = 0.0;
+  if (constraint.kind == Kind::plane_push) {
+    gap = from_centre.dot(normal) - constraint.offset_m;
+  } else {
+    const double distance = from_centre.norm();
+    if (!(distance > 0.0)) return;
+    normal = from_centre / distance;
+    gap = distance - motion_.radius_m;
+  }
   const ContactPush push{gap, normal, constraint.point.velocity_m_per_s(lattice) - tool.velocity_m_per_s,
                          1.0 / (compliance_of(constraint) + tool_compliance_)};
   if (const auto impulse = push.impulse(h, pace, cap, motion_.friction)) {

@@ -43,11 +43,11 @@ class ContactConstraints {
   //
   // A point that the tool's sphere may push outward but never pulls.
   bool add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point);
-  // A point that must stay behind the tool's foremost tangent plane: `normal` is the surface's unit normal
-  // there, and the plane passes through the tool's centre less the radius along it. Serves tools smaller than
-  // a cell, a point among them.
+  // A point that must stay beyond a plane that moves with the tool: on that side to which the unit `normal`
+  // points, `offset_m` along it from the tool's centre. Serves tools smaller than a cell and those whose
+  // surface is a plane as far as a tick moves them.
   bool add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
-                      const Vector3& normal);
+                      const Vector3& normal, double offset_m);
   // A point gripped by the tool at `offset_m` from its centre, in the tool's frame.
   bool add_grip(int body, const SpringLattice& lattice, const EmbeddedPoint& point, const Vector3& offset_m);
 
@@ -74,13 +74,13 @@ class ContactConstraints {
     int body = 0;
     EmbeddedPoint point;
     Vector3 rest_m = Vector3::Zero();  // of the undeformed embedding
-    Vector3 direction =
-        Vector3::Zero();      // plane push: the surface normal; grip: the offset in the tool's frame
-    double compliance = 0.0;  // 1/kg of the point; 0 when every node is held
+    Vector3 direction = Vector3::Zero();  // plane push: the normal; grip: the offset in the tool's frame
+    double offset_m = 0.0;                // plane push
+    double compliance = 0.0;              // 1/kg of the point; 0 when every node is held
     bool acted = false;
   };
   bool add(Kind kind, int body, const SpringLattice& lattice, const EmbeddedPoint& point,
-           const Vector3& direction);
+           const Vector3& direction, double offset_m);
   double compliance_of(const Constraint& constraint) const;
   void follow_hand(ToolState& tool, double h, double fraction) const;
   void solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);

@@ -30,14 +30,18 @@ EmbeddedPoint embedding_of(const BodyMapping& mapping, const NearPoint& near) {
 BodyPairContact::BodyPairContact(const BodyMapping& first, const BodyMapping& second)
     : proximity_(std::make_unique<SurfaceProximity>(first.nested(), second.nested())) {}
 
-bool BodyPairContact::add_contacts(const NumberedBody& first, const NumberedBody& second,
-                                   BodyContacts& contacts) {
+bool BodyPairContact::find(const NumberedBody& first, const NumberedBody& second) {
   const double cell =
       static_cast<double>(std::max(first.state->lattice.cell_size_m(), second.state->lattice.cell_size_m()));
   proximity_->find(first.state->mapping.current(), second.state->mapping.current(), margin_cells * cell);
+  return !proximity_->overflow();
+}
+
+bool BodyPairContact::add_contacts(const NumberedBody& first, const NumberedBody& second,
+                                   BodyContacts& contacts) const {
   const bool all_of_first = add(first, second, proximity_->of_first(), contacts);
   const bool all_of_second = add(second, first, proximity_->of_second(), contacts);
-  return all_of_first && all_of_second && !proximity_->overflow();
+  return all_of_first && all_of_second;
 }
 
 }  // namespace spoonbill

@@ -24,14 +24,18 @@ struct NumberedBody {
 // The embedding of a point of a body's surface.
 EmbeddedPoint embedding_of(const BodyMapping& mapping, const NearPoint& near);
 
-// One owner, the simulation; rebuilt with the mapping of a body. add_contacts() allocates nothing.
+// One owner, the simulation; rebuilt with the mapping of a body. find() and add_contacts()
+// allocate nothing.
 class BodyPairContact {
  public:
   BodyPairContact(const BodyMapping& first, const BodyMapping& second);
 
-  // Adds a constraint for each point of either surface that is near the other. False where a capacity was
-  // met.
-  bool add_contacts(const NumberedBody& first, const NumberedBody& second, BodyContacts& contacts);
+  // Finds each point of either surface that is near the other. False where a capacity was met.
+  bool find(const NumberedBody& first, const NumberedBody& second);
+  // Of the last find(), below zero where they are in each other; infinite where they are not near.
+  double least_gap_m() const { return proximity_->least_gap_m(); }
+  // Adds a constraint for each of them. False where a capacity was met.
+  bool add_contacts(const NumberedBody& first, const NumberedBody& second, BodyContacts& contacts) const;
 
  private:
   std::unique_ptr<SurfaceProximity> proximity_;  // by pointer: it does not move

@@ -15,6 +15,12 @@ std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies) {
   return pairs;
 }
 
+BodyContacts make_between(const std::vector<BodyPairContact>& pairs) {
+  // Each with the nodes around it; some hundreds act at once where two handles lie on each other.
+  constexpr int capacity = 8192;
+  return BodyContacts(pairs.empty() ? 0 : capacity);
+}
+
 Status CommandApplier::operator()(const PlacePlane& command) {
   if (Status status = check_fixing_plane(command.plane); !status.ok()) return status;
   std::vector<FixingPlane> planes = state.scene.planes;
@@ -31,14 +37,24 @@ Status CommandApplier::operator()(const RemovePlanes&) {
 }
 
 Status CommandApplier::operator()(const SetTool& command) {
-  if (Status status = check_tool(command.tool); !status.ok()) return status;
-  state.scene.tool = command.tool;
+  const Tool& tool = command.tool;
+  if (Status status = check_tool(tool); !status.ok()) return status;
+  if (Status status = check_together(tool, state.scene.symmetry); !status.ok()) return status;
+  if (tool.kind == ToolKind::solid && tool.body != state.kept.back()) {
+    Result<ToolModel> model = make_tool_model(tool, state.set);
+    if (!model.ok()) return model.error();
+    state.kept.push_back(tool.body);
+    take_model(std::move(model).value());
+  }
+  state.scene.tool = tool;
+  if (state.tool_is_soft()) state.tool.placed = false;
   release();
   return {};
 }
 
 Status CommandApplier::operator()(const SetSymmetry& command) {
   if (Status status = check_symmetry(command.symmetry); !status.ok()) return status;
+  if (Status status = check_together(state.scene.tool, command.symmetry); !status.ok()) return status;
   state.scene.symmetry = command.symmetry;
   state.mirrored.contact.release();
   state.mirrored.placed = false;
@@ -64,7 +80,7 @@ Status CommandApplier::operator()(const SetSculpting& command) {
 }
 
 Status CommandApplier::operator()(const SetMaterial& command) {
-  const int count = static_cast<int>(state.bodies.size());
+  const int count = static_cast<int>(state.scene.bodies.size());
   if (command.body < 0 || command.body >= count) {
     return Error{"body: is " + std::to_string(command.body) + ", must be 0 to " + std::to_string(count - 1)};
   }
@@ -83,7 +99,7 @@ Status CommandApplier::operator()(const SetMaterial& command) {
 Status CommandApplier::operator()(const KeepShape&) {
   std::vector<SpringLattice> lattices;
   std::vector<BodyMapping> mappings;
-  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+  for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
     const BodyState& body = state.bodies[b];
     LatticeMesh mesh = body.lattice.mesh();
     for (int n = 0; n < mesh.node_count(); ++n) mesh.nodes[n] = body.lattice.position(n);
@@ -97,7 +113,7 @@ Status CommandApplier::operator()(const KeepShape&) {
     lattices.push_back(std::move(lattice).value());
     mappings.push_back(std::move(mapping).value());
   }
-  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+  for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
     state.bodies[b].smoothing = Smoothing(lattices[b].mesh());
     state.bodies[b].lattice = std::move(lattices[b]);
   }
@@ -112,13 +128,13 @@ void CommandApplier::release() {
 
 Status CommandApplier::set_planes(std::vector<FixingPlane> planes) {
   std::vector<BodyMapping> mappings;
-  for (const BodyState& body : state.bodies) {
+  for (const BodyState& body : state.scene_bodies()) {
     Result<BodyMapping> mapping =
         BodyMapping::make(body.mapping.rest(), body.mapping.current(), body.lattice, planes, state.set);
     if (!mapping.ok()) return mapping.error();
     mappings.push_back(std::move(mapping).value());
   }
-  for (BodyState& body : state.bodies) {
+  for (BodyState& body : state.scene_bodies()) {
     body.held = nodes_behind(body.lattice, planes);
     body.lattice.hold(body.held);
   }
@@ -132,9 +148,23 @@ void CommandApplier::set_mappings(std::vector<BodyMapping> mappings) {
     state.bodies[b].mapping = std::move(mappings[b]);
     state.scene.bodies[b].surface = state.bodies[b].mapping.current();
   }
-  state.tool.contact = ToolContact(state.bodies);
-  state.mirrored.contact = ToolContact(state.bodies);
+  make_contacts();
+}
+
+// Of the last tool at most its soft body is in the list.
+void CommandApplier::take_model(ToolModel model) {
+  while (state.bodies.size() > state.scene.bodies.size()) state.bodies.pop_back();
+  if (model.soft) state.bodies.push_back(*std::move(model.soft));
+  model.soft.reset();
+  state.model = std::move(model);
+  make_contacts();
+}
+
+void CommandApplier::make_contacts() {
+  state.tool.contact = ToolContact(state.scene_bodies(), state.model);
+  state.mirrored.contact = ToolContact(state.scene_bodies(), state.model);
   state.pairs = make_pairs(state.bodies);
+  state.between = make_between(state.pairs);
 }
 
 }  // namespace spoonbill

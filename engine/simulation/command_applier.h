@@ -23,6 +23,8 @@ struct CommandApplier {
 
  private:
   void release();
+  void take_model(ToolModel model);
+  void make_contacts();
   Status set_planes(std::vector<FixingPlane> planes);
   void set_mappings(std::vector<BodyMapping> mappings);
 };

@@ -1,36 +1,8 @@
 #include "engine/simulation/scene.h"
 
-#include <cmath>
-
-#include "engine/number_text.h"
+#include "engine/simulation/checks.h"
 
 namespace spoonbill {
-
-namespace {
-
-// Normals arrive as decimals and from arithmetic; both stay far within this.
-constexpr double unit_tolerance = 1e-6;
-
-Status check_position(const char* field, const Vector3& position) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::string name = std::string(field) + "[" + std::to_string(axis) + "]";
-    if (Status status = check_range(name, position[axis], position_range_m); !status.ok()) return status;
-  }
-  return {};
-}
-
-Status check_unit(const std::string& field, const Vector3& vector) {
-  const double length = vector.norm();
-  if (std::abs(length - 1.0) <= unit_tolerance) return {};
-  return Error{field + " has length " + number_text(length) + ", must be a unit vector"};
-}
-
-}  // namespace
-
-Status check_fixing_plane(const FixingPlane& plane) {
-  if (Status status = check_position("fixing plane: point_m", plane.point_m); !status.ok()) return status;
-  return check_unit("fixing plane: normal", plane.normal);
-}
 
 Status check_symmetry(const Symmetry& symmetry) {
   if (Status status = check_position("symmetry: point_m", symmetry.point_m); !status.ok()) return status;
@@ -55,7 +27,18 @@ Status check_tool(const Tool& tool) {
   if (Status status = check_range("tool: radius_m", tool.radius_m, tool_radius_range_m); !status.ok()) {
     return status;
   }
-  return check_range("tool: iterations", tool.iterations, tool_iterations_range);
+  if (Status status = check_range("tool: iterations", tool.iterations, tool_iterations_range); !status.ok()) {
+    return status;
+  }
+  if (tool.kind != ToolKind::solid) return {};
+  return tool.body ? check_tool_body(*tool.body) : Error{"tool: a solid must have a body"};
+}
+
+Status check_together(const Tool& tool, const Symmetry& symmetry) {
+  if (tool.kind != ToolKind::solid || !tool.body->soft) return {};
+  if (tool.action != ToolAction::push) return Error{"tool: a soft one can only push; make it rigid to pull"};
+  if (symmetry.on) return Error{"tool: a soft one has no mirror image; make it rigid or turn symmetry off"};
+  return {};
 }
 
 Status check_sculpting(const Sculpting& sculpting) {

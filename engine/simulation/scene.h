@@ -1,8 +1,7 @@
 // A scene: what a simulation is built from. Plain data; lengths in metres.
 #pragma once
 
-#include <array>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,15 +10,12 @@
 #include "engine/material/tube_lattice.h"
 #include "engine/range.h"
 #include "engine/result.h"
+#include "engine/simulation/checks.h"
+#include "engine/simulation/fixing_plane.h"
 #include "engine/simulation/snapshot.h"
+#include "engine/simulation/tool_body.h"
 
 namespace spoonbill {
-
-// A fixing plane: every node of any body on its far side (opposite to the normal) is held.
-struct FixingPlane {
-  Vector3 point_m = Vector3::Zero();
-  Vector3 normal = Vector3::UnitX();  // unit
-};
 
 // A solid body bounded by one tube: periodic in u, closed by a pole at both ends of v.
 struct Body {
@@ -32,8 +28,9 @@ struct Body {
 struct Tool {
   ToolKind kind = ToolKind::sphere;
   ToolAction action = ToolAction::push;
-  double radius_m = 0.008;  // 0 for a point
-  int iterations = 6;       // relaxation steps a tick: few act locally, many globally (1 to 8)
+  double radius_m = 0.008;               // of a sphere; 0 for a point; how far smoothing reaches with a solid
+  int iterations = 6;                    // relaxation steps a tick: few act locally, many globally (1 to 8)
+  std::shared_ptr<const ToolBody> body;  // of a solid; may stay while the tool is another
 };
 
 // How sculpting differs from the real thing: no gravity by default, damped, with a capped stiffness.
@@ -51,16 +48,15 @@ struct Symmetry {
 };
 
 struct Scene {
-  std::vector<Body> bodies;  // those that touch push each other
-  std::vector<FixingPlane> planes;
+  std::vector<Body> bodies;         // those that touch push each other
+  std::vector<FixingPlane> planes;  // each holds nodes of any body
   Tool tool;
   Sculpting sculpting;
   Symmetry symmetry = {};
 };
 
 // What files, commands and the panel's sliders accept: wide enough for any concept, finite for every solver.
-inline constexpr Range<double> position_range_m{-100.0, 100.0};  // each coordinate
-inline constexpr Range<int> control_point_count_range{2, 200};   // in each direction
+inline constexpr Range<int> control_point_count_range{2, 200};  // in each direction
 inline constexpr Range<int> node_budget_range{50, 40000};
 inline constexpr Range<int> node_count_range{2, 64};  // in each direction
 inline constexpr Range<int> body_count_range{1, 8};
@@ -72,10 +68,11 @@ inline constexpr double gravity_limit_m_per_s2 = 100.0;  // of the vector's leng
 inline constexpr Range<double> force_scale_range{0.0, 1e6};
 
 // Each names the field, the value and the range of the first thing that is not within it.
-Status check_fixing_plane(const FixingPlane& plane);
 Status check_lattice_request(const LatticeRequest& lattice);
 Status check_tool(const Tool& tool);
 Status check_sculpting(const Sculpting& sculpting);
 Status check_symmetry(const Symmetry& symmetry);
+// What goes with what: a soft tool pushes, on one side.
+Status check_together(const Tool& tool, const Symmetry& symmetry);
 
 }  // namespace spoonbill

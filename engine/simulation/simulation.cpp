@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,11 +19,9 @@ namespace spoonbill {
 
 namespace {
 
-// Each with the nodes around it; some hundreds act at once where two handles lie on each other.
-constexpr int between_capacity = 8192;
-
 Status check_scene(const Scene& scene) {
   if (Status status = check_tool(scene.tool); !status.ok()) return status;
+  if (Status status = check_together(scene.tool, scene.symmetry); !status.ok()) return status;
   if (Status status = check_sculpting(scene.sculpting); !status.ok()) return status;
   if (Status status = check_range("bodies", static_cast<int>(scene.bodies.size()), body_count_range);
       !status.ok()) {
@@ -51,13 +51,17 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
     if (!state.ok()) return about(body, scene, state.error());
     bodies.push_back(std::move(state).value());
   }
-  HeldTool tool{ToolContact(bodies)};
-  HeldTool mirrored{ToolContact(bodies)};
+  Result<ToolModel> model = make_tool_model(scene.tool, set);
+  if (!model.ok()) return model.error();
+  HeldTool tool{ToolContact(bodies, model.value())};
+  HeldTool mirrored{ToolContact(bodies, model.value())};
+  if (model->soft) bodies.push_back(*std::move(model->soft));
   std::vector<BodyPairContact> pairs = make_pairs(bodies);
-  const int capacity = pairs.empty() ? 0 : between_capacity;
-  return Simulation(
-      std::make_unique<State>(State{std::move(scene), set, std::move(bodies), std::move(tool),
-                                    std::move(mirrored), BodyContacts(capacity), std::move(pairs)}));
+  BodyContacts between = make_between(pairs);
+  std::vector<std::shared_ptr<const ToolBody>> kept = {modelled_body(scene.tool)};
+  return Simulation(std::make_unique<State>(
+      State{std::move(scene), set, std::move(bodies), std::move(model).value(), std::move(tool),
+            std::move(mirrored), std::move(between), std::move(pairs), false, std::move(kept)}));
 }
 
 Simulation::Simulation(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -73,15 +77,13 @@ Status Simulation::apply(const Command& command) {
 namespace {
 
 double real_over_felt(const Simulation::State& s, std::size_t body) {
-  return s.scene.bodies[body].material.youngs_modulus_pa / s.bodies[body].lattice.youngs_modulus_pa();
+  return s.material(body).youngs_modulus_pa / s.bodies[body].lattice.youngs_modulus_pa();
 }
 
 // The coupling is held against the body that was softened most of those that the tool may touch.
 double softest_ratio(const Simulation::State& s) {
   double ratio = real_over_felt(s, 0);
-  for (std::size_t body = 1; body < s.bodies.size(); ++body) {
-    ratio = std::max(ratio, real_over_felt(s, body));
-  }
+  for (std::size_t body = 1; body < s.stepped(); ++body) ratio = std::max(ratio, real_over_felt(s, body));
   return ratio;
 }
 
@@ -97,14 +99,43 @@ ToolMotion motion_of(const Simulation::State& s, const Pose& from, const Pose& t
   return motion;
 }
 
-// Finds the contact of a tool and how the hand moves it from the last tick's pose to `pose`.
-TouchingTool touch(const Simulation::State& s, HeldTool& held, const Pose& pose, const ToolInput& input) {
-  if (!held.placed) held.place(pose);
-  held.contact.prepare(s.bodies, s.scene.tool, {held.state.position_m, pose.orientation}, input.gripping,
-                       input.hovering);
-  const ToolMotion motion = motion_of(s, held.hand, pose, input.coupling_n_per_m);
-  held.hand = pose;
+// A soft tool as it was made, at the hand.
+void place_soft(BodyState& tool, const Pose& pose) {
+  for (int n = 0; n < tool.lattice.mesh().node_count(); ++n) {
+    const Vector3& rest = tool.lattice.mesh().nodes[n];
+    tool.lattice.set_displacement(n, pose.position_m + pose.orientation * rest - rest);
+    tool.lattice.set_velocity(n, Vector3::Zero());
+  }
+  tool.mapping.update(tool.lattice);
+}
+
+// Finds the contact of a tool and how the hand moves it from the last tick's pose to that of `hold`.
+TouchingTool touch(Simulation::State& s, HeldTool& held, ToolHold hold, double coupling_n_per_m) {
+  const Pose hand = hold.pose;
+  const bool appears = !held.placed;
+  if (appears) held.place(hand);
+  hold.pose.position_m = held.state.position_m;
+  if (s.tool_is_soft()) {
+    if (appears) place_soft(s.bodies.back(), hand);
+    held.contact.prepare_soft(static_cast<int>(s.bodies.size()) - 1, s.bodies.back(), s.model.gripped);
+  } else {
+    held.contact.prepare(s.scene_bodies(), s.scene.tool, s.model, hold);
+  }
+  const ToolMotion motion = motion_of(s, held.hand, hand, coupling_n_per_m);
+  held.hand = hand;
   return {motion, &held.state, &held.contact.constraints()};
+}
+
+ToolHold hold_of(const ToolInput& input) {
+  return {input.pose, input.pose.orientation.toRotationMatrix(), input.gripping, input.hovering};
+}
+
+// The mirror image: of a tool that is not its own, its frame is one too.
+ToolHold mirrored_hold(const Symmetry& symmetry, const ToolInput& input) {
+  ToolHold hold = hold_of(input);
+  hold.pose = mirrored_pose(symmetry, input.pose);
+  hold.turn -= 2.0 * symmetry.normal * (symmetry.normal.transpose() * hold.turn);
+  return hold;
 }
 
 // The surface under the tool, as far as the tool reaches, or as a few cells do where it is small.
@@ -122,28 +153,49 @@ void smooth(Simulation::State& s, const HeldTool& held) {
   body.smoothing.apply(body.lattice, {collision.nearest.point_m, std::max(radius, least)}, s.tick);
 }
 
-void find_contacts_between(Simulation::State& s) {
-  s.between.clear();
-  s.pairs_overflow = false;
+bool is_tool(const Simulation::State& s, std::size_t body) {
+  return body >= s.scene.bodies.size();
+}
+
+template <class Visit>
+void visit_pairs(Simulation::State& s, const Visit& visit) {
   auto pair = s.pairs.begin();
-  for (std::size_t second = 1; second < s.bodies.size(); ++second) {
+  for (std::size_t second = 1; second < s.stepped(); ++second) {
     for (std::size_t first = 0; first < second; ++first, ++pair) {
-      s.pairs_overflow |= !pair->add_contacts({static_cast<int>(first), &s.bodies[first]},
-                                              {static_cast<int>(second), &s.bodies[second]}, s.between);
+      visit(*pair, NumberedBody{static_cast<int>(first), &s.bodies[first]},
+            NumberedBody{static_cast<int>(second), &s.bodies[second]}, is_tool(s, second));
     }
   }
+}
+
+void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
+  s.between.clear();
+  s.pairs_overflow = false;
+  double tool_gap = std::numeric_limits<double>::infinity();
+  visit_pairs(
+      s, [&](BodyPairContact& pair, const NumberedBody& first, const NumberedBody& second, bool of_tool) {
+        s.pairs_overflow |= !pair.find(first, second);
+        if (of_tool) tool_gap = std::min(tool_gap, pair.least_gap_m());
+      });
+  const bool tool_acts =
+      !s.tool_is_soft() || s.tool.contact.acts(tool_gap <= 0.0, std::isfinite(tool_gap), hold);
+  visit_pairs(s, [&](const BodyPairContact& pair, const NumberedBody& first, const NumberedBody& second,
+                     bool of_tool) {
+    if (of_tool && !tool_acts) return;
+    s.pairs_overflow |= !pair.add_contacts(first, second, s.between);
+  });
   s.between.begin(0.0);
 }
 
 void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
   std::array<RelaxedLattice, lattice_capacity> lattices{};
-  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+  for (std::size_t b = 0; b < s.stepped(); ++b) {
     // What a body sags at rest is its weight over its stiffness: a softer one must weigh less to sag the
     // same.
     lattices[b] = {&s.bodies[b].lattice, s.scene.sculpting.gravity_m_per_s2 / real_over_felt(s, b)};
   }
   const RelaxSettings settings{s.tick, s.scene.tool.iterations, tick_s, s.scene.sculpting.damping_per_s};
-  s.relaxed = relax({lattices.data(), s.bodies.size()}, settings, tools, &s.between);
+  s.relaxed = relax({lattices.data(), s.stepped()}, settings, tools, &s.between);
 }
 
 std::uint32_t flags_of(const Simulation::State& s) {
@@ -159,7 +211,7 @@ std::uint32_t flags_of(const Simulation::State& s) {
 // The force of the real stiffnesses on the hand.
 Vector3 force_of(const Simulation::State& s) {
   Vector3 force = Vector3::Zero();
-  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+  for (std::size_t b = 0; b < s.stepped(); ++b) {
     force += s.tool.contact.constraints().tool_impulse(static_cast<int>(b)) *
              (real_over_felt(s, b) / s.relaxed.material_time_s);
   }
@@ -167,13 +219,14 @@ Vector3 force_of(const Simulation::State& s) {
 }
 
 void mark_touched(Simulation::State& s) {
-  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+  for (std::size_t b = 0; b < s.stepped(); ++b) {
     std::vector<std::uint8_t>& touched = s.bodies[b].touched;
     std::fill(touched.begin(), touched.end(), std::uint8_t{0});
     const int body = static_cast<int>(b);
+    s.between.mark_touched(body, touched.data());
+    if (is_tool(s, b)) continue;
     s.tool.contact.constraints().mark_touched(body, touched.data());
     if (s.scene.symmetry.on) s.mirrored.contact.constraints().mark_touched(body, touched.data());
-    s.between.mark_touched(body, touched.data());
   }
 }
 
@@ -184,20 +237,24 @@ Reaction Simulation::advance(const ToolInput& input) {
   State& s = *state_;
   const bool both = s.scene.symmetry.on;
   std::array<TouchingTool, 2> tools;
-  tools[0] = touch(s, s.tool, input.pose, input);
-  if (both) tools[1] = touch(s, s.mirrored, mirrored_pose(s.scene.symmetry, input.pose), input);
-  find_contacts_between(s);
+  const ToolHold hold = hold_of(input);
+  tools[0] = touch(s, s.tool, hold, input.coupling_n_per_m);
+  if (both) {
+    tools[1] = touch(s, s.mirrored, mirrored_hold(s.scene.symmetry, input), input.coupling_n_per_m);
+  }
+  find_contacts_between(s, hold);
   relax_bodies(s, {tools.data(), both ? std::size_t{2} : std::size_t{1}});
   if (s.scene.tool.action == ToolAction::smooth) {
     smooth(s, s.tool);
     if (both) smooth(s, s.mirrored);
   }
-  for (BodyState& body : s.bodies) body.mapping.update(body.lattice);
+  for (std::size_t b = 0; b < s.stepped(); ++b) s.bodies[b].mapping.update(s.bodies[b].lattice);
   ++s.tick;
 
   s.reaction.force_n = force_of(s);
   s.reaction.proxy = {s.tool.state.position_m, input.pose.orientation};
-  s.reaction.touching = s.tool.contact.constraints().acted();
+  s.reaction.touching = s.tool_is_soft() ? s.between.acted(static_cast<int>(s.bodies.size()) - 1)
+                                         : s.tool.contact.constraints().acted();
   s.reaction.mirror_touching = both && s.mirrored.contact.constraints().acted();
   s.reaction.flags = flags_of(s);
   mark_touched(s);
@@ -241,7 +298,8 @@ std::uint64_t Simulation::state_hash() const {
   const State& s = *state_;
   StateHash hash;
   hash.add(s.tick);
-  for (const BodyState& body : s.bodies) {
+  for (std::size_t b = 0; b < s.stepped(); ++b) {
+    const BodyState& body = s.bodies[b];
     body.lattice.visit_state([&](const float* data, std::size_t count) { hash.add(data, count); });
     const ControlNet& net = body.mapping.current().net;
     for (const std::vector<double>* coordinate : {&net.x, &net.y, &net.z}) {
@@ -260,7 +318,7 @@ ShapeState Simulation::shape() const {
 }
 
 void Simulation::write_shape(ShapeState& shape) const {
-  shape.lattices.resize(state_->bodies.size());
+  shape.lattices.resize(state_->scene.bodies.size());
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
     state_->bodies[b].lattice.write_shape(shape.lattices[b]);
   }
@@ -268,7 +326,7 @@ void Simulation::write_shape(ShapeState& shape) const {
 
 Status Simulation::restore(const ShapeState& shape) {
   const DenormalsFlushed flushed;
-  bool fits = shape.lattices.size() == state_->bodies.size();
+  bool fits = shape.lattices.size() == state_->scene.bodies.size();
   for (std::size_t b = 0; fits && b < shape.lattices.size(); ++b) {
     fits = shape.lattices[b].size() == state_->bodies[b].lattice.shape_size();
   }
@@ -292,10 +350,10 @@ void write_symmetry(const Simulation::State& s, Snapshot& snapshot) {
 }
 
 void write_contacts(const Simulation::State& s, std::vector<ContactSnapshot>& contacts) {
-  contacts.reserve(s.bodies.size());  // before the first contact, which must not allocate
+  contacts.reserve(s.scene.bodies.size());  // before the first contact, which must not allocate
   contacts.clear();
   if (!s.reaction.touching) return;
-  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+  for (std::size_t b = 0; b < s.scene.bodies.size(); ++b) {
     const CollisionResult& collision = s.tool.contact.collision(static_cast<int>(b));
     if (!collision.found) continue;
     const SurfaceContact& nearest = collision.nearest;
@@ -308,11 +366,12 @@ void write_contacts(const Simulation::State& s, std::vector<ContactSnapshot>& co
 void Simulation::write_snapshot(Snapshot& snapshot) const {
   const State& s = *state_;
   snapshot.tick = s.tick;
-  write_bodies(s.bodies, s.scene, snapshot.bodies);
+  write_bodies({s.bodies.data(), s.stepped()}, s.scene, snapshot.bodies);
   snapshot.tool.kind = s.scene.tool.kind;
   snapshot.tool.action = s.scene.tool.action;
   snapshot.tool.iterations = s.scene.tool.iterations;
   snapshot.tool.radius_m = s.scene.tool.kind == ToolKind::point ? 0.0 : s.scene.tool.radius_m;
+  snapshot.tool.body = s.scene.tool.body;
   snapshot.tool.device = s.tool.hand;
   snapshot.tool.proxy = s.reaction.proxy;
   write_symmetry(s, snapshot);

@@ -1,6 +1,8 @@
 // What a simulation consists of. Private to Simulation and its commands.
 #pragma once
 
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/material/lattice_solver.h"
@@ -30,17 +32,32 @@ struct HeldTool {
 struct Simulation::State {
   Scene scene;
   InstructionSet set;
-  std::vector<BodyState> bodies;  // as in the scene
+  std::vector<BodyState> bodies;  // as in the scene; then a soft tool
+  ToolModel model;                // of the last solid
   HeldTool tool;
   HeldTool mirrored;
   BodyContacts between;
   std::vector<BodyPairContact> pairs;  // 0 and 1, 0 and 2, 1 and 2, ...: see make_pairs()
   bool pairs_overflow = false;
+  // Of tools that were replaced: snapshots share them, and no tick must free the last of one.
+  std::vector<std::shared_ptr<const ToolBody>> kept;
   std::uint64_t tick = 0;
   RelaxReport relaxed{};
   Reaction reaction{};
+
+  bool tool_is_soft() const {
+    return scene.tool.kind == ToolKind::solid && bodies.size() > scene.bodies.size();
+  }
+  // Those of the scene, and those that are stepped: a soft tool rests while the hand holds another.
+  std::span<BodyState> scene_bodies() { return {bodies.data(), scene.bodies.size()}; }
+  std::size_t stepped() const { return scene.bodies.size() + (tool_is_soft() ? 1 : 0); }
+  const Material& material(std::size_t body) const {
+    return body < scene.bodies.size() ? scene.bodies[body].material : scene.tool.body->soft->material;
+  }
 };
 
 std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies);
+// The memory of their constraints.
+BodyContacts make_between(const std::vector<BodyPairContact>& pairs);
 
 }  // namespace spoonbill

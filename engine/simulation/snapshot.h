@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,9 @@
 
 namespace spoonbill {
 
-enum class ToolKind { point, sphere };
+struct ToolBody;
+
+enum class ToolKind { point, sphere, solid };
 enum class ToolAction { push, pull, smooth };
 
 // As files and labels call it.
@@ -40,8 +43,9 @@ struct ToolSnapshot {
   ToolAction action = ToolAction::push;
   int iterations = 0;
   double radius_m = 0.0;
-  Pose device;  // where the hand holds it
-  Pose proxy;   // where the material stops it; this one is drawn
+  std::shared_ptr<const ToolBody> body;  // of a solid; a soft one is drawn as the last of the bodies
+  Pose device;                           // where the hand holds it
+  Pose proxy;                            // where the material stops it; this one is drawn
   bool button = false;
 };
 
@@ -93,7 +97,7 @@ enum TickFlag : std::uint32_t {
 
 struct Snapshot {
   std::uint64_t tick = 0;
-  std::vector<BodySnapshot> bodies;
+  std::vector<BodySnapshot> bodies;  // those of the scene, then a soft tool
   ToolSnapshot tool;
   std::vector<PlaneSnapshot> planes;
   bool symmetric = false;  // a second tool mirrors the first

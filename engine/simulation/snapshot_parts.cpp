@@ -69,7 +69,7 @@ void write_material(const Material& material, const Sculpting& sculpting, const 
 
 }  // namespace
 
-void write_bodies(const std::vector<BodyState>& bodies, const Scene& scene, std::vector<BodySnapshot>& out) {
+void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::vector<BodySnapshot>& out) {
   if (out.size() > bodies.size()) out.clear();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Surface& surface = bodies[b].mapping.current();
@@ -81,7 +81,8 @@ void write_bodies(const std::vector<BodyState>& bodies, const Scene& scene, std:
     }
     write_surface(surface, out[b].surface);
     write_lattice(bodies[b].lattice, bodies[b].held, bodies[b].touched, out[b].lattice);
-    write_material(scene.bodies[b].material, scene.sculpting, bodies[b].lattice, out[b].material);
+    write_material(b < scene.bodies.size() ? scene.bodies[b].material : scene.tool.body->soft->material,
+                   scene.sculpting, bodies[b].lattice, out[b].material);
   }
 }
 

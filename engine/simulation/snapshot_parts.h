@@ -2,6 +2,7 @@
 // ones of the same structure allocate nothing.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "engine/simulation/body_state.h"
@@ -10,6 +11,6 @@
 
 namespace spoonbill {
 
-void write_bodies(const std::vector<BodyState>& bodies, const Scene& scene, std::vector<BodySnapshot>& out);
+void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::vector<BodySnapshot>& out);
 
 }  // namespace spoonbill

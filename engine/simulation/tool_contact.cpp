@@ -1,9 +1,13 @@
 #include "engine/simulation/tool_contact.h"
 
+#include <algorithm>
+
+#include "engine/simulation/body_pair_contact.h"
+
 namespace spoonbill {
 namespace {
 
-constexpr int constraint_capacity = 1024;
+constexpr int constraint_capacity = 2048;
 
 // How near a sample must be to become a constraint, in lattice cells: what the refit may leave between the
 // surface that collides and the lattice that gives way.
@@ -13,11 +17,31 @@ bool is_inside(const CollisionResult& collision) {
   return collision.found && collision.nearest.depth_m >= 0.0;
 }
 
+Vector3 position_of(const SpringLattice& lattice, const EmbeddedPoint& point) {
+  Vector3 position = Vector3::Zero();
+  for (int i = 0; i < point.count; ++i) {
+    position += static_cast<double>(point.weight[i]) * lattice.position(point.node[i]);
+  }
+  return position;
+}
+
+ToolShape shape_of(const Tool& tool, const ToolModel& model, const ToolHold& hold) {
+  if (model.distance) return ToolShape::solid(*model.distance, hold.pose.position_m, hold.turn);
+  const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
+  return ToolShape::sphere(hold.pose.position_m, radius);
+}
+
 }  // namespace
 
-ToolContact::ToolContact(std::span<const BodyState> bodies) : constraints_(constraint_capacity) {
+ToolContact::ToolContact(std::span<const BodyState> bodies, const ToolModel& model)
+    : constraints_(constraint_capacity) {
   contacts_.reserve(bodies.size());
-  for (const BodyState& body : bodies) contacts_.emplace_back(body.mapping);
+  for (const BodyState& body : bodies) {
+    contacts_.push_back({SurfaceCollider(body.mapping.nested()), nullptr, {}});
+    if (!model.surface) continue;
+    contacts_.back().proximity = std::make_unique<SurfaceProximity>(body.mapping.nested(), *model.nested);
+  }
+  if (model.surface) placed_ = std::make_unique<Surface>(*model.surface);
 }
 
 void ToolContact::release() {
@@ -42,59 +66,132 @@ int ToolContact::deepest_body() const {
   return static_cast<int>(deepest);
 }
 
-void ToolContact::prepare(std::span<const BodyState> bodies, const Tool& tool, const Pose& pose,
-                          bool gripping, bool hovering) {
-  const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
-  const ToolShape shape = ToolShape::sphere(pose.position_m, radius);
+void ToolContact::prepare(std::span<const BodyState> bodies, const Tool& tool, const ToolModel& model,
+                          const ToolHold& hold) {
+  if (placed_) place(model.surface->net, hold.turn, hold.pose.position_m, placed_->net);
   overflow_ = false;
   bool inside = false, near = false;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const double margin = margin_cells * static_cast<double>(bodies[b].lattice.cell_size_m());
-    CollisionResult& collision = contacts_[b].collision;
-    collision = contacts_[b].collider.collide(bodies[b].mapping.current(), shape, margin, true);
-    overflow_ |= collision.overflow;
-    inside |= is_inside(collision);
-    near |= collision.found;
+    find(contacts_[b], bodies[b], tool, model, hold);
+    overflow_ |= contacts_[b].collision.overflow;
+    inside |= is_inside(contacts_[b].collision);
+    near |= contacts_[b].collision.found;
   }
-  // A body that the tool has just pressed lies against it, and quivers: the tool has left when it is a margin
-  // away, or hovers.
-  const bool against = hovering ? inside : near;
-  lifted_ = lifted_ && (against || gripping);
-  hovered_ = hovering || (hovered_ && inside);
-  if (lifted_ || hovered_) return release();
+  if (!acts(inside, near, hold)) return release();
   const bool pulls = tool.action == ToolAction::pull;
-  if (pulls && !gripping) return release();
+  if (pulls && !hold.gripping) return release();
   const bool grips = pulls && !gripped_ && inside;
   if (!pulls || grips) constraints_.clear();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const int body = static_cast<int>(b);
-    if (!pulls && contacts_[b].collision.found) add_pushes(body, bodies[b]);
-    if (grips && is_inside(contacts_[b].collision)) add_grips(body, bodies[b], pose);
+    if (!pulls && contacts_[b].collision.found) add_pushes(body, bodies[b], model, hold);
+    if (grips && is_inside(contacts_[b].collision)) add_grips(body, bodies[b], hold.pose);
   }
   gripped_ |= grips;
 }
 
-void ToolContact::add_pushes(int body, const BodyState& state) {
-  const SurfaceContact& nearest = contacts_[body].collision.nearest;
-  overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping.at(nearest.u, nearest.v),
-                                            nearest.normal);
-  for (const NearSample& sample : contacts_[body].collider.near_samples()) {
-    overflow_ |= !constraints_.add_push(body, state.lattice, state.mapping.sample(sample.index));
+// A body that the tool has just pressed lies against it, and quivers: the tool has left when it is a margin
+// away, or hovers.
+bool ToolContact::acts(bool inside, bool near, const ToolHold& hold) {
+  const bool against = hold.hovering ? inside : near;
+  lifted_ = lifted_ && (against || hold.gripping);
+  hovered_ = hold.hovering || (hovered_ && inside);
+  return !lifted_ && !hovered_;
+}
+
+void ToolContact::prepare_soft(int number, const BodyState& tool, const std::vector<std::uint8_t>& gripped) {
+  constraints_.clear();
+  overflow_ = false;
+  for (BodyContact& contact : contacts_) contact.collision = {};
+  for (int n = 0; n < tool.lattice.mesh().node_count(); ++n) {
+    if (gripped[static_cast<std::size_t>(n)] == 0) continue;
+    EmbeddedPoint point;
+    point.count = 1;
+    point.node[0] = n;
+    point.weight[0] = 1.0f;
+    overflow_ |= !constraints_.add_grip(number, tool.lattice, point, tool.lattice.mesh().nodes[n]);
   }
+}
+
+void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& tool, const ToolModel& model,
+                       const ToolHold& hold) {
+  const double margin = margin_cells * static_cast<double>(body.lattice.cell_size_m());
+  if (placed_) return find_near(contact, body, margin, hold);
+  shape_ = shape_of(tool, model, hold);
+  contact.collision = contact.collider.collide(body.mapping.current(), shape_, margin, true);
+}
+
+void ToolContact::find_near(BodyContact& contact, const BodyState& body, double margin,
+                            const ToolHold& hold) {
+  const Surface& surface = body.mapping.current();
+  SurfaceProximity& proximity = *contact.proximity;
+  proximity.find(surface, *placed_, margin, hold.turn.determinant() < 0.0 ? -1.0 : 1.0);
+  contact.collision = {};
+  contact.collision.overflow = proximity.overflow();
+  const auto deepest =
+      std::min_element(proximity.of_first().begin(), proximity.of_first().end(),
+                       [](const NearPoint& one, const NearPoint& other) { return one.gap_m < other.gap_m; });
+  if (deepest == proximity.of_first().end()) return;
+  contact.collision.found = true;
+  contact.collision.nearest = contact_at(surface, {deepest->u, deepest->v, deepest->point_m, deepest->gap_m});
+}
+
+// Every point of the body's surface that is near the tool, with the plane of the tool there.
+template <class Visit>
+void ToolContact::visit_near(BodyContact& contact, const BodyState& state, const Visit& visit) {
+  if (placed_) {
+    for (const NearPoint& near : contact.proximity->of_first()) {
+      visit(Pushed{embedding_of(state.mapping, near), near.normal, near.gap_m});
+    }
+    for (const NearPoint& near : contact.proximity->of_second()) {
+      visit(Pushed{state.mapping.at(near.other_u, near.other_v), -near.normal, near.gap_m});
+    }
+    return;
+  }
+  for (const NearSample& sample : contact.collider.near_samples()) {
+    const DistanceSample distance = shape_.at(contact.collider.levels().sample(sample.index));
+    visit(Pushed{state.mapping.sample(sample.index), distance.gradient, distance.distance_m});
+  }
+}
+
+void ToolContact::add_pushes(int body, const BodyState& state, const ToolModel& model, const ToolHold& hold) {
+  BodyContact& contact = contacts_[body];
+  const SurfaceContact& nearest = contact.collision.nearest;
+  const EmbeddedPoint deepest = state.mapping.at(nearest.u, nearest.v);
+  if (!model.surface && !model.distance) {
+    overflow_ |= !constraints_.add_plane_push(body, state.lattice, deepest, -nearest.normal, shape_.radius_m);
+    for (const NearSample& sample : contact.collider.near_samples()) {
+      overflow_ |= !constraints_.add_push(body, state.lattice, state.mapping.sample(sample.index));
+    }
+    return;
+  }
+  add_plane_push(body, state, {deepest, -nearest.normal, -nearest.depth_m}, hold);
+  visit_near(contact, state, [&](const Pushed& pushed) { add_plane_push(body, state, pushed, hold); });
+}
+
+// The gap is that of the surface; what its embedding is off by now stays the same over a tick.
+void ToolContact::add_plane_push(int body, const BodyState& state, const Pushed& pushed,
+                                 const ToolHold& hold) {
+  const Vector3 from_centre = position_of(state.lattice, pushed.point) - hold.pose.position_m;
+  overflow_ |= !constraints_.add_plane_push(body, state.lattice, pushed.point, pushed.normal,
+                                            from_centre.dot(pushed.normal) - pushed.gap_m);
 }
 
 void ToolContact::add_grips(int body, const BodyState& state, const Pose& pose) {
   const auto grip = [&](const EmbeddedPoint& point) {
-    Vector3 position = Vector3::Zero();
-    for (int i = 0; i < point.count; ++i) {
-      position += static_cast<double>(point.weight[i]) * state.lattice.position(point.node[i]);
-    }
-    const Vector3 offset = pose.orientation.conjugate() * (position - pose.position_m);
+    const Vector3 offset =
+        pose.orientation.conjugate() * (position_of(state.lattice, point) - pose.position_m);
     overflow_ |= !constraints_.add_grip(body, state.lattice, point, offset);
   };
-  const CollisionResult& collision = contacts_[body].collision;
-  grip(state.mapping.at(collision.nearest.u, collision.nearest.v));
-  for (const NearSample& sample : contacts_[body].collider.near_samples()) {
+  BodyContact& contact = contacts_[body];
+  grip(state.mapping.at(contact.collision.nearest.u, contact.collision.nearest.v));
+  if (placed_) {
+    visit_near(contact, state, [&](const Pushed& near) {
+      if (near.gap_m <= 0.0) grip(near.point);
+    });
+    return;
+  }
+  for (const NearSample& sample : contact.collider.near_samples()) {
     if (sample.distance_m <= 0.0) grip(state.mapping.sample(sample.index));
   }
 }

@@ -2,28 +2,45 @@
 // lattices.
 #pragma once
 
-#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "engine/collision/surface_collider.h"
+#include "engine/collision/surface_proximity.h"
 #include "engine/material/contact_constraints.h"
 #include "engine/simulation/body_state.h"
 #include "engine/simulation/scene.h"
+#include "engine/simulation/tool_model.h"
 
 namespace spoonbill {
 
-// One owner, the simulation; rebuilt with the mapping of a body. prepare() allocates nothing.
+// A tool that is held: where, and what the hand does with it.
+struct ToolHold {
+  Pose pose;
+  // The tool's frame in the world: the pose's orientation, or the mirror image of one.
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  bool gripping = false;
+  bool hovering = false;
+};
+
+// One owner, the simulation; rebuilt with the mapping of a body or the model of the tool. prepare() allocates
+// nothing.
 class ToolContact {
  public:
-  explicit ToolContact(std::span<const BodyState> bodies);
+  ToolContact(std::span<const BodyState> bodies, const ToolModel& model);
 
-  // Finds the contacts of the tool at `pose` and sets the constraints of this tick. A push lets go as the
-  // tool leaves, and so does smoothing, which slides; a pull grips what it first touches while `gripping` and
-  // holds it until the button is released.
+  // Finds the contacts of the tool and sets the constraints of this tick. A push lets go as the tool leaves,
+  // and so does smoothing, which slides; a pull grips what it first touches while `gripping` and holds it
+  // until the button is released.
   // While `hovering`, and then until it is outside the bodies, the tool acts on nothing.
-  void prepare(std::span<const BodyState> bodies, const Tool& tool, const Pose& pose, bool gripping,
-               bool hovering);
+  void prepare(std::span<const BodyState> bodies, const Tool& tool, const ToolModel& model,
+               const ToolHold& hold);
+  // The same for a soft tool, which is the body of that number and touches the others by itself: the hand
+  // holds the gripped nodes.
+  void prepare_soft(int number, const BodyState& tool, const std::vector<std::uint8_t>& gripped);
+  // Whether the tool acts in this tick, of which it is known whether it is inside a body and near one.
+  bool acts(bool inside, bool near, const ToolHold& hold);
   void release();
   // Acts on nothing from the next prepare() on until the button is free and the tool has left the bodies, by
   // a margin or hovering.
@@ -40,14 +57,30 @@ class ToolContact {
 
  private:
   struct BodyContact {
-    explicit BodyContact(const BodyMapping& mapping) : collider(mapping.nested()) {}
     SurfaceCollider collider;
+    std::unique_ptr<SurfaceProximity> proximity;  // of a B-spline tool
     CollisionResult collision;
   };
-  void add_pushes(int body, const BodyState& state);
+  // A point of a body's surface and the plane of the tool that it must stay beyond.
+  struct Pushed {
+    EmbeddedPoint point;
+    Vector3 normal;  // unit, away from the tool
+    double gap_m;
+  };
+
+  void find(BodyContact& contact, const BodyState& body, const Tool& tool, const ToolModel& model,
+            const ToolHold& hold);
+  void find_near(BodyContact& contact, const BodyState& body, double margin, const ToolHold& hold);
+  void add_pushes(int body, const BodyState& state, const ToolModel& model, const ToolHold& hold);
+  void add_plane_push(int body, const BodyState& state, const Pushed& pushed, const ToolHold& hold);
   void add_grips(int body, const BodyState& state, const Pose& pose);
 
+  template <class Visit>
+  void visit_near(BodyContact& contact, const BodyState& state, const Visit& visit);
+
   std::vector<BodyContact> contacts_;  // one a body
+  std::unique_ptr<Surface> placed_;    // of a B-spline tool, in the world
+  ToolShape shape_;                    // of any other
   ContactConstraints constraints_;
   bool gripped_ = false;
   bool lifted_ = false;

@@ -128,7 +128,7 @@ void support_from_below(SpringLattice& lattice, ContactConstraints& contacts) {
     point.count = 1;
     point.node[0] = n;
     point.weight[0] = 1.0f;
-    contacts.add_plane_push(0, lattice, point, -Vector3::UnitY());
+    contacts.add_plane_push(0, lattice, point, Vector3::UnitY(), 0.0);
   }
 }
 
@@ -185,7 +185,7 @@ TEST(Integration, HangingWeight) {
     point.count = 1;
     point.node[0] = corner;
     point.weight[0] = 1.0f;
-    contacts.add_plane_push(0, lattice, point, -Vector3::UnitY());
+    contacts.add_plane_push(0, lattice, point, Vector3::UnitY(), 0.0);
   }
   for (const int corner :
        {mesh.index(0, 0, 0), mesh.index(1, 0, 0), mesh.index(0, 0, 1), mesh.index(1, 0, 1)}) {

@@ -44,12 +44,13 @@ class Impact {
   bool tick() {
     const DenormalsFlushed flushed;
     contacts_.clear();
+    EXPECT_TRUE(pair_.find({0, &bodies_[0]}, {1, &bodies_[1]}));
     EXPECT_TRUE(pair_.add_contacts({0, &bodies_[0]}, {1, &bodies_[1]}, contacts_));
     contacts_.begin(0.0);
     relax(std::array{RelaxedLattice{&bodies_[0].lattice}, RelaxedLattice{&bodies_[1].lattice}}, {tick_++}, {},
           &contacts_);
     for (BodyState& body : bodies_) body.mapping.update(body.lattice);
-    return contacts_.acted();
+    return contacts_.acted(0);
   }
 
   Vector3 momentum_of(int body, double* sum_of_sizes = nullptr) const {

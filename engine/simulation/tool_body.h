@@ -1,0 +1,39 @@
+// What tools are made of besides a point and a sphere. Plain data that never changes once made: the tool's
+// own frame, lengths in metres.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "engine/bspline/surface.h"
+#include "engine/collision/implicit/implicit_shapes.h"
+#include "engine/material/material.h"
+#include "engine/material/tube_lattice.h"
+#include "engine/simulation/fixing_plane.h"
+
+namespace spoonbill {
+
+// A closed tube, as bodies are.
+struct SurfaceSolid {
+  Surface surface;
+};
+
+using ToolSolid = std::variant<ImplicitShape, SurfaceSolid>;
+
+// A tool that gives way: a lattice of its own, held by the hand behind a plane.
+struct SoftTool {
+  Material material;
+  LatticeRequest lattice;
+  FixingPlane grip;  // in the tool's frame
+};
+
+struct ToolBody {
+  ToolSolid solid;
+  std::optional<SoftTool> soft;  // rigid without
+};
+
+// Names the field of the first thing that is wrong.
+Status check_tool_body(const ToolBody& body);
+
+}  // namespace spoonbill

@@ -1,0 +1,44 @@
+#include "engine/simulation/tool_model.h"
+
+namespace spoonbill {
+namespace {
+
+// Samples of a rigid tool, a quarter of an element apart.
+constexpr int levels = 2;
+
+struct ModelOf {
+  const ToolBody& body;
+  InstructionSet set;
+
+  Result<ToolModel> operator()(const ImplicitShape& shape) const {
+    ToolModel model;
+    model.distance = make_signed_distance(shape);
+    return model;
+  }
+
+  Result<ToolModel> operator()(const SurfaceSolid& solid) const {
+    ToolModel model;
+    if (body.soft) {
+      Result<BodyState> soft =
+          make_body_state({"tool", solid.surface, body.soft->material, body.soft->lattice}, {}, set);
+      if (!soft.ok()) return Error{"tool: " + soft.error().message};
+      model.gripped = nodes_behind(soft->lattice, {body.soft->grip});
+      model.soft = std::move(soft).value();
+      return model;
+    }
+    Result<NestedGrid> nested = make_nested_grid(solid.surface.u, solid.surface.v, levels);
+    if (!nested.ok()) return nested.error();
+    model.nested = std::make_shared<NestedGrid>(std::move(nested).value());
+    model.surface = std::make_shared<Surface>(solid.surface);
+    return model;
+  }
+};
+
+}  // namespace
+
+Result<ToolModel> make_tool_model(const Tool& tool, InstructionSet set) {
+  if (tool.kind != ToolKind::solid) return ToolModel{};
+  return std::visit(ModelOf{*tool.body, set}, tool.body->solid);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,34 @@
+// A tool's body made ready for contact.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "engine/collision/signed_distance.h"
+#include "engine/collision/surface_levels.h"
+#include "engine/instruction_set.h"
+#include "engine/simulation/body_state.h"
+#include "engine/simulation/scene.h"
+
+namespace spoonbill {
+
+// Empty for a point and a sphere. Built outside the tick; a simulation owns it.
+struct ToolModel {
+  std::shared_ptr<const SignedDistance> distance;  // of a rigid implicit or tessellated one
+  std::shared_ptr<const Surface> surface;          // of a rigid B-spline tool, in its frame
+  std::shared_ptr<const NestedGrid> nested;        // its samples
+  std::optional<BodyState> soft;      // of one that gives way; its rest shape is in the tool's frame
+  std::vector<std::uint8_t> gripped;  // of its nodes, 1 where the hand holds them
+
+  bool is_soft() const { return soft.has_value(); }
+};
+
+// The body that a tool needs a model of; none for a point and a sphere.
+inline std::shared_ptr<const ToolBody> modelled_body(const Tool& tool) {
+  return tool.kind == ToolKind::solid ? tool.body : nullptr;
+}
+
+// Refused with the field named where the body cannot be simulated.
+Result<ToolModel> make_tool_model(const Tool& tool, InstructionSet set);
+
+}  // namespace spoonbill

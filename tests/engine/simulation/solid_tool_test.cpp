@@ -1,0 +1,219 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tests/engine/allocations.h"
+#include "tests/engine/bspline/tube.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+Material silicone() {
+  Material material = small_handle().bodies[0].material;
+  material.name = "silicone";
+  material.plastic = false;
+  material.damping_ratio = 0.2;
+  return material;
+}
+
+Tool solid(ToolSolid of, std::optional<SoftTool> soft = std::nullopt) {
+  Tool tool;
+  tool.kind = ToolKind::solid;
+  tool.body = std::make_shared<ToolBody>(ToolBody{std::move(of), std::move(soft)});
+  return tool;
+}
+
+// 40 x 20 x 100 mm scaled to a fingertip of 10 x 5 x 25 mm, held by its upper half.
+Surface finger() {
+  Surface surface = ellipsoid_tube(12, 12);
+  for (std::vector<double>* values : {&surface.net.x, &surface.net.y, &surface.net.z}) {
+    for (double& value : *values) value *= 0.25;
+  }
+  return surface;
+}
+
+SoftTool soft_flesh() {
+  return {silicone(), {300, {}}, {Vector3(0, 0.001, 0), -Vector3::UnitY()}};
+}
+
+Scene held_handle(const Tool& tool) {
+  Scene scene = small_handle();
+  scene.tool = tool;
+  scene.planes.push_back({Vector3(0.015, 0, 0), Vector3::UnitX()});
+  return scene;
+}
+
+double lowest(const Surface& surface) {
+  return *std::min_element(surface.net.y.begin(), surface.net.y.end());
+}
+
+// Comes down on the handle. What it felt in the last hundred ticks: the free end is light and quivers under
+// the tool.
+Reaction press(Simulation& simulation, double from_m, double to_m, int ticks = 300, double x_m = 0.05) {
+  Reaction felt;
+  for (int tick = 0; tick < ticks; ++tick) {
+    const Reaction now = simulation.advance(above(x_m, from_m + (to_m - from_m) * tick / ticks));
+    if (tick < ticks - 100) continue;
+    felt.touching |= now.touching;
+    felt.force_n += 0.01 * now.force_n;
+  }
+  return felt;
+}
+
+// Every rigid shape rests on the handle, 2.5 mm half as thick, with its lowest point 1 mm deep.
+TEST(SolidTool, OfEveryRigidShapePushes) {
+  struct Case {
+    ToolSolid solid;
+    double below_m;  // from its frame's origin to its lowest point
+  };
+  const Case cases[] = {
+      {ImplicitShape(SphereShape{0.006}), 0.006},
+      {ImplicitShape(EllipsoidShape{{0.008, 0.004, 0.006}}), 0.004},
+      {ImplicitShape(CylinderShape{0.005, 0.008}), 0.008},
+      {ImplicitShape(CapsuleShape{0.004, 0.004}), 0.008},
+      {ImplicitShape(BoxShape{{0.004, 0.003, 0.01}}), 0.003},
+      {ImplicitShape(ConeShape{0.006, 0.01}), 0.0},
+      {ImplicitShape(TorusShape{0.006, 0.002}), 0.002},
+      {ImplicitShape(SuperquadricShape{{0.006, 0.004, 0.006}, 0.5, 0.5}), 0.004},
+      {SurfaceSolid{finger()}, 0.0025},
+  };
+  for (const Case& each : cases) {
+    Simulation simulation = simulate(held_handle(solid(each.solid)));
+    const double before = lowest(simulation.surface());
+    const Reaction reaction = press(simulation, 0.0035 + each.below_m, 0.0015 + each.below_m);
+    EXPECT_TRUE(reaction.touching) << "case " << &each - cases;
+    EXPECT_GT(reaction.force_n.y(), 0.0) << "pushes the hand back";
+    EXPECT_LT(lowest(simulation.surface()), before - 0.3e-3) << "the end has bent down";
+  }
+}
+
+// A sphere as a solid does what a sphere does.
+TEST(SolidTool, ASolidSphereActsAsTheSphereDoes) {
+  Tool sphere;
+  sphere.radius_m = 0.006;
+  Simulation plain = simulate(held_handle(sphere));
+  Simulation general = simulate(held_handle(solid(ImplicitShape(SphereShape{0.006}))));
+  const Reaction one = press(plain, 0.0095, 0.0075), other = press(general, 0.0095, 0.0075);
+  EXPECT_NEAR(lowest(plain.surface()), lowest(general.surface()), 2e-5);
+  // The sphere holds off points of the lattice, the solid the surface itself, which lie a little apart.
+  EXPECT_NEAR(other.force_n.y() / one.force_n.y(), 1.0, 0.35);
+}
+
+TEST(SolidTool, ABSplineToolPullsWhatItGrips) {
+  Tool tool = solid(SurfaceSolid{finger()});
+  tool.action = ToolAction::pull;
+  Simulation simulation = simulate(held_handle(tool));
+  const double before =
+      *std::max_element(simulation.surface().net.y.begin(), simulation.surface().net.y.end());
+  for (int tick = 0; tick < 300; ++tick) simulation.advance(above(0.05, 0.0045 + 1e-5 * tick, true));
+  EXPECT_GT(*std::max_element(simulation.surface().net.y.begin(), simulation.surface().net.y.end()),
+            before + 0.5e-3);
+}
+
+TEST(SolidTool, WorksOnBothSidesOfAMirror) {
+  for (const ToolSolid& of :
+       {ToolSolid(ImplicitShape(BoxShape{{0.003, 0.003, 0.002}})), ToolSolid(SurfaceSolid{finger()})}) {
+    Scene scene = held_handle(solid(of));
+    scene.symmetry = {true, Vector3::Zero(), Vector3::UnitY()};
+    Simulation simulation = simulate(scene);
+    const double above_it = std::holds_alternative<SurfaceSolid>(of) ? 0.0025 : 0.003;
+    for (int tick = 0; tick < 300; ++tick) {
+      const Quaternion turned(Eigen::AngleAxisd(0.2, Vector3::UnitX()));
+      simulation.advance({{Vector3(0.04, 0.0045 + above_it - 1e-5 * tick, 0), turned}, false, 0.0});
+    }
+    // Pressed from both sides the handle stays in its middle.
+    double middle = 0.0, most = 0.0;
+    for (const double y : simulation.surface().net.y) {
+      middle += y;
+      most = std::max(most, std::abs(y));
+    }
+    EXPECT_LT(std::abs(middle) / static_cast<double>(simulation.surface().net.y.size()), 1e-4);
+    EXPECT_LT(most, 0.01);
+  }
+}
+
+TEST(SolidTool, ASoftToolGivesWayAndReturns) {
+  Scene scene = held_handle(solid(SurfaceSolid{finger()}, soft_flesh()));
+  scene.bodies[0].material = silicone();
+  Simulation simulation = simulate(scene);
+  const double before = lowest(simulation.surface());
+  simulation.advance(above(0.018, 0.0065));
+  Snapshot snapshot;
+  simulation.write_snapshot(snapshot);
+  ASSERT_EQ(snapshot.bodies.size(), 2u);
+  const LatticeSnapshot rest = snapshot.bodies[1].lattice;
+  // How far a node is from where the hand would carry a rigid tool.
+  const auto bent = [&](double hand_m) {
+    simulation.write_snapshot(snapshot);
+    const LatticeSnapshot& now = snapshot.bodies[1].lattice;
+    double most = 0.0;
+    for (std::size_t n = 0; n < now.x.size(); ++n) {
+      const Vector3 moved(now.x[n] - rest.x[n], now.y[n] - rest.y[n] - (hand_m - 0.0065),
+                          now.z[n] - rest.z[n]);
+      most = std::max(most, moved.norm());
+    }
+    return most;
+  };
+  const Reaction reaction = press(simulation, 0.0065, 0.003, 400, 0.018);
+  EXPECT_TRUE(reaction.touching);
+  EXPECT_GT(reaction.force_n.y(), 0.0);
+  EXPECT_LT(lowest(simulation.surface()), before);
+  EXPECT_GT(bent(0.003), 0.3e-3);
+  for (int tick = 0; tick < 1500; ++tick) simulation.advance(above(0.018, 0.02));
+  EXPECT_LT(bent(0.02), 0.05e-3) << "elastic";
+}
+
+TEST(SolidTool, IsExchangedWhileTheSimulationRuns) {
+  Simulation simulation = simulate(held_handle(solid(SurfaceSolid{finger()}, soft_flesh())));
+  press(simulation, 0.0055, 0.004);
+  const ShapeState shape = simulation.shape();
+  EXPECT_EQ(shape.lattices.size(), 1u) << "undo is of the bodies, not of the tool";
+  ASSERT_TRUE(simulation.apply(SetTool{Tool{}}).ok());
+  Snapshot snapshot;
+  simulation.advance(above(0.05, 0.02));
+  simulation.write_snapshot(snapshot);
+  EXPECT_EQ(snapshot.bodies.size(), 1u);
+  ASSERT_TRUE(simulation.apply(SetTool{solid(ImplicitShape(BoxShape{}))}).ok());
+  EXPECT_TRUE(press(simulation, 0.014, 0.011).touching);
+  ASSERT_TRUE(simulation.restore(shape).ok());
+}
+
+TEST(SolidTool, IsRefusedWhereItCannotBe) {
+  const auto refusal = [](const Tool& tool, const Symmetry& symmetry = {}) {
+    Scene scene = held_handle(tool);
+    scene.symmetry = symmetry;
+    const auto made = Simulation::make(scene, InstructionSet::baseline);
+    return made.ok() ? "" : made.error().message;
+  };
+  Tool without;
+  without.kind = ToolKind::solid;
+  EXPECT_EQ(refusal(without), "tool: a solid must have a body");
+  EXPECT_NE(refusal(solid(ImplicitShape(BoxShape{{0.004, -1.0, 0.004}}))).find("tool: "), std::string::npos);
+  Surface open = finger();
+  open.net.y[0] += 0.001;
+  EXPECT_NE(refusal(solid(SurfaceSolid{open})).find("tool: "), std::string::npos);
+  Tool soft = solid(SurfaceSolid{finger()}, soft_flesh());
+  EXPECT_NE(refusal(soft, {true, Vector3::Zero(), Vector3::UnitZ()}).find("mirror"), std::string::npos);
+  soft.action = ToolAction::pull;
+  EXPECT_NE(refusal(soft).find("push"), std::string::npos);
+}
+
+TEST(SolidTool, AllocatesNothingInATick) {
+  for (const Tool& tool : {solid(SurfaceSolid{finger()}), solid(SurfaceSolid{finger()}, soft_flesh()),
+                           solid(ImplicitShape(TorusShape{0.006, 0.002}))}) {
+    Simulation simulation = simulate(held_handle(tool));
+    Snapshot snapshot;
+    simulation.advance(above(0.05, 0.006));
+    simulation.write_snapshot(snapshot);
+    const std::size_t before = allocation_count();
+    press(simulation, 0.006, 0.003, 100);
+    simulation.write_snapshot(snapshot);
+    EXPECT_EQ(allocation_count(), before);
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill
