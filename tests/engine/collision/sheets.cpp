@@ -45,8 +45,9 @@ Surface round_tube(double radius_m, double half_length_m) {
   const double radius = radius_m * control_radius(around);
   for (int i = 0; i < around; ++i) {
     for (int j = 0; j < 5; ++j) {
-      net.set_point(i, j, {half_length_m * (0.5 * j - 1.0), radius * std::cos(angle(i, around)),
-                           -radius * std::sin(angle(i, around))});
+      net.set_point(i, j,
+                    {half_length_m * (0.5 * j - 1.0), radius * std::cos(angle(i, around)),
+                     radius * std::sin(angle(i, around))});
     }
   }
   return make_surface(u, v, std::move(net)).value();
@@ -61,8 +62,9 @@ Surface round_torus(double ring_radius_m, double tube_radius_m) {
   for (int i = 0; i < around; ++i) {
     for (int j = 0; j < along; ++j) {
       const double out = control_radius(around) * (ring_radius_m + tube * std::cos(angle(j, along)));
-      net.set_point(i, j, {out * std::cos(angle(i, around)), tube * std::sin(angle(j, along)),
-                           -out * std::sin(angle(i, around))});
+      net.set_point(i, j,
+                    {out * std::cos(angle(i, around)), tube * std::sin(angle(j, along)),
+                     -out * std::sin(angle(i, around))});
     }
   }
   return make_surface(u, v, std::move(net)).value();
