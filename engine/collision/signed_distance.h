@@ -21,6 +21,13 @@ class SignedDistance {
   // Changes by at most the distance moved, which is what makes a ball's bound at(centre) - radius.
   virtual DistanceSample at(const Vector3& point_m) const = 0;
 
+  // The same where the distance is less than enough_m. Beyond, a convex solid may answer by any plane that
+  // leaves it on one side and is at least so far: for solids whose distance takes long.
+  virtual DistanceSample at_within(const Vector3& point_m, double enough_m) const {
+    (void)enough_m;
+    return at(point_m);
+  }
+
   // Of a convex solid the distance lies above each of its tangents: at(a) + gradient . (b - a) <= at(b),
   // which bounds it far better than the way moved alone.
   virtual bool is_convex() const = 0;

@@ -13,8 +13,8 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
 constexpr int most_steps = 60, most_restarts = 2;
-// Below this, a step gains nothing but rounding.
-constexpr double least_gain_m = 1e-15;
+// Of the solid's size: a step that gains less is not worth its work.
+constexpr double least_gain = 1e-12;
 // The way on either side over which the gradient's differences are taken, of the solid's size and at most.
 constexpr double difference_share = 1e-5, longest_difference_m = 1e-5;
 // A gradient that turns by more over that way has passed an edge: it says nothing of the curvature.
@@ -53,7 +53,7 @@ class Descent {
     reach_ = size_;
     for (int step = 0, restarts = 0; step < most_steps; ++step) {
       const Step next = find_step();
-      if (next.gain < least_gain_m || !move(next.way)) {
+      if (next.gain < least_gain * size_ || !move(next.way)) {
         // Faces seen from afar may bar the way: without them a smooth descent goes on.
         if (restarts++ == most_restarts || count_ == 1) break;
         keep_nearest();
@@ -194,7 +194,7 @@ class Descent {
     take_face(there);
     if (better_) {
       reach_ = std::max(reach_, 2.0 * length);
-      return before - best_.distance_m > least_gain_m;
+      return before - best_.distance_m > least_gain * size_;
     }
     lengths_ = lengths;
     reach_ = (new_face_ ? 0.7 : 0.3) * length;

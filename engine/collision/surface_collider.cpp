@@ -22,7 +22,7 @@ constexpr double nearest_tolerance_m = 2e-5;
 // then be cut to the size of the tolerance.
 constexpr double unbent_tolerance_m = 5e-5;
 // Of a solid's whole search, so that a tick has an end.
-constexpr int cut_capacity = 20000;
+constexpr int cut_capacity = 8000;
 constexpr double clearance_share = 0.75;
 // Below this, a step of Newton's method gains nothing but rounding.
 constexpr double least_gain_m = 1e-15;
@@ -54,7 +54,7 @@ double SurfaceCollider::reach(double margin) const {
 }
 
 void SurfaceCollider::offer(const ToolShape& tool, double u, double v, const Vector3& point) {
-  const double distance = tool.distance(point);
+  const double distance = tool.distance_within(point, best_.distance_m);
   if (distance >= best_.distance_m) return;
   best_ = {u, v, point, distance};
 }
@@ -165,7 +165,7 @@ void SurfaceCollider::take_near_samples(const ToolShape& tool, double margin, Co
       const int index = (cell.i + (corner >> 1)) * columns + cell.j + (corner & 1);
       if (near_at_[index] == query_) continue;
       near_at_[index] = query_;
-      const double distance = tool.distance(levels_.sample(index));
+      const double distance = tool.distance_within(levels_.sample(index), margin + touch_tolerance_m);
       if (distance > margin) continue;
       if (near_.size() == near_capacity) {
         result.overflow = true;
@@ -179,7 +179,7 @@ void SurfaceCollider::take_near_samples(const ToolShape& tool, double margin, Co
 void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, double reach,
                                  CollisionResult& result) {
   const CoverSphere sphere = levels_.cover(cell);
-  if (tool.distance(sphere.centre) - sphere.radius > reach) return;
+  if (tool.distance_within(sphere.centre, reach + 2.0 * sphere.radius) - sphere.radius > reach) return;
   if (levels_.is_finest(cell)) {
     finest_.push_back(cell);
     return;

@@ -50,14 +50,19 @@ double solid_bound(const ToolShape& tool, const PatchCorners& corners, double en
   const Vector3 middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
   double radius = 0.0;
   for (const Vector3& corner : corners) radius = std::max(radius, (corner - middle).norm());
-  const DistanceSample centre = tool.at(middle);
-  double bound = centre.distance_m - radius;
-  if (bound >= enough) return bound;
   const double concavity = tool.made_of->concavity(tool.into_frame(middle), radius);
-  if (!(concavity < infinity)) return bound;
-  const CornerValues at_middle = tangent_at_corners(centre, middle, corners);
-  bound = std::max(bound, least(at_middle) - 0.5 * concavity * radius * radius);
+  CornerValues at_middle;
+  const auto bound_by = [&](const DistanceSample& centre) {
+    const double ball = centre.distance_m - radius;
+    if (!(concavity < infinity)) return ball;
+    at_middle = tangent_at_corners(centre, middle, corners);
+    return std::max(ball, least(at_middle) - 0.5 * concavity * radius * radius);
+  };
+  // A plane that takes little work often does.
+  double bound = bound_by(tool.at_within(middle, -infinity));
   if (bound >= enough || concavity > 0.0) return bound;
+  bound = std::max(bound, bound_by(tool.at(middle)));
+  if (bound >= enough) return bound;
   std::array<CornerValues, 5> tangents{at_middle};
   for (int k = 0; k < 4; ++k) {
     tangents[k + 1] = tangent_at_corners(tool.at(corners[k]), corners[k], corners);
@@ -74,7 +79,7 @@ double solid_bound(const ToolShape& tool, const PatchCorners& corners, double en
 double lower_bound(const ToolShape& tool, const Box& box) {
   if (tool.is_solid()) {
     const Vector3 half = 0.5 * (box.high - box.low), middle = box.low + half;
-    const DistanceSample centre = tool.at(middle);
+    const DistanceSample centre = tool.at_within(middle, -infinity);
     const double radius = half.norm(), concavity = tool.made_of->concavity(tool.into_frame(middle), radius);
     const double ball = centre.distance_m - radius;
     if (!(concavity < infinity)) return ball;

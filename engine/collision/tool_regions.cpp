@@ -8,7 +8,7 @@ namespace spoonbill {
 namespace {
 
 // For the regions of one query.
-constexpr int region_cut_capacity = 50000;
+constexpr int region_cut_capacity = 16000;
 
 int cells_of(const GridDirection& direction) {
   return static_cast<int>(direction.parameters.size()) - 1;
@@ -69,7 +69,7 @@ bool SurfaceCollider::touches(const Surface& surface, const ToolShape& tool, con
     const Patch patch = patches_.back();
     patches_.pop_back();
     for (const Vector3& corner : patch.corners) {
-      if (tool.distance(corner) <= touch_tolerance_m) return true;
+      if (tool.distance_within(corner, 2.0 * touch_tolerance_m) <= touch_tolerance_m) return true;
     }
     if (lower_bound(tool, patch.corners, bulge(patch), 0.0) > 0.0) continue;
     if (!can_cut(patch)) {

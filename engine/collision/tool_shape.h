@@ -55,7 +55,16 @@ struct ToolShape {
     return kind == Kind::sphere ? (point - centre_m).norm() - radius_m : normal.dot(point - centre_m);
   }
 
+  // The same where it is less than `enough`; beyond, a lower bound of it that is at least so far.
+  double distance_within(const Vector3& point, double enough) const {
+    return is_solid() ? made_of->at_within(into_frame(point), enough).distance_m : distance(point);
+  }
+
   // Of a solid alone, in the world frame.
+  DistanceSample at_within(const Vector3& point, double enough) const {
+    const DistanceSample sample = made_of->at_within(into_frame(point), enough);
+    return {sample.distance_m, turn * sample.gradient};
+  }
   DistanceSample at(const Vector3& point) const {
     const DistanceSample sample = made_of->at(into_frame(point));
     return {sample.distance_m, turn * sample.gradient};

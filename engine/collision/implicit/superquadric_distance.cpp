@@ -10,6 +10,8 @@ namespace {
 
 constexpr double nothing = -1e300;     // the logarithm of a coordinate that is 0
 constexpr double least_share = 1e-60;  // of a semi-axis, below which a coordinate counts as 0
+// Of the price's logarithm, and so of the distance.
+constexpr double settled_step = 1e-13;
 // Where the gauge is so near 1 the distance is the gauge's over its slope, to less than rounding.
 constexpr double at_surface_gauge = 1e-14;
 
@@ -36,7 +38,7 @@ Coordinate solve_coordinate(double log_target, double log_price, double q) {
     priced = stable_exp(log_price + (q - 1.0) * value);
     const double move = (own + priced - target) / (own + (q - 1.0) * priced);
     value -= move;
-    if (!(move > 1e-15)) break;
+    if (!(move > 1e-14)) break;
   }
   return {value, priced, -priced / (own + (q - 1.0) * priced)};
 }
@@ -80,6 +82,11 @@ DistanceSample SuperquadricDistance::at(const Vector3& point_m) const {
   return at_surface(point_m);
 }
 
+DistanceSample SuperquadricDistance::at_within(const Vector3& point_m, double enough_m) const {
+  const DistanceSample plane = at_surface(point_m);
+  return plane.distance_m >= enough_m ? plane : at(point_m);
+}
+
 DistanceSample SuperquadricDistance::at_surface(const Vector3& point) const {
   return tangent(radial(point), point);
 }
@@ -110,7 +117,7 @@ DistanceSample SuperquadricDistance::outside(const Vector3& point) const {
     // Without a bound on the other side, only rounding can lead back.
     const bool bounded = low > -1e300 && high < 1e300, leads_back = next <= low || next >= high;
     if (leads_back) next = bounded ? 0.5 * (low + high) : log_price;
-    const bool settled = std::abs(gauge) < 2e-16 || std::abs(next - log_price) < 1e-15 * std::abs(next);
+    const bool settled = std::abs(gauge) < 2e-16 || std::abs(next - log_price) < settled_step;
     log_price = next;
     if (settled) break;
   }

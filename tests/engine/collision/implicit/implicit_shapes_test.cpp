@@ -63,7 +63,7 @@ TEST(ImplicitShapes, DistancesOfConvexOnesAreTheBestOverAllDirections) {
     // The search over directions can end a little before the best where they make an edge.
     const double found = distance_by_support(shape, point), distance = solid->at(point).distance_m;
     EXPECT_LE(found, distance + 1e-12) << trial;
-    EXPECT_GE(found, distance - 1e-5 * bounds.size()) << trial;
+    EXPECT_GE(found, distance - 1e-3 * bounds.size()) << trial;
   }
 }
 
