@@ -13,6 +13,11 @@ struct Box {
     const Vector3 apart = (low - other.high).cwiseMax(other.low - high).cwiseMax(0.0);
     return apart.norm();
   }
+  // Whether no axis keeps them farther apart than `reach_m`.
+  bool is_near(const Box& other, double reach_m) const {
+    return (low.array() - reach_m <= other.high.array()).all() &&
+           (other.low.array() - reach_m <= high.array()).all();
+  }
   bool holds(const Box& other) const {
     return (low.array() <= other.low.array()).all() && (other.high.array() <= high.array()).all();
   }

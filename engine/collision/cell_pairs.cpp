@@ -1,49 +1,15 @@
 #include "engine/collision/cell_pairs.h"
 
 #include <algorithm>
-
-#include "engine/collision/patch_distance.h"
-#include "engine/collision/triangle.h"
+#include <bit>
 
 namespace spoonbill {
 namespace {
 
-// Fewer pairs are refined though all spheres meet: that costs little and gives narrower regions.
-constexpr std::size_t few_pairs = 2048;
-
-bool meet(const CoverSphere& a, const CoverSphere& b, double reach) {
-  const double apart = a.radius + b.radius + reach;
-  return (a.centre - b.centre).squaredNorm() <= apart * apart;
-}
-
-// How far the two triangles of a cell can be from the surface: its bulge from the bilinear patch, and a
-// quarter of what the corners are from a parallelogram.
-double triangle_slack(const PatchCorners& corners, double bulge) {
-  return bulge + 0.25 * (corners[0] - corners[1] - corners[2] + corners[3]).norm();
-}
-
-bool cells_meet(const PatchCorners& a, const PatchCorners& b, double slack) {
-  const Triangle of_a[2] = {{a[0], a[1], a[2]}, {a[3], a[2], a[1]}};
-  const Triangle of_b[2] = {{b[0], b[1], b[2]}, {b[3], b[2], b[1]}};
-  for (const Triangle& first : of_a) {
-    for (const Triangle& second : of_b) {
-      if (triangles_meet(first, second, slack)) return true;
-    }
-  }
-  return false;
-}
-
-// Calls take() for the cells of the next level within a cell; the finest are their own.
-template <class Take>
-void for_each_finer(const SurfaceLevels& levels, const LevelCell& cell, const Take& take) {
-  if (levels.is_finest(cell)) {
-    take(cell);
-    return;
-  }
+// A cell of the next level within a cell, by its lane among the slabs.
+LevelCell finer(const SurfaceLevels& levels, const LevelCell& cell, int lane) {
   const int half = levels.step(cell.level + 1);
-  for (int corner = 0; corner < 4; ++corner) {
-    take(LevelCell{cell.i + (corner >> 1) * half, cell.j + (corner & 1) * half, cell.level + 1});
-  }
+  return {cell.i + (lane >> 1) * half, cell.j + (lane & 1) * half, cell.level + 1};
 }
 
 }  // namespace
@@ -51,36 +17,69 @@ void for_each_finer(const SurfaceLevels& levels, const LevelCell& cell, const Ta
 CellPairs::CellPairs(SurfaceLevels& first, SurfaceLevels& second)
     : first_(&first),
       second_(&second),
+      first_slabs_(first),
+      second_slabs_(second),
       first_tree_(first.nested().grid.u.knots, first.nested().grid.v.knots),
       second_tree_(second.nested().grid.u.knots, second.nested().grid.v.knots) {
-  // Each step down leaves one pair behind.
+  // Each step down leaves one pair behind, and up to fifteen of cells.
   node_pairs_.reserve(256);
+  path_.reserve(static_cast<std::size_t>(16 * (2 + std::max(first.nested().levels, second.nested().levels))));
   pairs_.reserve(cell_pair_capacity);
-  finer_.reserve(cell_pair_capacity);
-  counted_at_.assign(static_cast<std::size_t>(first.all_cells() + second.all_cells()), 0);
 }
 
 void CellPairs::begin_first() {
   first_tree_.update(first_->surface().net);
+  first_slabs_.begin();
 }
 
 void CellPairs::begin_second() {
   second_tree_.update(second_->surface().net);
+  second_slabs_.begin();
 }
 
 std::vector<CellPair>& CellPairs::within(double reach_m) {
-  overflow_ = false;
   tighten(first_tree_, *first_, second_tree_, reach_m);
   tighten(second_tree_, *second_, first_tree_, reach_m);
-  pairs_.clear();
-  visit_elements([&] { return reach_m; },
-                 [&](const CellPair& pair) {
-                   overflow_ = overflow_ || pairs_.size() == cell_pair_capacity;
-                   if (pairs_.size() < cell_pair_capacity) pairs_.push_back(pair);
-                 });
-  while (!all_meet() && refine(reach_m)) continue;
-  keep_meeting_triangles(reach_m);
+  int level = std::max(first_->nested().levels, second_->nested().levels);
+  take_pairs(reach_m, level);
+  while (overflow_ && level > 0) take_pairs(reach_m, --level);
   return pairs_;
+}
+
+void CellPairs::take_pairs(double reach, int level) {
+  pairs_.clear();
+  overflow_ = false;
+  visit_near_elements(reach, [&](const CellPair& pair) { refine(pair, reach, level); });
+}
+
+void CellPairs::refine(const CellPair& elements, double reach, int level) {
+  const int finest_first = std::min(level, first_->nested().levels),
+            finest_second = std::min(level, second_->nested().levels);
+  const auto meeting = first_->kernels().meeting;
+  if ((meeting(first_slabs_.alone(elements.first), second_slabs_.alone(elements.second), reach) & 1U) == 0U) {
+    return;
+  }
+  path_.clear();
+  path_.push_back(elements);
+  while (!path_.empty() && !overflow_) {
+    const CellPair pair = path_.back();
+    path_.pop_back();
+    const bool cut_first = pair.first.level < finest_first, cut_second = pair.second.level < finest_second;
+    if (!cut_first && !cut_second) {
+      overflow_ = pairs_.size() == cell_pair_capacity;
+      if (!overflow_) pairs_.push_back(pair);
+      continue;
+    }
+    const SlabGroup& first = cut_first ? first_slabs_.within(pair.first) : first_slabs_.alone(pair.first);
+    const SlabGroup& second =
+        cut_second ? second_slabs_.within(pair.second) : second_slabs_.alone(pair.second);
+    const unsigned lanes = (cut_first ? 0xffffU : 0x000fU) & (cut_second ? 0xffffU : 0x1111U);
+    for (unsigned met = meeting(first, second, reach) & lanes; met != 0U; met &= met - 1U) {
+      const int lane = std::countr_zero(met);
+      path_.push_back({cut_first ? finer(*first_, pair.first, lane >> 2) : pair.first,
+                       cut_second ? finer(*second_, pair.second, lane & 3) : pair.second});
+    }
+  }
 }
 
 // The boxes of control points are several elements wide. Those of elements that the other surface could meet
@@ -115,63 +114,6 @@ std::array<std::array<int, 2>, 2> CellPairs::split(const std::array<int, 2>& nod
       node_b.is_leaf() || (!node_a.is_leaf() && first_tree_.box(a).size() >= second_tree_.box(b).size());
   if (split_a) return {{{node_a.left, b}, {node_a.right, b}}};
   return {{{a, node_b.left}, {a, node_b.right}}};
-}
-
-// One level down; false where both surfaces are at their finest.
-bool CellPairs::refine(double reach) {
-  if (pairs_.empty() || (first_->is_finest(pairs_[0].first) && second_->is_finest(pairs_[0].second))) {
-    return false;
-  }
-  finer_.clear();
-  for (const CellPair& pair : pairs_) {
-    if (are_apart(pair, reach)) continue;
-    for_each_finer(*first_, pair.first, [&](const LevelCell& a) {
-      const CoverSphere& cover = first_->cover(a);
-      for_each_finer(*second_, pair.second, [&](const LevelCell& b) {
-        if (!meet(cover, second_->cover(b), reach)) return;
-        overflow_ = overflow_ || finer_.size() == cell_pair_capacity;
-        if (finer_.size() < cell_pair_capacity) finer_.push_back({a, b});
-      });
-    });
-  }
-  pairs_.swap(finer_);
-  return true;
-}
-
-int CellPairs::cells_in(const SurfaceLevels& levels, LevelCell CellPair::*side, int offset) {
-  int cells = 0;
-  for (const CellPair& pair : pairs_) {
-    std::uint32_t& counted = counted_at_[offset + levels.cell_index(pair.*side)];
-    cells += counted == count_ ? 0 : 1;
-    counted = count_;
-  }
-  return cells;
-}
-
-bool CellPairs::all_meet() {
-  if (pairs_.size() <= few_pairs) return false;
-  ++count_;
-  return cells_in(*first_, &CellPair::first, 0) == first_->cell_count(pairs_[0].first.level) &&
-         cells_in(*second_, &CellPair::second, first_->all_cells()) ==
-             second_->cell_count(pairs_[0].second.level);
-}
-
-// By their spheres or, at a little more cost, by planes between their corners.
-bool CellPairs::are_apart(const CellPair& pair, double reach) {
-  if (!meet(first_->cover(pair.first), second_->cover(pair.second), reach)) return true;
-  return patch_distance(first_->corners(pair.first), first_->bulge(pair.first), second_->corners(pair.second),
-                        second_->bulge(pair.second)) > reach;
-}
-
-void CellPairs::keep_meeting_triangles(double reach) {
-  const auto apart = [&](const CellPair& pair) {
-    if (are_apart(pair, reach)) return true;
-    const PatchCorners a = first_->corners(pair.first), b = second_->corners(pair.second);
-    return !cells_meet(a, b,
-                       triangle_slack(a, first_->bulge(pair.first)) +
-                           triangle_slack(b, second_->bulge(pair.second)) + reach);
-  };
-  pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(), apart), pairs_.end());
 }
 
 }  // namespace spoonbill

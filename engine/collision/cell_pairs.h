@@ -1,12 +1,13 @@
-// The cells of two surfaces that could meet, found from coarse to fine: boxes of the present control points,
-// spheres that cover their patches, and at the end the triangles of the samples with the slack that the
-// surfaces may leave them by.
+// The cells of two surfaces that could meet, found from coarse to fine: boxes of the present control points
+// and corners, then slabs about the patches, which hold the slack that the surfaces may leave their samples
+// by.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
+#include "engine/collision/cell_slabs.h"
 #include "engine/collision/element_tree.h"
 #include "engine/collision/surface_levels.h"
 
@@ -16,8 +17,7 @@ inline constexpr std::size_t cell_pair_capacity = 1 << 16;
 
 struct CellPair {
   LevelCell first, second;
-  // For ContactRegions: cell_index() of both, and the region.
-  int first_index = 0, second_index = 0, region = 0;
+  int region = 0;  // for ContactRegions
 };
 
 // One owner, one thread; allocates only when made.
@@ -29,9 +29,11 @@ class CellPairs {
   void begin_first();
   void begin_second();
 
-  // All pairs of cells that can be within `reach_m` of each other: of the finest level, or of one where every
-  // cell of both surfaces is in some of many pairs, below which spheres tell nothing apart.
+  // All pairs of cells that can be within `reach_m` of each other: of the finest level, or of the finest at
+  // which there are not too many.
   std::vector<CellPair>& within(double reach_m);
+  // Those of the last within(), in the order that others have given them.
+  const std::vector<CellPair>& pairs() const { return pairs_; }
 
   // Calls visit(pair) for the elements, as coarsest cells, whose boxes are within reach() of each other,
   // nearer ones first by and large; reach() may fall meanwhile.
@@ -54,6 +56,23 @@ class CellPairs {
     }
   }
 
+  // Calls visit(pair) for all elements whose boxes are within reach of each other.
+  template <class Visit>
+  void visit_near_elements(double reach, const Visit& visit) {
+    node_pairs_.clear();
+    node_pairs_.push_back({first_tree_.root(), second_tree_.root()});
+    while (!node_pairs_.empty()) {
+      const std::array<int, 2> nodes = node_pairs_.back();
+      node_pairs_.pop_back();
+      if (!first_tree_.box(nodes[0]).is_near(second_tree_.box(nodes[1]), reach)) continue;
+      if (first_tree_.node(nodes[0]).is_leaf() && second_tree_.node(nodes[1]).is_leaf()) {
+        visit(elements(nodes));
+        continue;
+      }
+      for (const std::array<int, 2>& half : split(nodes)) node_pairs_.push_back(half);
+    }
+  }
+
   // Whether a capacity was met in the last within(), and pairs may be missing.
   bool overflow() const { return overflow_; }
 
@@ -67,19 +86,16 @@ class CellPairs {
   CellPair elements(const std::array<int, 2>& nodes) const;
   std::array<std::array<int, 2>, 2> split(const std::array<int, 2>& nodes) const;
   static void tighten(ElementTree& tree, SurfaceLevels& levels, const ElementTree& other, double reach);
-  bool are_apart(const CellPair& pair, double reach);
-  bool refine(double reach);
-  bool all_meet();
-  int cells_in(const SurfaceLevels& levels, LevelCell CellPair::*side, int offset);
-  void keep_meeting_triangles(double reach);
+  void take_pairs(double reach, int level);
+  void refine(const CellPair& elements, double reach, int level);
 
   SurfaceLevels* first_;
   SurfaceLevels* second_;
+  CellSlabs first_slabs_, second_slabs_;
   ElementTree first_tree_, second_tree_;
   std::vector<std::array<int, 2>> node_pairs_;  // working memory: a path down both trees
-  std::vector<CellPair> pairs_, finer_;
-  std::vector<std::uint32_t> counted_at_;  // by cell_index() of the first, then of the second
-  std::uint32_t count_ = 0;
+  std::vector<CellPair> pairs_;
+  std::vector<CellPair> path_;  // working memory: what is left to refine of two elements
   bool overflow_ = false;
 };
 

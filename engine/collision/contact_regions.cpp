@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <tuple>
 
 namespace spoonbill {
 namespace {
@@ -32,9 +31,12 @@ bool are_neighbours(const SurfaceLevels& levels, const LevelCell& a, const Level
 ContactRegions::ContactRegions(const SurfaceLevels& first, const SurfaceLevels& second)
     : first_(&first), second_(&second) {
   parent_.reserve(cell_pair_capacity);
-  first_pair_.assign(static_cast<std::size_t>(first.all_cells()), 0);
+  previous_.reserve(cell_pair_capacity);
+  unordered_.reserve(cell_pair_capacity);
+  last_pair_.assign(static_cast<std::size_t>(first.all_cells()), 0);
   paired_at_.assign(static_cast<std::size_t>(first.all_cells()), 0);
   regions_.reserve(region_capacity);
+  end_.reserve(region_capacity);
 }
 
 int ContactRegions::root(int pair) {
@@ -42,56 +44,58 @@ int ContactRegions::root(int pair) {
   return pair;
 }
 
+// With the pairs before it, of its first cell and of all that cell's neighbours.
 void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pair) {
   const LevelCell& cell = pairs[pair].first;
   const Grid& grid = first_->nested().grid;
   const int step = first_->step(cell.level);
-  // The cell itself and half of its neighbours: the other half find it.
-  for (int k = 0; k < 5; ++k) {
+  for (int k = 0; k < 9; ++k) {
     const int i = into_grid(grid.u, cell.i + (k / 3 - 1) * step);
     const int j = into_grid(grid.v, cell.j + (k % 3 - 1) * step);
     if (i < 0 || j < 0) continue;
     const int there = first_->cell_index({i, j, cell.level});
     if (paired_at_[there] != group_) continue;
-    for (std::size_t other = static_cast<std::size_t>(first_pair_[there]);
-         other < pairs.size() && pairs[other].first_index == there; ++other) {
+    for (int other = last_pair_[there]; other >= 0; other = previous_[other]) {
       if (!are_neighbours(*second_, pairs[pair].second, pairs[other].second)) continue;
-      parent_[root(static_cast<int>(other))] = root(pair);
+      const int a = root(pair), b = root(other);
+      parent_[std::max(a, b)] = std::min(a, b);
     }
   }
 }
 
 const std::vector<ContactRegions::Region>& ContactRegions::group(std::vector<CellPair>& pairs) {
   ++group_;
-  regions_.clear();
   parent_.clear();
-  const auto order = [&](const CellPair& pair) {
-    return std::tie(pair.region, pair.first_index, pair.second_index);
-  };
-  const auto sort = [&] {
-    std::sort(pairs.begin(), pairs.end(),
-              [&](const CellPair& a, const CellPair& b) { return order(a) < order(b); });
-  };
-  for (CellPair& pair : pairs) {
-    pair.first_index = first_->cell_index(pair.first);
-    pair.second_index = second_->cell_index(pair.second);
-  }
-  sort();
+  previous_.clear();
   for (int k = 0; k < static_cast<int>(pairs.size()); ++k) {
+    const int cell = first_->cell_index(pairs[k].first);
     parent_.push_back(k);
-    const int cell = pairs[k].first_index;
-    if (paired_at_[cell] != group_) first_pair_[cell] = k;
+    join_neighbours(pairs, k);
+    previous_.push_back(paired_at_[cell] == group_ ? last_pair_[cell] : -1);
+    last_pair_[cell] = k;
     paired_at_[cell] = group_;
   }
-  for (int k = 0; k < static_cast<int>(pairs.size()); ++k) join_neighbours(pairs, k);
-  for (int k = 0; k < static_cast<int>(pairs.size()); ++k) pairs[k].region = root(k);
-  sort();
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const bool starts = k == 0 || pairs[k].region != pairs[k - 1].region;
-    if (starts && regions_.size() < region_capacity) regions_.push_back({k, k});
-    regions_.back().end = k + 1;
-  }
+  order_by_region(pairs);
   return regions_;
+}
+
+void ContactRegions::order_by_region(std::vector<CellPair>& pairs) {
+  regions_.clear();
+  end_.clear();
+  for (int k = 0; k < static_cast<int>(pairs.size()); ++k) {
+    const int first = root(k);
+    if (first == k && regions_.size() < region_capacity) regions_.push_back({0, 0});
+    pairs[k].region = first == k ? static_cast<int>(regions_.size()) - 1 : pairs[first].region;
+    ++regions_[pairs[k].region].end;
+  }
+  std::size_t count = 0;
+  for (Region& region : regions_) {
+    region = {count, count + region.end};
+    count = region.end;
+    end_.push_back(static_cast<int>(region.begin));
+  }
+  unordered_.assign(pairs.begin(), pairs.end());
+  for (const CellPair& pair : unordered_) pairs[end_[pair.region]++] = pair;
 }
 
 }  // namespace spoonbill

@@ -24,14 +24,18 @@ class ContactRegions {
  private:
   int root(int pair);
   void join_neighbours(const std::vector<CellPair>& pairs, int pair);
+  void order_by_region(std::vector<CellPair>& pairs);
 
   const SurfaceLevels* first_;
   const SurfaceLevels* second_;
-  std::vector<int> parent_;               // of each pair
-  std::vector<int> first_pair_;           // by cell_index() of the first surface's cell
+  std::vector<int> parent_;               // of each pair, an earlier one or itself
+  std::vector<int> last_pair_;            // by cell_index() of the first surface's cell
+  std::vector<int> previous_;             // pair of the same cell, by pair; -1 before the first
   std::vector<std::uint32_t> paired_at_;  // the group() in which such a cell was in a pair
   std::uint32_t group_ = 0;
   std::vector<Region> regions_;
+  std::vector<int> end_;             // working memory: where the next pair of each region goes
+  std::vector<CellPair> unordered_;  // working memory
 };
 
 }  // namespace spoonbill

@@ -1,6 +1,5 @@
 #include "engine/collision/pair_polish.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -22,6 +21,29 @@ constexpr double least_gain_m = 1e-15;
 bool leaves(const KnotVector& knots, double parameter, double step) {
   if (knots.is_periodic()) return false;
   return (step < 0.0 && parameter <= knots.domain_start()) || (step > 0.0 && parameter >= knots.domain_end());
+}
+
+// Puts the solution of h x = g into g, by Cholesky's factors in the lower half of h; false where h is not
+// positive definite.
+template <int size>
+bool solve_positive(Eigen::Matrix<double, size, size>& h, Eigen::Matrix<double, size, 1>& g) {
+  for (int j = 0; j < size; ++j) {
+    for (int k = 0; k < j; ++k) h(j, j) -= h(j, k) * h(j, k);
+    if (!(h(j, j) > 0.0)) return false;
+    h(j, j) = std::sqrt(h(j, j));
+    const double scale = 1.0 / h(j, j);
+    for (int i = j + 1; i < size; ++i) {
+      for (int k = 0; k < j; ++k) h(i, j) -= h(i, k) * h(j, k);
+      h(i, j) *= scale;
+    }
+    for (int k = 0; k < j; ++k) g[j] -= h(j, k) * g[k];
+    g[j] *= scale;
+  }
+  for (int j = size - 1; j >= 0; --j) {
+    for (int k = j + 1; k < size; ++k) g[j] -= h(k, j) * g[k];
+    g[j] /= h(j, j);
+  }
+  return true;
 }
 
 // A minimisation in `size` parameters whose lengths on the surface differ: steps are taken in metres.
@@ -49,9 +71,8 @@ struct Problem {
       g[k] = 0.0;
     }
     h.diagonal().array() += damping;
-    const Eigen::LLT<Eigen::Matrix<double, size, size>> factors(h);
-    if (factors.info() != Eigen::Success) return Eigen::Matrix<double, size, 1>::Constant(NAN);
-    return -scale.cwiseProduct(factors.solve(g).eval());
+    if (!solve_positive(h, g)) return Eigen::Matrix<double, size, 1>::Constant(NAN);
+    return -scale.cwiseProduct(g);
   }
 };
 
@@ -88,11 +109,11 @@ Matrix2 along(const SurfacePoint& at, const Vector3& direction) {
 
 }  // namespace
 
-SurfacePair nearest_pair(const Surface& first, const Surface& second, PairParameters from) {
+SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from) {
   Problem<4> problem;
-  problem.knots = {&first.u, &first.v, &second.u, &second.v};
-  problem.parameters = {first.u.into_domain(from.u), first.v.into_domain(from.v),
-                        second.u.into_domain(from.s), second.v.into_domain(from.t)};
+  problem.knots = {&first.u->knots(), &first.v->knots(), &second.u->knots(), &second.v->knots()};
+  problem.parameters = {problem.knots[0]->into_domain(from.u), problem.knots[1]->into_domain(from.v),
+                        problem.knots[2]->into_domain(from.s), problem.knots[3]->into_domain(from.t)};
   const auto evaluate_at = [&](const Eigen::Vector4d& at, SurfacePoint& a, SurfacePoint& b) {
     a = evaluate(first, at[0], at[1]);
     b = evaluate(second, at[2], at[3]);
@@ -128,10 +149,10 @@ SurfacePair nearest_pair(const Surface& first, const Surface& second, PairParame
   return {{at[0], at[1], at[2], at[3]}, a.position_m, b.position_m};
 }
 
-NearestPoint nearest_point(const Surface& surface, const Vector3& point, double u, double v) {
+NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v) {
   Problem<2> problem;
-  problem.knots = {&surface.u, &surface.v};
-  problem.parameters = {surface.u.into_domain(u), surface.v.into_domain(v)};
+  problem.knots = {&surface.u->knots(), &surface.v->knots()};
+  problem.parameters = {problem.knots[0]->into_domain(u), problem.knots[1]->into_domain(v)};
   SurfacePoint at = evaluate(surface, problem.parameters[0], problem.parameters[1]);
   double distance = (at.position_m - point).norm(), damping = least_damping;
   for (int taken = 0; taken < most_steps && distance > least_gain_m; ++taken) {
@@ -151,7 +172,7 @@ NearestPoint nearest_point(const Surface& surface, const Vector3& point, double 
     });
     if (!moved || !(distance < before - least_gain_m)) break;
   }
-  return {problem.parameters[0], problem.parameters[1], at.position_m};
+  return {problem.parameters[0], problem.parameters[1], at};
 }
 
 namespace {
@@ -168,8 +189,8 @@ bool is_end(const KnotVector& knots, double parameter) {
   return !knots.is_periodic() && (parameter <= knots.domain_start() || parameter >= knots.domain_end());
 }
 
-bool on_edge(const Surface& surface, double u, double v) {
-  return is_end(surface.u, u) || is_end(surface.v, v);
+bool on_edge(const PiecewiseSurface& surface, double u, double v) {
+  return is_end(surface.u->knots(), u) || is_end(surface.v->knots(), v);
 }
 
 // By more than Newton's method may leave.
@@ -177,14 +198,15 @@ bool is_oblique(const Vector3& apart, const Vector3& normal) {
   return apart.cross(normal).norm() > 1e-6 * apart.norm();
 }
 
-Behind behind_at(const Surface& first, const Surface& second, const PairParameters& from, double outside) {
+Behind behind_at(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
+                 double outside) {
   Behind result;
   result.a = evaluate(first, from.u, from.v);
   const NearestPoint nearest = nearest_point(second, result.a.position_m, from.s, from.t);
   result.at = {from.u, from.v, nearest.u, nearest.v};
-  result.b = evaluate(second, nearest.u, nearest.v);
-  result.normal = outside * unit_normal(second, nearest.u, nearest.v);
-  const Vector3 apart = result.a.position_m - nearest.point_m;
+  result.b = nearest.at;
+  result.normal = outside * unit_normal(second, nearest.at, nearest.u, nearest.v);
+  const Vector3 apart = result.a.position_m - nearest.at.position_m;
   // Beyond an edge of the second surface there is no behind.
   const bool behind = apart.dot(result.normal) < 0.0 &&
                       !(on_edge(second, nearest.u, nearest.v) && is_oblique(apart, result.normal));
@@ -203,14 +225,16 @@ Matrix2 distance_curvature(const Behind& at) {
 
 }  // namespace
 
-double depth_behind(const Surface& first, const Surface& second, const PairParameters& from, double outside) {
+double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
+                    double outside) {
   return behind_at(first, second, from, outside).depth;
 }
 
-DeepestPair deepest_pair(const Surface& first, const Surface& second, PairParameters from, double outside) {
+DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from,
+                         double outside) {
   Behind best = behind_at(first, second, from, outside);
   Problem<2> problem;
-  problem.knots = {&first.u, &first.v};
+  problem.knots = {&first.u->knots(), &first.v->knots()};
   double damping = least_damping;
   for (int taken = 0; taken < most_steps; ++taken) {
     problem.parameters = {best.at.u, best.at.v};

@@ -2,6 +2,7 @@
 // first guess on the surfaces themselves. Local: what the guess leads to. Allocates nothing.
 #pragma once
 
+#include "engine/bspline/piece_basis.h"
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {
@@ -18,14 +19,14 @@ struct SurfacePair {
 };
 
 // A damped Newton's method on half the squared distance; parameters stay within the domains.
-SurfacePair nearest_pair(const Surface& first, const Surface& second, PairParameters from);
+SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from);
 
 // The same for a point and a surface, from its parameters u, v.
 struct NearestPoint {
   double u, v;
-  Vector3 point_m;
+  SurfacePoint at;
 };
-NearestPoint nearest_point(const Surface& surface, const Vector3& point, double u, double v);
+NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v);
 
 struct DeepestPair {
   SurfacePair pair;
@@ -35,7 +36,8 @@ struct DeepestPair {
 
 // How far a point of the first surface is behind the second, by the nearest point that `from` leads to; below
 // zero, before it. See deepest_pair() for `outside`.
-double depth_behind(const Surface& first, const Surface& second, const PairParameters& from, double outside);
+double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
+                    double outside);
 
 // The point of the first surface that lies farthest behind the second, along the normal of the second's
 // nearest point. `outside` is 1 where that normal is du x dv, -1 where it is the opposite.
@@ -44,6 +46,7 @@ double depth_behind(const Surface& first, const Surface& second, const PairParam
 // With I and II the fundamental forms of the second surface at the nearest point, the parameters of that
 // point follow a move c = (A_u . B_s, A_u . B_t) by (I - d II)^-1 c, and n turns by -II of that, so that
 //   Hess d = -c^T I^-1 II (I - d II)^-1 c,   f_uu = -(A_uu . n) - Hess d.
-DeepestPair deepest_pair(const Surface& first, const Surface& second, PairParameters from, double outside);
+DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from,
+                         double outside);
 
 }  // namespace spoonbill

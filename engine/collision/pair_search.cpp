@@ -31,7 +31,7 @@ void PairSearch::forget_best() {
 }
 
 void PairSearch::offer(const PairParameters& from) {
-  const SurfacePair polished = nearest_pair(first_->surface(), second_->surface(), from);
+  const SurfacePair polished = nearest_pair(first_->pieces(), second_->pieces(), from);
   const double distance = polished.distance_m();
   if (!(distance < best_distance_m_)) return;
   best_ = polished;
@@ -71,7 +71,7 @@ void PairSearch::search(const LevelCell& a, const LevelCell& b, double tolerance
   }
 }
 
-std::array<PairSearch::Patch, 4> PairSearch::cut(const Surface& surface, const Patch& patch) {
+std::array<PairSearch::Patch, 4> PairSearch::cut(const PiecewiseSurface& surface, const Patch& patch) {
   const double u = 0.5 * (patch.u0 + patch.u1), v = 0.5 * (patch.v0 + patch.v1);
   const Vector3 centre = position(surface, u, v), low_u = position(surface, patch.u0, v),
                 high_u = position(surface, patch.u1, v), low_v = position(surface, u, patch.v0),
@@ -88,9 +88,9 @@ std::array<PairSearch::Patch, 4> PairSearch::cut(const Surface& surface, const P
 void PairSearch::split(const Pair& pair) {
   const int depth = pair.depth + 1;
   if (pair.a.size() >= pair.b.size()) {
-    for (const Patch& part : cut(first_->surface(), pair.a)) pairs_.push_back({part, pair.b, depth});
+    for (const Patch& part : cut(first_->pieces(), pair.a)) pairs_.push_back({part, pair.b, depth});
   } else {
-    for (const Patch& part : cut(second_->surface(), pair.b)) pairs_.push_back({pair.a, part, depth});
+    for (const Patch& part : cut(second_->pieces(), pair.b)) pairs_.push_back({pair.a, part, depth});
   }
 }
 

@@ -42,7 +42,7 @@ class PairSearch {
   };
 
   static Patch patch_of(SurfaceLevels& levels, const LevelCell& cell);
-  static std::array<Patch, 4> cut(const Surface& surface, const Patch& patch);
+  static std::array<Patch, 4> cut(const PiecewiseSurface& surface, const Patch& patch);
   void split(const Pair& pair);
 
   SurfaceLevels* first_;

@@ -11,12 +11,78 @@ Result<NestedGrid> make_nested_grid(const KnotVector& u, const KnotVector& v, in
   return NestedGrid{std::move(grid).value(), levels};
 }
 
-SurfaceLevels::SurfaceLevels(const NestedGrid& nested)
-    : nested_(&nested), bounds_(nested.grid.u.knots, nested.grid.v.knots) {
+namespace {
+
+const PatchKernels& kernels_for(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::avx512:
+      return kernels_avx512::patch_kernels;
+    case InstructionSet::avx2:
+      return kernels_avx2::patch_kernels;
+    case InstructionSet::baseline:
+      break;
+  }
+  return kernels_baseline::patch_kernels;
+}
+
+constexpr int tile_padding = 4;
+
+// How many knots lie at the end of an element: by so many the basis functions of the sample there are
+// shifted, which is the next element's first.
+int knots_at_end(const GridDirection& direction, int levels, int element) {
+  const KnotVector& knots = direction.knots;
+  const int elements = (static_cast<int>(direction.parameters.size()) - 1) >> levels;
+  const auto span = [&](int e) {
+    return knots.find_span(0.5 *
+                           (direction.parameters[e << levels] + direction.parameters[(e + 1) << levels]));
+  };
+  if (element + 1 < elements) return span(element + 1) - span(element);
+  return knots.is_periodic() ? span(0) + knots.control_point_count() - span(element) : 0;
+}
+
+}  // namespace
+
+SurfaceLevels::Bands SurfaceLevels::bands_of(const GridDirection& direction, int levels) {
+  const BlendingMatrix& matrix = direction.values;
+  Bands bands;
+  bands.bandwidth = matrix.bandwidth;
+  bands.samples = (1 << levels) + 1;
+  bands.padded = (bands.samples + tile_padding - 1) / tile_padding * tile_padding;
+  const int elements = (matrix.rows - 1) >> levels;
+  bands.controls.resize(static_cast<std::size_t>(elements * bands.bandwidth));
+  bands.values.assign(static_cast<std::size_t>(elements * bands.bandwidth * bands.padded), 0.0);
+  for (int element = 0; element < elements; ++element) {
+    const int first_row = element << levels;
+    for (int k = 0; k < bands.bandwidth; ++k) {
+      bands.controls[element * bands.bandwidth + k] = matrix.column(first_row, k);
+    }
+    for (int sample = 0; sample < bands.samples; ++sample) {
+      const int row = first_row + sample;
+      const int shift = sample + 1 < bands.samples ? 0 : knots_at_end(direction, levels, element);
+      // Those shifted beyond the element's own vanish at its end.
+      for (int k = 0; k + shift < bands.bandwidth; ++k) {
+        bands.values[(element * bands.bandwidth + k + shift) * bands.padded + sample] =
+            matrix.values[row * bands.bandwidth + k];
+      }
+    }
+  }
+  return bands;
+}
+
+SurfaceLevels::SurfaceLevels(const NestedGrid& nested, InstructionSet set)
+    : nested_(&nested),
+      kernels_(&kernels_for(set)),
+      bounds_(nested.grid.u.knots, nested.grid.v.knots),
+      u_pieces_(nested.grid.u.knots),
+      v_pieces_(nested.grid.v.knots),
+      u_bands_(bands_of(nested.grid.u, nested.levels)),
+      v_bands_(bands_of(nested.grid.v, nested.levels)) {
   const std::size_t count =
       static_cast<std::size_t>(nested.grid.rows()) * static_cast<std::size_t>(nested.grid.columns());
-  samples_.resize(count);
+  for (std::vector<double>* values : {&x_, &y_, &z_}) values->resize(count);
   sampled_at_.assign(count, 0);
+  element_at_.assign(static_cast<std::size_t>(cell_count(0)), 0);
+  tile_lines_.resize(static_cast<std::size_t>(3 * u_bands_.bandwidth * v_bands_.padded));
   column_at_.assign(static_cast<std::size_t>(nested.grid.columns()), 0);
   lines_.resize(static_cast<std::size_t>(nested.grid.u.knots.control_point_count()));
   int cells = 0;
@@ -41,13 +107,28 @@ int SurfaceLevels::cell_index(const LevelCell& cell) const {
 
 void SurfaceLevels::begin(const Surface& surface) {
   surface_ = &surface;
+  given_ = {nullptr, nullptr, nullptr};
   ++begun_;
   samples_evaluated_ = 0;
   bounds_.begin();
 }
 
-const Vector3& SurfaceLevels::sample(int index) {
-  if (sampled_at_[index] == begun_) return samples_[index];
+void SurfaceLevels::begin(const Surface& surface, const PlanarPoints& samples) {
+  begin(surface);
+  given_ = samples;
+}
+
+void SurfaceLevels::set_sample(int index, const Vector3& point) {
+  ++samples_evaluated_;
+  x_[index] = point.x();
+  y_[index] = point.y();
+  z_[index] = point.z();
+  sampled_at_[index] = begun_;
+}
+
+Vector3 SurfaceLevels::sample(int index) {
+  if (given_.x != nullptr) return {given_.x[index], given_.y[index], given_.z[index]};
+  if (sampled_at_[index] == begun_) return {x_[index], y_[index], z_[index]};
   const Grid& grid = nested_->grid;
   const BlendingMatrix& a_u = grid.u.values;
   const BlendingMatrix& a_v = grid.v.values;
@@ -61,14 +142,34 @@ const Vector3& SurfaceLevels::sample(int index) {
     }
     point += a_u.values[row * a_u.bandwidth + a] * line;
   }
-  ++samples_evaluated_;
-  samples_[index] = point;
-  sampled_at_[index] = begun_;
-  return samples_[index];
+  set_sample(index, point);
+  return point;
+}
+
+TileBand SurfaceLevels::Bands::of(int element) const {
+  return {controls.data() + element * bandwidth, values.data() + element * bandwidth * padded, bandwidth,
+          samples, padded};
+}
+
+void SurfaceLevels::sample_element(int element_u, int element_v) {
+  if (given_.x != nullptr) return;
+  const int columns = nested_->grid.columns(), side = u_bands_.samples;
+  std::uint32_t& element_at = element_at_[element_u * ((columns - 1) >> nested_->levels) + element_v];
+  if (element_at == begun_) return;
+  element_at = begun_;
+  const int first = ((element_u * columns + element_v) << nested_->levels);
+  kernels_->sample_tile(u_bands_.of(element_u), v_bands_.of(element_v),
+                        {surface_->net.x.data(), surface_->net.y.data(), surface_->net.z.data()},
+                        surface_->net.columns, tile_lines_.data(),
+                        {x_.data() + first, y_.data() + first, z_.data() + first}, columns);
+  for (int row = 0; row < side; ++row) {
+    std::fill_n(sampled_at_.begin() + first + row * columns, side, begun_);
+  }
+  samples_evaluated_ += side * side;
 }
 
 void SurfaceLevels::sample_column(int column) {
-  if (column_at_[column] == begun_) return;
+  if (given_.x != nullptr || column_at_[column] == begun_) return;
   column_at_[column] = begun_;
   const Grid& grid = nested_->grid;
   const BlendingMatrix& a_u = grid.u.values;
@@ -86,9 +187,7 @@ void SurfaceLevels::sample_column(int column) {
     for (int a = 0; a < a_u.bandwidth; ++a) {
       point += a_u.values[row * a_u.bandwidth + a] * lines_[a_u.column(row, a)];
     }
-    ++samples_evaluated_;
-    samples_[index] = point;
-    sampled_at_[index] = begun_;
+    set_sample(index, point);
   }
 }
 

@@ -6,9 +6,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/aligned_vector.h"
 #include "engine/bspline/grid.h"
+#include "engine/bspline/piece_basis.h"
 #include "engine/bspline/surface.h"
+#include "engine/collision/patch_kernels.h"
 #include "engine/collision/surface_bounds.h"
+#include "engine/instruction_set.h"
 #include "engine/result.h"
 
 namespace spoonbill {
@@ -40,21 +44,31 @@ using PatchCorners = std::array<Vector3, 4>;
 // One owner, one thread; allocates only when made. The grid must outlive it.
 class SurfaceLevels {
  public:
-  explicit SurfaceLevels(const NestedGrid& nested);
+  explicit SurfaceLevels(const NestedGrid& nested, InstructionSet set = best_instruction_set());
 
   // To be called whenever the control points have moved; forgets the samples of before. The surface must have
   // the grid's knots and outlive the calls below.
   void begin(const Surface& surface);
 
+  // The same with all samples of the finest grid given, in its order, as GridEvaluator<double> has them: none
+  // is evaluated. They must be the surface's and outlive the calls below.
+  void begin(const Surface& surface, const PlanarPoints& samples);
+
   const Surface& surface() const { return *surface_; }
+  PiecewiseSurface pieces() const { return {surface_, &u_pieces_, &v_pieces_}; }
   const NestedGrid& nested() const { return *nested_; }
   SurfaceBounds& bounds() { return bounds_; }
   int samples_evaluated() const { return samples_evaluated_; }
 
   // index: row * columns + column of the finest grid.
-  const Vector3& sample(int index);
+  Vector3 sample(int index);
   // The coarsest samples of one column, which share their sums along v.
   void sample_column(int column);
+  // All samples of one element, at a fraction of what they cost one by one; to the same bits.
+  void sample_element(int element_u, int element_v);
+  // Of the finest grid; valid where sampled.
+  PlanarPoints samples() const { return given_.x != nullptr ? given_ : own_samples(); }
+  const PatchKernels& kernels() const { return *kernels_; }
 
   int step(int level) const { return 1 << (nested_->levels - level); }
   bool is_finest(const LevelCell& cell) const { return cell.level >= nested_->levels; }
@@ -70,10 +84,27 @@ class SurfaceLevels {
   int all_cells() const { return static_cast<int>(covers_.size()); }
 
  private:
+  // The basis functions of each element of one direction at its finest samples.
+  struct Bands {
+    int bandwidth = 0, samples = 0, padded = 0;
+    std::vector<int> controls;
+    AlignedVector<double> values;
+    TileBand of(int element) const;
+  };
+  static Bands bands_of(const GridDirection& direction, int levels);
+  PlanarPoints own_samples() const { return {x_.data(), y_.data(), z_.data()}; }
+  void set_sample(int index, const Vector3& point);
+
   const NestedGrid* nested_;
+  const PatchKernels* kernels_;
   const Surface* surface_ = nullptr;
+  PlanarPoints given_{nullptr, nullptr, nullptr};
   SurfaceBounds bounds_;
-  std::vector<Vector3> samples_;
+  PieceBasis u_pieces_, v_pieces_;
+  Bands u_bands_, v_bands_;
+  std::vector<double> x_, y_, z_;
+  AlignedVector<double> tile_lines_;       // working memory of a tile
+  std::vector<std::uint32_t> element_at_;  // the begin() since which all samples of an element are there
   std::vector<Vector3> lines_;             // working memory: a column's sums along v, one a control row
   std::vector<std::uint32_t> sampled_at_;  // the begin() since which a sample was evaluated
   std::vector<std::uint32_t> column_at_;   // the same for the coarsest samples of a whole column

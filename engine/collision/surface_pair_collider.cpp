@@ -14,6 +14,7 @@ constexpr double nearest_tolerance = 1e-4;
 // Candidates of a region from which Newton's method looks for a touch before all of it is searched.
 constexpr std::size_t region_seeds = 8;
 constexpr std::size_t depth_seeds = 8;
+constexpr std::size_t inner_seeds = 4;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -50,12 +51,43 @@ class ParameterMean {
     ++count_;
   }
   double mean() const { return knots_->into_domain(first_ + sum_ / count_); }
+  // Half the way from the mean to another parameter.
+  double towards(double parameter) const {
+    const double from = first_ + sum_ / count_, length = knots_->domain_end() - knots_->domain_start();
+    double apart = parameter - from;
+    if (knots_->is_periodic()) apart -= length * std::round(apart / length);
+    return knots_->into_domain(from + 0.5 * apart);
+  }
 
  private:
   const KnotVector* knots_;
   double first_ = 0.0, sum_ = 0.0;
   int count_ = 0;
 };
+
+}  // namespace
+
+// The mean of the parameters of a region.
+class SurfacePairCollider::RegionMiddle {
+ public:
+  RegionMiddle(const Surface& first, const Surface& second)
+      : u_(first.u), v_(first.v), s_(second.u), t_(second.v) {}
+  void add(const PairParameters& at) {
+    u_.add(at.u);
+    v_.add(at.v);
+    s_.add(at.s);
+    t_.add(at.t);
+  }
+  PairParameters mean() const { return {u_.mean(), v_.mean(), s_.mean(), t_.mean()}; }
+  PairParameters towards(const PairParameters& at) const {
+    return {u_.towards(at.u), v_.towards(at.v), s_.towards(at.s), t_.towards(at.t)};
+  }
+
+ private:
+  ParameterMean u_, v_, s_, t_;
+};
+
+namespace {
 
 // How long the control net is along a direction.
 double length_along(const ControlNet& net, const Vector3& direction) {
@@ -110,7 +142,7 @@ PairResult SurfacePairCollider::collide(const Surface& first, const Surface& sec
 }
 
 void SurfacePairCollider::take_contacts(const PairQuery& query) {
-  Pairs& pairs = cells_.within(0.0);
+  Pairs& pairs = cells_.within(0.5 * touch_tolerance_m);
   for (const Region& region : regions_.group(pairs)) {
     if (touches(pairs, region)) contacts_.push_back(contact_of(pairs, region, query));
   }
@@ -136,31 +168,25 @@ bool SurfacePairCollider::touches(const Pairs& pairs, const Region& region) {
 
 PairContact SurfacePairCollider::contact_of(const Pairs& pairs, const Region& region,
                                             const PairQuery& query) const {
-  const Surface& first = first_.surface();
-  const Surface& second = second_.surface();
   PairContact contact;
   contact.first = contact.second = {infinity, -infinity, infinity, -infinity};
-  ParameterMean u(first.u), v(first.v), s(second.u), t(second.v);
+  RegionMiddle middle(first_.surface(), second_.surface());
   for (std::size_t k = region.begin; k < region.end; ++k) {
     widen(contact.first, first_, pairs[k].first);
     widen(contact.second, second_, pairs[k].second);
-    const PairParameters centre = centre_of(first_, second_, pairs[k]);
-    u.add(centre.u);
-    v.add(centre.v);
-    s.add(centre.s);
-    t.add(centre.t);
+    middle.add(centre_of(first_, second_, pairs[k]));
   }
   contact.pair = search_.best();
   const PairParameters& touch = contact.pair.at;
-  contact.normal = unit_normal(second, touch.s, touch.t);
+  contact.normal = unit_normal(second_.surface(), touch.s, touch.t);
   // An open surface has no inside: of both its sides, the one with the shorter way out counts.
   double shortest = infinity;
   for (const double outside : {1.0, -1.0}) {
     if (outside < 0.0 && query.second_closed) continue;
     PairContact way = contact;
-    settle(way, deepest_seed(pairs, region, outside), outside, query.first_closed);
+    settle(way, inner_seed(pairs, region, middle, outside), outside, query.first_closed);
     if (!(way.depth_m > 0.0)) {
-      settle(way, {u.mean(), v.mean(), s.mean(), t.mean()}, outside, query.first_closed);
+      settle(way, outer_seed(pairs, region, outside), outside, query.first_closed);
     }
     if (!(way.depth_m > 0.0 && way.depth_m < shortest)) continue;
     shortest = way.depth_m;
@@ -171,15 +197,33 @@ PairContact SurfacePairCollider::contact_of(const Pairs& pairs, const Region& re
   return contact;
 }
 
-// Of a few places of the region and the point of touch, the one where the first surface is deepest.
-PairParameters SurfacePairCollider::deepest_seed(const Pairs& pairs, const Region& region,
-                                                 double outside) const {
+// Of the middle of the region and a few places between it and the pairs, which lie where the surfaces cross,
+// the one where the first surface is deepest.
+PairParameters SurfacePairCollider::inner_seed(const Pairs& pairs, const Region& region,
+                                               const RegionMiddle& middle, double outside) const {
+  const std::size_t count = region.end - region.begin, seeds = std::min(count, inner_seeds);
+  PairParameters deepest = middle.mean();
+  double depth = depth_behind(first_.pieces(), second_.pieces(), deepest, outside);
+  for (std::size_t k = 0; k < seeds; ++k) {
+    const PairParameters at =
+        middle.towards(centre_of(first_, second_, pairs[region.begin + k * count / seeds]));
+    const double here = depth_behind(first_.pieces(), second_.pieces(), at, outside);
+    if (!(here > depth)) continue;
+    depth = here;
+    deepest = at;
+  }
+  return deepest;
+}
+
+// The same of a few of the pairs and the point of touch.
+PairParameters SurfacePairCollider::outer_seed(const Pairs& pairs, const Region& region,
+                                               double outside) const {
   const std::size_t count = region.end - region.begin, seeds = std::min(count, depth_seeds);
   PairParameters deepest = search_.best().at;
   double depth = 0.0;
   for (std::size_t k = 0; k < seeds; ++k) {
     const PairParameters at = centre_of(first_, second_, pairs[region.begin + k * count / seeds]);
-    const double here = depth_behind(first_.surface(), second_.surface(), at, outside);
+    const double here = depth_behind(first_.pieces(), second_.pieces(), at, outside);
     if (!(here > depth)) continue;
     depth = here;
     deepest = at;
@@ -198,7 +242,7 @@ void SurfacePairCollider::take_inner_touch(const Pairs& pairs, const Region& reg
   for (std::size_t k = 0; k <= seeds; ++k) {
     const PairParameters from =
         k == seeds ? search_.best().at : centre_of(first_, second_, pairs[region.begin + k * count / seeds]);
-    const SurfacePair pair = nearest_pair(first, second, from);
+    const SurfacePair pair = nearest_pair(first_.pieces(), second_.pieces(), from);
     if (pair.distance_m() > touch_tolerance_m) continue;
     const Vector3 normal = unit_normal(second, pair.at.s, pair.at.t);
     if (!(normal.dot(unit_normal(first, pair.at.u, pair.at.v)) > 0.0)) continue;
@@ -215,13 +259,12 @@ void SurfacePairCollider::take_inner_touch(const Pairs& pairs, const Region& reg
 // than what is known.
 void SurfacePairCollider::settle(PairContact& contact, const PairParameters& from, double outside,
                                  bool first_closed) const {
-  const Surface& first = first_.surface();
-  const Surface& second = second_.surface();
+  const PiecewiseSurface first = first_.pieces(), second = second_.pieces();
   const DeepestPair of_first = deepest_pair(first, second, from, outside);
   if (!(of_first.depth_m > contact.depth_m)) return;
   // The surfaces face each other where they are deep.
   const PairParameters& deep = of_first.pair.at;
-  const double outside_first = -sign_of(of_first.normal.dot(unit_normal(first, deep.u, deep.v)));
+  const double outside_first = -sign_of(of_first.normal.dot(unit_normal(first_.surface(), deep.u, deep.v)));
   if (first_closed && outside_first < 0.0) return;
   const DeepestPair of_second = deepest_pair(second, first, {deep.s, deep.t, deep.u, deep.v}, outside_first);
   if (!(of_second.depth_m > contact.depth_m)) return;

@@ -57,13 +57,16 @@ class SurfacePairCollider {
   const std::vector<PairContact>& contacts() const { return contacts_; }
 
  private:
+  class RegionMiddle;
   using Pairs = std::vector<CellPair>;
   using Region = ContactRegions::Region;
 
   void take_contacts(const PairQuery& query);
   bool touches(const Pairs& pairs, const Region& region);
   PairContact contact_of(const Pairs& pairs, const Region& region, const PairQuery& query) const;
-  PairParameters deepest_seed(const Pairs& pairs, const Region& region, double outside) const;
+  PairParameters inner_seed(const Pairs& pairs, const Region& region, const RegionMiddle& middle,
+                            double outside) const;
+  PairParameters outer_seed(const Pairs& pairs, const Region& region, double outside) const;
   void take_inner_touch(const Pairs& pairs, const Region& region, PairContact& contact) const;
   void settle(PairContact& contact, const PairParameters& from, double outside, bool first_closed) const;
   void find_nearest(const PairQuery& query, PairResult& result);

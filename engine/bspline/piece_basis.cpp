@@ -1,0 +1,173 @@
+#include "engine/bspline/piece_basis.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spoonbill {
+namespace {
+
+constexpr int vector_width = 4;
+// Below this sine of the angle between the tangents, their product loses too many digits.
+constexpr double least_sine = 1e-5;
+
+using Polynomials = std::array<std::array<double, max_degree + 1>, max_degree + 1>;
+
+// The basis functions of a span (Cox and de Boor) as coefficients in x, u = centre + half x: result[j][k]
+// belongs to x^k of the j-th.
+Polynomials polynomials_of(const double* at, int degree, double centre, double half) {
+  Polynomials result{};
+  result[0][0] = 1.0;
+  for (int p = 1; p <= degree; ++p) {
+    Polynomials next{};
+    for (int j = 0; j < p; ++j) {
+      // Function j of degree p - 1 lies on the knots from `low` to `high`.
+      const double low = at[j - p + 1], high = at[j + 1], scale = 1.0 / (high - low);
+      for (int k = 0; k < p; ++k) {
+        const double coefficient = scale * result[j][k];
+        next[j + 1][k] += (centre - low) * coefficient;
+        next[j + 1][k + 1] += half * coefficient;
+        next[j][k] += (high - centre) * coefficient;
+        next[j][k + 1] -= half * coefficient;
+      }
+    }
+    result = next;
+  }
+  return result;
+}
+
+}  // namespace
+
+PieceBasis::PieceBasis(const KnotVector& knots)
+    : knots_(&knots),
+      degree_(knots.degree()),
+      padded_((knots.degree() + vector_width) / vector_width * vector_width),
+      breaks_(knots.breakpoints()) {
+  const int pieces = static_cast<int>(breaks_.size()) - 1;
+  pieces_a_unit_ = pieces / (breaks_.back() - breaks_.front());
+  coefficients_.assign(static_cast<std::size_t>(pieces * (degree_ + 1) * padded_), 0.0);
+  for (int piece = 0; piece < pieces; ++piece) {
+    const double centre = 0.5 * (breaks_[piece] + breaks_[piece + 1]),
+                 half = 0.5 * (breaks_[piece + 1] - breaks_[piece]);
+    const int span = knots.find_span(centre);
+    const Polynomials polynomials =
+        polynomials_of(knots.extended_knots().data() + span, degree_, centre, half);
+    for (int j = 0; j <= degree_; ++j) {
+      controls_.push_back(knots.control_index(span, j));
+      for (int k = 0; k <= degree_; ++k) {
+        coefficients_[(piece * (degree_ + 1) + degree_ - k) * padded_ + j] = polynomials[j][k];
+      }
+    }
+  }
+}
+
+// Evenly spaced knots are found at once, others a few steps farther.
+int PieceBasis::piece_of(double u) const {
+  const int pieces = static_cast<int>(breaks_.size()) - 1;
+  int piece = std::clamp(static_cast<int>((u - breaks_.front()) * pieces_a_unit_), 0, pieces - 1);
+  while (piece > 0 && u < breaks_[piece]) --piece;
+  while (piece + 1 < pieces && u >= breaks_[piece + 1]) ++piece;
+  return piece;
+}
+
+void PieceBasis::take(double u, Values& values) const {
+  const int piece = piece_of(u);
+  values.controls = controls_.data() + piece * (degree_ + 1);
+  const double* row = coefficients_.data() + piece * (degree_ + 1) * padded_;
+  const double half = 0.5 * (breaks_[piece + 1] - breaks_[piece]);
+  const double scale = 1.0 / half, x = (u - breaks_[piece]) * scale - 1.0;
+  for (int first = 0; first < padded_; first += vector_width) {
+    double value[vector_width] = {}, slope[vector_width] = {}, bend[vector_width] = {};
+    const double* coefficient = row + first;
+    for (int k = 0; k <= degree_; ++k, coefficient += padded_) {
+      for (int j = 0; j < vector_width; ++j) {
+        bend[j] = bend[j] * x + slope[j];
+        slope[j] = slope[j] * x + value[j];
+        value[j] = value[j] * x + coefficient[j];
+      }
+    }
+    for (int j = 0; j < vector_width; ++j) {
+      values.value[0][first + j] = value[j];
+      values.value[1][first + j] = slope[j] * scale;
+      values.value[2][first + j] = bend[j] * (2.0 * scale * scale);
+    }
+  }
+}
+
+void PieceBasis::take_values_only(double u, Values& values) const {
+  const int piece = piece_of(u);
+  values.controls = controls_.data() + piece * (degree_ + 1);
+  const double* row = coefficients_.data() + piece * (degree_ + 1) * padded_;
+  const double x = 2.0 * (u - breaks_[piece]) / (breaks_[piece + 1] - breaks_[piece]) - 1.0;
+  for (int first = 0; first < padded_; first += vector_width) {
+    double value[vector_width] = {};
+    const double* coefficient = row + first;
+    for (int k = 0; k <= degree_; ++k, coefficient += padded_) {
+      for (int j = 0; j < vector_width; ++j) value[j] = value[j] * x + coefficient[j];
+    }
+    for (int j = 0; j < vector_width; ++j) values.value[0][first + j] = value[j];
+  }
+}
+
+SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v) {
+  const Surface& whole = *surface.surface;
+  PieceBasis::Values bu, bv;
+  surface.u->take(whole.u.into_domain(u), bu);
+  surface.v->take(whole.v.into_domain(v), bv);
+  const double* const controls[3] = {whole.net.x.data(), whole.net.y.data(), whole.net.z.data()};
+  SurfacePoint point;
+  for (int axis = 0; axis < 3; ++axis) {
+    double sums[6] = {};  // the position, du, dv, duu, duv, dvv
+    for (int i = 0; i <= surface.u->degree(); ++i) {
+      const double* const row = controls[axis] + bu.controls[i] * whole.net.columns;
+      double value = 0.0, dv = 0.0, dvv = 0.0;
+      for (int j = 0; j <= surface.v->degree(); ++j) {
+        const double control = row[bv.controls[j]];
+        value += bv.value[0][j] * control;
+        dv += bv.value[1][j] * control;
+        dvv += bv.value[2][j] * control;
+      }
+      sums[0] += bu.value[0][i] * value;
+      sums[1] += bu.value[1][i] * value;
+      sums[2] += bu.value[0][i] * dv;
+      sums[3] += bu.value[2][i] * value;
+      sums[4] += bu.value[1][i] * dv;
+      sums[5] += bu.value[0][i] * dvv;
+    }
+    point.position_m[axis] = sums[0];
+    point.du[axis] = sums[1];
+    point.dv[axis] = sums[2];
+    point.duu[axis] = sums[3];
+    point.duv[axis] = sums[4];
+    point.dvv[axis] = sums[5];
+  }
+  return point;
+}
+
+Vector3 position(const PiecewiseSurface& surface, double u, double v) {
+  const Surface& whole = *surface.surface;
+  PieceBasis::Values bu, bv;
+  surface.u->take_values_only(whole.u.into_domain(u), bu);
+  surface.v->take_values_only(whole.v.into_domain(v), bv);
+  const double* const controls[3] = {whole.net.x.data(), whole.net.y.data(), whole.net.z.data()};
+  Vector3 point = Vector3::Zero();
+  for (int i = 0; i <= surface.u->degree(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double* const row = controls[axis] + bu.controls[i] * whole.net.columns;
+      double value = 0.0;
+      for (int j = 0; j <= surface.v->degree(); ++j) value += bv.value[0][j] * row[bv.controls[j]];
+      point[axis] += bu.value[0][i] * value;
+    }
+  }
+  return point;
+}
+
+Vector3 unit_normal(const PiecewiseSurface& surface, const SurfacePoint& at, double u, double v) {
+  const Vector3 across = at.du.cross(at.dv);
+  const double squared = across.squaredNorm();
+  if (squared > least_sine * least_sine * at.du.squaredNorm() * at.dv.squaredNorm()) {
+    return across / std::sqrt(squared);
+  }
+  return unit_normal(*surface.surface, u, v);
+}
+
+}  // namespace spoonbill

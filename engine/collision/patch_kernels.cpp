@@ -1,0 +1,141 @@
+#include "engine/collision/patch_kernels.h"
+
+namespace spoonbill::SPOONBILL_KERNELS {
+
+namespace {
+
+// Of a slab's size: what rounding may add to an extent.
+constexpr double rounding = 1e-14;
+
+void blend_line(const TileBand& v, const double* row, double* __restrict line) {
+  for (int j = 0; j < v.padded; ++j) line[j] = 0.0;
+  for (int k = 0; k < v.bandwidth; ++k) {
+    const double control = row[v.controls[k]];
+    const double* const values = v.values + k * v.padded;
+#pragma GCC ivdep
+    for (int j = 0; j < v.padded; ++j) line[j] += values[j] * control;
+  }
+}
+
+void combine_lines(const TileBand& u, int row, const double* lines, long line_size, int count,
+                   double* __restrict out) {
+  for (int j = 0; j < count; ++j) out[j] = 0.0;
+  for (int k = 0; k < u.bandwidth; ++k) {
+    const double value = u.values[k * u.padded + row];
+    const double* const line = lines + k * line_size;
+#pragma GCC ivdep
+    for (int j = 0; j < count; ++j) out[j] += value * line[j];
+  }
+}
+
+void sample_tile(const TileBand& u, const TileBand& v, const PlanarPoints& net, long net_columns,
+                 double* lines, const PlanarOutput& samples, long columns) {
+  const double* const controls[3] = {net.x, net.y, net.z};
+  double* const out[3] = {samples.x, samples.y, samples.z};
+  const long line_size = 3L * v.padded;
+  for (int k = 0; k < u.bandwidth; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      blend_line(v, controls[axis] + u.controls[k] * net_columns, lines + k * line_size + axis * v.padded);
+    }
+  }
+  for (int row = 0; row < u.samples; ++row) {
+    for (int axis = 0; axis < 3; ++axis) {
+      combine_lines(u, row, lines + axis * v.padded, line_size, v.samples, out[axis] + row * columns);
+    }
+  }
+}
+
+inline __attribute__((always_inline)) double magnitude(double number) {
+  return __builtin_fabs(number);
+}
+
+void take_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
+  constexpr int low_low[slab_lanes] = {0, 1, 3, 4};
+  const double* const values[3] = {samples.x, samples.y, samples.z};
+  double twist[3][slab_lanes];
+  for (int axis = 0; axis < 3; ++axis) {
+    double p00[slab_lanes], p01[slab_lanes], p10[slab_lanes], p11[slab_lanes];
+    for (int k = 0; k < slab_lanes; ++k) {
+      const double* const corner = values[axis] + low_low[k];
+      p00[k] = corner[0];
+      p01[k] = corner[1];
+      p10[k] = corner[3];
+      p11[k] = corner[4];
+    }
+    for (int k = 0; k < slab_lanes; ++k) {
+      const double low = p00[k] + p01[k], high = p10[k] + p11[k];
+      const double left = p00[k] + p10[k], right = p01[k] + p11[k];
+      group.centre[axis][k] = 0.25 * (low + high);
+      group.along_u[axis][k] = 0.25 * (high - low);
+      group.along_v[axis][k] = 0.25 * (right - left);
+      twist[axis][k] = 0.25 * ((p00[k] - p01[k]) - (p10[k] - p11[k]));
+    }
+  }
+  const auto& u = group.along_u;
+  const auto& v = group.along_v;
+  for (int k = 0; k < slab_lanes; ++k) {
+    const double x = u[1][k] * v[2][k] - u[2][k] * v[1][k];
+    const double y = u[2][k] * v[0][k] - u[0][k] * v[2][k];
+    const double z = u[0][k] * v[1][k] - u[1][k] * v[0][k];
+    const double squared = x * x + y * y + z * z;
+    const bool flat = squared > 0.0;
+    const double scale = (flat ? 1.0 : 0.0) / __builtin_sqrt(flat ? squared : 1.0);
+    const double nx = x * scale, ny = y * scale, nz = z * scale;
+    group.normal[0][k] = nx;
+    group.normal[1][k] = ny;
+    group.normal[2][k] = nz;
+    const double twisted =
+        __builtin_sqrt(twist[0][k] * twist[0][k] + twist[1][k] * twist[1][k] + twist[2][k] * twist[2][k]);
+    const double size = magnitude(u[0][k]) + magnitude(u[1][k]) + magnitude(u[2][k]) + magnitude(v[0][k]) +
+                        magnitude(v[1][k]) + magnitude(v[2][k]) + magnitude(group.centre[0][k]) +
+                        magnitude(group.centre[1][k]) + magnitude(group.centre[2][k]);
+    const double slack = bulge + twisted + rounding * size;
+    // A normal of long, narrow cells is not quite across their sides.
+    group.thickness[k] = magnitude(nx * u[0][k] + ny * u[1][k] + nz * u[2][k]) +
+                         magnitude(nx * v[0][k] + ny * v[1][k] + nz * v[2][k]) +
+                         magnitude(nx * twist[0][k] + ny * twist[1][k] + nz * twist[2][k]) + bulge +
+                         rounding * size;
+    group.slack[k] = slack;
+  }
+}
+
+unsigned meeting(const SlabGroup& a, const SlabGroup& b, double reach) {
+  int met[slab_lanes * slab_lanes];
+  for (int i = 0; i < slab_lanes; ++i) {
+    const double cx = a.centre[0][i], cy = a.centre[1][i], cz = a.centre[2][i];
+    const double nx = a.normal[0][i], ny = a.normal[1][i], nz = a.normal[2][i];
+    const double ux = a.along_u[0][i], uy = a.along_u[1][i], uz = a.along_u[2][i];
+    const double vx = a.along_v[0][i], vy = a.along_v[1][i], vz = a.along_v[2][i];
+    const double thick = a.thickness[i] + reach, slack = a.slack[i] + reach;
+#pragma GCC ivdep
+    for (int j = 0; j < slab_lanes; ++j) {
+      const double dx = b.centre[0][j] - cx, dy = b.centre[1][j] - cy, dz = b.centre[2][j] - cz;
+      const double bux = b.along_u[0][j], buy = b.along_u[1][j], buz = b.along_u[2][j];
+      const double bvx = b.along_v[0][j], bvy = b.along_v[1][j], bvz = b.along_v[2][j];
+      const double bnx = b.normal[0][j], bny = b.normal[1][j], bnz = b.normal[2][j];
+      const double across_a = magnitude(nx * dx + ny * dy + nz * dz);
+      const double reach_a = thick + b.slack[j] + magnitude(nx * bux + ny * buy + nz * buz) +
+                             magnitude(nx * bvx + ny * bvy + nz * bvz);
+      const double across_b = magnitude(bnx * dx + bny * dy + bnz * dz);
+      const double reach_b = slack + b.thickness[j] + magnitude(bnx * ux + bny * uy + bnz * uz) +
+                             magnitude(bnx * vx + bny * vy + bnz * vz);
+      const double squared = dx * dx + dy * dy + dz * dz;
+      const double between = magnitude(ux * dx + uy * dy + uz * dz) + magnitude(vx * dx + vy * dy + vz * dz) +
+                             magnitude(bux * dx + buy * dy + buz * dz) +
+                             magnitude(bvx * dx + bvy * dy + bvz * dz) +
+                             (slack + b.slack[j]) * __builtin_sqrt(squared);
+      // A distance that is no number separates nothing.
+      const bool apart = (across_a > reach_a) | (across_b > reach_b) | (squared > between);
+      met[slab_lanes * i + j] = apart ? 0 : 1;
+    }
+  }
+  unsigned bits = 0;
+  for (int k = 0; k < slab_lanes * slab_lanes; ++k) bits |= static_cast<unsigned>(met[k]) << k;
+  return bits;
+}
+
+}  // namespace
+
+const PatchKernels patch_kernels{sample_tile, take_slabs, meeting};
+
+}  // namespace spoonbill::SPOONBILL_KERNELS

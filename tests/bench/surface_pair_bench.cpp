@@ -1,0 +1,109 @@
+// Two sheets, one of which deforms between queries: ours on the true surfaces, FCL on meshes of 200 x 200
+// quads. And two nets crossing each other, ours alone.
+#include <benchmark/benchmark.h>
+#include <fcl/narrowphase/collision.h>
+
+#include <cmath>
+#include <functional>
+
+#include "engine/collision/surface_pair_collider.h"
+#include "tests/bench/fcl_sheet.h"
+#include "tests/bench/sheet.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr int controls = 28, levels = 3;  // 25 elements a side, 2^3 cells each
+constexpr std::size_t quads = 200;
+constexpr double depth_m = 0.004;
+
+Surface with_heights(Surface sheet, const std::function<double(double, double, double)>& height) {
+  ControlNet& net = sheet.net;
+  for (std::size_t k = 0; k < net.size(); ++k) net.y[k] = height(net.x[k], net.y[k], net.z[k]);
+  return sheet;
+}
+
+// A hilly sheet in two shapes, and a gently waved one on which its hilltops rest.
+struct Sheets {
+  Sheets()
+      : nested(make_nested_grid(wavy_sheet(controls).u, wavy_sheet(controls).v, levels).value()),
+        shapes{wavy_sheet(controls), wavy_sheet(controls)},
+        other(with_heights(wavy_sheet(controls), [](double x, double, double z) {
+          return 0.098 - depth_m + 0.002 * std::sin(4.0 * x + 3.0 * z);
+        })) {
+    for (double& y : shapes[1].net.y) y *= 1.01;
+    for (int k = 0; k < 2; ++k) samples[k] = samples_of(shapes[k], nested.grid);
+    other_samples = samples_of(other, nested.grid);
+  }
+  NestedGrid nested;
+  Surface shapes[2];
+  Surface other;
+  GridSamples<double> samples[2], other_samples;
+};
+
+// One sheet moves, the other does not.
+void surfaces_ours_from_controls(benchmark::State& state) {
+  const Sheets sheets;
+  SurfacePairCollider collider(sheets.nested, sheets.nested);
+  PairQuery query;
+  collider.collide(sheets.shapes[0], sheets.other, query);
+  query.second_moved = false;
+  std::size_t turn = 0;
+  PairResult result;
+  for (auto _ : state) result = collider.collide(sheets.shapes[turn++ % 2], sheets.other, query);
+  if (!result.touching || result.overflow) state.SkipWithError("the sheets do not touch");
+  state.counters["regions"] = static_cast<double>(collider.contacts().size());
+}
+
+template <class Volume>
+void surfaces_fcl(benchmark::State& state) {
+  const Sheets sheets;
+  const FclPoints shapes[2] = {fcl_points(sheets.samples[0]), fcl_points(sheets.samples[1])};
+  const auto mesh = fcl_mesh<Volume>(shapes[0], quads);
+  const auto other = fcl_mesh<Volume>(fcl_points(sheets.other_samples), quads);
+  const fcl::Transform3<float> place = fcl::Transform3<float>::Identity();
+  const fcl::CollisionRequest<float> request(100000, true);
+  std::size_t turn = 0, contacts = 0;
+  for (auto _ : state) {
+    refit(*mesh, shapes[turn++ % 2]);
+    fcl::CollisionResult<float> result;
+    contacts = fcl::collide<float>(mesh.get(), place, other.get(), place, request, result);
+  }
+  if (contacts == 0) state.SkipWithError("FCL found no contact");
+  state.counters["contacts"] = static_cast<double>(contacts);
+}
+
+// Both move, and cross each other from side to side.
+void nets_crossing(benchmark::State& state) {
+  constexpr int side = 30;
+  const auto crossing = [](double amplitude) {
+    return with_heights(wavy_sheet(side), [&](double x, double, double z) {
+      return 0.5 * (x - 0.5) + amplitude * std::sin(5.0 * x + 4.0 * z);
+    });
+  };
+  const Surface shapes[2] = {wavy_sheet(side), wavy_sheet(side)};
+  const Surface others[2] = {crossing(0.05), crossing(0.052)};
+  const NestedGrid nested =
+      make_nested_grid(shapes[0].u, shapes[0].v, static_cast<int>(state.range(0))).value();
+  SurfacePairCollider collider(nested, nested);
+  std::size_t turn = 0;
+  PairResult result;
+  for (auto _ : state) {
+    result = collider.collide(shapes[turn % 2], others[turn % 2], {});
+    ++turn;
+  }
+  if (!result.touching || result.overflow) state.SkipWithError("the nets do not cross");
+  state.counters["regions"] = static_cast<double>(collider.contacts().size());
+}
+
+using FclBox = fcl::AABB<float>;
+using FclTurnedBox = fcl::OBBRSS<float>;
+BENCHMARK(surfaces_ours_from_controls)->Unit(benchmark::kMicrosecond);
+BENCHMARK_TEMPLATE(surfaces_fcl, FclBox)->Name("surfaces_fcl_boxes")->Unit(benchmark::kMicrosecond);
+BENCHMARK_TEMPLATE(surfaces_fcl, FclTurnedBox)
+    ->Name("surfaces_fcl_turned_boxes")
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(nets_crossing)->Arg(1)->Arg(2)->Arg(3)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace spoonbill
