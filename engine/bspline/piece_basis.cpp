@@ -48,6 +48,7 @@ PieceBasis::PieceBasis(const KnotVector& knots)
   for (int piece = 0; piece < pieces; ++piece) {
     const double centre = 0.5 * (breaks_[piece] + breaks_[piece + 1]),
                  half = 0.5 * (breaks_[piece + 1] - breaks_[piece]);
+    scales_.push_back(1.0 / half);
     const int span = knots.find_span(centre);
     const Polynomials polynomials =
         polynomials_of(knots.extended_knots().data() + span, degree_, centre, half);
@@ -73,8 +74,7 @@ void PieceBasis::take(double u, Values& values) const {
   const int piece = piece_of(u);
   values.controls = controls_.data() + piece * (degree_ + 1);
   const double* row = coefficients_.data() + piece * (degree_ + 1) * padded_;
-  const double half = 0.5 * (breaks_[piece + 1] - breaks_[piece]);
-  const double scale = 1.0 / half, x = (u - breaks_[piece]) * scale - 1.0;
+  const double scale = scales_[piece], x = (u - breaks_[piece]) * scale - 1.0;
   for (int first = 0; first < padded_; first += vector_width) {
     double value[vector_width] = {}, slope[vector_width] = {}, bend[vector_width] = {};
     const double* coefficient = row + first;
@@ -97,7 +97,7 @@ void PieceBasis::take_values_only(double u, Values& values) const {
   const int piece = piece_of(u);
   values.controls = controls_.data() + piece * (degree_ + 1);
   const double* row = coefficients_.data() + piece * (degree_ + 1) * padded_;
-  const double x = 2.0 * (u - breaks_[piece]) / (breaks_[piece + 1] - breaks_[piece]) - 1.0;
+  const double x = (u - breaks_[piece]) * scales_[piece] - 1.0;
   for (int first = 0; first < padded_; first += vector_width) {
     double value[vector_width] = {};
     const double* coefficient = row + first;

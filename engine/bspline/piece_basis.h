@@ -35,7 +35,8 @@ class PieceBasis {
   int degree_, padded_;  // padded_: degree + 1 rounded up to whole vectors
   std::vector<double> breaks_;
   double pieces_a_unit_;
-  std::vector<int> controls_;  // degree + 1 of each piece
+  std::vector<double> scales_;  // dx / du of each piece, see coefficients_
+  std::vector<int> controls_;   // degree + 1 of each piece
   // Of each piece, in x = -1..1 across it: degree + 1 rows of padded_ coefficients, of the highest power
   // first.
   std::vector<double> coefficients_;

@@ -34,6 +34,7 @@ ContactRegions::ContactRegions(const SurfaceLevels& first, const SurfaceLevels& 
   previous_.reserve(cell_pair_capacity);
   unordered_.reserve(cell_pair_capacity);
   last_pair_.assign(static_cast<std::size_t>(first.all_cells()), 0);
+  split_.assign(static_cast<std::size_t>(first.all_cells()), false);
   paired_at_.assign(static_cast<std::size_t>(first.all_cells()), 0);
   regions_.reserve(region_capacity);
   end_.reserve(region_capacity);
@@ -49,17 +50,25 @@ void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pai
   const LevelCell& cell = pairs[pair].first;
   const Grid& grid = first_->nested().grid;
   const int step = first_->step(cell.level);
-  for (int k = 0; k < 9; ++k) {
-    const int i = into_grid(grid.u, cell.i + (k / 3 - 1) * step);
-    const int j = into_grid(grid.v, cell.j + (k % 3 - 1) * step);
-    if (i < 0 || j < 0) continue;
-    const int there = first_->cell_index({i, j, cell.level});
-    if (paired_at_[there] != group_) continue;
-    for (int other = last_pair_[there]; other >= 0; other = previous_[other]) {
-      if (!are_neighbours(*second_, pairs[pair].second, pairs[other].second)) continue;
-      const int a = root(pair), b = root(other);
-      parent_[std::max(a, b)] = std::min(a, b);
+  for (int row = -1; row <= 1; ++row) {
+    const int i = into_grid(grid.u, cell.i + row * step);
+    if (i < 0) continue;
+    for (int column = -1; column <= 1; ++column) {
+      const int j = into_grid(grid.v, cell.j + column * step);
+      if (j >= 0) join_with(pairs, pair, first_->cell_index({i, j, cell.level}));
     }
+  }
+}
+
+void ContactRegions::join_with(const std::vector<CellPair>& pairs, int pair, int cell) {
+  if (paired_at_[cell] != group_) return;
+  const bool whole = !split_[cell];
+  for (int other = last_pair_[cell]; other >= 0; other = previous_[other]) {
+    const int a = root(pair), b = root(other);
+    if (a == b && whole) return;
+    if (a == b || !are_neighbours(*second_, pairs[pair].second, pairs[other].second)) continue;
+    parent_[std::max(a, b)] = std::min(a, b);
+    if (whole) return;
   }
 }
 
@@ -71,7 +80,9 @@ const std::vector<ContactRegions::Region>& ContactRegions::group(std::vector<Cel
     const int cell = first_->cell_index(pairs[k].first);
     parent_.push_back(k);
     join_neighbours(pairs, k);
-    previous_.push_back(paired_at_[cell] == group_ ? last_pair_[cell] : -1);
+    const int before = paired_at_[cell] == group_ ? last_pair_[cell] : -1;
+    split_[cell] = before >= 0 && (split_[cell] || root(before) != root(k));
+    previous_.push_back(before);
     last_pair_[cell] = k;
     paired_at_[cell] = group_;
   }

@@ -16,6 +16,8 @@ constexpr int most_tries = 12;
 constexpr double least_damping = 1e-9;
 // Below this, in metres, a step gains nothing but rounding.
 constexpr double least_gain_m = 1e-15;
+// Below this, the quadratic model promises nothing that could be measured.
+constexpr double least_promise_m = 1e-17;
 
 // Whether a step would leave an open domain that the parameter is at the end of.
 bool leaves(const KnotVector& knots, double parameter, double step) {
@@ -54,6 +56,7 @@ struct Problem {
   Eigen::Matrix<double, size, 1> speed;  // metres a unit of each parameter
   std::array<const KnotVector*, size> knots;
   Eigen::Matrix<double, size, 1> parameters;
+  double least_promise = 0.0;  // in the unit of what is minimised
 
   // The step that leads to the least value of the quadratic model, `damping` in the unit of the curvature.
   Eigen::Matrix<double, size, 1> step(double damping) const {
@@ -83,6 +86,7 @@ bool descend(const Problem<size>& problem, double& damping, const Offer& offer) 
   for (int tries = 0; tries < most_tries; ++tries) {
     const auto step = problem.step(damping);
     if (step.allFinite()) {
+      if (!(-0.5 * problem.gradient.dot(step) > problem.least_promise)) return false;
       Eigen::Matrix<double, size, 1> next = problem.parameters + step;
       for (int k = 0; k < size; ++k) next[k] = problem.knots[k]->into_domain(next[k]);
       if (offer(next)) {
@@ -124,6 +128,7 @@ SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
   double damping = least_damping;
   for (int taken = 0; taken < most_steps && distance > least_gain_m; ++taken) {
     const Vector3 apart = a.position_m - b.position_m;
+    problem.least_promise = least_promise_m * distance;
     problem.gradient << apart.dot(a.du), apart.dot(a.dv), -apart.dot(b.du), -apart.dot(b.dv);
     problem.curvature.topLeftCorner<2, 2>() = first_form(a) + along(a, apart);
     problem.curvature.bottomRightCorner<2, 2>() = first_form(b) - along(b, apart);
@@ -157,6 +162,7 @@ NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point
   double distance = (at.position_m - point).norm(), damping = least_damping;
   for (int taken = 0; taken < most_steps && distance > least_gain_m; ++taken) {
     const Vector3 apart = at.position_m - point;
+    problem.least_promise = least_promise_m * distance;
     problem.gradient << apart.dot(at.du), apart.dot(at.dv);
     problem.curvature = first_form(at) + along(at, apart);
     problem.speed << at.du.norm(), at.dv.norm();
@@ -231,12 +237,13 @@ double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& secon
 }
 
 DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from,
-                         double outside) {
+                         double outside, double enough_m) {
   Behind best = behind_at(first, second, from, outside);
   Problem<2> problem;
   problem.knots = {&first.u->knots(), &first.v->knots()};
+  problem.least_promise = least_promise_m;
   double damping = least_damping;
-  for (int taken = 0; taken < most_steps; ++taken) {
+  for (int taken = 0; taken < most_steps && !(best.depth > enough_m); ++taken) {
     problem.parameters = {best.at.u, best.at.v};
     problem.gradient << best.a.du.dot(best.normal), best.a.dv.dot(best.normal);
     problem.curvature = along(best.a, best.normal) + distance_curvature(best);

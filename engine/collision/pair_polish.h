@@ -40,13 +40,14 @@ double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& secon
                     double outside);
 
 // The point of the first surface that lies farthest behind the second, along the normal of the second's
-// nearest point. `outside` is 1 where that normal is du x dv, -1 where it is the opposite.
+// nearest point; or any that lies deeper than `enough_m`. `outside` is 1 where that normal is du x dv, -1
+// where it is the opposite.
 //
 // The depth is f = -d(A(u, v)) for the signed distance d to the second surface, with the gradient -A_u . n.
 // With I and II the fundamental forms of the second surface at the nearest point, the parameters of that
 // point follow a move c = (A_u . B_s, A_u . B_t) by (I - d II)^-1 c, and n turns by -II of that, so that
 //   Hess d = -c^T I^-1 II (I - d II)^-1 c,   f_uu = -(A_uu . n) - Hess d.
 DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from,
-                         double outside);
+                         double outside, double enough_m);
 
 }  // namespace spoonbill

@@ -49,6 +49,10 @@ inline __attribute__((always_inline)) double magnitude(double number) {
   return __builtin_fabs(number);
 }
 
+inline __attribute__((always_inline)) double larger(double a, double b) {
+  return a > b ? a : b;
+}
+
 void take_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
   constexpr int low_low[slab_lanes] = {0, 1, 3, 4};
   const double* const values[3] = {samples.x, samples.y, samples.z};
@@ -73,6 +77,7 @@ void take_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
   }
   const auto& u = group.along_u;
   const auto& v = group.along_v;
+#pragma GCC unroll 1
   for (int k = 0; k < slab_lanes; ++k) {
     const double x = u[1][k] * v[2][k] - u[2][k] * v[1][k];
     const double y = u[2][k] * v[0][k] - u[0][k] * v[2][k];
@@ -100,14 +105,15 @@ void take_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
 }
 
 unsigned meeting(const SlabGroup& a, const SlabGroup& b, double reach) {
-  int met[slab_lanes * slab_lanes];
+  double gap[slab_lanes * slab_lanes];  // above zero where something lies between
   for (int i = 0; i < slab_lanes; ++i) {
     const double cx = a.centre[0][i], cy = a.centre[1][i], cz = a.centre[2][i];
     const double nx = a.normal[0][i], ny = a.normal[1][i], nz = a.normal[2][i];
     const double ux = a.along_u[0][i], uy = a.along_u[1][i], uz = a.along_u[2][i];
     const double vx = a.along_v[0][i], vy = a.along_v[1][i], vz = a.along_v[2][i];
     const double thick = a.thickness[i] + reach, slack = a.slack[i] + reach;
-#pragma GCC ivdep
+    // Unrolled too early, the lanes would not become vectors.
+#pragma GCC unroll 1
     for (int j = 0; j < slab_lanes; ++j) {
       const double dx = b.centre[0][j] - cx, dy = b.centre[1][j] - cy, dz = b.centre[2][j] - cz;
       const double bux = b.along_u[0][j], buy = b.along_u[1][j], buz = b.along_u[2][j];
@@ -124,13 +130,12 @@ unsigned meeting(const SlabGroup& a, const SlabGroup& b, double reach) {
                              magnitude(bux * dx + buy * dy + buz * dz) +
                              magnitude(bvx * dx + bvy * dy + bvz * dz) +
                              (slack + b.slack[j]) * __builtin_sqrt(squared);
-      // A distance that is no number separates nothing.
-      const bool apart = (across_a > reach_a) | (across_b > reach_b) | (squared > between);
-      met[slab_lanes * i + j] = apart ? 0 : 1;
+      const double of_normals = larger(across_a - reach_a, across_b - reach_b);
+      gap[slab_lanes * i + j] = larger(of_normals, squared - between);
     }
   }
   unsigned bits = 0;
-  for (int k = 0; k < slab_lanes * slab_lanes; ++k) bits |= static_cast<unsigned>(met[k]) << k;
+  for (unsigned k = 0; k < slab_lanes * slab_lanes; ++k) bits |= (gap[k] > 0.0 ? 0U : 1U) << k;
   return bits;
 }
 

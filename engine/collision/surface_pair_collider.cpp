@@ -14,7 +14,7 @@ constexpr double nearest_tolerance = 1e-4;
 // Candidates of a region from which Newton's method looks for a touch before all of it is searched.
 constexpr std::size_t region_seeds = 8;
 constexpr std::size_t depth_seeds = 8;
-constexpr std::size_t inner_seeds = 4;
+constexpr std::size_t inner_places = 4;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -179,14 +179,17 @@ PairContact SurfacePairCollider::contact_of(const Pairs& pairs, const Region& re
   contact.pair = search_.best();
   const PairParameters& touch = contact.pair.at;
   contact.normal = unit_normal(second_.surface(), touch.s, touch.t);
-  // An open surface has no inside: of both its sides, the one with the shorter way out counts.
+  // An open surface has no inside: of both its sides, the one with the shorter way out counts, which is
+  // looked for first where the middle of the region lies.
+  const InnerSeeds seeds = inner_seeds(pairs, region, middle);
+  const double first_side = query.second_closed || seeds.depth[0] > 0.0 ? 1.0 : -1.0;
   double shortest = infinity;
-  for (const double outside : {1.0, -1.0}) {
+  for (const double outside : {first_side, -first_side}) {
     if (outside < 0.0 && query.second_closed) continue;
     PairContact way = contact;
-    settle(way, inner_seed(pairs, region, middle, outside), outside, query.first_closed);
+    settle(way, seeds.at[outside > 0.0 ? 0 : 1], outside, query.first_closed, shortest);
     if (!(way.depth_m > 0.0)) {
-      settle(way, outer_seed(pairs, region, outside), outside, query.first_closed);
+      settle(way, outer_seed(pairs, region, outside), outside, query.first_closed, shortest);
     }
     if (!(way.depth_m > 0.0 && way.depth_m < shortest)) continue;
     shortest = way.depth_m;
@@ -198,24 +201,27 @@ PairContact SurfacePairCollider::contact_of(const Pairs& pairs, const Region& re
 }
 
 // Of the middle of the region and a few places between it and the pairs, which lie where the surfaces cross,
-// the one where the first surface is deepest.
-PairParameters SurfacePairCollider::inner_seed(const Pairs& pairs, const Region& region,
-                                               const RegionMiddle& middle, double outside) const {
-  const std::size_t count = region.end - region.begin, seeds = std::min(count, inner_seeds);
-  PairParameters deepest = middle.mean();
-  double depth = depth_behind(first_.pieces(), second_.pieces(), deepest, outside);
-  for (std::size_t k = 0; k < seeds; ++k) {
+// those where the first surface is deepest behind the second and farthest before it.
+SurfacePairCollider::InnerSeeds SurfacePairCollider::inner_seeds(const Pairs& pairs, const Region& region,
+                                                                 const RegionMiddle& middle) const {
+  const std::size_t count = region.end - region.begin, places = std::min(count, inner_places);
+  InnerSeeds seeds;
+  for (std::size_t k = 0; k <= places; ++k) {
     const PairParameters at =
-        middle.towards(centre_of(first_, second_, pairs[region.begin + k * count / seeds]));
-    const double here = depth_behind(first_.pieces(), second_.pieces(), at, outside);
-    if (!(here > depth)) continue;
-    depth = here;
-    deepest = at;
+        k == 0 ? middle.mean()
+               : middle.towards(centre_of(first_, second_, pairs[region.begin + (k - 1) * count / places]));
+    const double depth = depth_behind(first_.pieces(), second_.pieces(), at, 1.0);
+    for (int side = 0; side < 2; ++side) {
+      const double here = side == 0 ? depth : -depth;
+      if (!(here > seeds.depth[side])) continue;
+      seeds.depth[side] = here;
+      seeds.at[side] = at;
+    }
   }
-  return deepest;
+  return seeds;
 }
 
-// The same of a few of the pairs and the point of touch.
+// Of a few of the pairs and the point of touch, the one where the first surface is deepest.
 PairParameters SurfacePairCollider::outer_seed(const Pairs& pairs, const Region& region,
                                                double outside) const {
   const std::size_t count = region.end - region.begin, seeds = std::min(count, depth_seeds);
@@ -256,17 +262,18 @@ void SurfacePairCollider::take_inner_touch(const Pairs& pairs, const Region& reg
 }
 
 // How deep either surface is behind the other: the less of both moves them apart. Kept where it is deeper
-// than what is known.
+// than what is known; without care for how much beyond `shortest`.
 void SurfacePairCollider::settle(PairContact& contact, const PairParameters& from, double outside,
-                                 bool first_closed) const {
+                                 bool first_closed, double shortest) const {
   const PiecewiseSurface first = first_.pieces(), second = second_.pieces();
-  const DeepestPair of_first = deepest_pair(first, second, from, outside);
+  const DeepestPair of_first = deepest_pair(first, second, from, outside, shortest);
   if (!(of_first.depth_m > contact.depth_m)) return;
   // The surfaces face each other where they are deep.
   const PairParameters& deep = of_first.pair.at;
   const double outside_first = -sign_of(of_first.normal.dot(unit_normal(first_.surface(), deep.u, deep.v)));
   if (first_closed && outside_first < 0.0) return;
-  const DeepestPair of_second = deepest_pair(second, first, {deep.s, deep.t, deep.u, deep.v}, outside_first);
+  const DeepestPair of_second =
+      deepest_pair(second, first, {deep.s, deep.t, deep.u, deep.v}, outside_first, shortest);
   if (!(of_second.depth_m > contact.depth_m)) return;
   if (of_first.depth_m <= of_second.depth_m) {
     contact.pair = of_first.pair;

@@ -58,17 +58,22 @@ class SurfacePairCollider {
 
  private:
   class RegionMiddle;
+  // By side of the second surface: behind it, before it.
+  struct InnerSeeds {
+    double depth[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    PairParameters at[2];
+  };
   using Pairs = std::vector<CellPair>;
   using Region = ContactRegions::Region;
 
   void take_contacts(const PairQuery& query);
   bool touches(const Pairs& pairs, const Region& region);
   PairContact contact_of(const Pairs& pairs, const Region& region, const PairQuery& query) const;
-  PairParameters inner_seed(const Pairs& pairs, const Region& region, const RegionMiddle& middle,
-                            double outside) const;
+  InnerSeeds inner_seeds(const Pairs& pairs, const Region& region, const RegionMiddle& middle) const;
   PairParameters outer_seed(const Pairs& pairs, const Region& region, double outside) const;
   void take_inner_touch(const Pairs& pairs, const Region& region, PairContact& contact) const;
-  void settle(PairContact& contact, const PairParameters& from, double outside, bool first_closed) const;
+  void settle(PairContact& contact, const PairParameters& from, double outside, bool first_closed,
+              double shortest) const;
   void find_nearest(const PairQuery& query, PairResult& result);
   bool may_contain(const PairQuery& query) const;
   double tolerance() const;
