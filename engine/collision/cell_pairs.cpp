@@ -29,11 +29,13 @@ CellPairs::CellPairs(SurfaceLevels& first, SurfaceLevels& second)
 
 void CellPairs::begin_first() {
   first_tree_.update(first_->surface().net);
+  first_->bounds().update(first_->surface().net);
   first_slabs_.begin();
 }
 
 void CellPairs::begin_second() {
   second_tree_.update(second_->surface().net);
+  second_->bounds().update(second_->surface().net);
   second_slabs_.begin();
 }
 
@@ -56,7 +58,8 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
   const int finest_first = std::min(level, first_->nested().levels),
             finest_second = std::min(level, second_->nested().levels);
   const auto meeting = first_->kernels().meeting;
-  if ((meeting(first_slabs_.alone(elements.first), second_slabs_.alone(elements.second), reach) & 1U) == 0U) {
+  if ((meeting(first_slabs_.alone(elements.first), 1, second_slabs_.alone(elements.second), reach) & 1U) ==
+      0U) {
     return;
   }
   path_.clear();
@@ -73,8 +76,9 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
     const SlabGroup& first = cut_first ? first_slabs_.within(pair.first) : first_slabs_.alone(pair.first);
     const SlabGroup& second =
         cut_second ? second_slabs_.within(pair.second) : second_slabs_.alone(pair.second);
-    const unsigned lanes = (cut_first ? 0xffffU : 0x000fU) & (cut_second ? 0xffffU : 0x1111U);
-    for (unsigned met = meeting(first, second, reach) & lanes; met != 0U; met &= met - 1U) {
+    const unsigned lanes = cut_second ? 0xffffU : 0x1111U;
+    unsigned met = meeting(first, cut_first ? slab_lanes : 1, second, reach) & lanes;
+    for (; met != 0U; met &= met - 1U) {
       const int lane = std::countr_zero(met);
       path_.push_back({cut_first ? finer(*first_, pair.first, lane >> 2) : pair.first,
                        cut_second ? finer(*second_, pair.second, lane & 3) : pair.second});
@@ -85,17 +89,8 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
 // The boxes of control points are several elements wide. Those of elements that the other surface could meet
 // are taken from their corners instead.
 void CellPairs::tighten(ElementTree& tree, SurfaceLevels& levels, const ElementTree& other, double reach) {
-  const int step = levels.step(0);
-  tree.tighten(other.box(other.root()), reach, [&](int element_u, int element_v) {
-    levels.sample_column(element_v * step);
-    levels.sample_column((element_v + 1) * step);
-    const LevelCell cell{element_u * step, element_v * step, 0};
-    const PatchCorners corners = levels.corners(cell);
-    const Vector3 bulge = Vector3::Constant(levels.bulge(cell));
-    const Vector3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]).cwiseMin(corners[3]);
-    const Vector3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]).cwiseMax(corners[3]);
-    return Box{low - bulge, high + bulge};
-  });
+  tree.tighten(other.box(other.root()), reach,
+               [&](int element_u, int element_v) { return levels.element_box(element_u, element_v); });
 }
 
 CellPair CellPairs::elements(const std::array<int, 2>& nodes) const {
@@ -103,17 +98,6 @@ CellPair CellPairs::elements(const std::array<int, 2>& nodes) const {
   const ElementTree::Node& b = second_tree_.node(nodes[1]);
   const int step_a = first_->step(0), step_b = second_->step(0);
   return {{a.first_u * step_a, a.first_v * step_a, 0}, {b.first_u * step_b, b.first_v * step_b, 0}};
-}
-
-// The larger box in halves, beside the other.
-std::array<std::array<int, 2>, 2> CellPairs::split(const std::array<int, 2>& nodes) const {
-  const auto [a, b] = nodes;
-  const ElementTree::Node& node_a = first_tree_.node(a);
-  const ElementTree::Node& node_b = second_tree_.node(b);
-  const bool split_a =
-      node_b.is_leaf() || (!node_a.is_leaf() && first_tree_.box(a).size() >= second_tree_.box(b).size());
-  if (split_a) return {{{node_a.left, b}, {node_a.right, b}}};
-  return {{{a, node_b.left}, {a, node_b.right}}};
 }
 
 }  // namespace spoonbill

@@ -84,7 +84,16 @@ class CellPairs {
     return first_tree_.box(nodes[0]).gap(second_tree_.box(nodes[1]));
   }
   CellPair elements(const std::array<int, 2>& nodes) const;
-  std::array<std::array<int, 2>, 2> split(const std::array<int, 2>& nodes) const;
+  // The larger box in halves, beside the other.
+  std::array<std::array<int, 2>, 2> split(const std::array<int, 2>& nodes) const {
+    const auto [a, b] = nodes;
+    const ElementTree::Node& node_a = first_tree_.node(a);
+    const ElementTree::Node& node_b = second_tree_.node(b);
+    const bool split_a =
+        node_b.is_leaf() || (!node_a.is_leaf() && first_tree_.size(a) >= second_tree_.size(b));
+    if (split_a) return {{{node_a.left, b}, {node_a.right, b}}};
+    return {{{a, node_b.left}, {a, node_b.right}}};
+  }
   static void tighten(ElementTree& tree, SurfaceLevels& levels, const ElementTree& other, double reach);
   void take_pairs(double reach, int level);
   void refine(const CellPair& elements, double reach, int level);

@@ -26,6 +26,7 @@ ElementTree::ElementTree(const KnotVector& u, const KnotVector& v) : u_(unroll(u
   leaf_.resize(static_cast<std::size_t>(u_.elements() * v_.elements()));
   add({0, u_.elements(), 0, v_.elements()});
   boxes_.resize(nodes_.size());
+  sizes_.resize(nodes_.size());
   for (int axis = 0; axis < 3; ++axis) {
     low_[axis].resize(static_cast<std::size_t>(v.control_point_count()));
     high_[axis].resize(static_cast<std::size_t>(v.control_point_count()));
@@ -61,6 +62,7 @@ void ElementTree::join_boxes() {
   for (int index = static_cast<int>(nodes_.size()) - 1; index >= 0; --index) {
     const Node& node = nodes_[index];
     if (!node.is_leaf()) boxes_[index] = joined(boxes_[node.left], boxes_[node.right]);
+    sizes_[index] = (boxes_[index].high - boxes_[index].low).sum();
   }
 }
 

@@ -39,6 +39,8 @@ class ElementTree {
   int root() const { return 0; }
   const Node& node(int index) const { return nodes_[index]; }
   const Box& box(int index) const { return boxes_[index]; }
+  // The sum of a box's sides.
+  double size(int index) const { return sizes_[index]; }
 
  private:
   struct Direction {
@@ -55,6 +57,7 @@ class ElementTree {
   Direction u_, v_;
   std::vector<Node> nodes_;  // parents before their children
   std::vector<Box> boxes_;
+  std::vector<double> sizes_;
   std::vector<int> leaf_;  // of each element
   // Working memory: over the control rows of one element in u, by control column.
   std::vector<double> low_[3], high_[3];

@@ -7,42 +7,84 @@ namespace {
 // Of a slab's size: what rounding may add to an extent.
 constexpr double rounding = 1e-14;
 
-void blend_line(const TileBand& v, const double* row, double* __restrict line) {
-  for (int j = 0; j < v.padded; ++j) line[j] = 0.0;
-  for (int k = 0; k < v.bandwidth; ++k) {
-    const double control = row[v.controls[k]];
-    const double* const values = v.values + k * v.padded;
-#pragma GCC ivdep
-    for (int j = 0; j < v.padded; ++j) line[j] += values[j] * control;
+// Lanes that no compiler takes apart again; they need not begin on a whole vector.
+typedef double Lanes __attribute__((vector_size(slab_lanes * sizeof(double)), aligned(sizeof(double))));
+
+// Four neighbouring sums, each of weights[k] * values[k][j].
+template <int bandwidth>
+inline __attribute__((always_inline)) void sum_lanes(const double* weights, long weight_stride,
+                                                     const double* values, long value_stride, double* sums) {
+  Lanes sum = {0.0, 0.0, 0.0, 0.0};
+#pragma GCC unroll 10
+  for (int k = 0; k < bandwidth; ++k) {
+    sum += weights[k * weight_stride] * *reinterpret_cast<const Lanes*>(values + k * value_stride);
   }
+  *reinterpret_cast<Lanes*>(sums) = sum;
 }
 
-void combine_lines(const TileBand& u, int row, const double* lines, long line_size, int count,
-                   double* __restrict out) {
-  for (int j = 0; j < count; ++j) out[j] = 0.0;
-  for (int k = 0; k < u.bandwidth; ++k) {
-    const double value = u.values[k * u.padded + row];
-    const double* const line = lines + k * line_size;
-#pragma GCC ivdep
-    for (int j = 0; j < count; ++j) out[j] += value * line[j];
-  }
-}
-
-void sample_tile(const TileBand& u, const TileBand& v, const PlanarPoints& net, long net_columns,
-                 double* lines, const PlanarOutput& samples, long columns) {
+template <int bandwidth_u, int bandwidth_v>
+void sample_tile_of(const TileBand& u, const TileBand& v, const PlanarPoints& net, long net_columns,
+                    double* lines, const PlanarOutput& samples, long columns) {
   const double* const controls[3] = {net.x, net.y, net.z};
   double* const out[3] = {samples.x, samples.y, samples.z};
-  const long line_size = 3L * v.padded;
-  for (int k = 0; k < u.bandwidth; ++k) {
+  const long padded = v.padded, line_size = 3 * padded;
+  for (int k = 0; k < bandwidth_u; ++k) {
     for (int axis = 0; axis < 3; ++axis) {
-      blend_line(v, controls[axis] + u.controls[k] * net_columns, lines + k * line_size + axis * v.padded);
+      const double* const row = controls[axis] + u.controls[k] * net_columns;
+      double picked[bandwidth_v];
+      for (int m = 0; m < bandwidth_v; ++m) picked[m] = row[v.controls[m]];
+      double* const line = lines + k * line_size + axis * padded;
+      for (long j = 0; j < padded; j += slab_lanes) {
+        sum_lanes<bandwidth_v>(picked, 1, v.values + j, padded, line + j);
+      }
     }
   }
   for (int row = 0; row < u.samples; ++row) {
     for (int axis = 0; axis < 3; ++axis) {
-      combine_lines(u, row, lines + axis * v.padded, line_size, v.samples, out[axis] + row * columns);
+      const double* const from = lines + axis * padded;
+      double* const to = out[axis] + row * columns;
+      long j = 0;
+      for (; j + slab_lanes <= v.samples; j += slab_lanes) {
+        sum_lanes<bandwidth_u>(u.values + row, u.padded, from + j, line_size, to + j);
+      }
+      double rest[slab_lanes];
+      sum_lanes<bandwidth_u>(u.values + row, u.padded, from + j, line_size, rest);
+      for (long k = j; k < v.samples; ++k) to[k] = rest[k - j];
     }
   }
+}
+
+using SampleTile = void (*)(const TileBand&, const TileBand&, const PlanarPoints&, long, double*,
+                            const PlanarOutput&, long);
+
+template <int bandwidth_u>
+constexpr SampleTile tiles_by_bandwidth[] = {nullptr,
+                                             nullptr,
+                                             sample_tile_of<bandwidth_u, 2>,
+                                             sample_tile_of<bandwidth_u, 3>,
+                                             sample_tile_of<bandwidth_u, 4>,
+                                             sample_tile_of<bandwidth_u, 5>,
+                                             sample_tile_of<bandwidth_u, 6>,
+                                             sample_tile_of<bandwidth_u, 7>,
+                                             sample_tile_of<bandwidth_u, 8>,
+                                             sample_tile_of<bandwidth_u, 9>,
+                                             sample_tile_of<bandwidth_u, 10>};
+
+constexpr const SampleTile* tiles_by_bandwidths[] = {nullptr,
+                                                     nullptr,
+                                                     tiles_by_bandwidth<2>,
+                                                     tiles_by_bandwidth<3>,
+                                                     tiles_by_bandwidth<4>,
+                                                     tiles_by_bandwidth<5>,
+                                                     tiles_by_bandwidth<6>,
+                                                     tiles_by_bandwidth<7>,
+                                                     tiles_by_bandwidth<8>,
+                                                     tiles_by_bandwidth<9>,
+                                                     tiles_by_bandwidth<10>};
+
+void sample_tile(const TileBand& u, const TileBand& v, const PlanarPoints& net, long net_columns,
+                 double* lines, const PlanarOutput& samples, long columns) {
+  tiles_by_bandwidths[u.bandwidth][v.bandwidth](u, v, net, net_columns, lines, samples, columns);
 }
 
 inline __attribute__((always_inline)) double magnitude(double number) {
@@ -104,9 +146,9 @@ void take_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
   }
 }
 
-unsigned meeting(const SlabGroup& a, const SlabGroup& b, double reach) {
+unsigned meeting(const SlabGroup& a, int lanes, const SlabGroup& b, double reach) {
   double gap[slab_lanes * slab_lanes];  // above zero where something lies between
-  for (int i = 0; i < slab_lanes; ++i) {
+  for (int i = 0; i < lanes; ++i) {
     const double cx = a.centre[0][i], cy = a.centre[1][i], cz = a.centre[2][i];
     const double nx = a.normal[0][i], ny = a.normal[1][i], nz = a.normal[2][i];
     const double ux = a.along_u[0][i], uy = a.along_u[1][i], uz = a.along_u[2][i];
@@ -135,7 +177,7 @@ unsigned meeting(const SlabGroup& a, const SlabGroup& b, double reach) {
     }
   }
   unsigned bits = 0;
-  for (unsigned k = 0; k < slab_lanes * slab_lanes; ++k) bits |= (gap[k] > 0.0 ? 0U : 1U) << k;
+  for (int k = 0; k < lanes * slab_lanes; ++k) bits |= (gap[k] > 0.0 ? 0U : 1U) << k;
   return bits;
 }
 

@@ -51,9 +51,10 @@ struct PatchKernels {
   // `bulge` at most.
   void (*take_slabs)(const PlanarPoints& samples, double bulge, SlabGroup& group);
 
-  // Bit 4 i + j is set unless a plane lies between slab i of the first and slab j of the second and more than
-  // `reach` apart from one of them: across either normal or across the line between their centres.
-  unsigned (*meeting)(const SlabGroup& first, const SlabGroup& second, double reach);
+  // Bit 4 i + j is set unless a plane lies between slab i of the first, of which there are `lanes`, and slab
+  // j of the second and more than `reach` apart from one of them: across either normal or across the line
+  // between their centres.
+  unsigned (*meeting)(const SlabGroup& first, int lanes, const SlabGroup& second, double reach);
 };
 
 namespace kernels_baseline {

@@ -52,6 +52,9 @@ SurfaceBounds::SurfaceBounds(const KnotVector& u, const KnotVector& v)
   norm_vv_ = norm_uu_;
   second_uu_.assign(span_u_.size() * span_v_.size(), 0.0);
   second_vv_ = second_uu_;
+  for (auto& row : row_) {
+    for (std::vector<double>& values : row) values.assign(static_cast<std::size_t>(columns_), 0.0);
+  }
   column_at_.assign(static_cast<std::size_t>(columns_), 0);
   element_at_.assign(span_v_.size(), 0);
   for (std::vector<double>* edge : {&low_[0], &low_[1], &low_[2], &high_[0], &high_[1], &high_[2]}) {
@@ -61,7 +64,71 @@ SurfaceBounds::SurfaceBounds(const KnotVector& u, const KnotVector& v)
 
 void SurfaceBounds::update(const ControlNet& net) {
   begin();
-  for (int element = 0; element < elements_v(); ++element) update(net, element);
+  std::fill(column_at_.begin(), column_at_.end(), stamp_);
+  std::fill(element_at_.begin(), element_at_.end(), stamp_);
+  for (int i = 0; i < rows_; ++i) take_row(net, i);
+  for (int eu = 0; eu < elements_u(); ++eu) take_elements(eu);
+}
+
+// The norms of one unrolled row of control points, all columns at once.
+void SurfaceBounds::take_row(const ControlNet& net, int i) {
+  const std::vector<double>* coordinates[3] = {&net.x, &net.y, &net.z};
+  for (int k = 0; k < 3; ++k) {
+    const int row = control_u_[std::min(i + k, rows_ - 1)];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double* const from = coordinates[axis]->data() + row * net.columns;
+      double* const to = row_[k][axis].data();
+      for (int j = 0; j < columns_; ++j) to[j] = from[control_v_[j]];
+    }
+  }
+  const double *x0 = row_[0][0].data(), *y0 = row_[0][1].data(), *z0 = row_[0][2].data();
+  const double *x1 = row_[1][0].data(), *y1 = row_[1][1].data(), *z1 = row_[1][2].data();
+  const double *x2 = row_[2][0].data(), *y2 = row_[2][1].data(), *z2 = row_[2][2].data();
+  if (i + 2 < rows_) {
+    double* const norm = norm_uu_.data() + i * columns_;
+    const double low = first_scale_u_[i], high = first_scale_u_[i + 1], scale = second_scale_u_[i];
+    for (int j = 0; j < columns_; ++j) {
+      const double x = scale * (high * (x2[j] - x1[j]) - low * (x1[j] - x0[j]));
+      const double y = scale * (high * (y2[j] - y1[j]) - low * (y1[j] - y0[j]));
+      const double z = scale * (high * (z2[j] - z1[j]) - low * (z1[j] - z0[j]));
+      norm[j] = x * x + (y * y + z * z);
+    }
+  }
+  double* const norm = norm_vv_.data() + i * columns_;
+  const double* const first = first_scale_v_.data();
+  const double* const second = second_scale_v_.data();
+  for (int j = 0; j + 2 < columns_; ++j) {
+    const double x = second[j] * (first[j + 1] * (x0[j + 2] - x0[j + 1]) - first[j] * (x0[j + 1] - x0[j]));
+    const double y = second[j] * (first[j + 1] * (y0[j + 2] - y0[j + 1]) - first[j] * (y0[j + 1] - y0[j]));
+    const double z = second[j] * (first[j + 1] * (z0[j + 2] - z0[j + 1]) - first[j] * (z0[j + 1] - z0[j]));
+    norm[j] = x * x + (y * y + z * z);
+  }
+}
+
+// The bounds of the elements (eu, .): first over their rows, all columns at once.
+void SurfaceBounds::take_elements(int eu) {
+  double* const uu = row_[0][0].data();
+  double* const vv = row_[0][1].data();
+  const int low = span_u_[eu] - degree_u_;
+  std::fill_n(uu, columns_, 0.0);
+  std::fill_n(vv, columns_, 0.0);
+  for (int i = low; i <= span_u_[eu]; ++i) {
+    const double* const row_uu = norm_uu_.data() + i * columns_;
+    const double* const row_vv = norm_vv_.data() + i * columns_;
+    for (int j = 0; j < columns_; ++j) vv[j] = vv[j] < row_vv[j] ? row_vv[j] : vv[j];
+    if (i + 2 > span_u_[eu]) continue;
+    for (int j = 0; j < columns_; ++j) uu[j] = uu[j] < row_uu[j] ? row_uu[j] : uu[j];
+  }
+  for (int ev = 0; ev < elements_v(); ++ev) {
+    double most_uu = 0.0, most_vv = 0.0;
+    for (int j = span_v_[ev] - degree_v_; j <= span_v_[ev]; ++j) {
+      most_uu = std::max(most_uu, uu[j]);
+      if (j + 2 <= span_v_[ev]) most_vv = std::max(most_vv, vv[j]);
+    }
+    const std::size_t e = static_cast<std::size_t>(eu * elements_v() + ev);
+    second_uu_[e] = std::sqrt(most_uu);
+    second_vv_[e] = std::sqrt(most_vv);
+  }
 }
 
 void SurfaceBounds::take_norms(const ControlNet& net, int j) {

@@ -45,6 +45,8 @@ class SurfaceBounds {
   int rows_ = 0, columns_ = 0;  // of the unrolled net
   int degree_u_ = 0, degree_v_ = 0;
   void take_norms(const ControlNet& net, int column);
+  void take_row(const ControlNet& net, int i);
+  void take_elements(int element_u);
 
   std::vector<int> span_u_, span_v_;        // of each element
   std::vector<int> control_u_, control_v_;  // unrolled index to control index
@@ -53,7 +55,8 @@ class SurfaceBounds {
   std::vector<double> second_uu_, second_vv_;
   std::uint64_t stamp_ = 1;
   std::vector<std::uint64_t> column_at_, element_at_;  // when taken: by unrolled column, by element_v
-  std::vector<double> low_[3], high_[3];               // of each control column
+  std::vector<double> row_[3][3];         // working memory: three unrolled rows of control points
+  std::vector<double> low_[3], high_[3];  // of each control column
 };
 
 }  // namespace spoonbill

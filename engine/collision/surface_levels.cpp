@@ -130,17 +130,15 @@ Vector3 SurfaceLevels::sample(int index) {
   if (given_.x != nullptr) return {given_.x[index], given_.y[index], given_.z[index]};
   if (sampled_at_[index] == begun_) return {x_[index], y_[index], z_[index]};
   const Grid& grid = nested_->grid;
-  const BlendingMatrix& a_u = grid.u.values;
-  const BlendingMatrix& a_v = grid.v.values;
   const int row = index / grid.columns(), column = index % grid.columns();
+  const BandEntry u = u_bands_.at(row), v = v_bands_.at(column);
   Vector3 point = Vector3::Zero();
-  for (int a = 0; a < a_u.bandwidth; ++a) {
-    const int i = a_u.column(row, a);
+  for (int a = 0; a < u_bands_.bandwidth; ++a) {
     Vector3 line = Vector3::Zero();
-    for (int b = 0; b < a_v.bandwidth; ++b) {
-      line += a_v.values[column * a_v.bandwidth + b] * surface_->net.point(i, a_v.column(column, b));
+    for (int b = 0; b < v_bands_.bandwidth; ++b) {
+      line += v.values[b * v_bands_.padded] * surface_->net.point(u.controls[a], v.controls[b]);
     }
-    point += a_u.values[row * a_u.bandwidth + a] * line;
+    point += u.values[a * u_bands_.padded] * line;
   }
   set_sample(index, point);
   return point;
@@ -149,6 +147,14 @@ Vector3 SurfaceLevels::sample(int index) {
 TileBand SurfaceLevels::Bands::of(int element) const {
   return {controls.data() + element * bandwidth, values.data() + element * bandwidth * padded, bandwidth,
           samples, padded};
+}
+
+// A sample between two elements is the first of the later.
+SurfaceLevels::BandEntry SurfaceLevels::Bands::at(int row) const {
+  const int cells = samples - 1, elements = static_cast<int>(controls.size()) / bandwidth;
+  const int element = std::min(row / cells, elements - 1);
+  const TileBand band = of(element);
+  return {band.controls, band.values + (row - element * cells)};
 }
 
 void SurfaceLevels::sample_element(int element_u, int element_v) {
@@ -172,21 +178,24 @@ void SurfaceLevels::sample_column(int column) {
   if (given_.x != nullptr || column_at_[column] == begun_) return;
   column_at_[column] = begun_;
   const Grid& grid = nested_->grid;
-  const BlendingMatrix& a_u = grid.u.values;
-  const BlendingMatrix& a_v = grid.v.values;
-  for (int i = 0; i < surface_->net.rows; ++i) {
-    lines_[i].setZero();
-    for (int b = 0; b < a_v.bandwidth; ++b) {
-      lines_[i] += a_v.values[column * a_v.bandwidth + b] * surface_->net.point(i, a_v.column(column, b));
+  const ControlNet& net = surface_->net;
+  const BandEntry v = v_bands_.at(column);
+  for (int i = 0; i < net.rows; ++i) {
+    const std::size_t row = net.index(i, 0);
+    Vector3 line = Vector3::Zero();
+    for (int b = 0; b < v_bands_.bandwidth; ++b) {
+      const std::size_t at = row + static_cast<std::size_t>(v.controls[b]);
+      line += v.values[b * v_bands_.padded] * Vector3(net.x[at], net.y[at], net.z[at]);
     }
+    lines_[i] = line;
   }
   for (int row = 0; row < grid.rows(); row += step(0)) {
     const int index = row * grid.columns() + column;
     if (sampled_at_[index] == begun_) continue;
+    const BandEntry u = u_bands_.at(row);
     Vector3 point = Vector3::Zero();
-    for (int a = 0; a < a_u.bandwidth; ++a) {
-      point += a_u.values[row * a_u.bandwidth + a] * lines_[a_u.column(row, a)];
-    }
+    for (int a = 0; a < u_bands_.bandwidth; ++a)
+      point += u.values[a * u_bands_.padded] * lines_[u.controls[a]];
     set_sample(index, point);
   }
 }
@@ -196,6 +205,28 @@ PatchCorners SurfaceLevels::corners(const LevelCell& cell) {
   const int index = cell.i * columns + cell.j;
   return {sample(index), sample(index + along), sample(index + along * columns),
           sample(index + along * columns + along)};
+}
+
+Box SurfaceLevels::element_box(int element_u, int element_v) {
+  const int stride = step(0), columns = nested_->grid.columns();
+  const int i = element_u * stride, j = element_v * stride;
+  sample_column(j);
+  sample_column(j + stride);
+  bounds_.update(surface_->net, element_v);
+  const std::vector<double>& in_u = nested_->grid.u.parameters;
+  const std::vector<double>& in_v = nested_->grid.v.parameters;
+  const double bulge =
+      bounds_.bulge(element_u, element_v, in_u[i + stride] - in_u[i], in_v[j + stride] - in_v[j]);
+  const PlanarPoints from = samples();
+  const double* const values[3] = {from.x, from.y, from.z};
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double* const low = values[axis] + i * columns + j;
+    const double* const high = low + stride * columns;
+    box.low[axis] = std::min(std::min(low[0], low[stride]), std::min(high[0], high[stride])) - bulge;
+    box.high[axis] = std::max(std::max(low[0], low[stride]), std::max(high[0], high[stride])) + bulge;
+  }
+  return box;
 }
 
 double SurfaceLevels::bulge(const LevelCell& cell) {

@@ -51,7 +51,7 @@ class SurfaceLevels {
   void begin(const Surface& surface);
 
   // The same with all samples of the finest grid given, in its order, as GridEvaluator<double> has them: none
-  // is evaluated. They must be the surface's and outlive the calls below.
+  // is evaluated. They must be the surface's and outlive the calls below. Null pointers: not given.
   void begin(const Surface& surface, const PlanarPoints& samples);
 
   const Surface& surface() const { return *surface_; }
@@ -74,6 +74,9 @@ class SurfaceLevels {
   bool is_finest(const LevelCell& cell) const { return cell.level >= nested_->levels; }
   PatchCorners corners(const LevelCell& cell);
 
+  // About one element, by its corners and its bulge.
+  Box element_box(int element_u, int element_v);
+
   // How far the surface can leave the bilinear patch through the corners of the cell.
   double bulge(const LevelCell& cell);
   const CoverSphere& cover(const LevelCell& cell);
@@ -84,12 +87,18 @@ class SurfaceLevels {
   int all_cells() const { return static_cast<int>(covers_.size()); }
 
  private:
+  // The basis functions at one sample, `padded` apart.
+  struct BandEntry {
+    const int* controls;
+    const double* values;
+  };
   // The basis functions of each element of one direction at its finest samples.
   struct Bands {
     int bandwidth = 0, samples = 0, padded = 0;
     std::vector<int> controls;
     AlignedVector<double> values;
     TileBand of(int element) const;
+    BandEntry at(int row) const;
   };
   static Bands bands_of(const GridDirection& direction, int levels);
   PlanarPoints own_samples() const { return {x_.data(), y_.data(), z_.data()}; }

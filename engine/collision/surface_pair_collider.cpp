@@ -121,11 +121,11 @@ PairResult SurfacePairCollider::collide(const Surface& first, const Surface& sec
   PairResult result;
   contacts_.clear();
   if (query.first_moved) {
-    first_.begin(first);
+    first_.begin(first, query.first_samples);
     cells_.begin_first();
   }
   if (query.second_moved) {
-    second_.begin(second);
+    second_.begin(second, query.second_samples);
     cells_.begin_second();
   }
   const int samples_before = first_.samples_evaluated() + second_.samples_evaluated();

@@ -30,6 +30,8 @@ struct PairQuery {
   // Whether the control points have moved since the last collide(), which must have been of the same surfaces
   // where they have not: what was evaluated of them is used again.
   bool first_moved = true, second_moved = true;
+  // All samples of a grid, where they are known already (see SurfaceLevels::begin()): none is then evaluated.
+  PlanarPoints first_samples{nullptr, nullptr, nullptr}, second_samples{nullptr, nullptr, nullptr};
 };
 
 struct PairResult {
@@ -55,6 +57,8 @@ class SurfacePairCollider {
 
   // Of the last collide().
   const std::vector<PairContact>& contacts() const { return contacts_; }
+  // The pairs of cells in which the surfaces could cross or touch, of regions that do and of others.
+  const std::vector<CellPair>& cells() const { return cells_.pairs(); }
 
  private:
   class RegionMiddle;

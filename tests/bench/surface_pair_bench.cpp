@@ -3,8 +3,10 @@
 #include <benchmark/benchmark.h>
 #include <fcl/narrowphase/collision.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include "engine/collision/surface_pair_collider.h"
 #include "tests/bench/fcl_sheet.h"
@@ -12,6 +14,9 @@
 
 namespace spoonbill {
 namespace {
+
+using FclBox = fcl::AABB<float>;
+using FclTurnedBox = fcl::OBBRSS<float>;
 
 constexpr int controls = 28, levels = 3;  // 25 elements a side, 2^3 cells each
 constexpr std::size_t quads = 200;
@@ -41,18 +46,58 @@ struct Sheets {
   GridSamples<double> samples[2], other_samples;
 };
 
-// One sheet moves, the other does not.
-void surfaces_ours_from_controls(benchmark::State& state) {
+PlanarPoints view(const GridSamples<double>& samples) {
+  return {samples.x.data(), samples.y.data(), samples.z.data()};
+}
+
+// Whether FCL's triangles lie in cells that ours has a contact in.
+bool holds(const SurfacePairCollider& collider, const fcl::CollisionResult<float>& result) {
+  std::set<std::array<int, 4>> cells;
+  for (const CellPair& pair : collider.cells()) {
+    cells.insert({pair.first.i, pair.first.j, pair.second.i, pair.second.j});
+  }
+  for (std::size_t k = 0; k < result.numContacts(); ++k) {
+    constexpr int side = static_cast<int>(quads);
+    const int a = static_cast<int>(result.getContact(k).b1) / 2,
+              b = static_cast<int>(result.getContact(k).b2) / 2;
+    if (cells.count({a / side, a % side, b / side, b % side}) == 0) return false;
+  }
+  return true;
+}
+
+template <class Volume>
+fcl::CollisionResult<float> contacts_of(const fcl::BVHModel<Volume>& a, const fcl::BVHModel<Volume>& b) {
+  const fcl::Transform3<float> place = fcl::Transform3<float>::Identity();
+  fcl::CollisionResult<float> result;
+  fcl::collide<float>(&a, place, &b, place, fcl::CollisionRequest<float>(100000, true), result);
+  return result;
+}
+
+// One sheet moves, the other does not. Given: samples of the moved sheet beside its control points.
+void surfaces_ours(benchmark::State& state, bool given) {
   const Sheets sheets;
   SurfacePairCollider collider(sheets.nested, sheets.nested);
   PairQuery query;
+  query.second_samples = view(sheets.other_samples);
   collider.collide(sheets.shapes[0], sheets.other, query);
   query.second_moved = false;
   std::size_t turn = 0;
   PairResult result;
-  for (auto _ : state) result = collider.collide(sheets.shapes[turn++ % 2], sheets.other, query);
+  for (auto _ : state) {
+    if (given) query.first_samples = view(sheets.samples[turn % 2]);
+    result = collider.collide(sheets.shapes[turn % 2], sheets.other, query);
+    ++turn;
+  }
   if (!result.touching || result.overflow) state.SkipWithError("the sheets do not touch");
   state.counters["regions"] = static_cast<double>(collider.contacts().size());
+  for (int k = 0; k < 2; ++k) {
+    if (given) query.first_samples = view(sheets.samples[k]);
+    collider.collide(sheets.shapes[k], sheets.other, query);
+    const auto theirs = contacts_of(*fcl_mesh<FclTurnedBox>(fcl_points(sheets.samples[k]), quads),
+                                    *fcl_mesh<FclTurnedBox>(fcl_points(sheets.other_samples), quads));
+    if (theirs.numContacts() == 0 || !holds(collider, theirs))
+      state.SkipWithError("a contact of FCL's is missing");
+  }
 }
 
 template <class Volume>
@@ -61,13 +106,10 @@ void surfaces_fcl(benchmark::State& state) {
   const FclPoints shapes[2] = {fcl_points(sheets.samples[0]), fcl_points(sheets.samples[1])};
   const auto mesh = fcl_mesh<Volume>(shapes[0], quads);
   const auto other = fcl_mesh<Volume>(fcl_points(sheets.other_samples), quads);
-  const fcl::Transform3<float> place = fcl::Transform3<float>::Identity();
-  const fcl::CollisionRequest<float> request(100000, true);
   std::size_t turn = 0, contacts = 0;
   for (auto _ : state) {
     refit(*mesh, shapes[turn++ % 2]);
-    fcl::CollisionResult<float> result;
-    contacts = fcl::collide<float>(mesh.get(), place, other.get(), place, request, result);
+    contacts = contacts_of(*mesh, *other).numContacts();
   }
   if (contacts == 0) state.SkipWithError("FCL found no contact");
   state.counters["contacts"] = static_cast<double>(contacts);
@@ -96,9 +138,8 @@ void nets_crossing(benchmark::State& state) {
   state.counters["regions"] = static_cast<double>(collider.contacts().size());
 }
 
-using FclBox = fcl::AABB<float>;
-using FclTurnedBox = fcl::OBBRSS<float>;
-BENCHMARK(surfaces_ours_from_controls)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(surfaces_ours, from_vertices, true)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(surfaces_ours, from_controls, false)->Unit(benchmark::kMicrosecond);
 BENCHMARK_TEMPLATE(surfaces_fcl, FclBox)->Name("surfaces_fcl_boxes")->Unit(benchmark::kMicrosecond);
 BENCHMARK_TEMPLATE(surfaces_fcl, FclTurnedBox)
     ->Name("surfaces_fcl_turned_boxes")
