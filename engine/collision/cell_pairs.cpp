@@ -4,16 +4,6 @@
 #include <bit>
 
 namespace spoonbill {
-namespace {
-
-// A cell of the next level within a cell, by its lane among the slabs.
-LevelCell finer(const SurfaceLevels& levels, const LevelCell& cell, int lane) {
-  const int half = levels.step(cell.level + 1);
-  return {cell.i + (lane >> 1) * half, cell.j + (lane & 1) * half, cell.level + 1};
-}
-
-}  // namespace
-
 CellPairs::CellPairs(SurfaceLevels& first, SurfaceLevels& second)
     : first_(&first),
       second_(&second),
@@ -28,20 +18,23 @@ CellPairs::CellPairs(SurfaceLevels& first, SurfaceLevels& second)
 }
 
 void CellPairs::begin_first() {
-  first_tree_.update(first_->surface().net);
-  first_->bounds().update(first_->surface().net);
   first_slabs_.begin();
+  first_is_stale_ = true;
 }
 
 void CellPairs::begin_second() {
-  second_tree_.update(second_->surface().net);
-  second_->bounds().update(second_->surface().net);
   second_slabs_.begin();
+  second_is_stale_ = true;
+}
+
+void CellPairs::update() {
+  if (first_is_stale_) first_tree_.update(*first_);
+  if (second_is_stale_) second_tree_.update(*second_);
+  first_is_stale_ = second_is_stale_ = false;
 }
 
 std::vector<CellPair>& CellPairs::within(double reach_m) {
-  tighten(first_tree_, *first_, second_tree_, reach_m);
-  tighten(second_tree_, *second_, first_tree_, reach_m);
+  update();
   int level = std::max(first_->nested().levels, second_->nested().levels);
   take_pairs(reach_m, level);
   while (overflow_ && level > 0) take_pairs(reach_m, --level);
@@ -58,19 +51,24 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
   const int finest_first = std::min(level, first_->nested().levels),
             finest_second = std::min(level, second_->nested().levels);
   const auto meeting = first_->kernels().meeting;
-  if ((meeting(first_slabs_.alone(elements.first), 1, second_slabs_.alone(elements.second), reach) & 1U) ==
-      0U) {
+  const auto element = [](const CellSlabs& slabs, const SurfaceLevels& levels, const LevelCell& cell) {
+    return slabs.element(cell.i >> levels.nested().levels, cell.j >> levels.nested().levels);
+  };
+  const Places both{element(first_slabs_, *first_, elements.first),
+                    element(second_slabs_, *second_, elements.second)};
+  if ((meeting(first_slabs_.alone(both.first), 1, second_slabs_.alone(both.second), reach) & 1U) == 0U) {
     return;
   }
   path_.clear();
-  path_.push_back(elements);
+  path_.push_back(both);
   while (!path_.empty() && !overflow_) {
-    const CellPair pair = path_.back();
+    const Places pair = path_.back();
     path_.pop_back();
-    const bool cut_first = pair.first.level < finest_first, cut_second = pair.second.level < finest_second;
+    const bool cut_first = pair.first.cell.level < finest_first,
+               cut_second = pair.second.cell.level < finest_second;
     if (!cut_first && !cut_second) {
       overflow_ = pairs_.size() == cell_pair_capacity;
-      if (!overflow_) pairs_.push_back(pair);
+      if (!overflow_) pairs_.push_back({pair.first.cell, pair.second.cell});
       continue;
     }
     const SlabGroup& first = cut_first ? first_slabs_.within(pair.first) : first_slabs_.alone(pair.first);
@@ -80,17 +78,10 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
     unsigned met = meeting(first, cut_first ? slab_lanes : 1, second, reach) & lanes;
     for (; met != 0U; met &= met - 1U) {
       const int lane = std::countr_zero(met);
-      path_.push_back({cut_first ? finer(*first_, pair.first, lane >> 2) : pair.first,
-                       cut_second ? finer(*second_, pair.second, lane & 3) : pair.second});
+      path_.push_back({cut_first ? first_slabs_.finer(pair.first, lane >> 2) : pair.first,
+                       cut_second ? second_slabs_.finer(pair.second, lane & 3) : pair.second});
     }
   }
-}
-
-// The boxes of control points are several elements wide. Those of elements that the other surface could meet
-// are taken from their corners instead.
-void CellPairs::tighten(ElementTree& tree, SurfaceLevels& levels, const ElementTree& other, double reach) {
-  tree.tighten(other.box(other.root()), reach,
-               [&](int element_u, int element_v) { return levels.element_box(element_u, element_v); });
 }
 
 CellPair CellPairs::elements(const std::array<int, 2>& nodes) const {

@@ -29,6 +29,9 @@ class CellPairs {
   void begin_first();
   void begin_second();
 
+  // Brings the trees up to date; within() does so itself.
+  void update();
+
   // All pairs of cells that can be within `reach_m` of each other: of the finest level, or of the finest at
   // which there are not too many.
   std::vector<CellPair>& within(double reach_m);
@@ -94,7 +97,6 @@ class CellPairs {
     if (split_a) return {{{node_a.left, b}, {node_a.right, b}}};
     return {{{a, node_b.left}, {a, node_b.right}}};
   }
-  static void tighten(ElementTree& tree, SurfaceLevels& levels, const ElementTree& other, double reach);
   void take_pairs(double reach, int level);
   void refine(const CellPair& elements, double reach, int level);
 
@@ -104,8 +106,12 @@ class CellPairs {
   ElementTree first_tree_, second_tree_;
   std::vector<std::array<int, 2>> node_pairs_;  // working memory: a path down both trees
   std::vector<CellPair> pairs_;
-  std::vector<CellPair> path_;  // working memory: what is left to refine of two elements
+  struct Places {
+    CellSlabs::Place first, second;
+  };
+  std::vector<Places> path_;  // working memory: what is left to refine of two elements
   bool overflow_ = false;
+  bool first_is_stale_ = true, second_is_stale_ = true;
 };
 
 }  // namespace spoonbill

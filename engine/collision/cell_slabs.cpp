@@ -12,29 +12,19 @@ constexpr double same_size = 1.0 + 1e-9;
 
 }  // namespace
 
-CellSlabs::CellSlabs(SurfaceLevels& levels) : levels_(&levels) {
-  const int keys = 2 * levels.all_cells();
-  groups_.resize(static_cast<std::size_t>(std::min(keys, group_capacity)));
-  slot_.assign(static_cast<std::size_t>(keys), 0);
-  taken_at_.assign(static_cast<std::size_t>(keys), 0);
+CellSlabs::CellSlabs(SurfaceLevels& levels)
+    : levels_(&levels),
+      elements_v_(levels.bounds().elements_v()),
+      keys_an_element_(((4 << (2 * levels.nested().levels)) - 1) / 3),
+      keys_(keys_an_element_ * levels.cell_count(0)) {
+  groups_.resize(static_cast<std::size_t>(std::min(2 * keys_, group_capacity)));
+  slots_.resize(static_cast<std::size_t>(2 * keys_));
   begin();
 }
 
 void CellSlabs::begin() {
   ++filling_;
   used_ = 0;
-}
-
-bool CellSlabs::take_slot(int key, SlabGroup*& group) {
-  if (taken_at_[key] == filling_) {
-    group = &groups_[slot_[key]];
-    return false;
-  }
-  if (used_ == static_cast<int>(groups_.size())) begin();
-  taken_at_[key] = filling_;
-  slot_[key] = used_;
-  group = &groups_[used_++];
-  return true;
 }
 
 // 3 x 3 samples from the cell's low corner on.
@@ -51,29 +41,21 @@ void CellSlabs::take_samples(const LevelCell& cell, int stride) {
   }
 }
 
-const SlabGroup& CellSlabs::within(const LevelCell& cell) {
-  SlabGroup* group = nullptr;
-  if (take_slot(levels_->cell_index(cell), group)) {
-    take_samples(cell, levels_->step(cell.level + 1));
-    // Both sides are halved, and it goes by their squares.
-    const double bulge = 0.25 * same_size * levels_->bulge(cell);
-    levels_->kernels().take_slabs({samples_[0], samples_[1], samples_[2]}, bulge, *group);
-  }
-  return *group;
+void CellSlabs::take_within(const LevelCell& cell, SlabGroup& group) {
+  take_samples(cell, levels_->step(cell.level + 1));
+  // Both sides are halved, and it goes by their squares.
+  const double bulge = 0.25 * same_size * levels_->bulge(cell);
+  levels_->kernels().take_slabs({samples_[0], samples_[1], samples_[2]}, bulge, group);
 }
 
-const SlabGroup& CellSlabs::alone(const LevelCell& cell) {
-  SlabGroup* group = nullptr;
-  if (take_slot(levels_->all_cells() + levels_->cell_index(cell), group)) {
-    // The same four corners for each of the lanes.
-    const PatchCorners corners = levels_->corners(cell);
-    constexpr int corner_of[9] = {0, 1, 0, 2, 3, 2, 0, 1, 0};
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int k = 0; k < 9; ++k) samples_[axis][k] = corners[corner_of[k]][axis];
-    }
-    levels_->kernels().take_slabs({samples_[0], samples_[1], samples_[2]}, levels_->bulge(cell), *group);
+void CellSlabs::take_alone(const LevelCell& cell, SlabGroup& group) {
+  // The same four corners for each of the lanes.
+  const PatchCorners corners = levels_->corners(cell);
+  constexpr int corner_of[9] = {0, 1, 0, 2, 3, 2, 0, 1, 0};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int k = 0; k < 9; ++k) samples_[axis][k] = corners[corner_of[k]][axis];
   }
-  return *group;
+  levels_->kernels().take_slabs({samples_[0], samples_[1], samples_[2]}, levels_->bulge(cell), group);
 }
 
 }  // namespace spoonbill

@@ -17,21 +17,62 @@ class CellSlabs {
   // After SurfaceLevels::begin(): forgets the slabs of before.
   void begin();
 
+  // A cell by its place in the tree of its element's cells.
+  struct Place {
+    LevelCell cell;
+    int key;
+  };
+  Place element(int element_u, int element_v) const {
+    const int stride = levels_->step(0);
+    return {{element_u * stride, element_v * stride, 0},
+            (element_u * elements_v_ + element_v) * keys_an_element_};
+  }
+  // A cell of the next level, by its lane in within().
+  Place finer(const Place& place, int lane) const {
+    const int half = levels_->step(place.cell.level + 1), element = place.key / keys_an_element_;
+    const int inside = place.key - element * keys_an_element_;
+    return {{place.cell.i + (lane >> 1) * half, place.cell.j + (lane & 1) * half, place.cell.level + 1},
+            element * keys_an_element_ + 4 * inside + 1 + lane};
+  }
+
   // The four cells of the next level within a cell that is not of the finest: lane 2 a + b is the half a
   // along u and b along v.
-  const SlabGroup& within(const LevelCell& cell);
+  const SlabGroup& within(const Place& place) {
+    SlabGroup* group = nullptr;
+    if (take_slot(place.key, group)) take_within(place.cell, *group);
+    return *group;
+  }
   // The cell itself, in each lane. Both are valid until the next call.
-  const SlabGroup& alone(const LevelCell& cell);
+  const SlabGroup& alone(const Place& place) {
+    SlabGroup* group = nullptr;
+    if (take_slot(keys_ + place.key, group)) take_alone(place.cell, *group);
+    return *group;
+  }
 
  private:
   // False where the group is there already.
-  bool take_slot(int key, SlabGroup*& group);
+  bool take_slot(int key, SlabGroup*& group) {
+    Slot& slot = slots_[key];
+    const bool taken = slot.filling == filling_;
+    if (!taken) {
+      if (used_ == static_cast<int>(groups_.size())) begin();
+      slot = {filling_, used_++};
+    }
+    group = &groups_[slot.group];
+    return !taken;
+  }
+  void take_within(const LevelCell& cell, SlabGroup& group);
+  void take_alone(const LevelCell& cell, SlabGroup& group);
   void take_samples(const LevelCell& cell, int stride);
 
   SurfaceLevels* levels_;
   AlignedVector<SlabGroup> groups_;
-  std::vector<int> slot_;                // by key: the cells within a cell, then the cells alone
-  std::vector<std::uint32_t> taken_at_;  // by key: the filling of groups_
+  struct Slot {
+    std::uint32_t filling = 0;  // of groups_, at which the slot was taken
+    int group = 0;
+  };
+  int elements_v_, keys_an_element_, keys_;
+  std::vector<Slot> slots_;  // by key: the cells within a cell, then the cells alone
   std::uint32_t filling_ = 0;
   int used_ = 0;
   double samples_[3][9];  // working memory

@@ -45,30 +45,32 @@ int ContactRegions::root(int pair) {
   return pair;
 }
 
-// With the pairs before it, of its first cell and of all that cell's neighbours.
-void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pair) {
-  const LevelCell& cell = pairs[pair].first;
-  const Grid& grid = first_->nested().grid;
-  const int step = first_->step(cell.level);
-  for (int row = -1; row <= 1; ++row) {
-    const int i = into_grid(grid.u, cell.i + row * step);
-    if (i < 0) continue;
-    for (int column = -1; column <= 1; ++column) {
-      const int j = into_grid(grid.v, cell.j + column * step);
-      if (j >= 0) join_with(pairs, pair, first_->cell_index({i, j, cell.level}));
+// Joins pairs of two cells of the first surface, the same or neighbours.
+void ContactRegions::join(const std::vector<CellPair>& pairs, int cell, int other) {
+  const bool whole = cell != other && !split_[cell] && !split_[other];
+  if (whole && root(last_pair_[cell]) == root(last_pair_[other])) return;
+  for (int k = last_pair_[cell]; k >= 0; k = previous_[k]) {
+    for (int m = last_pair_[other]; m >= 0; m = previous_[m]) {
+      if (!are_neighbours(*second_, pairs[k].second, pairs[m].second)) continue;
+      const int a = root(k), b = root(m);
+      parent_[std::max(a, b)] = std::min(a, b);
+      if (whole) return;
     }
   }
 }
 
-void ContactRegions::join_with(const std::vector<CellPair>& pairs, int pair, int cell) {
-  if (paired_at_[cell] != group_) return;
-  const bool whole = !split_[cell];
-  for (int other = last_pair_[cell]; other >= 0; other = previous_[other]) {
-    const int a = root(pair), b = root(other);
-    if (a == b && whole) return;
-    if (a == b || !are_neighbours(*second_, pairs[pair].second, pairs[other].second)) continue;
-    parent_[std::max(a, b)] = std::min(a, b);
-    if (whole) return;
+// The cell itself and half of its neighbours: the other half find it.
+void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pair) {
+  const LevelCell& cell = pairs[pair].first;
+  const Grid& grid = first_->nested().grid;
+  const int step = first_->step(cell.level), here = first_->cell_index(cell);
+  constexpr int steps[4][2] = {{0, 1}, {1, -1}, {1, 0}, {1, 1}};
+  for (const auto& [along_u, along_v] : steps) {
+    const int i = into_grid(grid.u, cell.i + along_u * step);
+    const int j = into_grid(grid.v, cell.j + along_v * step);
+    if (i < 0 || j < 0) continue;
+    const int there = first_->cell_index({i, j, cell.level});
+    if (paired_at_[there] == group_) join(pairs, here, there);
   }
 }
 
@@ -76,15 +78,25 @@ const std::vector<ContactRegions::Region>& ContactRegions::group(std::vector<Cel
   ++group_;
   parent_.clear();
   previous_.clear();
-  for (int k = 0; k < static_cast<int>(pairs.size()); ++k) {
+  const int count = static_cast<int>(pairs.size());
+  for (int k = 0; k < count; ++k) {
     const int cell = first_->cell_index(pairs[k].first);
     parent_.push_back(k);
-    join_neighbours(pairs, k);
-    const int before = paired_at_[cell] == group_ ? last_pair_[cell] : -1;
-    split_[cell] = before >= 0 && (split_[cell] || root(before) != root(k));
-    previous_.push_back(before);
+    previous_.push_back(paired_at_[cell] == group_ ? last_pair_[cell] : -1);
     last_pair_[cell] = k;
     paired_at_[cell] = group_;
+  }
+  // Each cell once, by its first pair.
+  for (int k = 0; k < count; ++k) {
+    if (previous_[k] >= 0) continue;
+    const int cell = first_->cell_index(pairs[k].first);
+    join(pairs, cell, cell);
+    split_[cell] = false;
+    for (int m = last_pair_[cell]; m >= 0; m = previous_[m])
+      split_[cell] = split_[cell] || root(m) != root(k);
+  }
+  for (int k = 0; k < count; ++k) {
+    if (previous_[k] < 0) join_neighbours(pairs, k);
   }
   order_by_region(pairs);
   return regions_;

@@ -24,7 +24,7 @@ class ContactRegions {
  private:
   int root(int pair);
   void join_neighbours(const std::vector<CellPair>& pairs, int pair);
-  void join_with(const std::vector<CellPair>& pairs, int pair, int cell);
+  void join(const std::vector<CellPair>& pairs, int cell, int other);
   void order_by_region(std::vector<CellPair>& pairs);
 
   const SurfaceLevels* first_;
@@ -32,7 +32,7 @@ class ContactRegions {
   std::vector<int> parent_;               // of each pair, an earlier one or itself
   std::vector<int> last_pair_;            // by cell_index() of the first surface's cell
   std::vector<int> previous_;             // pair of the same cell, by pair; -1 before the first
-  std::vector<char> split_;               // whether such a cell's pairs may be of several regions
+  std::vector<char> split_;               // whether not all pairs of such a cell hang together
   std::vector<std::uint32_t> paired_at_;  // the group() in which such a cell was in a pair
   std::uint32_t group_ = 0;
   std::vector<Region> regions_;

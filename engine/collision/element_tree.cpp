@@ -53,21 +53,24 @@ int ElementTree::add(const Node& range) {
   return index;
 }
 
-void ElementTree::update(const ControlNet& net) {
-  for (int e = 0; e < u_.elements(); ++e) take_strip(net, e);
+void ElementTree::update(SurfaceLevels& levels) {
+  levels.bounds().update(levels.surface().net);
+  for (int e = 0; e < u_.elements(); ++e) take_strip(levels, e);
   join_boxes();
 }
 
 void ElementTree::join_boxes() {
   for (int index = static_cast<int>(nodes_.size()) - 1; index >= 0; --index) {
     const Node& node = nodes_[index];
-    if (!node.is_leaf()) boxes_[index] = joined(boxes_[node.left], boxes_[node.right]);
+    if (node.is_leaf()) continue;
+    boxes_[index] = joined(boxes_[node.left], boxes_[node.right]);
     sizes_[index] = (boxes_[index].high - boxes_[index].low).sum();
   }
 }
 
 // The boxes of the elements (element_u, .): first over the rows of their control points, all columns at once.
-void ElementTree::take_strip(const ControlNet& net, int element_u) {
+void ElementTree::take_strip(SurfaceLevels& levels, int element_u) {
+  const ControlNet& net = levels.surface().net;
   const int* rows = u_.control.data() + u_.first_control[element_u];
   const std::vector<double>* coordinates[3] = {&net.x, &net.y, &net.z};
   for (int axis = 0; axis < 3; ++axis) {
@@ -87,15 +90,17 @@ void ElementTree::take_strip(const ControlNet& net, int element_u) {
   for (int e = 0; e < v_.elements(); ++e) {
     const int* columns = v_.control.data() + v_.first_control[e];
     Box& box = boxes_[leaf_[element_u * v_.elements() + e]];
+    box = levels.element_box(element_u, e);
     for (int axis = 0; axis < 3; ++axis) {
       double low = low_[axis][columns[0]], high = high_[axis][columns[0]];
       for (int k = 1; k <= v_.degree; ++k) {
         low = std::min(low, low_[axis][columns[k]]);
         high = std::max(high, high_[axis][columns[k]]);
       }
-      box.low[axis] = low;
-      box.high[axis] = high;
+      box.low[axis] = std::max(box.low[axis], low);
+      box.high[axis] = std::min(box.high[axis], high);
     }
+    sizes_[leaf_[element_u * v_.elements() + e]] = (box.high - box.low).sum();
   }
 }
 

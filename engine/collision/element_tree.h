@@ -6,6 +6,7 @@
 
 #include "engine/box.h"
 #include "engine/bspline/surface.h"
+#include "engine/collision/surface_levels.h"
 
 namespace spoonbill {
 
@@ -20,21 +21,9 @@ class ElementTree {
     bool is_leaf() const { return left < 0; }
   };
 
-  // Takes the boxes of the present control points, which needs no sample; they must follow the moving ones.
-  void update(const ControlNet& net);
-
-  // Makes the boxes smaller: tighter(element_u, element_v) holds the element too, where its box is within
-  // `reach_m` of `other`.
-  template <class Tighter>
-  void tighten(const Box& other, double reach_m, const Tighter& tighter) {
-    for (std::size_t index = 0; index < nodes_.size(); ++index) {
-      Box& box = boxes_[index];
-      if (!nodes_[index].is_leaf() || box.gap(other) > reach_m) continue;
-      const Box held = tighter(nodes_[index].first_u, nodes_[index].first_v);
-      box = {box.low.cwiseMax(held.low), box.high.cwiseMin(held.high)};
-    }
-    join_boxes();
-  }
+  // Takes the boxes of the present shape: each element's from its control points, made smaller by the one
+  // from its corners, where the surface is not far from flat.
+  void update(SurfaceLevels& levels);
 
   int root() const { return 0; }
   const Node& node(int index) const { return nodes_[index]; }
@@ -51,7 +40,7 @@ class ElementTree {
   };
   static Direction unroll(const KnotVector& knots);
   int add(const Node& range);
-  void take_strip(const ControlNet& net, int element_u);
+  void take_strip(SurfaceLevels& levels, int element_u);
   void join_boxes();
 
   Direction u_, v_;

@@ -130,11 +130,12 @@ PairResult SurfacePairCollider::collide(const Surface& first, const Surface& sec
   }
   const int samples_before = first_.samples_evaluated() + second_.samples_evaluated();
   search_.begin();
-  if (!hulls_are_apart(first.net, second.net)) {
+  // Where they touched, they mostly do so still, and the hulls would be asked in vain.
+  if (touched_ || !hulls_are_apart(first.net, second.net)) {
     take_contacts(query);
     result.overflow = cells_.overflow();
   }
-  result.touching = !contacts_.empty();
+  result.touching = touched_ = !contacts_.empty();
   if (!result.touching) find_nearest(query, result);
   result.overflow = result.overflow || search_.overflow();
   result.samples_evaluated = first_.samples_evaluated() + second_.samples_evaluated() - samples_before;
@@ -315,6 +316,7 @@ double SurfacePairCollider::search_all(double reach) {
 }
 
 void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& result) {
+  cells_.update();
   const bool nested = may_contain(query);
   const double reach = nested ? infinity : query.reach_m;
   const Box& first = cells_.first_tree().box(cells_.first_tree().root());

@@ -90,6 +90,7 @@ class SurfacePairCollider {
   ContactRegions regions_;
   PairSearch search_;
   std::vector<PairContact> contacts_;
+  bool touched_ = false;  // in the last collide(): tells what to try first, never what comes of it
 };
 
 }  // namespace spoonbill

@@ -2,6 +2,7 @@
 // quads. And two nets crossing each other, ours alone.
 #include <benchmark/benchmark.h>
 #include <fcl/narrowphase/collision.h>
+#include <malloc.h>
 
 #include <array>
 #include <cmath>
@@ -100,8 +101,16 @@ void surfaces_ours(benchmark::State& state, bool given) {
   }
 }
 
+// FCL copies a mesh of boxes at each query. An allocator that gave the pages back each time would double its
+// cost.
+void keep_freed_pages() {
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+}
+
 template <class Volume>
 void surfaces_fcl(benchmark::State& state) {
+  keep_freed_pages();
   const Sheets sheets;
   const FclPoints shapes[2] = {fcl_points(sheets.samples[0]), fcl_points(sheets.samples[1])};
   const auto mesh = fcl_mesh<Volume>(shapes[0], quads);
