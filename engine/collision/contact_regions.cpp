@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 
 namespace spoonbill {
 namespace {
@@ -15,21 +16,16 @@ int into_grid(const GridDirection& direction, int i) {
   return direction.knots.is_periodic() ? (i + cells) % cells : -1;
 }
 
-// Whether two cells of one level are the same or have a corner in common.
-bool are_neighbours(const SurfaceLevels& levels, const LevelCell& a, const LevelCell& b) {
-  const auto near = [&](const GridDirection& direction, int i, int j) {
-    const int cells = static_cast<int>(direction.parameters.size()) - 1, step = levels.step(a.level);
-    const int apart = std::abs(i - j);
-    return apart <= step || (direction.knots.is_periodic() && cells - apart <= step);
-  };
-  const Grid& grid = levels.nested().grid;
-  return near(grid.u, a.i, b.i) && near(grid.v, a.j, b.j);
-}
-
 }  // namespace
 
 ContactRegions::ContactRegions(const SurfaceLevels& first, const SurfaceLevels& second)
     : first_(&first), second_(&second) {
+  const auto cells_around = [](const GridDirection& direction) {
+    const int cells = static_cast<int>(direction.parameters.size()) - 1;
+    return direction.knots.is_periodic() ? cells : std::numeric_limits<int>::max();
+  };
+  around_u_ = cells_around(second.nested().grid.u);
+  around_v_ = cells_around(second.nested().grid.v);
   parent_.reserve(cell_pair_capacity);
   previous_.reserve(cell_pair_capacity);
   unordered_.reserve(cell_pair_capacity);
@@ -47,11 +43,12 @@ int ContactRegions::root(int pair) {
 
 // Joins pairs of two cells of the first surface, the same or neighbours.
 void ContactRegions::join(const std::vector<CellPair>& pairs, int cell, int other) {
+  const int step = second_->step(pairs[last_pair_[cell]].second.level);
   const bool whole = cell != other && !split_[cell] && !split_[other];
   if (whole && root(last_pair_[cell]) == root(last_pair_[other])) return;
   for (int k = last_pair_[cell]; k >= 0; k = previous_[k]) {
     for (int m = last_pair_[other]; m >= 0; m = previous_[m]) {
-      if (!are_neighbours(*second_, pairs[k].second, pairs[m].second)) continue;
+      if (!are_neighbours(pairs[k].second, pairs[m].second, step)) continue;
       const int a = root(k), b = root(m);
       parent_[std::max(a, b)] = std::min(a, b);
       if (whole) return;

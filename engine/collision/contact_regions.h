@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 #include "engine/collision/cell_pairs.h"
@@ -22,6 +23,11 @@ class ContactRegions {
   const std::vector<Region>& group(std::vector<CellPair>& pairs);
 
  private:
+  // Whether two cells of the second surface are the same or have a corner in common.
+  bool are_neighbours(const LevelCell& a, const LevelCell& b, int step) const {
+    const int in_u = std::abs(a.i - b.i), in_v = std::abs(a.j - b.j);
+    return (in_u <= step || around_u_ - in_u <= step) && (in_v <= step || around_v_ - in_v <= step);
+  }
   int root(int pair);
   void join_neighbours(const std::vector<CellPair>& pairs, int pair);
   void join(const std::vector<CellPair>& pairs, int cell, int other);
@@ -29,6 +35,8 @@ class ContactRegions {
 
   const SurfaceLevels* first_;
   const SurfaceLevels* second_;
+  // Cells of the second surface around a periodic direction; without end on others.
+  int around_u_ = 0, around_v_ = 0;
   std::vector<int> parent_;               // of each pair, an earlier one or itself
   std::vector<int> last_pair_;            // by cell_index() of the first surface's cell
   std::vector<int> previous_;             // pair of the same cell, by pair; -1 before the first

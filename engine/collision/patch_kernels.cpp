@@ -168,12 +168,14 @@ unsigned meeting(const SlabGroup& a, int lanes, const SlabGroup& b, double reach
       const double reach_b = slack + b.thickness[j] + magnitude(bnx * ux + bny * uy + bnz * uz) +
                              magnitude(bnx * vx + bny * vy + bnz * vz);
       const double squared = dx * dx + dy * dy + dz * dz;
-      const double between = magnitude(ux * dx + uy * dy + uz * dz) + magnitude(vx * dx + vy * dy + vz * dz) +
-                             magnitude(bux * dx + buy * dy + buz * dz) +
-                             magnitude(bvx * dx + bvy * dy + bvz * dz) +
-                             (slack + b.slack[j]) * __builtin_sqrt(squared);
+      // squared > along + slacks * length, without the root of squared.
+      const double along = magnitude(ux * dx + uy * dy + uz * dz) + magnitude(vx * dx + vy * dy + vz * dz) +
+                           magnitude(bux * dx + buy * dy + buz * dz) +
+                           magnitude(bvx * dx + bvy * dy + bvz * dz);
+      const double beyond = squared - along, slacks = slack + b.slack[j];
+      const double between = beyond * magnitude(beyond) - slacks * slacks * squared;
       const double of_normals = larger(across_a - reach_a, across_b - reach_b);
-      gap[slab_lanes * i + j] = larger(of_normals, squared - between);
+      gap[slab_lanes * i + j] = larger(of_normals, between);
     }
   }
   unsigned bits = 0;
