@@ -100,7 +100,9 @@ Status apply_request(Session& session, const Request& request) {
 bool rebuilds(const Request& request) {
   if (std::holds_alternative<MarkFile>(request)) return true;
   const auto* command = std::get_if<Command>(&request);
-  return command != nullptr &&
+  if (command == nullptr) return false;
+  const auto* tool = std::get_if<SetTool>(command);
+  return (tool != nullptr && tool->tool.kind == ToolKind::solid) ||
          (changes_what_a_shape_means(*command) || std::holds_alternative<SetMaterial>(*command));
 }
 

@@ -69,6 +69,7 @@ void SurfaceProximity::find(const Surface& first, const Surface& second, double 
   second_.levels.begin(second);
   cells_.begin_first();
   cells_.begin_second();
+  cells_.update();
   const ElementTree &one = cells_.first_tree(), &other = cells_.second_tree();
   if (one.box(one.root()).gap(other.box(other.root())) > margin_m) return;
   for (const CellPair& pair : cells_.within(margin_m)) {
@@ -76,10 +77,10 @@ void SurfaceProximity::find(const Surface& first, const Surface& second, double 
     offer_corners(second_, pair.second, first_, pair.first);
   }
   overflow_ |= cells_.overflow();
-  settle(first_, second, second_outside, margin_m);
-  settle(second_, first, 1.0, margin_m);
-  add_between_samples(first_, first, second, second_outside);
-  add_between_samples(second_, second, first, 1.0);
+  settle(first_, second_.levels, second_outside, margin_m);
+  settle(second_, first_.levels, 1.0, margin_m);
+  add_between_samples(first_, second_.levels, second_outside);
+  add_between_samples(second_, first_.levels, 1.0);
 }
 
 // The corners of a cell against a cell of the other surface.
@@ -116,14 +117,14 @@ void SurfaceProximity::offer_corners(Side& side, const LevelCell& cell, Side& ot
 }
 
 // Each near sample against the other surface's point nearest to it; those that are not near after all go.
-void SurfaceProximity::settle(Side& side, const Surface& other, double outside, double margin) {
+void SurfaceProximity::settle(Side& side, const SurfaceLevels& other, double outside, double margin) {
   std::size_t kept = 0;
   for (NearPoint near : side.near) {
-    const NearestPoint nearest = nearest_point(other, near.point_m, near.other_u, near.other_v);
+    const NearestPoint nearest = nearest_point(other.pieces(), near.point_m, near.other_u, near.other_v);
     near.other_u = nearest.u;
     near.other_v = nearest.v;
-    near.normal = outside * unit_normal(other, nearest.u, nearest.v);
-    near.gap_m = (near.point_m - nearest.point_m).dot(near.normal);
+    near.normal = outside * unit_normal(other.surface(), nearest.u, nearest.v);
+    near.gap_m = (near.point_m - nearest.at.position_m).dot(near.normal);
     if (near.gap_m > margin) {
       side.placed_at[near.sample] = 0;
       continue;
@@ -151,7 +152,7 @@ bool SurfaceProximity::is_local_deepest(const Side& side, const NearPoint& near)
 
 // Between its samples a surface may be nearer than at any: from the nearest ones, on both surfaces
 // themselves. deepest_pair() climbs from before the other surface too, where a gap is a depth below zero.
-void SurfaceProximity::add_between_samples(Side& side, const Surface& surface, const Surface& other, double outside) {
+void SurfaceProximity::add_between_samples(Side& side, const SurfaceLevels& other, double outside) {
   const std::size_t samples = side.near.size();
   for (std::size_t s = 0; s < samples; ++s) {
     const NearPoint& near = side.near[s];
@@ -160,8 +161,8 @@ void SurfaceProximity::add_between_samples(Side& side, const Surface& surface, c
       overflow_ = true;
       return;
     }
-    const DeepestPair deepest =
-        deepest_pair(surface, other, {near.u, near.v, near.other_u, near.other_v}, outside);
+    const DeepestPair deepest = deepest_pair(side.levels.pieces(), other.pieces(),
+                                             {near.u, near.v, near.other_u, near.other_v}, outside, infinity);
     const PairParameters& at = deepest.pair.at;
     side.near.push_back({-1, at.u, at.v, at.s, at.t, deepest.pair.first_m, deepest.normal, -deepest.depth_m});
     least_gap_m_ = std::min(least_gap_m_, -deepest.depth_m);

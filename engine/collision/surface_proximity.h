@@ -48,8 +48,8 @@ class SurfaceProximity {
     std::vector<NearPoint> near;
   };
   void offer_corners(Side& side, const LevelCell& cell, Side& other, const LevelCell& patch);
-  void settle(Side& side, const Surface& other, double outside, double margin);
-  void add_between_samples(Side& side, const Surface& surface, const Surface& other, double outside);
+  void settle(Side& side, const SurfaceLevels& other, double outside, double margin);
+  void add_between_samples(Side& side, const SurfaceLevels& other, double outside);
   bool is_local_deepest(const Side& side, const NearPoint& near) const;
 
   Side first_, second_;

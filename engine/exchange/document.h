@@ -14,10 +14,18 @@
 //      "lattice": {"node_budget": 2000}},                        or {"nodes": [4, 8, 60]}
 //    "other_bodies": [{"name": ...}, ...],                       each as "body"; may be left out
 //    "fixing_planes": [{"point_mm": [20, 0, 0], "normal": [1, 0, 0]}],    may be left out
-//    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6},
+//    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6,
+//      "solid": {"shape": "box", "half_extents_mm": [4, 3, 10]},  of kind solid; see below
+//      "soft": {"material": {...}, "lattice": {...},              may be left out: rigid
+//        "grip": {"point_mm": [0, 1, 0], "normal": [0, -1, 0]}}},   in the tool's frame
 //    "sculpting": {"damping_per_s": 4, "gravity_m_per_s2": [0, 0, 0], "force_scale": 1},
 //    "symmetry": {"on": true, "point_mm": [0, 0, 0], "normal": [0, 0, 1]},          may be left out
 //    "view": {...}}                                              may be left out
+//
+// Shapes of a solid: sphere (radius_mm), ellipsoid (semi_axes_mm), cylinder and capsule (radius_mm,
+// half_length_mm), box (half_extents_mm), cone (base_radius_mm, height_mm), torus (ring_radius_mm,
+// tube_radius_mm), half_space, superquadric (semi_axes_mm, exponent_along, exponent_around), and surface,
+// with the fields of a body's surface. implicit_shapes.h draws them.
 //
 // Version 1. The ranges stand in scene.h and material.h; knots lie within a million of zero and are equal or
 // at least a billionth of the domain apart. A length is a number, or a decimal in quotes where no double of
@@ -65,7 +73,8 @@ Result<Material> read_material(const std::filesystem::path& file);
 // One form a command, every field required unless said (those of tool, material and sculpting are the
 // document's):
 //   {"command": "place_plane", "point_mm": [x, y, z], "normal": [x, y, z]}      {"command": "remove_planes"}
-//   {"command": "set_tool", "kind", "action", "radius_mm", "iterations"}         {"command": "keep_shape"}
+//   {"command": "set_tool", "kind", "action", "radius_mm", "iterations" and, of a solid, "solid", "soft"}
+//          {"command": "keep_shape"}
 //   {"command": "set_material", "name", "source", "youngs_modulus_pa", ...}
 //     and, but for the first, "body": 1, its place in the list of all bodies
 //   {"command": "set_sculpting", "damping_per_s", "gravity_m_per_s2", "force_scale"}

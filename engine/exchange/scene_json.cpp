@@ -96,23 +96,6 @@ void add_material_fields(const Material& material, Json& json) {
   json["flow_rate_per_s"] = number_to_json(material.flow_rate_per_s);
 }
 
-Tool read_tool(FieldReader& reader) {
-  Tool tool;
-  tool.kind = reader.choice<ToolKind>("kind", {{"point", ToolKind::point}, {"sphere", ToolKind::sphere}});
-  tool.action = reader.choice<ToolAction>(
-      "action", {{"push", ToolAction::push}, {"pull", ToolAction::pull}, {"smooth", ToolAction::smooth}});
-  tool.radius_m = reader.length_m("radius_mm", tool_radius_range_m);
-  tool.iterations = reader.integer("iterations", tool_iterations_range);
-  return tool;
-}
-
-void add_tool(const Tool& tool, Json& json) {
-  json["kind"] = tool.kind == ToolKind::point ? "point" : "sphere";
-  json["action"] = name_of(tool.action);
-  json["radius_mm"] = length_to_json(tool.radius_m);
-  json["iterations"] = tool.iterations;
-}
-
 Sculpting read_sculpting(FieldReader& reader) {
   Sculpting sculpting;
   sculpting.damping_per_s = reader.number("damping_per_s", sculpting_damping_range_per_s);

@@ -1,5 +1,7 @@
 #include "engine/material/contact_constraints.h"
 
+#include <cmath>
+
 #include "engine/material/contact_push.h"
 
 namespace spoonbill {
@@ -45,8 +47,14 @@ bool ContactConstraints::add(Kind kind, int body, const SpringLattice& lattice, 
 void ContactConstraints::begin(const ToolMotion& motion, double material_time_s) {
   motion_ = motion;
   hand_velocity_ = (motion.end_m - motion.start_m) / material_time_s;
-  const bool coupled = motion.coupling_n_per_m > 0.0;
-  tool_compliance_ = coupled ? coupling_frequency * coupling_frequency / motion.coupling_n_per_m : 0.0;
+  carried_force_.setZero();
+  const double coupling = motion.coupling_n_per_m;
+  frequency_ = coupling_frequency;
+  tool_compliance_ = coupling > 0.0 ? coupling_frequency * coupling_frequency / coupling : 0.0;
+  if (coupling > 0.0 && motion.carried.mass_kg > 0.0) {
+    tool_compliance_ = 1.0 / (1.0 / tool_compliance_ + motion.carried.mass_kg);
+    frequency_ = std::sqrt(coupling * tool_compliance_);
+  }
   tool_impulse_.fill(Vector3::Zero());
   acted_ = false;
   for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
@@ -55,6 +63,11 @@ void ContactConstraints::begin(const ToolMotion& motion, double material_time_s)
 void ContactConstraints::solve(std::span<const LatticeView> lattices, ToolState& tool, float h,
                                double fraction, std::span<const float> caps) {
   follow_hand(tool, h, fraction);
+  if (motion_.carried.body >= 0) {
+    const Vector3 impulse = static_cast<double>(h) * carried_force_;
+    tool.velocity_m_per_s += tool_compliance_ * impulse;
+    tool_impulse_[motion_.carried.body] += impulse;
+  }
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
     if (compliance_of(constraint) + tool_compliance_ == 0.0) continue;
@@ -82,7 +95,7 @@ void ContactConstraints::follow_hand(ToolState& tool, double h, double fraction)
     tool.velocity_m_per_s = hand_velocity_;
     return;
   }
-  const double w = coupling_frequency;
+  const double w = frequency_;
   const Vector3 stretch = hand + h * hand_velocity_ - tool.position_m;
   tool.velocity_m_per_s = (tool.velocity_m_per_s + h * w * w * stretch + 2.0 * h * w * hand_velocity_) /
                           (1.0 + 2.0 * h * w + h * h * w * w);

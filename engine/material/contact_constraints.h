@@ -21,6 +21,14 @@ struct ToolState {
   Vector3 velocity_m_per_s = Vector3::Zero();  // of material time
 };
 
+// The held nodes of a lattice that the tool carries about, as if they were part of it: their rest positions
+// are in the tool's frame.
+struct CarriedNodes {
+  int body = -1;  // the lattice's place in the views; -1 for none
+  std::span<const int> nodes;
+  double mass_kg = 0.0;
+};
+
 // What the hand does with the tool through one tick, in the world frame.
 struct ToolMotion {
   Vector3 start_m = Vector3::Zero();
@@ -31,6 +39,7 @@ struct ToolMotion {
   // The spring by which the hand holds the tool, critically damped; 0 = held rigidly.
   double coupling_n_per_m = 0.0;
   bool body_yields = true;  // false: the tool meets the body as it would a wall
+  CarriedNodes carried;
 };
 
 // Working memory for the contacts of one tick. One owner, one thread; allocates only in its constructor.
@@ -54,6 +63,10 @@ class ContactConstraints {
   // Begins a tick of `material_time_s`.
   void begin(const ToolMotion& motion, double material_time_s);
 
+  const ToolMotion& motion() const { return motion_; }
+  // A force on the tool through the coming substep, N, from the nodes that it carries.
+  void pull_tool(const Vector3& force_n) { carried_force_ = force_n; }
+
   // After the kick and before the drift of a substep of h_s that begins at `fraction` [0 to 1) of the tick.
   // Pushes on nodes and tool are equal and opposite; then the tool moves.
   void solve(std::span<const LatticeView> lattices, ToolState& tool, float h_s, double fraction,
@@ -73,7 +86,7 @@ class ContactConstraints {
     Kind kind = Kind::sphere_push;
     int body = 0;
     EmbeddedPoint point;
-    Vector3 rest_m = Vector3::Zero();  // of the undeformed embedding
+    Vector3 rest_m = Vector3::Zero();     // of the undeformed embedding
     Vector3 direction = Vector3::Zero();  // plane push: the normal; grip: the offset in the tool's frame
     double offset_m = 0.0;                // plane push
     double compliance = 0.0;              // 1/kg of the point; 0 when every node is held
@@ -91,7 +104,9 @@ class ContactConstraints {
   int count_ = 0;
   ToolMotion motion_;
   Vector3 hand_velocity_ = Vector3::Zero();  // m/s of material time
-  double tool_compliance_ = 0.0;             // 1/kg; 0 where the hand holds it rigidly
+  Vector3 carried_force_ = Vector3::Zero();
+  double frequency_ = 0.0;        // of the tool on its coupling spring, rad/s
+  double tool_compliance_ = 0.0;  // 1/kg; 0 where the hand holds it rigidly
   std::array<Vector3, lattice_capacity> tool_impulse_;
   bool acted_ = false;
 };

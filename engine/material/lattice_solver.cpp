@@ -46,22 +46,40 @@ float speed_cap(const SpringLattice& lattice, float h) {
   return static_cast<float>(speed_cap_cells) * lattice.cell_size_m() / std::max(h, longest);
 }
 
-// Caps speeds and moves the nodes.
-Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, float cap) {
-  const LatticeKernels& kernels = lattice.kernels();
+// Caps speeds relative to that of the frame and moves the nodes.
+Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, float cap,
+              const Vector3& frame) {
   Drift drift;
   drift.h_s = h;
   drift.cap_m_per_s = cap;
   drift.tau_s = lattice.damping_time_s();
-  if (!lattice.has_held_nodes()) {
-    float sum[4];
-    kernels.momentum(view, lattice.free_mass(), sum);
-    const float inverse = sum[3] > 0.0f ? 1.0f / sum[3] : 0.0f;
-    drift.mean_x = sum[0] * inverse;
-    drift.mean_y = sum[1] * inverse;
-    drift.mean_z = sum[2] * inverse;
+  drift.mean_x = static_cast<float>(frame.x());
+  drift.mean_y = static_cast<float>(frame.y());
+  drift.mean_z = static_cast<float>(frame.z());
+  return lattice.kernels().drift(view, drift);
+}
+
+void set_velocity(const LatticeView& view, int n, const Vector3& velocity) {
+  view.vx[n] = static_cast<float>(velocity.x());
+  view.vy[n] = static_cast<float>(velocity.y());
+  view.vz[n] = static_cast<float>(velocity.z());
+}
+
+// As drift() leaves a node; returns the square of what it moved since the springs were linearised.
+float place_node(const LatticeView& view, int n, const Vector3& displacement, float tau) {
+  float* const d[3] = {view.dx, view.dy, view.dz};
+  float* const ahead[3] = {view.ahead_x, view.ahead_y, view.ahead_z};
+  float* const moved[3] = {view.moved_x, view.moved_y, view.moved_z};
+  const float* const v[3] = {view.vx, view.vy, view.vz};
+  const float* const reference[3] = {view.reference_x, view.reference_y, view.reference_z};
+  float square = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    d[axis][n] = static_cast<float>(displacement[axis]);
+    ahead[axis][n] = d[axis][n] + tau * v[axis][n];
+    moved[axis][n] = ahead[axis][n] - reference[axis][n];
+    square += moved[axis][n] * moved[axis][n];
   }
-  return kernels.drift(view, drift);
+  return square;
 }
 
 void linearise(const SpringLattice& lattice, const LatticeView& view) {
@@ -113,11 +131,58 @@ void solve_contacts(const Relaxation& relaxation, float h, double fraction,
   if (between) between->solve(views, h, push_caps);
 }
 
+// What carried nodes pull at the tool with, and their velocity, which the kick has taken.
+void hand_over(const Relaxation& relaxation, std::span<const TouchingTool> tools) {
+  for (const TouchingTool& tool : tools) {
+    const CarriedNodes& carried = tool.motion.carried;
+    if (carried.body < 0) continue;
+    const LatticeView& view = relaxation.view[static_cast<std::size_t>(carried.body)];
+    Vector3 force = Vector3::Zero();
+    for (const int n : carried.nodes) {
+      force += Vector3(view.fx[n], view.fy[n], view.fz[n]);
+      set_velocity(view, n, tool.state->velocity_m_per_s);
+    }
+    tool.contacts->pull_tool(force);
+  }
+}
+
+// Places carried nodes where the tool now is.
+void carry(Relaxation& relaxation, std::span<const TouchingTool> tools) {
+  for (const TouchingTool& tool : tools) {
+    const CarriedNodes& carried = tool.motion.carried;
+    if (carried.body < 0) continue;
+    const auto at = static_cast<std::size_t>(carried.body);
+    const SpringLattice& lattice = relaxation.lattice(at);
+    const LatticeView& view = relaxation.view[at];
+    for (const int n : carried.nodes) {
+      const Vector3& rest = lattice.mesh().nodes[static_cast<std::size_t>(n)];
+      const Vector3 moved = tool.state->position_m + tool.motion.orientation * rest - rest;
+      set_velocity(view, n, tool.state->velocity_m_per_s);
+      const float square = place_node(view, n, moved, lattice.damping_time_s());
+      relaxation.drifted[at].moved_square = std::max(relaxation.drifted[at].moved_square, square);
+    }
+  }
+}
+
+// What the speeds of a lattice's nodes are relative to.
+Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at, std::span<const TouchingTool> tools) {
+  for (const TouchingTool& tool : tools) {
+    if (tool.motion.carried.body == static_cast<int>(at)) return tool.state->velocity_m_per_s;
+  }
+  const SpringLattice& lattice = relaxation.lattice(at);
+  if (lattice.has_held_nodes()) return Vector3::Zero();
+  float sum[4];
+  lattice.kernels().momentum(relaxation.view[at], lattice.free_mass(), sum);
+  const float inverse = sum[3] > 0.0f ? 1.0f / sum[3] : 0.0f;
+  return Vector3(sum[0] * inverse, sum[1] * inverse, sum[2] * inverse);
+}
+
 // Returns whether a node met the speed cap.
-bool drift(Relaxation& relaxation, float h) {
+bool drift(Relaxation& relaxation, float h, std::span<const TouchingTool> tools) {
   bool capped = false;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
-    relaxation.drifted[at] = drift(relaxation.lattice(at), relaxation.view[at], h, relaxation.cap[at]);
+    relaxation.drifted[at] = drift(relaxation.lattice(at), relaxation.view[at], h, relaxation.cap[at],
+                                   frame_velocity(relaxation, at, tools));
     capped |= relaxation.drifted[at].speed_square > 1.0f;
   }
   return capped;
@@ -185,8 +250,10 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   const int total = settings.iterations * substeps.count;
   for (int s = 0; s < total; ++s) {
     kick(relaxation, settings, h);
+    hand_over(relaxation, tools);
     solve_contacts(relaxation, h, static_cast<double>(s) / total, tools, between);
-    report.speed_capped |= drift(relaxation, h);
+    report.speed_capped |= drift(relaxation, h, tools);
+    carry(relaxation, tools);
   }
   if (flows) flow(relaxation, report.material_time_s);
   return report;

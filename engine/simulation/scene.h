@@ -28,8 +28,8 @@ struct Body {
 struct Tool {
   ToolKind kind = ToolKind::sphere;
   ToolAction action = ToolAction::push;
-  double radius_m = 0.008;               // of a sphere; 0 for a point; how far smoothing reaches with a solid
-  int iterations = 6;                    // relaxation steps a tick: few act locally, many globally (1 to 8)
+  double radius_m = 0.008;  // of a sphere; 0 for a point; how far smoothing reaches with a solid
+  int iterations = 6;       // relaxation steps a tick: few act locally, many globally (1 to 8)
   std::shared_ptr<const ToolBody> body = {};  // of a solid; may stay while the tool is another
 };
 

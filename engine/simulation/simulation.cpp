@@ -117,11 +117,14 @@ TouchingTool touch(Simulation::State& s, HeldTool& held, ToolHold hold, double c
   hold.pose.position_m = held.state.position_m;
   if (s.tool_is_soft()) {
     if (appears) place_soft(s.bodies.back(), hand);
-    held.contact.prepare_soft(static_cast<int>(s.bodies.size()) - 1, s.bodies.back(), s.model.gripped);
+    held.contact.prepare_soft();
   } else {
     held.contact.prepare(s.scene_bodies(), s.scene.tool, s.model, hold);
   }
-  const ToolMotion motion = motion_of(s, held.hand, hand, coupling_n_per_m);
+  ToolMotion motion = motion_of(s, held.hand, hand, coupling_n_per_m);
+  if (s.tool_is_soft()) {
+    motion.carried = {static_cast<int>(s.bodies.size()) - 1, s.model.gripped, s.model.gripped_mass_kg};
+  }
   held.hand = hand;
   return {motion, &held.state, &held.contact.constraints()};
 }

@@ -7,7 +7,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr int constraint_capacity = 2048;
+constexpr int constraint_capacity = 1024;
 
 // How near a sample must be to become a constraint, in lattice cells: what the refit may leave between the
 // surface that collides and the lattice that gives way.
@@ -99,18 +99,10 @@ bool ToolContact::acts(bool inside, bool near, const ToolHold& hold) {
   return !lifted_ && !hovered_;
 }
 
-void ToolContact::prepare_soft(int number, const BodyState& tool, const std::vector<std::uint8_t>& gripped) {
+void ToolContact::prepare_soft() {
   constraints_.clear();
   overflow_ = false;
   for (BodyContact& contact : contacts_) contact.collision = {};
-  for (int n = 0; n < tool.lattice.mesh().node_count(); ++n) {
-    if (gripped[static_cast<std::size_t>(n)] == 0) continue;
-    EmbeddedPoint point;
-    point.count = 1;
-    point.node[0] = n;
-    point.weight[0] = 1.0f;
-    overflow_ |= !constraints_.add_grip(number, tool.lattice, point, tool.lattice.mesh().nodes[n]);
-  }
 }
 
 void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& tool, const ToolModel& model,

@@ -36,9 +36,8 @@ class ToolContact {
   // While `hovering`, and then until it is outside the bodies, the tool acts on nothing.
   void prepare(std::span<const BodyState> bodies, const Tool& tool, const ToolModel& model,
                const ToolHold& hold);
-  // The same for a soft tool, which is the body of that number and touches the others by itself: the hand
-  // holds the gripped nodes.
-  void prepare_soft(int number, const BodyState& tool, const std::vector<std::uint8_t>& gripped);
+  // The same for a soft tool, which is a body and touches the others by itself.
+  void prepare_soft();
   // Whether the tool acts in this tick, of which it is known whether it is inside a body and near one.
   bool acts(bool inside, bool near, const ToolHold& hold);
   void release();

@@ -22,7 +22,14 @@ struct ModelOf {
       Result<BodyState> soft =
           make_body_state({"tool", solid.surface, body.soft->material, body.soft->lattice}, {}, set);
       if (!soft.ok()) return Error{"tool: " + soft.error().message};
-      model.gripped = nodes_behind(soft->lattice, {body.soft->grip});
+      soft->held = nodes_behind(soft->lattice, {body.soft->grip});
+      for (int n = 0; n < soft->lattice.mesh().node_count(); ++n) {
+        if (soft->held[static_cast<std::size_t>(n)] == 0) continue;
+        model.gripped.push_back(n);
+        model.gripped_mass_kg += static_cast<double>(soft->lattice.mass(n));
+      }
+      if (model.gripped.empty()) return Error{"tool: its grip plane holds none of its nodes, move it"};
+      soft->lattice.hold(soft->held);
       model.soft = std::move(soft).value();
       return model;
     }

@@ -17,8 +17,9 @@ struct ToolModel {
   std::shared_ptr<const SignedDistance> distance;  // of a rigid implicit or tessellated one
   std::shared_ptr<const Surface> surface;          // of a rigid B-spline tool, in its frame
   std::shared_ptr<const NestedGrid> nested;        // its samples
-  std::optional<BodyState> soft;      // of one that gives way; its rest shape is in the tool's frame
-  std::vector<std::uint8_t> gripped;  // of its nodes, 1 where the hand holds them
+  std::optional<BodyState> soft;  // of one that gives way; its rest shape is in the tool's frame
+  std::vector<int> gripped;       // its nodes that the hand holds
+  double gripped_mass_kg = 0.0;
 
   bool is_soft() const { return soft.has_value(); }
 };

@@ -110,7 +110,7 @@ TEST(Document, NamesWrongTypes) {
   EXPECT_EQ(refusal([](Json& j) { j["tool"] = "sphere"; }),
             "sample.json: tool is \"sphere\", must be an object");
   EXPECT_EQ(refusal([](Json& j) { j["tool"]["kind"] = "cube"; }),
-            "sample.json: tool.kind is \"cube\", must be point or sphere");
+            "sample.json: tool.kind is \"cube\", must be point or sphere or solid");
   EXPECT_EQ(refusal([](Json& j) { j["tool"]["iterations"] = 2.5; }),
             "sample.json: tool.iterations is 2.5, must be a whole number");
   EXPECT_EQ(refusal([](Json& j) { j["tool"]["radius_mm"] = "8 mm"; }),

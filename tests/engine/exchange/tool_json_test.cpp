@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "engine/exchange/document.h"
+#include "tests/engine/exchange/sample_document.h"
+
+namespace spoonbill {
+namespace {
+
+std::vector<ToolSolid> every_solid() {
+  Surface surface = sample_document().scene.bodies[0].surface;
+  return {ImplicitShape(SphereShape{0.006}),
+          ImplicitShape(EllipsoidShape{{0.0081, 0.004, 0.006}}),
+          ImplicitShape(CylinderShape{0.005, 0.008}),
+          ImplicitShape(CapsuleShape{0.004, 0.0}),
+          ImplicitShape(BoxShape{{0.004, 1.0 / 300.0, 0.01}}),
+          ImplicitShape(ConeShape{0.006, 0.01}),
+          ImplicitShape(TorusShape{0.006, 0.002}),
+          ImplicitShape(HalfSpaceShape{}),
+          ImplicitShape(SuperquadricShape{{0.006, 0.004, 0.006}, 0.5, 1.5}),
+          SurfaceSolid{std::move(surface)}};
+}
+
+Document with_tool(ToolSolid solid, std::optional<SoftTool> soft = std::nullopt) {
+  Document document = sample_document();
+  document.scene.tool.kind = ToolKind::solid;
+  document.scene.tool.body = std::make_shared<ToolBody>(ToolBody{std::move(solid), std::move(soft)});
+  return document;
+}
+
+std::string page(const Document& document) {
+  return json_to_page(document_to_json(document));
+}
+
+std::string read_and_written(const std::string& text) {
+  const auto json = parse_json(text, "sample.json");
+  EXPECT_TRUE(json.ok());
+  const auto read = document_from_json(json.value(), "sample.json");
+  EXPECT_TRUE(read.ok()) << read.error().message;
+  return read.ok() ? page(read.value()) : "";
+}
+
+std::string refusal(const std::function<void(Json&)>& change) {
+  Json json = document_to_json(with_tool(ImplicitShape(BoxShape{})));
+  change(json);
+  const auto read = document_from_json(json, "sample.json");
+  return read.ok() ? "accepted" : read.error().message;
+}
+
+// Numbers read back to the same bits (document_test.cpp), so the same text is the same tool.
+TEST(ToolJson, KeepsEverySolid) {
+  for (const ToolSolid& solid : every_solid()) {
+    const std::string text = page(with_tool(solid));
+    EXPECT_NE(text.find("\"kind\": \"solid\""), std::string::npos);
+    EXPECT_EQ(read_and_written(text), text);
+  }
+}
+
+TEST(ToolJson, KeepsASoftOne) {
+  const Material clay = sample_document().scene.bodies[0].material;
+  const SoftTool soft{clay, {300, {}}, {Vector3(0, 0.001, 0), -Vector3::UnitY()}};
+  const std::string text = page(with_tool(every_solid().back(), soft));
+  EXPECT_NE(text.find("\"grip\""), std::string::npos);
+  EXPECT_EQ(read_and_written(text), text);
+}
+
+TEST(ToolJson, KeepsASolidThatIsNotInTheHand) {
+  Document document = with_tool(ImplicitShape(BoxShape{}));
+  document.scene.tool.kind = ToolKind::sphere;
+  EXPECT_EQ(read_and_written(page(document)), page(document));
+}
+
+TEST(ToolJson, NamesWhatIsWrong) {
+  EXPECT_EQ(refusal([](Json& j) { j["tool"].erase("solid"); }), "sample.json: tool.solid is missing");
+  EXPECT_EQ(refusal([](Json& j) { j["tool"]["solid"]["shape"] = "blob"; }),
+            "sample.json: tool.solid.shape is \"blob\", must be sphere or ellipsoid or cylinder or "
+            "capsule or box or cone or torus or half_space or superquadric or surface");
+  EXPECT_EQ(refusal([](Json& j) { j["tool"]["solid"]["half_extents_mm"][1] = -4; }),
+            "sample.json: tool.solid.half_extents_mm[1] is -4, must be 0.01 to 500");
+  EXPECT_EQ(refusal([](Json& j) {
+              j["tool"]["solid"] = {{"shape", "torus"}, {"ring_radius_mm", 2}, {"tube_radius_mm", 3}};
+            }).substr(0, 18),
+            "sample.json: tool ");
+  EXPECT_EQ(refusal([](Json& j) {
+              j["tool"]["soft"] = {{"material", 3}};
+            }).substr(0, 30),
+            "sample.json: tool.soft.materia");
+}
+
+TEST(ToolJson, KeepsSeveralBodies) {
+  Document document = sample_document();
+  document.scene.bodies.resize(3, document.scene.bodies[0]);
+  document.scene.bodies[2].name = "third";
+  const std::string text = page(document);
+  EXPECT_EQ(read_and_written(text), text);
+  Json json = document_to_json(document);
+  json["other_bodies"][1].erase("name");
+  const auto read = document_from_json(json, "sample.json");
+  ASSERT_FALSE(read.ok());
+  EXPECT_EQ(read.error().message, "sample.json: other_bodies[1].name is missing");
+}
+
+TEST(ToolJson, ReadsTheCommandsOfAnyTool) {
+  const Tool tool = with_tool(every_solid().back()).scene.tool;
+  const Json json = command_to_json(SetTool{tool});
+  const auto read = command_from_json(json, "script");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(command_to_json(read.value()), json);
+  const Json material = command_to_json(SetMaterial{sample_document().scene.bodies[0].material, 2});
+  EXPECT_EQ(material["body"], 2);
+  EXPECT_EQ(command_to_json(command_from_json(material, "script").value()), material);
+}
+
+}  // namespace
+}  // namespace spoonbill
