@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "engine/simulation/scene.h"
 
@@ -32,13 +31,11 @@ std::optional<NumberAndRest> leading_number(std::string_view text) {
 }
 
 std::optional<double> length_m(std::string_view text) {
-  constexpr std::pair<std::string_view, double> units[] = {
-      {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"in", 0.0254}};
   const auto length = leading_number(text);
   if (!length) return {};
   if (length->rest.empty() && length->number == 0.0) return 0.0;
-  for (const auto& [name, metres] : units) {
-    if (length->rest == name) return length->number * metres;
+  for (const LengthUnit& unit : length_units) {
+    if (length->rest == unit.name) return length->number * unit.metres;
   }
   return {};
 }
@@ -98,6 +95,13 @@ Result<Pose> parse_pose(std::string_view text) {
   if (!(length > 1e-100 && length < 1e100)) return refusal;
   pose.orientation = Quaternion(orientation.coeffs() / length);
   return pose;
+}
+
+Result<LengthUnit> parse_unit(std::string_view text) {
+  for (const LengthUnit& unit : length_units) {
+    if (text == unit.name) return unit;
+  }
+  return Error{"'" + std::string(text.substr(0, 40)) + "' is not a unit of length: mm, cm, m or in"};
 }
 
 }  // namespace spoonbill

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/files/length_unit.h"
 #include "engine/pose.h"
 #include "engine/range.h"
 #include "engine/result.h"
@@ -21,5 +22,8 @@ Result<Extent> parse_extent(std::string_view text, Range<int> range);
 // "10mm,0,0,1,0,0,0": x, y and z, each with its unit unless it is 0, within position_range_m; then the turn
 // as a quaternion w,x,y,z of any length but 0.
 Result<Pose> parse_pose(std::string_view text);
+
+// "mm", "cm", "m" or "in".
+Result<LengthUnit> parse_unit(std::string_view text);
 
 }  // namespace spoonbill

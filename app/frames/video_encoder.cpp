@@ -1,7 +1,6 @@
 #include "app/frames/video_encoder.h"
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +12,8 @@
 #include <system_error>
 #include <utility>
 #include <vector>
+
+#include "app/process/child_process.h"
 
 namespace spoonbill {
 namespace {
@@ -41,23 +42,6 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& file, con
           "file:" + file.string()};
 }
 
-// Starts ffmpeg with `input` as its standard input and nothing else of ours; -1 when it does not start.
-pid_t spawn(const std::vector<std::string>& arguments, int input) {
-  std::vector<char*> pointers;
-  pointers.reserve(arguments.size() + 1);
-  for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
-  pointers.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t process = -1;
-  const int error = posix_spawnp(&process, pointers[0], &actions, nullptr, pointers.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  return error == 0 ? process : -1;
-}
-
 }  // namespace
 
 bool VideoEncoder::available() {
@@ -77,9 +61,9 @@ Result<VideoEncoder> VideoEncoder::start(const std::filesystem::path& file, int 
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return Error{std::string("no pipe to ffmpeg: ") + std::strerror(errno)};
   const pid_t process =
-      spawn(ffmpeg_arguments(unfinished, std::to_string(width_px) + "x" + std::to_string(height_px),
-                             std::to_string(rate_numerator) + "/" + std::to_string(rate_denominator)),
-            ends[0]);
+      start_process(ffmpeg_arguments(unfinished, std::to_string(width_px) + "x" + std::to_string(height_px),
+                                     std::to_string(rate_numerator) + "/" + std::to_string(rate_denominator)),
+                    ends[0], -1);
   close(ends[0]);
   if (process < 0) {
     close(ends[1]);
@@ -103,10 +87,7 @@ VideoEncoder::~VideoEncoder() {
 
 int VideoEncoder::close_and_wait() {
   if (pipe_ >= 0) close(std::exchange(pipe_, -1));
-  int state = 0;
-  while (waitpid(process_, &state, 0) < 0 && errno == EINTR) {
-  }
-  process_ = -1;
+  const int state = wait_for_process(std::exchange(process_, -1));
   return WIFEXITED(state) ? WEXITSTATUS(state) : -1;
 }
 

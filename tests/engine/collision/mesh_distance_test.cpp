@@ -55,16 +55,16 @@ TriangleMesh hourglass() {
 }
 
 std::vector<NamedMesh> solids() {
-  return {
-      {"box", box_mesh({-0.5, -0.7, -0.9}, {0.5, 0.7, 0.9})},
-      {"ball", ball_mesh(12, 20, 0.9)},
-      {"torus", torus_mesh(24, 12, 0.8, 0.35)},
-      {"slender box", box_mesh({-1, -1e-5, -0.2}, {1, 1e-5, 0.2})},
-      {"needles", ball_mesh(3, 400, 0.9)},
-      {"hourglass", hourglass()},
-      {"boxes with a common edge", joined(box_mesh({-1, -1, 0}, {0, 0, 1}), box_mesh({0, 0, 0}, {1, 1, 1}))},
-      {"hollow box",
-       joined(turned(box_mesh({-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3})), box_mesh({-1, -1, -1}, {1, 1, 1}))}};
+  return {{"box", box_of_triangles({-0.5, -0.7, -0.9}, {0.5, 0.7, 0.9})},
+          {"ball", ball_mesh(12, 20, 0.9)},
+          {"torus", torus_mesh(24, 12, 0.8, 0.35)},
+          {"slender box", box_of_triangles({-1, -1e-5, -0.2}, {1, 1e-5, 0.2})},
+          {"needles", ball_mesh(3, 400, 0.9)},
+          {"hourglass", hourglass()},
+          {"boxes with a common edge",
+           joined(box_of_triangles({-1, -1, 0}, {0, 0, 1}), box_of_triangles({0, 0, 0}, {1, 1, 1}))},
+          {"hollow box", joined(turned(box_of_triangles({-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3})),
+                                box_of_triangles({-1, -1, -1}, {1, 1, 1}))}};
 }
 
 TEST(MeshDistance, AgreesWithAllTrianglesAndWithRays) {
@@ -87,7 +87,7 @@ TEST(MeshDistance, AgreesWithAllTrianglesAndWithRays) {
 
 TEST(MeshDistance, OfABoxIsTheClosedForm) {
   const Vector3 half(0.5, 0.7, 0.9);
-  const MeshDistance distance(cleaned(turned(box_mesh(-half, half))));
+  const MeshDistance distance(cleaned(turned(box_of_triangles(-half, half))));
   Random random(4);
   for (int k = 0; k < points(2000); ++k) {
     const Vector3 at = random_point(random, 1.5);
@@ -110,7 +110,7 @@ std::vector<NamedMesh> everything() {
   all.push_back(
       {"overlapping balls", joined(ball_mesh(8, 12, 0.7, {0.4, 0, 0}), ball_mesh(8, 12, 0.7, {-0.4, 0, 0}))});
   all.push_back({"ball and sheet", joined(ball_mesh(8, 12, 0.4), sheet_mesh(4, 0.1))});
-  TriangleMesh split = box_mesh({-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8});
+  TriangleMesh split = box_of_triangles({-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8});
   split.triangles.push_back({0, 1, 7});  // a wall across
   split.triangles.push_back({0, 7, 6});
   all.push_back({"box with a wall", split});
@@ -190,8 +190,8 @@ TEST(MeshDistance, WhatOverlapsIsOneBody) {
 }
 
 TEST(MeshDistance, AHollowIsOutside) {
-  const MeshDistance hollow(cleaned(
-      joined(box_mesh({-1, -1, -1}, {1, 1, 1}), turned(box_mesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5})))));
+  const MeshDistance hollow(cleaned(joined(box_of_triangles({-1, -1, -1}, {1, 1, 1}),
+                                           turned(box_of_triangles({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5})))));
   EXPECT_NEAR(hollow.at({0, 0, 0}).distance_m, 0.5, 1e-15);
   EXPECT_NEAR(hollow.at({0.6, 0, 0}).distance_m, -0.1, 1e-15);
   EXPECT_NEAR(hollow.at({1.5, 0, 0}).distance_m, 0.5, 1e-15);
@@ -199,16 +199,16 @@ TEST(MeshDistance, AHollowIsOutside) {
 }
 
 TEST(MeshDistance, KnowsWhatIsConvex) {
-  TriangleMesh dented = box_mesh({-1, -1, -1}, {1, 1, 1});
+  TriangleMesh dented = box_of_triangles({-1, -1, -1}, {1, 1, 1});
   dented.vertices_m[7] = Vector3(0.999, 0.999, 0.999);
   const std::vector<std::pair<TriangleMesh, bool>> cases = {
-      {box_mesh({-1, -1, -1}, {1, 1, 1}), true},
+      {box_of_triangles({-1, -1, -1}, {1, 1, 1}), true},
       {turned(soup(ball_mesh(12, 20, 0.9))), true},
       {dented, false},
       {torus_mesh(24, 12, 0.8, 0.35), false},
       {torus_mesh(24, 12, 0.4, 0.7), false},
       {sheet_mesh(3, 0.0), false},
-      {joined(box_mesh({-1, -1, 0}, {0, 0, 1}), box_mesh({0, 0, 0}, {1, 1, 1})), false}};
+      {joined(box_of_triangles({-1, -1, 0}, {0, 0, 1}), box_of_triangles({0, 0, 0}, {1, 1, 1})), false}};
   for (const auto& [mesh, convex] : cases) EXPECT_EQ(MeshDistance(cleaned(mesh)).is_convex(), convex);
 
   const TriangleMesh ball = ball_mesh(12, 20, 0.9);

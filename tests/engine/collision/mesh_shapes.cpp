@@ -28,7 +28,7 @@ double segment_distance(const Vector3& a, const Vector3& b, const Vector3& point
 
 }  // namespace
 
-TriangleMesh box_mesh(const Vector3& low, const Vector3& high) {
+TriangleMesh box_of_triangles(const Vector3& low, const Vector3& high) {
   TriangleMesh mesh;
   for (int k = 0; k < 8; ++k) {
     mesh.vertices_m.emplace_back((k & 1) != 0 ? high.x() : low.x(), (k & 2) != 0 ? high.y() : low.y(),

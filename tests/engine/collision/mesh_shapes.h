@@ -6,7 +6,7 @@
 
 namespace spoonbill {
 
-TriangleMesh box_mesh(const Vector3& low, const Vector3& high);
+TriangleMesh box_of_triangles(const Vector3& low, const Vector3& high);
 // Rings of latitude and poles on the y axis, corners on the sphere.
 TriangleMesh ball_mesh(int rings, int around, double radius_m, const Vector3& centre_m = Vector3::Zero());
 // About the y axis. A tube thicker than its way round goes through itself.

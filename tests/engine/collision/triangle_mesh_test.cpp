@@ -20,7 +20,7 @@ double volume(const CleanMesh& clean) {
 }
 
 TEST(TriangleMesh, ASoupOfTrianglesBecomesABox) {
-  const CleanMesh clean = cleaned(soup(box_mesh(low, high)));
+  const CleanMesh clean = cleaned(soup(box_of_triangles(low, high)));
   EXPECT_EQ(clean.report.vertices_read, 36u);
   EXPECT_EQ(clean.report.triangles_read, 12u);
   EXPECT_EQ(clean.report.vertices_joined, 28u);
@@ -45,7 +45,7 @@ TEST(TriangleMesh, VerticesAHairApartAreOne) {
 }
 
 TEST(TriangleMesh, InsideOutIsTurnedRound) {
-  const CleanMesh clean = cleaned(turned(box_mesh(low, high)));
+  const CleanMesh clean = cleaned(turned(box_of_triangles(low, high)));
   EXPECT_EQ(clean.report.parts_turned, 1u);
   EXPECT_EQ(clean.report.triangles_turned, 0u);
   EXPECT_GT(volume(clean), 0.0);
@@ -67,7 +67,7 @@ TEST(TriangleMesh, TrianglesAgreeWithMostOfTheirPart) {
 }
 
 TEST(TriangleMesh, DegenerateAndRepeatedTrianglesAreDropped) {
-  TriangleMesh mesh = box_mesh(low, high);
+  TriangleMesh mesh = box_of_triangles(low, high);
   mesh.vertices_m.emplace_back(0.5 * (mesh.vertices_m[0] + mesh.vertices_m[7]));
   mesh.triangles.push_back({0, 0, 1});
   mesh.triangles.push_back({0, 8, 7});          // on a line
@@ -81,7 +81,8 @@ TEST(TriangleMesh, DegenerateAndRepeatedTrianglesAreDropped) {
 }
 
 TEST(TriangleMesh, TwoBoxesWithACommonEdgeAreTwoParts) {
-  const TriangleMesh mesh = joined(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({1, 1, 0}, {2, 2, 1}));
+  const TriangleMesh mesh =
+      joined(box_of_triangles({0, 0, 0}, {1, 1, 1}), box_of_triangles({1, 1, 0}, {2, 2, 1}));
   const CleanMesh clean = cleaned(mesh);
   EXPECT_EQ(clean.report.vertices_joined, 2u);
   EXPECT_EQ(clean.report.branching_edges, 1u);
@@ -113,7 +114,7 @@ TEST(TriangleMesh, SmallHolesAreFilledAndLargeOnesMakeASheet) {
 }
 
 TEST(TriangleMesh, AFinOnASolidIsDropped) {
-  TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
+  TriangleMesh mesh = box_of_triangles({0, 0, 0}, {1, 1, 1});
   mesh.vertices_m.emplace_back(1.001, 1.001, 0.5);
   mesh.triangles.push_back({3, 7, 8});
   mesh.triangles.push_back({7, 3, 8});  // its other side
@@ -128,7 +129,7 @@ TEST(TriangleMesh, AFinOnASolidIsDropped) {
 
 // A box whose top is cut otherwise than its sides: the crack between has no area and needs no triangle.
 TEST(TriangleMesh, ACrackWithoutAreaLeavesABoxClosed) {
-  TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
+  TriangleMesh mesh = box_of_triangles({0, 0, 0}, {1, 1, 1});
   mesh.vertices_m.emplace_back(0.5, 1.0, 0.0);  // on the edge from 2 to 3
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const TriangleCorners corners = mesh.triangles[t];
@@ -144,8 +145,8 @@ TEST(TriangleMesh, ACrackWithoutAreaLeavesABoxClosed) {
 }
 
 TEST(TriangleMesh, ACavityStaysOneAndASolidInASolidIsNone) {
-  const TriangleMesh outer = box_mesh({0, 0, 0}, {1, 1, 1});
-  const TriangleMesh inner = box_mesh({0.2, 0.2, 0.2}, {0.8, 0.8, 0.8});
+  const TriangleMesh outer = box_of_triangles({0, 0, 0}, {1, 1, 1});
+  const TriangleMesh inner = box_of_triangles({0.2, 0.2, 0.2}, {0.8, 0.8, 0.8});
   const CleanMesh hollow = cleaned(joined(turned(inner), outer));
   EXPECT_EQ(hollow.report.cavities, 1u);
   EXPECT_EQ(hollow.report.closed_parts, 1u);
@@ -162,7 +163,7 @@ TEST(TriangleMesh, ACavityStaysOneAndASolidInASolidIsNone) {
   EXPECT_EQ(both.report.closed_parts, 2u);
 
   // Beside each other, one of them inside out: that one is turned.
-  const CleanMesh beside = cleaned(joined(turned(box_mesh({2, 0, 0}, {2.5, 0.5, 0.5})), outer));
+  const CleanMesh beside = cleaned(joined(turned(box_of_triangles({2, 0, 0}, {2.5, 0.5, 0.5})), outer));
   EXPECT_EQ(beside.report.cavities, 0u);
   EXPECT_EQ(beside.report.parts_turned, 1u);
 }
@@ -176,7 +177,7 @@ void expect_refusal(const TriangleMesh& mesh, const std::string& reason, std::si
 }
 
 TEST(TriangleMesh, RefusesWhatIsNoTool) {
-  const TriangleMesh box = box_mesh(low, high);
+  const TriangleMesh box = box_of_triangles(low, high);
   expect_refusal({}, "has no triangles");
   expect_refusal(box, "more than the 11 that are read", 11);
   TriangleMesh bad = box;

@@ -1,0 +1,43 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <filesystem>
+#include <memory>
+#include <new>
+
+#include "app/commands/command.h"
+#include "app/files/mesh_stream.h"
+#include "engine/exchange/mesh_import.h"
+
+namespace spoonbill {
+namespace {
+
+Result<TriangleMesh> import(const std::filesystem::path& file) {
+  try {
+    return import_mesh(file);
+  } catch (const std::bad_alloc&) {
+    return Error{"bad allocation"};
+  }
+}
+
+Status read_mesh(const std::filesystem::path& file, Console& console) {
+  const auto mesh = import(file);
+  if (mesh) {
+    write_mesh(console.out, mesh.value());
+    return {};
+  }
+  write_failure(console.out, mesh.error().message);
+  return Error{file.string() + ": " + mesh.error().message};
+}
+
+}  // namespace
+
+CommandEntry add_read_mesh(CLI::App& root) {
+  auto file = std::make_shared<std::filesystem::path>();
+  CLI::App* parser = root.add_subcommand("read-mesh", "Hand a mesh file's triangles to the program itself");
+  parser->group("");  // hidden
+  parser->add_option("FILE", *file, "A mesh (.obj, .stl or .ply)")->required();
+  return {parser, [file](Console& console) { return read_mesh(*file, console); }};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,28 @@
+// A mesh as bytes between two runs of this program on one machine: eight letters, two counts of 64 bits, then
+// three doubles a vertex and three 32-bit indices a triangle; or other letters, a length, and the line that
+// says why there is none.
+#pragma once
+
+#include <cstdint>
+#include <ostream>
+#include <string>
+
+#include "engine/collision/triangle_mesh.h"
+
+namespace spoonbill {
+
+struct MeshStreamHead {
+  static constexpr std::uint64_t mesh = 0x6873656d6c6e7073;     // "spnlmesh" in little-endian order
+  static constexpr std::uint64_t failure = 0x6c6961666c6e7073;  // "spnlfail"
+  static constexpr std::uint64_t longest_failure = 400;         // bytes
+  std::uint64_t letters = 0;
+  std::uint64_t first_count = 0;   // vertices, or the length of the failure
+  std::uint64_t second_count = 0;  // triangles
+};
+
+void write_mesh(std::ostream& out, const TriangleMesh& mesh);
+
+// As one line of printable letters, cut to the longest.
+void write_failure(std::ostream& out, const std::string& message);
+
+}  // namespace spoonbill

@@ -1,0 +1,289 @@
+// Mesh files through the reading program, and everything that can be wrong with either.
+#include "app/files/mesh_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+
+#include "tests/app/mesh_texts.h"
+#include "tests/engine/collision/mesh_shapes.h"
+#include "tests/engine/exchange/sample_document.h"
+
+namespace spoonbill {
+namespace {
+
+using namespace std::chrono_literals;
+
+MeshReading by_program() {
+  MeshReading reading;
+  reading.program = SPOONBILL_PROGRAM;
+  return reading;
+}
+
+class MeshFileTest : public testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& content) const {
+    return folder_.write(name, content).string();
+  }
+
+  // A program that reads nothing and does this instead.
+  MeshReading instead(const std::string& script) const {
+    const auto program = folder_.write("reader", "#!/bin/sh\n" + script + "\n");
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    MeshReading reading;
+    reading.program = program;
+    reading.patience = 10s;
+    return reading;
+  }
+
+  TemporaryFolder folder_;
+};
+
+void expect_refusal(const std::string& file, const std::string& reason,
+                    const MeshReading& reading = by_program()) {
+  const auto mesh = read_mesh_file(file, reading);
+  ASSERT_FALSE(mesh) << file << " should be refused: " << reason;
+  const std::string& line = mesh.error().message;
+  EXPECT_TRUE(line.starts_with(file + ": ")) << line;
+  EXPECT_NE(line.find(reason), std::string::npos) << line;
+  EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+}
+
+void expect_box(const std::string& file, const Vector3& size_m, const MeshReading& reading = by_program()) {
+  SCOPED_TRACE(file);
+  const auto read = read_mesh_file(file, reading);
+  ASSERT_TRUE(read) << read.error().message;
+  const auto clean = clean_mesh(read->mesh, file);
+  ASSERT_TRUE(clean) << clean.error().message;
+  EXPECT_EQ(clean->mesh.triangles.size(), 12u);
+  EXPECT_EQ(clean->mesh.vertices_m.size(), 8u);
+  EXPECT_EQ(clean->report.closed_parts, 1u);
+  // Files keep single precision, of which a test changes the last of three bytes.
+  EXPECT_LT((clean->report.size_m - size_m).norm(), 2e-5 * size_m.norm());
+}
+
+const TriangleMesh box = box_of_triangles({-10, -20, -30}, {10, 20, 30});
+
+TEST_F(MeshFileTest, EveryFormatGivesTheBoxInItsUnit) {
+  const Vector3 in_mm(0.02, 0.04, 0.06);
+  expect_box(write("binary.stl", binary_stl(box)), in_mm);
+  expect_box(write("TEXT.STL", ascii_stl(box)), in_mm);
+  expect_box(write("box.obj", obj_text(box)), in_mm);
+  expect_box(write("-rf box.obj", obj_text(box)), in_mm);
+  TriangleMesh small = box;
+  for (Vector3& vertex : small.vertices_m) vertex *= 1e-3;
+  expect_box(write("box.ply", ply_text(small)), in_mm);
+  expect_box(write("binary.ply", binary_ply(small)), in_mm);
+
+  // Whatever byte its numbers begin with.
+  for (const int first : {'\n', '\r', ' ', '\0', 'e'}) {
+    TriangleMesh mesh = small;
+    auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(mesh.vertices_m[0].x()));
+    bits = (bits & ~0xffU) | static_cast<std::uint32_t>(first);
+    mesh.vertices_m[0].x() = std::bit_cast<float>(bits);
+    expect_box(write("first.ply", binary_ply(mesh)), in_mm);
+  }
+
+  MeshReading reading = by_program();
+  reading.unit = LengthUnit{"in", 0.0254};
+  expect_box(write("inches.obj", obj_text(box)), 0.0254 * Vector3(20, 40, 60), reading);
+  EXPECT_EQ(read_mesh_file(write("a.stl", binary_stl(box)), reading)->unit.name, "in");
+  EXPECT_EQ(read_mesh_file(write("a.stl", binary_stl(box)), by_program())->unit.name, "mm");
+  EXPECT_EQ(read_mesh_file(write("a.ply", ply_text(small)), by_program())->unit.name, "m");
+}
+
+TEST_F(MeshFileTest, PolygonsAreCutAndPointsLinesAndOtherFilesLeftOut) {
+  const auto pipe = folder_.path() / "pipe.mtl";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::string text = "mtllib pipe.mtl\nmtllib /dev/zero\nusemtl gold\n";
+  for (const Vector3& at : box.vertices_m) {
+    text +=
+        "v " + std::to_string(at.x()) + " " + std::to_string(at.y()) + " " + std::to_string(at.z()) + "\n";
+  }
+  text += "p 1\nl 1 2 3\n";
+  for (const char* face : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"}) {
+    text += std::string("g part") + face[0] + "\nf " + face + "\n";
+  }
+  expect_box(write("polygons.obj", text), {0.02, 0.04, 0.06});
+}
+
+TEST_F(MeshFileTest, WhatIsNoFileIsRefused) {
+  expect_refusal((folder_.path() / "missing.stl").string(), "no such file");
+  expect_refusal(write("model.json", "{}"), "is no mesh by its name");
+  expect_refusal(write("model", "solid"), "is no mesh by its name");
+  expect_refusal(write("empty.obj", ""), "is empty");
+  const auto folder = folder_.path() / "folder.ply";
+  std::filesystem::create_directory(folder);
+  expect_refusal(folder.string(), "is a folder");
+  const auto pipe = folder_.path() / "pipe.stl";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  expect_refusal(pipe.string(), "is not a regular file");
+  const auto device = folder_.path() / "device.stl";
+  std::filesystem::create_symlink("/dev/zero", device);
+  expect_refusal(device.string(), "is not a regular file");
+  const std::string huge = write("huge.stl", "solid");
+  std::filesystem::resize_file(huge, std::uintmax_t{600} << 20);  // sparse
+  expect_refusal(huge, "is larger than 512 MiB");
+}
+
+TEST_F(MeshFileTest, AFileWithoutPermissionIsRefused) {
+  if (geteuid() == 0) GTEST_SKIP() << "nothing is forbidden to root";
+  const std::string file = write("secret.stl", binary_stl(box));
+  std::filesystem::permissions(file, std::filesystem::perms::none);
+  expect_refusal(file, "cannot be opened: Permission denied");
+}
+
+TEST_F(MeshFileTest, DamagedContentIsRefused) {
+  const std::string stl = binary_stl(box);
+  expect_refusal(write("truncated.stl", stl.substr(0, stl.size() - 30)), "cannot be read as STL");
+  expect_refusal(write("head.stl", stl.substr(0, 60)), "cannot be read as STL");
+  std::string countless = stl;
+  countless.replace(80, 4, "\xff\xff\xff\xff");
+  expect_refusal(write("countless.stl", countless), "cannot be read as STL");
+  expect_refusal(write("json.stl", "{\"spoonbill_document\": 1}"), "cannot be read as STL");
+  expect_refusal(write("json.ply", "{\"spoonbill_document\": 1}"), "cannot be read as PLY");
+  expect_refusal(write("noise.obj", std::string("\0\x01\xff\xfe noise \0", 12)), "");
+  const std::string ply = ply_text(box);
+  expect_refusal(write("short.ply", ply.substr(0, ply.size() / 2)), "");
+  for (const char* count : {"-1", "4294967295", "99999999999999999999", "x"}) {
+    std::string hostile = ply;
+    hostile.replace(hostile.find("vertex 8") + 7, 1, count);
+    expect_refusal(write("hostile.ply", hostile), "");
+  }
+}
+
+// Whatever Assimp makes of it, what comes out is a mesh that the cleaning takes, or one line.
+TEST_F(MeshFileTest, DamagedContentNeverBecomesAWildMesh) {
+  const auto one_line = [&](const std::string& name, const std::string& content, const std::string& reason) {
+    const std::string file = write(name, content);
+    auto read = read_mesh_file(file, by_program());
+    const auto clean = read ? clean_mesh(std::move(read->mesh), file) : Result<CleanMesh>(read.error());
+    ASSERT_FALSE(clean) << name;
+    EXPECT_TRUE(clean.error().message.starts_with(file + ": ")) << clean.error().message;
+    EXPECT_NE(clean.error().message.find(reason), std::string::npos) << clean.error().message;
+    EXPECT_EQ(clean.error().message.find('\n'), std::string::npos);
+  };
+  std::string text = ascii_stl(box);
+  text.replace(text.find("vertex ") + 7, 3, "nan");
+  one_line("nan.stl", text, "");
+  std::string numbers = binary_stl(box);
+  const float infinite = HUGE_VALF, far = 1e30F;
+  std::memcpy(&numbers[96], &infinite, 4);
+  one_line("infinite.stl", numbers, "no finite number");
+  std::memcpy(&numbers[96], &far, 4);
+  one_line("far.stl", numbers, "beyond 100 m");
+  one_line("out-of-range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99\n", "");
+  one_line("points.ply",
+           "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+           "property float z\nend_header\n0 0 0\n",
+           "");
+}
+
+TEST_F(MeshFileTest, AnyByteMayBeWrong) {
+  MeshReading reading = by_program();
+  reading.patience = 1s;  // some bytes send Assimp round for ever
+  Random random(77);
+  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 300 : 12;
+  const std::vector<std::pair<std::string, std::string>> files = {{"a.stl", binary_stl(box)},
+                                                                  {"b.stl", ascii_stl(box)},
+                                                                  {"c.obj", obj_text(box)},
+                                                                  {"d.ply", ply_text(box)},
+                                                                  {"e.ply", binary_ply(box)}};
+  for (int trial = 0; trial < trials; ++trial) {
+    for (const auto& [name, content] : files) {
+      std::string damaged = content;
+      for (int k = 0; k < 4; ++k) {
+        const int place = random.integer(0, static_cast<int>(damaged.size()) - 1);
+        damaged[static_cast<std::size_t>(place)] = static_cast<char>(random.integer(0, 255));
+      }
+      const std::string file = write(name, damaged);
+      const auto read = read_mesh_file(file, reading);
+      const auto clean = read ? clean_mesh(read->mesh, file) : Result<CleanMesh>(read.error());
+      if (clean) continue;
+      EXPECT_TRUE(clean.error().message.starts_with(file + ": ")) << clean.error().message;
+      EXPECT_EQ(clean.error().message.find('\n'), std::string::npos);
+    }
+  }
+}
+
+TEST_F(MeshFileTest, AReaderThatFailsIsOneLine) {
+  const std::string file = write("box.stl", binary_stl(box));
+  MeshReading hanging = instead("exec sleep 60");
+  hanging.patience = 200ms;
+  expect_refusal(file, "took longer than", hanging);
+  MeshReading closing = instead("exec >&-; exec sleep 60");
+  closing.patience = 200ms;
+  expect_refusal(file, "took longer than", closing);
+  expect_refusal(file, "crashed on it (signal 11)", instead("kill -SEGV $$"));
+  expect_refusal(file, "crashed on it (signal 9)", instead("printf spnlmesh; kill -KILL $$"));
+  expect_refusal(file, "ended without a mesh (exit code 3)", instead("exit 3"));
+  expect_refusal(file, "ended without a mesh (exit code 0)", instead("printf 'spnlmesh'"));
+  expect_refusal(file, "did not answer in its own form", instead("exec head -c 1000000 /dev/zero"));
+  expect_refusal(file, "18446744073709551615 triangles",
+                 instead("printf 'spnlmesh'; head -c 16 /dev/zero | tr '\\000' '\\377'"));
+  expect_refusal(file, "ended without a mesh",
+                 instead("printf 'spnlmesh\\003\\0\\0\\0\\0\\0\\0\\0\\001\\0\\0\\0\\0\\0\\0\\0abc'"));
+  expect_refusal(file, "cannot be read as STL (a b)",
+                 instead("printf 'spnlfail\\003\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0a\\nb'"));
+  expect_refusal(
+      file, "more than 4 GiB",
+      instead("printf 'spnlfail\\016\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0bad allocation'"));
+  MeshReading missing;
+  missing.program = folder_.path() / "nobody";
+  expect_refusal(file, "does not start", missing);
+}
+
+TEST_F(MeshFileTest, TheReaderHasFourGibibytes) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer's memory knows no limit";
+#endif
+  // Late enough that the limit has been set; seven letters: 4194304 kibibytes.
+  expect_refusal(
+      write("box.stl", binary_stl(box)), "(4194304)",
+      instead("sleep 0.3; printf 'spnlfail\\007\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0'; ulimit -v"));
+}
+
+// A ball of many triangles: in the full run five million, against the limit that holds.
+TEST_F(MeshFileTest, ManyTrianglesAreReadUpToTheLimit) {
+  const bool full = std::getenv("SPOONBILL_FULL") != nullptr;
+  MeshReading reading = by_program();
+  if (!full) reading.triangle_limit = 20'000;
+  const int rings = full ? 1118 : 70;
+  const TriangleMesh ball = ball_mesh(rings, 2 * rings, 50.0);
+  ASSERT_LE(ball.triangles.size(), reading.triangle_limit);
+  const std::string file = write("ball.stl", binary_stl(ball));
+  auto read = read_mesh_file(file, reading);
+  ASSERT_TRUE(read) << read.error().message;
+  const auto clean = clean_mesh(std::move(read->mesh), file, reading.triangle_limit);
+  ASSERT_TRUE(clean) << clean.error().message;
+  EXPECT_EQ(clean->report.closed_parts, 1u);
+  EXPECT_EQ(clean->report.open_edges, 0u);
+  EXPECT_GE(clean->mesh.triangles.size() + clean->report.degenerate_dropped, ball.triangles.size());
+
+  const int more = full ? 1230 : 72;
+  expect_refusal(write("more.stl", binary_stl(ball_mesh(more, 2 * more, 50.0))), "reduce the mesh", reading);
+}
+
+TEST_F(MeshFileTest, APearFromAScannerIsATool) {
+  const char* scans = std::getenv("SPOONBILL_SCANS");
+  if (scans == nullptr) GTEST_SKIP() << "SPOONBILL_SCANS names no folder of scans";
+  const std::string file = std::string(scans) + "/ycb_016_pear.ply";
+  const auto read = read_mesh_file(file, by_program());
+  ASSERT_TRUE(read) << read.error().message;
+  const auto clean = clean_mesh(read->mesh, file);
+  ASSERT_TRUE(clean) << clean.error().message;
+  EXPECT_EQ(clean->report.vertices_read, 35016u);
+  // 6,091 distinct ones, a few of them a hair apart.
+  EXPECT_NEAR(static_cast<double>(clean->mesh.vertices_m.size()), 6000.0, 100.0);
+  EXPECT_EQ(clean->report.sheets, 1u);  // its underside was never seen
+  EXPECT_NEAR(clean->report.size_m.maxCoeff(), 0.088, 0.001);
+}
+
+}  // namespace
+}  // namespace spoonbill

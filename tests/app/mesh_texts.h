@@ -1,0 +1,17 @@
+// Mesh files as other programs write them.
+#pragma once
+
+#include <string>
+
+#include "engine/collision/triangle_mesh.h"
+
+namespace spoonbill {
+
+// With the numbers as they stand in the mesh.
+std::string binary_stl(const TriangleMesh& mesh);
+std::string ascii_stl(const TriangleMesh& mesh);
+std::string obj_text(const TriangleMesh& mesh);
+std::string ply_text(const TriangleMesh& mesh);
+std::string binary_ply(const TriangleMesh& mesh);
+
+}  // namespace spoonbill
