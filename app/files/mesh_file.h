@@ -16,7 +16,7 @@ struct MeshReading {
   std::optional<LengthUnit>
       unit;  // of the file's numbers; millimetres for OBJ and STL, metres for PLY if none
   std::size_t triangle_limit = mesh_triangle_limit;
-  // The program whose command `read-mesh FILE` reads: this one.
+  // The program whose command `read-mesh FILE` reads: this one. A test must name it, being another program.
   std::filesystem::path program = "/proc/self/exe";
   std::chrono::milliseconds patience{60'000};
 };

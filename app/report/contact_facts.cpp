@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include "app/report/quantity_text.h"
 
@@ -30,54 +31,76 @@ std::string point_text(const Vector3& point_m) {
   return vector_text(1e3 * point_m, 1) + " mm";
 }
 
-Json place_json(double u, double v, const Vector3& point_m) {
-  return {{"u", u}, {"v", v}, {"point_m", vector_json(point_m)}};
+Json side_json(const ContactSide& side) {
+  Json json = {{"point_m", vector_json(side.point_m)}};
+  if (!side.place) return json;
+  json["u"] = side.place->u;
+  json["v"] = side.place->v;
+  if (const auto& range = side.place->range) {
+    json["u_range"] = {range->u0, range->u1};
+    json["v_range"] = {range->v0, range->v1};
+  }
+  return json;
 }
 
-Json place_json(double u, double v, const Vector3& point_m, const ParameterRange& range) {
-  Json place = place_json(u, v, point_m);
-  place["u_range"] = {range.u0, range.u1};
-  place["v_range"] = {range.v0, range.v1};
-  return place;
-}
-
-Json contact_json(const PairContact& contact) {
-  const PairParameters& at = contact.pair.at;
-  return {{"point_m", vector_json(contact.pair.first_m)},
+Json contact_json(const ContactOfTwo& contact) {
+  return {{"point_m", vector_json(contact.a.point_m)},
           {"normal", vector_json(contact.normal)},
           {"depth_m", contact.depth_m},
-          {"a", place_json(at.u, at.v, contact.pair.first_m, contact.first)},
-          {"b", place_json(at.s, at.t, contact.pair.second_m, contact.second)}};
+          {"a", side_json(contact.a)},
+          {"b", side_json(contact.b)}};
+}
+
+void add_contacts(FactSheet& facts, const std::vector<ContactOfTwo>& contacts, Json& list) {
+  double deepest = 0.0;
+  for (const ContactOfTwo& contact : contacts) deepest = std::max(deepest, contact.depth_m);
+  facts.add("Depth", millimetres_text(deepest), "depth_m", deepest);
+  for (const ContactOfTwo& contact : contacts) {
+    facts.add("Contact",
+              millimetres_text(contact.depth_m) + " deep at " + point_text(contact.a.point_m) + ", way out " +
+                  vector_text(contact.normal, 3),
+              "", {});
+    list.push_back(contact_json(contact));
+  }
 }
 
 }  // namespace
 
-void add_contact_facts(FactSheet& facts, const PairResult& result, const std::vector<PairContact>& contacts) {
-  facts.add("Touching", result.touching ? (result.contained ? "yes, one inside the other" : "yes") : "no",
-            "touching", result.touching);
-  facts.add("", "", "contained", result.contained);
-  facts.add(result.overflow ? "Notice" : "",
-            "they meet in more places than are listed; give them fewer control points", "complete",
-            !result.overflow);
+CollisionAnswer answer_of(const PairResult& result, const std::vector<PairContact>& contacts) {
+  CollisionAnswer answer;
+  answer.touching = result.touching;
+  answer.contained = result.contained;
+  answer.complete = !result.overflow;
+  answer.distance_m = result.distance_m;
+  const PairParameters& nearest = result.nearest.at;
+  answer.nearest_a = {result.nearest.first_m, SurfacePlace{nearest.u, nearest.v, {}}};
+  answer.nearest_b = {result.nearest.second_m, SurfacePlace{nearest.s, nearest.t, {}}};
+  if (!result.touching) return answer;
+  for (const PairContact& contact : contacts) {
+    const PairParameters& at = contact.pair.at;
+    answer.contacts.push_back({{contact.pair.first_m, SurfacePlace{at.u, at.v, contact.first}},
+                               {contact.pair.second_m, SurfacePlace{at.s, at.t, contact.second}},
+                               contact.normal,
+                               contact.depth_m});
+  }
+  return answer;
+}
+
+void add_contact_facts(FactSheet& facts, const CollisionAnswer& answer) {
+  facts.add("Touching", answer.touching ? (answer.contained ? "yes, one inside the other" : "yes") : "no",
+            "touching", answer.touching);
+  facts.add("", "", "contained", answer.contained);
+  facts.add(answer.complete ? "" : "Notice",
+            "they come near each other in more places than could be searched; there may be more to tell",
+            "complete", answer.complete);
   Json list = Json::array();
-  if (result.touching) {
-    double deepest = 0.0;
-    for (const PairContact& contact : contacts) deepest = std::max(deepest, contact.depth_m);
-    facts.add("Depth", millimetres_text(deepest), "depth_m", deepest);
-    for (const PairContact& contact : contacts) {
-      facts.add("Contact",
-                millimetres_text(contact.depth_m) + " deep at " + point_text(contact.pair.first_m) +
-                    ", way out " + vector_text(contact.normal, 3),
-                "", {});
-      list.push_back(contact_json(contact));
-    }
+  if (answer.touching) {
+    add_contacts(facts, answer.contacts, list);
   } else {
-    const PairParameters& at = result.nearest.at;
-    facts.add("Distance", millimetres_text(result.distance_m), "distance_m", result.distance_m);
-    facts.add("Nearest of A", point_text(result.nearest.first_m), "nearest",
-              {{"a", place_json(at.u, at.v, result.nearest.first_m)},
-               {"b", place_json(at.s, at.t, result.nearest.second_m)}});
-    facts.add("Nearest of B", point_text(result.nearest.second_m), "", {});
+    facts.add("Distance", millimetres_text(answer.distance_m), "distance_m", answer.distance_m);
+    facts.add("Nearest of A", point_text(answer.nearest_a.point_m), "nearest",
+              {{"a", side_json(answer.nearest_a)}, {"b", side_json(answer.nearest_b)}});
+    facts.add("Nearest of B", point_text(answer.nearest_b.point_m), "", {});
   }
   facts.add("", "", "contacts", std::move(list));
 }

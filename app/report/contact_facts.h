@@ -1,15 +1,45 @@
-// What there is to say about the contact of two surfaces.
+// What there is to say about the contact of two things, each a surface or a mesh.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "app/report/fact_sheet.h"
+#include "engine/collision/parameter_range.h"
 #include "engine/collision/surface_pair_collider.h"
 
 namespace spoonbill {
 
-// Surfaces that touch have a depth, the deepest contact's, and contacts; others the distance between their
+struct SurfacePlace {
+  double u, v;
+  std::optional<ParameterRange> range;  // of the region of contact
+};
+
+// The nearest or deepest point of one of them.
+struct ContactSide {
+  Vector3 point_m = Vector3::Zero();
+  std::optional<SurfacePlace> place;  // a mesh has none
+};
+
+struct ContactOfTwo {
+  ContactSide a, b;
+  Vector3 normal = Vector3::UnitY();  // unit, along which A leaves B
+  double depth_m = 0.0;
+};
+
+struct CollisionAnswer {
+  bool touching = false;
+  bool contained = false;   // one is inside the other
+  bool complete = true;     // nothing can be missing
+  double distance_m = 0.0;  // where they do not touch
+  ContactSide nearest_a, nearest_b;
+  std::vector<ContactOfTwo> contacts;
+};
+
+CollisionAnswer answer_of(const PairResult& result, const std::vector<PairContact>& contacts);
+
+// Those that touch have a depth, the deepest contact's, and contacts; others the distance between their
 // nearest points.
-void add_contact_facts(FactSheet& facts, const PairResult& result, const std::vector<PairContact>& contacts);
+void add_contact_facts(FactSheet& facts, const CollisionAnswer& answer);
 
 }  // namespace spoonbill

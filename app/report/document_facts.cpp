@@ -45,13 +45,6 @@ std::string direction_text(const KnotVector& knots) {
          (knots.is_periodic() ? "periodic" : "open");
 }
 
-std::string size_text(const Vector3& size_m) {
-  std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), "%.1f x %.1f x %.1f mm", 1e3 * size_m.x(), 1e3 * size_m.y(),
-                1e3 * size_m.z());
-  return text.data();
-}
-
 }  // namespace
 
 void add_document_facts(FactSheet& facts, const Document& document) {

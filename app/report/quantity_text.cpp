@@ -55,6 +55,13 @@ std::string percent_text(double share) {
   return text.data();
 }
 
+std::string size_text(const Vector3& size_m) {
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(), "%.1f x %.1f x %.1f mm", 1e3 * size_m.x(), 1e3 * size_m.y(),
+                1e3 * size_m.z());
+  return text.data();
+}
+
 std::vector<std::string> flag_texts(std::uint32_t flags) {
   constexpr std::array<std::pair<std::uint32_t, const char*>, 4> meanings = {{
       {tick_flag_nodes_slowed, "Too stiff for real time: soften E"},

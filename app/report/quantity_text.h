@@ -5,10 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "engine/pose.h"
+
 namespace spoonbill {
 
 std::string modulus_text(double pascals);           // "1.20 MPa"
 std::string millimetres_text(double metres);        // "8.0 mm"
+std::string size_text(const Vector3& size_m);       // "100.0 x 12.0 x 5.0 mm"
 std::string grams_text(double kilograms);           // "34.2 g"
 std::string density_text(double kilograms_per_m3);  // "1.80 g/cm³"
 std::string newtons_text(double newtons);           // "1.23 N"

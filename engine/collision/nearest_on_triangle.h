@@ -8,7 +8,7 @@
 namespace spoonbill {
 
 struct NearestOnTriangle {
-  Vector3 point;
+  Vector3 point = Vector3::Zero();
   enum class On : std::uint8_t { face, side, corner } on = On::face;
   std::uint32_t which = 0;  // side k goes from corner k to the next
 };

@@ -1,6 +1,7 @@
 #include "engine/collision/self_contact.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -10,6 +11,7 @@ namespace spoonbill {
 namespace {
 
 constexpr double left_out = 1e-6;
+constexpr std::size_t pairs_a_triangle = 200;
 
 bool overlap(const Box& a, const Box& b) {
   return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
@@ -35,7 +37,10 @@ class SelfContact {
  public:
   SelfContact(const std::vector<Vector3>& vertices, const std::vector<TriangleCorners>& triangles,
               const BoxTree& tree)
-      : vertices_(vertices), triangles_(triangles), tree_(tree) {}
+      : vertices_(vertices),
+        triangles_(triangles),
+        tree_(tree),
+        pairs_left_(pairs_a_triangle * triangles.size()) {}
 
   bool found() {
     waiting_.assign(1, {0, 0});
@@ -63,12 +68,13 @@ class SelfContact {
     return {vertices_[a], vertices_[b], vertices_[c]};
   }
 
-  bool leaves_meet(const BoxTree::Node& first, const BoxTree::Node& second) const {
+  bool leaves_meet(const BoxTree::Node& first, const BoxTree::Node& second) {
     for (std::uint32_t s = first.first; s < first.first + first.count; ++s) {
       const Triangle a = triangle(s);
       const Box around = box_of(a);
       for (std::uint32_t t = std::max(second.first, &first == &second ? s + 1 : 0U);
            t < second.first + second.count; ++t) {
+        if (pairs_left_-- == 0) return true;
         const Triangle b = triangle(t);
         if (!overlap(around, box_of(b))) continue;
         const bool neighbours = have_common_corner(triangles_[s], triangles_[t]);
@@ -81,6 +87,7 @@ class SelfContact {
   const std::vector<Vector3>& vertices_;
   const std::vector<TriangleCorners>& triangles_;
   const BoxTree& tree_;
+  std::size_t pairs_left_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> waiting_;
 };
 
