@@ -126,8 +126,9 @@ std::vector<Openings> find_openings(MeshParts& parts) {
     const MeshSide other = edges.across(side);
     if (other == MeshEdges::open || other == MeshEdges::branching) continue;
     const std::uint32_t start = start_of(mesh.triangles, side);
-    if (start == start_of(mesh.triangles, other))
+    if (start == start_of(mesh.triangles, other)) {
       parts.orientable[part_of_vertex(parts.parts, start)] = false;
+    }
   }
   std::vector<Openings> openings(parts.parts.size());
   RimWalk(mesh, edges.boundary()).walk([&](const Rim& rim) {

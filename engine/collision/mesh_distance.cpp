@@ -26,7 +26,7 @@ std::vector<MeshDistance::Solid> MeshDistance::make_solids(const CleanMesh& mesh
     TriangleMesh own;
     append_part(mesh.mesh, part, own);
     solid_of[p] = solids.size();
-    solids.push_back({make_shell(std::move(own), Kind::solid), {}, 0.0});
+    solids.emplace_back().outside = make_shell(std::move(own), Kind::solid);
   }
   for (const MeshPart& part : mesh.parts) {
     if (part.cavity_of < 0) continue;
@@ -36,7 +36,8 @@ std::vector<MeshDistance::Solid> MeshDistance::make_solids(const CleanMesh& mesh
         make_shell(std::move(own), Kind::cavity));
   }
   if (!sheets.triangles.empty()) {
-    solids.push_back({make_shell(std::move(sheets), Kind::sheets), {}, 0.5 * thickness_m});
+    solids.emplace_back().outside = make_shell(std::move(sheets), Kind::sheets);
+    solids.back().grown_m = 0.5 * thickness_m;
   }
   return solids;
 }

@@ -113,7 +113,7 @@ Vector3 ShellDistance::face_normal(std::uint32_t triangle) const {
 
 Vector3 ShellDistance::normal_at(const Nearest& nearest) const {
   using On = NearestOnTriangle::On;
-  const Vector3 face = face_normal(nearest.triangle);
+  Vector3 face = face_normal(nearest.triangle);
   if (!is_told_by_normals() || nearest.on.on == On::face) return face;
   if (nearest.on.on == On::side) return face + face_normal(across_[3 * nearest.triangle + nearest.on.which]);
   return corner_normals_[triangles_[nearest.triangle][nearest.on.which]];
