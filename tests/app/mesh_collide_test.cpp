@@ -33,7 +33,7 @@ Json facts_of(std::vector<std::string> arguments) {
 double sampled_distance(const Workplace& place, const Vector3& point) {
   const auto document = read_document(place.path("model.json"));
   EXPECT_TRUE(document);
-  const Surface& surface = document->scene.body.surface;
+  const Surface& surface = document->scene.bodies[0].surface;
   double nearest = 1e300;
   for (const double u : uniform_parameters(surface.u, 600)) {
     for (const double v : uniform_parameters(surface.v, 600)) {
