@@ -138,10 +138,6 @@ struct FieldsOfSolid {
   }
 };
 
-const char* name_of(ToolKind kind) {
-  return kind == ToolKind::point ? "point" : kind == ToolKind::sphere ? "sphere" : "solid";
-}
-
 }  // namespace
 
 Tool read_tool(FieldReader& reader) {

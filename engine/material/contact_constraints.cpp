@@ -1,7 +1,5 @@
 #include "engine/material/contact_constraints.h"
 
-#include <cmath>
-
 #include "engine/material/contact_push.h"
 
 namespace spoonbill {
@@ -48,13 +46,8 @@ void ContactConstraints::begin(const ToolMotion& motion, double material_time_s)
   motion_ = motion;
   hand_velocity_ = (motion.end_m - motion.start_m) / material_time_s;
   carried_force_.setZero();
-  const double coupling = motion.coupling_n_per_m;
-  frequency_ = coupling_frequency;
-  tool_compliance_ = coupling > 0.0 ? coupling_frequency * coupling_frequency / coupling : 0.0;
-  if (coupling > 0.0 && motion.carried.mass_kg > 0.0) {
-    tool_compliance_ = 1.0 / (1.0 / tool_compliance_ + motion.carried.mass_kg);
-    frequency_ = std::sqrt(coupling * tool_compliance_);
-  }
+  const bool coupled = motion.coupling_n_per_m > 0.0;
+  tool_compliance_ = coupled ? coupling_frequency * coupling_frequency / motion.coupling_n_per_m : 0.0;
   tool_impulse_.fill(Vector3::Zero());
   acted_ = false;
   for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
@@ -64,9 +57,7 @@ void ContactConstraints::solve(std::span<const LatticeView> lattices, ToolState&
                                double fraction, std::span<const float> caps) {
   follow_hand(tool, h, fraction);
   if (motion_.carried.body >= 0) {
-    const Vector3 impulse = static_cast<double>(h) * carried_force_;
-    tool.velocity_m_per_s += tool_compliance_ * impulse;
-    tool_impulse_[motion_.carried.body] += impulse;
+    tool_impulse_[motion_.carried.body] += static_cast<double>(h) * carried_force_;
   }
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
@@ -95,7 +86,7 @@ void ContactConstraints::follow_hand(ToolState& tool, double h, double fraction)
     tool.velocity_m_per_s = hand_velocity_;
     return;
   }
-  const double w = frequency_;
+  const double w = coupling_frequency;
   const Vector3 stretch = hand + h * hand_velocity_ - tool.position_m;
   tool.velocity_m_per_s = (tool.velocity_m_per_s + h * w * w * stretch + 2.0 * h * w * hand_velocity_) /
                           (1.0 + 2.0 * h * w + h * h * w * w);

@@ -22,11 +22,10 @@ struct ToolState {
 };
 
 // The held nodes of a lattice that the tool carries about, as if they were part of it: their rest positions
-// are in the tool's frame.
+// are in the tool's frame. For a tool that the hand holds rigidly.
 struct CarriedNodes {
   int body = -1;  // the lattice's place in the views; -1 for none
   std::span<const int> nodes;
-  double mass_kg = 0.0;
 };
 
 // What the hand does with the tool through one tick, in the world frame.
@@ -105,7 +104,6 @@ class ContactConstraints {
   ToolMotion motion_;
   Vector3 hand_velocity_ = Vector3::Zero();  // m/s of material time
   Vector3 carried_force_ = Vector3::Zero();
-  double frequency_ = 0.0;        // of the tool on its coupling spring, rad/s
   double tool_compliance_ = 0.0;  // 1/kg; 0 where the hand holds it rigidly
   std::array<Vector3, lattice_capacity> tool_impulse_;
   bool acted_ = false;

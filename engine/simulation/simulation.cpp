@@ -61,7 +61,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
   std::vector<std::shared_ptr<const ToolBody>> kept = {modelled_body(scene.tool)};
   return Simulation(std::make_unique<State>(
       State{std::move(scene), set, std::move(bodies), std::move(model).value(), std::move(tool),
-            std::move(mirrored), std::move(between), std::move(pairs), false, std::move(kept)}));
+            std::move(mirrored), std::move(between), std::move(pairs), false, 0.0, std::move(kept)}));
 }
 
 Simulation::Simulation(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -123,7 +123,8 @@ TouchingTool touch(Simulation::State& s, HeldTool& held, ToolHold hold, double c
   }
   ToolMotion motion = motion_of(s, held.hand, hand, coupling_n_per_m);
   if (s.tool_is_soft()) {
-    motion.carried = {static_cast<int>(s.bodies.size()) - 1, s.model.gripped, s.model.gripped_mass_kg};
+    motion.coupling_n_per_m = 0.0;
+    motion.carried = {static_cast<int>(s.bodies.size()) - 1, s.model.gripped};
   }
   held.hand = hand;
   return {motion, &held.state, &held.contact.constraints()};
@@ -174,14 +175,14 @@ void visit_pairs(Simulation::State& s, const Visit& visit) {
 void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
   s.between.clear();
   s.pairs_overflow = false;
-  double tool_gap = std::numeric_limits<double>::infinity();
+  s.tool_gap_m = std::numeric_limits<double>::infinity();
   visit_pairs(
       s, [&](BodyPairContact& pair, const NumberedBody& first, const NumberedBody& second, bool of_tool) {
         s.pairs_overflow |= !pair.find(first, second);
-        if (of_tool) tool_gap = std::min(tool_gap, pair.least_gap_m());
+        if (of_tool) s.tool_gap_m = std::min(s.tool_gap_m, pair.least_gap_m());
       });
   const bool tool_acts =
-      !s.tool_is_soft() || s.tool.contact.acts(tool_gap <= 0.0, std::isfinite(tool_gap), hold);
+      !s.tool_is_soft() || s.tool.contact.acts(s.tool_gap_m <= 0.0, std::isfinite(s.tool_gap_m), hold);
   visit_pairs(s, [&](const BodyPairContact& pair, const NumberedBody& first, const NumberedBody& second,
                      bool of_tool) {
     if (of_tool && !tool_acts) return;
@@ -221,6 +222,21 @@ Vector3 force_of(const Simulation::State& s) {
   return force;
 }
 
+// A soft tool has no coupling spring: its flesh takes the place of one. What the hand feels of it rises no
+// faster than one would let it.
+Vector3 force_of_soft(Simulation::State& s, double coupling_n_per_m) {
+  HeldTool& held = s.tool;
+  const bool near = std::isfinite(s.tool_gap_m);
+  if (near && !held.touched) held.touch_m = held.hand.position_m;
+  held.touched = near;
+  const Vector3 force = force_of(s);
+  const double size = force.norm();
+  if (!near || !(size > 0.0)) return Vector3::Zero();
+  if (coupling_n_per_m == 0.0) return force;
+  const double travel = std::max(0.0, force.dot(held.touch_m - held.hand.position_m) / size);
+  return force * std::min(1.0, coupling_n_per_m * travel / size);
+}
+
 void mark_touched(Simulation::State& s) {
   for (std::size_t b = 0; b < s.stepped(); ++b) {
     std::vector<std::uint8_t>& touched = s.bodies[b].touched;
@@ -254,10 +270,10 @@ Reaction Simulation::advance(const ToolInput& input) {
   for (std::size_t b = 0; b < s.stepped(); ++b) s.bodies[b].mapping.update(s.bodies[b].lattice);
   ++s.tick;
 
-  s.reaction.force_n = force_of(s);
   s.reaction.proxy = {s.tool.state.position_m, input.pose.orientation};
   s.reaction.touching = s.tool_is_soft() ? s.between.acted(static_cast<int>(s.bodies.size()) - 1)
                                          : s.tool.contact.constraints().acted();
+  s.reaction.force_n = s.tool_is_soft() ? force_of_soft(s, input.coupling_n_per_m) : force_of(s);
   s.reaction.mirror_touching = both && s.mirrored.contact.constraints().acted();
   s.reaction.flags = flags_of(s);
   mark_touched(s);
@@ -292,6 +308,9 @@ void add_to_hash(const HeldTool& held, StateHash& hash) {
   for (int c = 0; c < 4; ++c) hash.add(held.hand.orientation.coeffs()[c]);
   const std::uint64_t lifted = held.contact.lifted() ? std::uint64_t{1} << 32 : 0;
   const std::uint64_t hovered = held.contact.hovered() ? std::uint64_t{1} << 33 : 0;
+  if (held.touched) {
+    for (int axis = 0; axis < 3; ++axis) hash.add(held.touch_m[axis]);
+  }
   hash.add(lifted | hovered | static_cast<std::uint64_t>(held.contact.constraints().count()));
 }
 
@@ -369,7 +388,9 @@ void write_contacts(const Simulation::State& s, std::vector<ContactSnapshot>& co
 void Simulation::write_snapshot(Snapshot& snapshot) const {
   const State& s = *state_;
   snapshot.tick = s.tick;
-  write_bodies({s.bodies.data(), s.stepped()}, s.scene, snapshot.bodies);
+  // A soft tool is nowhere before the first tick.
+  const std::size_t drawn = s.tool.placed ? s.stepped() : s.scene.bodies.size();
+  write_bodies({s.bodies.data(), drawn}, s.scene, snapshot.bodies);
   snapshot.tool.kind = s.scene.tool.kind;
   snapshot.tool.action = s.scene.tool.action;
   snapshot.tool.iterations = s.scene.tool.iterations;

@@ -20,6 +20,9 @@ struct HeldTool {
   Pose hand{};  // of the last tick
   ToolState state{};
   bool placed = false;
+  // Where the hand was when a soft tool last came near a body.
+  Vector3 touch_m = Vector3::Zero();
+  bool touched = false;
 
   void place(const Pose& pose) {
     hand = pose;
@@ -39,6 +42,7 @@ struct Simulation::State {
   BodyContacts between;
   std::vector<BodyPairContact> pairs;  // 0 and 1, 0 and 2, 1 and 2, ...: see make_pairs()
   bool pairs_overflow = false;
+  double tool_gap_m = 0.0;  // of a soft tool to the bodies; infinite where it is not near
   // Of tools that were replaced: snapshots share them, and no tick must free the last of one.
   std::vector<std::shared_ptr<const ToolBody>> kept;
   std::uint64_t tick = 0;

@@ -17,7 +17,10 @@ struct ToolBody;
 enum class ToolKind { point, sphere, solid };
 enum class ToolAction { push, pull, smooth };
 
-// As files and labels call it.
+// As files and labels call them.
+constexpr const char* name_of(ToolKind kind) {
+  return kind == ToolKind::point ? "point" : kind == ToolKind::sphere ? "sphere" : "solid";
+}
 constexpr const char* name_of(ToolAction action) {
   return action == ToolAction::push ? "push" : action == ToolAction::pull ? "pull" : "smooth";
 }

@@ -24,9 +24,7 @@ struct ModelOf {
       if (!soft.ok()) return Error{"tool: " + soft.error().message};
       soft->held = nodes_behind(soft->lattice, {body.soft->grip});
       for (int n = 0; n < soft->lattice.mesh().node_count(); ++n) {
-        if (soft->held[static_cast<std::size_t>(n)] == 0) continue;
-        model.gripped.push_back(n);
-        model.gripped_mass_kg += static_cast<double>(soft->lattice.mass(n));
+        if (soft->held[static_cast<std::size_t>(n)] != 0) model.gripped.push_back(n);
       }
       if (model.gripped.empty()) return Error{"tool: its grip plane holds none of its nodes, move it"};
       soft->lattice.hold(soft->held);

@@ -19,7 +19,6 @@ struct ToolModel {
   std::shared_ptr<const NestedGrid> nested;        // its samples
   std::optional<BodyState> soft;  // of one that gives way; its rest shape is in the tool's frame
   std::vector<int> gripped;       // its nodes that the hand holds
-  double gripped_mass_kg = 0.0;
 
   bool is_soft() const { return soft.has_value(); }
 };

@@ -66,8 +66,7 @@ std::vector<Label> legend_of(const Snapshot& snapshot, const ViewSettings& setti
     touched += count_set(body.lattice.touched);
   }
   if (on.tool) {
-    const bool sphere = snapshot.tool.kind == ToolKind::sphere;
-    add(std::string(sphere ? "sphere tool, " : "point tool, ") + name_of(snapshot.tool.action),
+    add(std::string(name_of(snapshot.tool.kind)) + " tool, " + name_of(snapshot.tool.action),
         LabelSymbol::sphere, palette::tool);
   }
   if (force_arrow(snapshot, settings)) add("force on the hand", LabelSymbol::arrow, palette::force);

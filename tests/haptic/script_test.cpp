@@ -117,7 +117,7 @@ TEST(Script, NamesWhatIsWrong) {
   EXPECT_EQ(refusal(begin + "{\"hold_s\": 1, \"over_s\": 2}"),
             "bend.json: steps[1] has an unknown field \"over_s\"; known: hold_s");
   EXPECT_EQ(refusal(begin + "{\"command\": \"set_tool\", \"kind\": \"cube\"}"),
-            "bend.json: steps[1]: kind is \"cube\", must be point or sphere");
+            "bend.json: steps[1]: kind is \"cube\", must be point or sphere or solid");
   EXPECT_EQ(refusal(begin + "5"), "bend.json: steps[1] is 5, must be an object");
   EXPECT_EQ(refusal(begin + "{\"turn_to\": {\"axis\": [0,0,0], \"degrees\": 3}, \"over_s\": 1}"),
             "bend.json: steps[1].turn_to.axis is zero, must point somewhere");
