@@ -44,7 +44,7 @@ Status check_finite(const Vector3& point, const DistanceSample& sample) {
 }
 
 Status check_alone(const SignedDistance& solid, const Vector3& point, const DistanceSample& sample) {
-  if (const Status status = check_finite(point, sample); !status) return status;
+  if (Status status = check_finite(point, sample); !status) return status;
   const double length = sample.gradient.norm();
   if (std::abs(length - 1.0) > unit_tolerance) {
     return refusal("a gradient of length " + number_text(length), point, "make it of length 1");
@@ -59,7 +59,7 @@ Status check_alone(const SignedDistance& solid, const Vector3& point, const Dist
 Status check_both(const SignedDistance& solid, const Vector3& a, const DistanceSample& at_a, const Vector3& b,
                   double size) {
   const DistanceSample at_b = solid.at(b);
-  if (const Status status = check_finite(b, at_b); !status) return status;
+  if (Status status = check_finite(b, at_b); !status) return status;
   const double way = (b - a).norm(), slack = growth_tolerance * way + rounding * size;
   if (!(std::abs(at_b.distance_m - at_a.distance_m) <= way + slack)) {
     return refusal("changes by more than the way to " + text(b), a, "divide it by its steepest slope");
@@ -103,11 +103,11 @@ Status check_signed_distance(const SignedDistance& solid, const Box& where) {
   for (int k = 1; k <= sample_count; ++k) {
     const Vector3 here = point(k), other = point(sample_count + 1 - k);
     const DistanceSample sample = solid.at(here);
-    if (const Status status = check_alone(solid, here, sample); !status) return status;
+    if (Status status = check_alone(solid, here, sample); !status) return status;
     // Far, at hand and close.
     for (const double share : {1.0, 0.05, 0.001}) {
       const Vector3 there = here + share * (other - here);
-      if (const Status status = check_both(solid, here, sample, there, size); !status) return status;
+      if (Status status = check_both(solid, here, sample, there, size); !status) return status;
     }
     if (fits_differences(solid, here, sample.gradient, difference_step * size)) continue;
     ++misfits;

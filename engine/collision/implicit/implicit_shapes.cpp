@@ -21,26 +21,26 @@ Visitor(Kinds...) -> Visitor<Kinds...>;
 Status check_lengths(const char* shape, const Vector3& lengths) {
   for (int k = 0; k < 3; ++k) {
     const std::string field = std::string(shape) + "[" + std::to_string(k) + "]";
-    if (const Status status = check_range(field, lengths[k], shape_length_m); !status) return status;
+    if (Status status = check_range(field, lengths[k], shape_length_m); !status) return status;
   }
   return {};
 }
 
 Status check_axes(const char* field, const Vector3& lengths) {
-  if (const Status status = check_lengths(field, lengths); !status) return status;
+  if (Status status = check_lengths(field, lengths); !status) return status;
   const double ratio = lengths.maxCoeff() / lengths.minCoeff();
   if (ratio <= greatest_axis_ratio * (1.0 + 1e-12)) return {};
   return Error{std::string(field) + " has a longest axis " + number_text(ratio) +
                " times the shortest, must be at most " + number_text(greatest_axis_ratio) + " times"};
 }
 
-Status both(Status first, Status second) {
+Status both(const Status& first, const Status& second) {
   return first ? second : first;
 }
 
 Status check_torus(const TorusShape& torus) {
-  const Status lengths = both(check_range("torus.ring_radius_m", torus.ring_radius_m, shape_length_m),
-                              check_range("torus.tube_radius_m", torus.tube_radius_m, shape_length_m));
+  Status lengths = both(check_range("torus.ring_radius_m", torus.ring_radius_m, shape_length_m),
+                        check_range("torus.tube_radius_m", torus.tube_radius_m, shape_length_m));
   if (!lengths || torus.tube_radius_m < torus.ring_radius_m) return lengths;
   return Error{"torus.tube_radius_m is " + number_text(torus.tube_radius_m) +
                ", must be less than torus.ring_radius_m, " + number_text(torus.ring_radius_m)};

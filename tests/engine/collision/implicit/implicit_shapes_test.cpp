@@ -89,7 +89,7 @@ TEST(ImplicitShapes, TheTorusIsAsFarAsItsRingLessTheTube) {
 
 TEST(ImplicitShapes, KeepWhatASignedDistancePromises) {
   Random random(34);
-  for (int trial = 0; trial < trials(28, 400); ++trial) {
+  for (int trial = 0; trial < trials(28, 100); ++trial) {
     const int kind = trial % (convex_shape_kinds + 1);
     const ImplicitShape shape = kind == convex_shape_kinds
                                     ? ImplicitShape(TorusShape{0.03, random.uniform(0.001, 0.029)})
