@@ -22,7 +22,7 @@ constexpr double nearest_tolerance_m = 2e-5;
 // then be cut to the size of the tolerance.
 constexpr double unbent_tolerance_m = 5e-5;
 // Of a solid's whole search, so that a tick has an end.
-constexpr int cut_capacity = 8000;
+constexpr int cut_capacity = 20000;
 constexpr double clearance_share = 0.75;
 // Below this, a step of Newton's method gains nothing but rounding.
 constexpr double least_gain_m = 1e-15;
