@@ -15,11 +15,11 @@ struct TileBand {
   int bandwidth, samples, padded;
 };
 
-// A list of points, by coordinate.
+// A list of points, by coordinate; none where the pointers are null.
 struct PlanarPoints {
-  const double* x;
-  const double* y;
-  const double* z;
+  const double* x = nullptr;
+  const double* y = nullptr;
+  const double* z = nullptr;
 };
 struct PlanarOutput {
   double* x;

@@ -55,6 +55,7 @@ SurfaceBounds::SurfaceBounds(const KnotVector& u, const KnotVector& v)
   for (auto& row : row_) {
     for (std::vector<double>& values : row) values.assign(static_cast<std::size_t>(columns_), 0.0);
   }
+  row_boxes_.resize(static_cast<std::size_t>(u.control_point_count()));
   column_at_.assign(static_cast<std::size_t>(columns_), 0);
   element_at_.assign(span_v_.size(), 0);
   for (std::vector<double>* edge : {&low_[0], &low_[1], &low_[2], &high_[0], &high_[1], &high_[2]}) {
@@ -181,14 +182,30 @@ void SurfaceBounds::take_boxes(const ControlNet& net) {
     double* high = high_[axis].data();
     std::copy_n(from, net.columns, low);
     std::copy_n(from, net.columns, high);
-    for (int i = 1; i < net.rows; ++i) {
-      from += net.columns;
+    for (int i = 0; i < net.rows; ++i, from += net.columns) {
+      double row_low = from[0], row_high = from[0];
       for (int j = 0; j < net.columns; ++j) {
-        low[j] = std::min(low[j], from[j]);
-        high[j] = std::max(high[j], from[j]);
+        low[j] = from[j] < low[j] ? from[j] : low[j];
+        high[j] = high[j] < from[j] ? from[j] : high[j];
       }
+      for (int j = 1; j < net.columns; ++j) {
+        row_low = from[j] < row_low ? from[j] : row_low;
+        row_high = row_high < from[j] ? from[j] : row_high;
+      }
+      row_boxes_[i].low[axis] = row_low;
+      row_boxes_[i].high[axis] = row_high;
     }
   }
+}
+
+Box SurfaceBounds::row_box(int element_u) const {
+  const int last = span_u_[element_u];
+  Box box = row_boxes_[control_u_[last]];
+  for (int i = last - degree_u_; i < last; ++i) {
+    const Box& row = row_boxes_[control_u_[i]];
+    box = {box.low.cwiseMin(row.low), box.high.cwiseMax(row.high)};
+  }
+  return box;
 }
 
 Box SurfaceBounds::box(int element_v) const {

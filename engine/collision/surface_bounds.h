@@ -28,9 +28,11 @@ class SurfaceBounds {
   void begin() { ++stamp_; }
   void update(const ControlNet& net, int element_v);
 
-  // A box about the elements (., element_v): the hull of their control points, as of the last take_boxes().
+  // A box about the elements (., element_v) or (element_u, .): the hull of their control points, as of the
+  // last take_boxes().
   void take_boxes(const ControlNet& net);
   Box box(int element_v) const;
+  Box row_box(int element_u) const;
 
   int elements_u() const { return static_cast<int>(span_u_.size()); }
   int elements_v() const { return static_cast<int>(span_v_.size()); }
@@ -57,6 +59,7 @@ class SurfaceBounds {
   std::vector<std::uint64_t> column_at_, element_at_;  // when taken: by unrolled column, by element_v
   std::vector<double> row_[3][3];         // working memory: three unrolled rows of control points
   std::vector<double> low_[3], high_[3];  // of each control column
+  std::vector<Box> row_boxes_;            // of each control row
 };
 
 }  // namespace spoonbill

@@ -42,6 +42,7 @@ SurfaceCollider::SurfaceCollider(const NestedGrid& nested) : levels_(nested) {
       static_cast<std::size_t>(nested.grid.rows()) * static_cast<std::size_t>(nested.grid.columns());
   near_at_.assign(count, 0);
   column_bound_.assign(static_cast<std::size_t>(levels_.bounds().elements_v()), 0.0);
+  row_bound_.assign(static_cast<std::size_t>(levels_.bounds().elements_u()), 0.0);
   cells_.reserve(cell_capacity);
   finest_.reserve(cell_capacity);
   patches_.reserve(patch_capacity);
@@ -60,8 +61,9 @@ void SurfaceCollider::offer(const ToolShape& tool, double u, double v, const Vec
 }
 
 CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape& tool, double margin_m,
-                                         bool closed) {
+                                         bool closed, const PlanarPoints& samples) {
   CollisionResult result;
+  levels_.begin(surface, samples);
   find_nearest(surface, tool, margin_m, Proof::deepest, result);
   take_near_samples(tool, margin_m, result);
   result.nearest = contact_at(surface, best_);
@@ -80,7 +82,6 @@ void SurfaceCollider::find_nearest(const Surface& surface, const ToolShape& tool
   proof_ = proof;
   tolerance_ = tolerance_of(tool);
   cuts_left_ = tool.is_solid() ? cut_capacity : std::numeric_limits<int>::max();
-  levels_.begin(surface);
   descend(tool, margin, result);
   polish(surface, tool);
   result.samples_evaluated = levels_.samples_evaluated();
@@ -89,6 +90,7 @@ void SurfaceCollider::find_nearest(const Surface& surface, const ToolShape& tool
 
 Clearance SurfaceCollider::clearance(const Surface& surface, const ToolShape& tool) {
   CollisionResult result;
+  levels_.begin(surface);
   find_nearest(surface, tool, 0.0, Proof::clearance, result);
   const bool touching = best_.distance_m <= touch_tolerance_m;
   return {touching ? 0.0 : clearance_share * best_.distance_m, contact_at(surface, best_), result.overflow};
@@ -119,15 +121,20 @@ double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact
 void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   const Grid& grid = levels_.nested().grid;
   const int stride = levels_.step(0);
+  const int last = levels_.bounds().elements_u() - 1;
   const auto offer_column = [&](int j) {
     levels_.sample_column(j);
     for (int i = 0; i < grid.rows(); i += stride) {
+      // A sample belongs to the elements on either side.
+      const int after = std::min(i / stride, last), before = std::max(i / stride - 1, 0);
+      if (std::min(row_bound_[before], row_bound_[after]) > reach(margin)) continue;
       offer(tool, grid.u.parameters[i], grid.v.parameters[j], levels_.sample(i * grid.columns() + j));
     }
   };
   SurfaceBounds& bounds = levels_.bounds();
   bounds.take_boxes(levels_.surface().net);
   for (int e = 0; e < bounds.elements_v(); ++e) column_bound_[e] = lower_bound(tool, bounds.box(e));
+  for (int e = 0; e < bounds.elements_u(); ++e) row_bound_[e] = lower_bound(tool, bounds.row_box(e));
   const auto nearest = std::min_element(column_bound_.begin(), column_bound_.end()) - column_bound_.begin();
   offer_column(static_cast<int>(nearest) * stride);
   offer_column((static_cast<int>(nearest) + 1) * stride);
@@ -145,6 +152,7 @@ void SurfaceCollider::descend(const ToolShape& tool, double margin, CollisionRes
   finest_.clear();
   offer_coarsest(tool, margin);
   for (int i = 0; i + stride < grid.rows(); i += stride) {
+    if (row_bound_[i / stride] > reach(margin)) continue;
     for (int j = 0; j + stride < grid.columns(); j += stride) {
       if (column_bound_[j / stride] > reach(margin)) continue;
       if (cells_.size() < cell_capacity) {

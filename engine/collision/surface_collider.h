@@ -45,8 +45,10 @@ class SurfaceCollider {
 
   // The surface must have the grid's knots. `closed` says that the surface bounds a body, so that the tool
   // may be inside it: its depth is then the way along the nearest wall's normal that takes it out. Samples
-  // nearer than `margin_m` are in near_samples() afterwards.
-  CollisionResult collide(const Surface& surface, const ToolShape& tool, double margin_m, bool closed);
+  // nearer than `margin_m` are in near_samples() afterwards. Where all samples of the grid are known already,
+  // they may be given (see SurfaceLevels::begin()).
+  CollisionResult collide(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
+                          const PlanarPoints& samples = {});
 
   // After collide() of the same surface and tool: every region of the surface that the tool touches, the
   // deepest first. Valid until the next call of anything here.
@@ -72,6 +74,7 @@ class SurfaceCollider {
   // What a search must prove: the deepest contact to the tolerance, or a clearance.
   enum class Proof { deepest, clearance };
 
+  // After SurfaceLevels::begin().
   void find_nearest(const Surface& surface, const ToolShape& tool, double margin, Proof proof,
                     CollisionResult& result);
   void offer_coarsest(const ToolShape& tool, double margin);
@@ -100,7 +103,8 @@ class SurfaceCollider {
   void add_region(const Surface& surface, const ToolShape& tool, int begin, int end);
 
   SurfaceLevels levels_;
-  std::vector<double> column_bound_;  // of the tool's distance, for the elements of each span of v
+  // Of the tool's distance, for the elements of each span of v and of each span of u.
+  std::vector<double> column_bound_, row_bound_;
   std::vector<LevelCell> cells_, finest_;
   std::vector<Patch> patches_;
   std::vector<NearSample> near_;

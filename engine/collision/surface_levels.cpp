@@ -107,7 +107,7 @@ int SurfaceLevels::cell_index(const LevelCell& cell) const {
 
 void SurfaceLevels::begin(const Surface& surface) {
   surface_ = &surface;
-  given_ = {nullptr, nullptr, nullptr};
+  given_ = {};
   ++begun_;
   samples_evaluated_ = 0;
   bounds_.begin();

@@ -51,7 +51,7 @@ class SurfaceLevels {
   void begin(const Surface& surface);
 
   // The same with all samples of the finest grid given, in its order, as GridEvaluator<double> has them: none
-  // is evaluated. They must be the surface's and outlive the calls below. Null pointers: not given.
+  // is evaluated. They must be the surface's and outlive the calls below.
   void begin(const Surface& surface, const PlanarPoints& samples);
 
   const Surface& surface() const { return *surface_; }
@@ -107,7 +107,7 @@ class SurfaceLevels {
   const NestedGrid* nested_;
   const PatchKernels* kernels_;
   const Surface* surface_ = nullptr;
-  PlanarPoints given_{nullptr, nullptr, nullptr};
+  PlanarPoints given_;
   SurfaceBounds bounds_;
   PieceBasis u_pieces_, v_pieces_;
   Bands u_bands_, v_bands_;

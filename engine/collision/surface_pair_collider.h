@@ -31,7 +31,7 @@ struct PairQuery {
   // where they have not: what was evaluated of them is used again.
   bool first_moved = true, second_moved = true;
   // All samples of a grid, where they are known already (see SurfaceLevels::begin()): none is then evaluated.
-  PlanarPoints first_samples{nullptr, nullptr, nullptr}, second_samples{nullptr, nullptr, nullptr};
+  PlanarPoints first_samples, second_samples;
 };
 
 struct PairResult {

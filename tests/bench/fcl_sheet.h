@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fcl/geometry/bvh/BVH_model.h>
+#include <malloc.h>
 
 #include <memory>
 #include <vector>
@@ -44,6 +45,13 @@ void refit(fcl::BVHModel<Volume>& mesh, const FclPoints& vertices) {
   mesh.beginReplaceModel();
   mesh.replaceSubModel(vertices);
   mesh.endReplaceModel(true, true);
+}
+
+// FCL copies a mesh of boxes at each query. An allocator that gave the pages back each time would double its
+// cost.
+inline void keep_freed_pages() {
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
 }
 
 // The surface at the grid's parameters.

@@ -199,9 +199,17 @@ def measured_live_memory(measure, _figure):
 
 
 def measured_pair(measure, figure):
-    ours, peer = PAIRS[figure.name]
-    times = measure.medians([ours, peer])
-    return {"ours": times[ours], "peer": times[peer], "ratio": times[peer] / times[ours]}
+    ours, *peers = pair_of(figure)
+    times = measure.medians([ours, *peers])
+    if not peers:
+        return {"ours": times[ours]}
+    best = min(times[peer] for peer in peers)
+    return {"ours": times[ours], "peer": best, "ratio": best / times[ours],
+            "details": {"peers": {peer: times[peer] for peer in peers}}}
+
+
+def pair_of(figure):
+    return PAIRS.get(figure.name) or PAIRS.get((figure.name, figure.case))
 
 
 def measured_tick(measure, figure):
@@ -227,7 +235,7 @@ def measured_lattice(measure, _figure):
 
 
 def measured(measure, figure):
-    if figure.name in PAIRS:
+    if pair_of(figure):
         return measured_pair(measure, figure)
     return {"tick_p99_us": measured_tick, "frames_per_second": measured_frames,
             "lattice_at_1khz": measured_lattice, "loop_missed_per_1000": measured_missed,
@@ -283,8 +291,9 @@ def table(rows):
         peer = "-" if row["peer"] is None else f"{number(row['peer'])} {row['unit']}"
         lines.append((row["name"] + (f" ({row['case']})" if row["case"] else ""),
                       f"{number(row['ours'])} {row['unit']}", peer, number(row["ratio"]),
+                      "-" if row["target"] is None else
                       f"{'>=' if sense == 'at least' else '<='} {number(row['target'])}{unit}",
-                      {True: "yes", False: "NO", None: "failed"}[row["met"]]))
+                      {True: "yes", False: "NO", None: "failed" if "error" in row else "-"}[row["met"]]))
     widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
     text = [
         "  ".join(cell.ljust(width) if k == 0 else cell.rjust(width)

@@ -2,7 +2,6 @@
 // quads. And two nets crossing each other, ours alone.
 #include <benchmark/benchmark.h>
 #include <fcl/narrowphase/collision.h>
-#include <malloc.h>
 
 #include <array>
 #include <cmath>
@@ -99,13 +98,6 @@ void surfaces_ours(benchmark::State& state, bool given) {
     if (theirs.numContacts() == 0 || !holds(collider, theirs))
       state.SkipWithError("a contact of FCL's is missing");
   }
-}
-
-// FCL copies a mesh of boxes at each query. An allocator that gave the pages back each time would double its
-// cost.
-void keep_freed_pages() {
-  mallopt(M_MMAP_THRESHOLD, 1 << 30);
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
 }
 
 template <class Volume>
