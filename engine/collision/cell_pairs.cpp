@@ -59,6 +59,10 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
   if ((meeting(first_slabs_.alone(both.first), 1, second_slabs_.alone(both.second), reach) & 1U) == 0U) {
     return;
   }
+  if (finest_first == 0 && finest_second == 0) {
+    emit(both, true);
+    return;
+  }
   path_.clear();
   path_.push_back(both);
   while (!path_.empty() && !overflow_) {
@@ -66,22 +70,30 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
     path_.pop_back();
     const bool cut_first = pair.first.cell.level < finest_first,
                cut_second = pair.second.cell.level < finest_second;
-    if (!cut_first && !cut_second) {
-      overflow_ = pairs_.size() == cell_pair_capacity;
-      if (!overflow_) pairs_.push_back({pair.first.cell, pair.second.cell});
-      continue;
-    }
     const SlabGroup& first = cut_first ? first_slabs_.within(pair.first) : first_slabs_.alone(pair.first);
     const SlabGroup& second =
         cut_second ? second_slabs_.within(pair.second) : second_slabs_.alone(pair.second);
     const unsigned lanes = cut_second ? 0xffffU : 0x1111U;
     unsigned met = meeting(first, cut_first ? slab_lanes : 1, second, reach) & lanes;
-    for (; met != 0U; met &= met - 1U) {
+    const bool ended =
+        pair.first.cell.level + 1 >= finest_first && pair.second.cell.level + 1 >= finest_second;
+    for (bool is_first = true; met != 0U; met &= met - 1U, is_first = false) {
       const int lane = std::countr_zero(met);
-      path_.push_back({cut_first ? first_slabs_.finer(pair.first, lane >> 2) : pair.first,
-                       cut_second ? second_slabs_.finer(pair.second, lane & 3) : pair.second});
+      const Places finer{cut_first ? first_slabs_.finer(pair.first, lane >> 2) : pair.first,
+                         cut_second ? second_slabs_.finer(pair.second, lane & 3) : pair.second};
+      if (ended) {
+        emit(finer, is_first);
+      } else {
+        path_.push_back(finer);
+      }
     }
   }
+}
+
+// Cells within the same two cells are each other's neighbours.
+void CellPairs::emit(const Places& places, bool is_first) {
+  overflow_ = overflow_ || pairs_.size() == cell_pair_capacity;
+  if (!overflow_) pairs_.push_back({places.first.cell, places.second.cell, is_first ? 0 : -1});
 }
 
 CellPair CellPairs::elements(const std::array<int, 2>& nodes) const {

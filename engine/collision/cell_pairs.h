@@ -17,7 +17,8 @@ inline constexpr std::size_t cell_pair_capacity = 1 << 16;
 
 struct CellPair {
   LevelCell first, second;
-  int region = 0;  // for ContactRegions
+  // From ContactRegions; before it, -1 where both cells are neighbours of the pair before's.
+  int region = 0;
 };
 
 // One owner, one thread; allocates only when made.
@@ -98,7 +99,6 @@ class CellPairs {
     return {{{a, node_b.left}, {a, node_b.right}}};
   }
   void take_pairs(double reach, int level);
-  void refine(const CellPair& elements, double reach, int level);
 
   SurfaceLevels* first_;
   SurfaceLevels* second_;
@@ -109,6 +109,9 @@ class CellPairs {
   struct Places {
     CellSlabs::Place first, second;
   };
+  void refine(const CellPair& elements, double reach, int level);
+  void emit(const Places& places, bool is_first);
+
   std::vector<Places> path_;  // working memory: what is left to refine of two elements
   bool overflow_ = false;
   bool first_is_stale_ = true, second_is_stale_ = true;

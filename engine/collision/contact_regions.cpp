@@ -47,7 +47,7 @@ void ContactRegions::join(const std::vector<CellPair>& pairs, int cell, int othe
   const bool whole = cell != other && !split_[cell] && !split_[other];
   if (whole && root(last_pair_[cell]) == root(last_pair_[other])) return;
   for (int k = last_pair_[cell]; k >= 0; k = previous_[k]) {
-    for (int m = last_pair_[other]; m >= 0; m = previous_[m]) {
+    for (int m = cell == other ? previous_[k] : last_pair_[other]; m >= 0; m = previous_[m]) {
       if (!are_neighbours(pairs[k].second, pairs[m].second, step)) continue;
       const int a = root(k), b = root(m);
       parent_[std::max(a, b)] = std::min(a, b);
@@ -78,7 +78,7 @@ const std::vector<ContactRegions::Region>& ContactRegions::group(std::vector<Cel
   const int count = static_cast<int>(pairs.size());
   for (int k = 0; k < count; ++k) {
     const int cell = first_->cell_index(pairs[k].first);
-    parent_.push_back(k);
+    parent_.push_back(k > 0 && pairs[k].region < 0 ? parent_[k - 1] : k);
     previous_.push_back(paired_at_[cell] == group_ ? last_pair_[cell] : -1);
     last_pair_[cell] = k;
     paired_at_[cell] = group_;

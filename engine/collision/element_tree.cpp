@@ -27,10 +27,6 @@ ElementTree::ElementTree(const KnotVector& u, const KnotVector& v) : u_(unroll(u
   add({0, u_.elements(), 0, v_.elements()});
   boxes_.resize(nodes_.size());
   sizes_.resize(nodes_.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    low_[axis].resize(static_cast<std::size_t>(v.control_point_count()));
-    high_[axis].resize(static_cast<std::size_t>(v.control_point_count()));
-  }
 }
 
 int ElementTree::add(const Node& range) {
@@ -55,7 +51,9 @@ int ElementTree::add(const Node& range) {
 
 void ElementTree::update(SurfaceLevels& levels) {
   levels.bounds().update(levels.surface().net);
-  for (int e = 0; e < u_.elements(); ++e) take_strip(levels, e);
+  for (int e = 0; e < u_.elements(); ++e) {
+    for (int f = 0; f < v_.elements(); ++f) take_box(levels, e, f);
+  }
   join_boxes();
 }
 
@@ -68,40 +66,27 @@ void ElementTree::join_boxes() {
   }
 }
 
-// The boxes of the elements (element_u, .): first over the rows of their control points, all columns at once.
-void ElementTree::take_strip(SurfaceLevels& levels, int element_u) {
+// Where the surface may leave its corners by more than they are apart, its control points tell more.
+void ElementTree::take_box(SurfaceLevels& levels, int element_u, int element_v) {
+  const int index = leaf_[element_u * v_.elements() + element_v];
+  Box& box = boxes_[index];
+  double bulge = 0.0;
+  box = levels.element_box(element_u, element_v, bulge);
+  sizes_[index] = (box.high - box.low).sum();
+  if (4.0 * bulge < sizes_[index] - 6.0 * bulge) return;
   const ControlNet& net = levels.surface().net;
-  const int* rows = u_.control.data() + u_.first_control[element_u];
-  const std::vector<double>* coordinates[3] = {&net.x, &net.y, &net.z};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double* values = coordinates[axis]->data();
-    double* const low = low_[axis].data();
-    double* const high = high_[axis].data();
-    std::copy_n(values + rows[0] * net.columns, net.columns, low);
-    std::copy_n(values + rows[0] * net.columns, net.columns, high);
-    for (int k = 1; k <= u_.degree; ++k) {
-      const double* const row = values + rows[k] * net.columns;
-      for (int j = 0; j < net.columns; ++j) {
-        low[j] = row[j] < low[j] ? row[j] : low[j];
-        high[j] = high[j] < row[j] ? row[j] : high[j];
-      }
+  const int* const rows = u_.control.data() + u_.first_control[element_u];
+  const int* const columns = v_.control.data() + v_.first_control[element_v];
+  Vector3 low = net.point(rows[0], columns[0]), high = low;
+  for (int i = 0; i <= u_.degree; ++i) {
+    for (int j = 0; j <= v_.degree; ++j) {
+      const Vector3 control = net.point(rows[i], columns[j]);
+      low = low.cwiseMin(control);
+      high = high.cwiseMax(control);
     }
   }
-  for (int e = 0; e < v_.elements(); ++e) {
-    const int* columns = v_.control.data() + v_.first_control[e];
-    Box& box = boxes_[leaf_[element_u * v_.elements() + e]];
-    box = levels.element_box(element_u, e);
-    for (int axis = 0; axis < 3; ++axis) {
-      double low = low_[axis][columns[0]], high = high_[axis][columns[0]];
-      for (int k = 1; k <= v_.degree; ++k) {
-        low = std::min(low, low_[axis][columns[k]]);
-        high = std::max(high, high_[axis][columns[k]]);
-      }
-      box.low[axis] = std::max(box.low[axis], low);
-      box.high[axis] = std::min(box.high[axis], high);
-    }
-    sizes_[leaf_[element_u * v_.elements() + e]] = (box.high - box.low).sum();
-  }
+  box = {box.low.cwiseMax(low), box.high.cwiseMin(high)};
+  sizes_[index] = (box.high - box.low).sum();
 }
 
 }  // namespace spoonbill

@@ -40,7 +40,7 @@ class ElementTree {
   };
   static Direction unroll(const KnotVector& knots);
   int add(const Node& range);
-  void take_strip(SurfaceLevels& levels, int element_u);
+  void take_box(SurfaceLevels& levels, int element_u, int element_v);
   void join_boxes();
 
   Direction u_, v_;
@@ -48,8 +48,6 @@ class ElementTree {
   std::vector<Box> boxes_;
   std::vector<double> sizes_;
   std::vector<int> leaf_;  // of each element
-  // Working memory: over the control rows of one element in u, by control column.
-  std::vector<double> low_[3], high_[3];
 };
 
 }  // namespace spoonbill

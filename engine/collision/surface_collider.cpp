@@ -193,6 +193,7 @@ void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, d
     return;
   }
   const Grid& grid = levels_.nested().grid;
+  levels_.sample_element(cell.i >> levels_.nested().levels, cell.j >> levels_.nested().levels);
   const int step = levels_.step(cell.level), half = step / 2;
   for (int i = cell.i; i < cell.i + step; i += half) {
     for (int j = cell.j; j < cell.j + step; j += half) {

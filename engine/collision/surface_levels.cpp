@@ -207,7 +207,7 @@ PatchCorners SurfaceLevels::corners(const LevelCell& cell) {
           sample(index + along * columns + along)};
 }
 
-Box SurfaceLevels::element_box(int element_u, int element_v) {
+Box SurfaceLevels::element_box(int element_u, int element_v, double& bulge) {
   const int stride = step(0), columns = nested_->grid.columns();
   const int i = element_u * stride, j = element_v * stride;
   sample_column(j);
@@ -215,8 +215,7 @@ Box SurfaceLevels::element_box(int element_u, int element_v) {
   bounds_.update(surface_->net, element_v);
   const std::vector<double>& in_u = nested_->grid.u.parameters;
   const std::vector<double>& in_v = nested_->grid.v.parameters;
-  const double bulge =
-      bounds_.bulge(element_u, element_v, in_u[i + stride] - in_u[i], in_v[j + stride] - in_v[j]);
+  bulge = bounds_.bulge(element_u, element_v, in_u[i + stride] - in_u[i], in_v[j + stride] - in_v[j]);
   const PlanarPoints from = samples();
   const double* const values[3] = {from.x, from.y, from.z};
   Box box;

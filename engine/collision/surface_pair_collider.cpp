@@ -14,6 +14,8 @@ constexpr double nearest_tolerance = 1e-4;
 // Candidates of a region from which Newton's method looks for a touch before all of it is searched.
 constexpr std::size_t region_seeds = 8;
 constexpr std::size_t depth_seeds = 8;
+// Candidates of a region that its middle is taken from.
+constexpr std::size_t middle_pairs = 64;
 constexpr std::size_t inner_places = 4;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -172,10 +174,11 @@ PairContact SurfacePairCollider::contact_of(const Pairs& pairs, const Region& re
   PairContact contact;
   contact.first = contact.second = {infinity, -infinity, infinity, -infinity};
   RegionMiddle middle(first_.surface(), second_.surface());
+  const std::size_t stride = (region.end - region.begin + middle_pairs - 1) / middle_pairs;
   for (std::size_t k = region.begin; k < region.end; ++k) {
     widen(contact.first, first_, pairs[k].first);
     widen(contact.second, second_, pairs[k].second);
-    middle.add(centre_of(first_, second_, pairs[k]));
+    if ((k - region.begin) % stride == 0) middle.add(centre_of(first_, second_, pairs[k]));
   }
   contact.pair = search_.best();
   const PairParameters& touch = contact.pair.at;

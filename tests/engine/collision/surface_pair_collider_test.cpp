@@ -181,6 +181,52 @@ TEST(SurfacePair, WhatHasNotMovedIsNotEvaluatedAgain) {
   }
 }
 
+TEST(SurfacePair, GivenSamplesAreNotEvaluatedAndTellTheSame) {
+  Random random(80);
+  const Surface first = random_surface(random), second = random_surface(random);
+  const NestedGrid a = make_nested_grid(first.u, first.v, 2).value();
+  const NestedGrid b = make_nested_grid(second.u, second.v, 2).value();
+  SurfaceLevels levels(a);
+  levels.begin(first);
+  std::vector<double> x, y, z;
+  for (int k = 0; k < a.grid.rows() * a.grid.columns(); ++k) {
+    const Vector3 sample = levels.sample(k);
+    x.push_back(sample.x());
+    y.push_back(sample.y());
+    z.push_back(sample.z());
+  }
+  SurfacePairCollider collider(a, b);
+  collider.collide(first, second, {});
+  const std::vector<PairContact> before = collider.contacts();
+  ASSERT_FALSE(before.empty());
+  PairQuery query;
+  query.second_moved = false;
+  query.first_samples = {x.data(), y.data(), z.data()};
+  EXPECT_EQ(collider.collide(first, second, query).samples_evaluated, 0);
+  ASSERT_EQ(collider.contacts().size(), before.size());
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    EXPECT_EQ(collider.contacts()[k].depth_m, before[k].depth_m);
+  }
+}
+
+// Their first surfaces' cells are all each other's neighbours: one region, whatever level the capacity
+// allows.
+TEST(SurfacePair, CoincidentSheetsAreOneRegionAndNothingOverflows) {
+  const KnotVector knots = KnotVector::clamped_uniform(3, 40).value();
+  ControlNet net(40, 40);
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j)
+      net.set_point(i, j, {0.1 * i, 0.1 * std::sin(0.3 * i) * std::cos(0.2 * j), 0.1 * j});
+  }
+  const Surface sheet = make_surface(knots, knots, net).value();
+  const Answer answer = collide(sheet, sheet, {}, 3);
+  EXPECT_TRUE(answer.result.touching);
+  EXPECT_FALSE(answer.result.overflow);
+  ASSERT_EQ(answer.contacts.size(), 1u);
+  EXPECT_EQ(answer.contacts[0].first.u0, 0.0);
+  EXPECT_EQ(answer.contacts[0].first.u1, 1.0);
+}
+
 TEST(SurfacePair, AllocatesNothing) {
   const Surface first = paraboloid(0.9, 0.7, -0.02), second = paraboloid(0, 0, 0);
   const NestedGrid a = make_nested_grid(first.u, first.v, 3).value();

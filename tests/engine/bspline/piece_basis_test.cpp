@@ -1,0 +1,70 @@
+#include "engine/bspline/piece_basis.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/allocations.h"
+#include "tests/engine/bspline/random_surface.h"
+
+namespace spoonbill {
+namespace {
+
+// Polynomials of degree 5 at most, on pieces scaled to -1..1, against the recursion; derivatives of surfaces
+// of about 1 m grow as the pieces get short.
+void expect_agreement(const Surface& surface, double u, double v) {
+  const PieceBasis in_u(surface.u), in_v(surface.v);
+  const PiecewiseSurface pieces{&surface, &in_u, &in_v};
+  const SurfacePoint ours = evaluate(pieces, u, v), theirs = evaluate(surface, u, v);
+  const auto near = [](const Vector3& a, const Vector3& b, double size) {
+    return (a - b).norm() <= 1e-11 * size;
+  };
+  EXPECT_TRUE(near(ours.position_m, theirs.position_m, 1.0));
+  EXPECT_TRUE(near(position(pieces, u, v), theirs.position_m, 1.0));
+  const double first = 1.0 + theirs.du.norm() + theirs.dv.norm();
+  EXPECT_TRUE(near(ours.du, theirs.du, first) && near(ours.dv, theirs.dv, first));
+  const double second = 100.0 * (first + theirs.duu.norm() + theirs.duv.norm() + theirs.dvv.norm());
+  EXPECT_TRUE(near(ours.duu, theirs.duu, second) && near(ours.duv, theirs.duv, second) &&
+              near(ours.dvv, theirs.dvv, second));
+}
+
+TEST(PieceBasis, AgreesWithTheRecursion) {
+  Random random(91);
+  for (int trial = 0; trial < 200; ++trial) {
+    const KnotVector u = random_knots(random, random.integer(1, 5), KnotKind::clamped);
+    const KnotVector v = random_knots(random, random.integer(1, 5), KnotKind::periodic);
+    const Surface surface = random_surface(random, u, v);
+    expect_agreement(surface, random.uniform(u.domain_start(), u.domain_end()),
+                     random.uniform(v.domain_start(), v.domain_end()));
+    // At knots, at both ends and beyond the seam.
+    for (const double knot : u.breakpoints()) expect_agreement(surface, knot, v.domain_end());
+    expect_agreement(surface, u.domain_end(), v.domain_end() + 0.25 * (v.domain_end() - v.domain_start()));
+  }
+}
+
+TEST(PieceBasis, NormalsAreThoseOfTheSurfaceAtPolesToo) {
+  Random random(92);
+  Surface surface = random_surface(random);
+  const PieceBasis in_u(surface.u), in_v(surface.v);
+  const PiecewiseSurface pieces{&surface, &in_u, &in_v};
+  const auto expect_normal = [&](double u, double v) {
+    const Vector3 ours = unit_normal(pieces, evaluate(pieces, u, v), u, v);
+    EXPECT_LT((ours - unit_normal(surface, u, v)).norm(), 1e-9);
+  };
+  const double u0 = surface.u.domain_start(), u1 = surface.u.domain_end();
+  expect_normal(0.4 * u0 + 0.6 * u1, 0.5 * (surface.v.domain_start() + surface.v.domain_end()));
+  if (surface.u.is_periodic()) return;
+  for (int j = 1; j < surface.net.columns; ++j) surface.net.set_point(0, j, surface.net.point(0, 0));
+  expect_normal(u0, 0.3 * surface.v.domain_start() + 0.7 * surface.v.domain_end());
+}
+
+TEST(PieceBasis, AllocatesNothingOnceMade) {
+  Random random(93);
+  const Surface surface = random_surface(random);
+  const PieceBasis in_u(surface.u), in_v(surface.v);
+  const std::size_t before = allocation_count();
+  const SurfacePoint at = evaluate(PiecewiseSurface{&surface, &in_u, &in_v}, 0.3, 0.6);
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_TRUE(at.position_m.allFinite());
+}
+
+}  // namespace
+}  // namespace spoonbill
