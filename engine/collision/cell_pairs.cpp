@@ -50,13 +50,16 @@ void CellPairs::take_pairs(double reach, int level) {
 void CellPairs::refine(const CellPair& elements, double reach, int level) {
   const int finest_first = std::min(level, first_->nested().levels),
             finest_second = std::min(level, second_->nested().levels);
-  const auto meeting = first_->kernels().meeting;
+  const auto meeting = [kernel = first_->kernels().meeting, reach_m = static_cast<float>(reach)](
+                           const SlabGroup& a, int lanes, const SlabGroup& b) {
+    return kernel(a, lanes, b, reach_m);
+  };
   const auto element = [](const CellSlabs& slabs, const SurfaceLevels& levels, const LevelCell& cell) {
     return slabs.element(cell.i >> levels.nested().levels, cell.j >> levels.nested().levels);
   };
   const Places both{element(first_slabs_, *first_, elements.first),
                     element(second_slabs_, *second_, elements.second)};
-  if ((meeting(first_slabs_.alone(both.first), 1, second_slabs_.alone(both.second), reach) & 1U) == 0U) {
+  if ((meeting(first_slabs_.alone(both.first), 1, second_slabs_.alone(both.second)) & 1U) == 0U) {
     return;
   }
   if (finest_first == 0 && finest_second == 0) {
@@ -74,7 +77,7 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
     const SlabGroup& second =
         cut_second ? second_slabs_.within(pair.second) : second_slabs_.alone(pair.second);
     const unsigned lanes = cut_second ? 0xffffU : 0x1111U;
-    unsigned met = meeting(first, cut_first ? slab_lanes : 1, second, reach) & lanes;
+    unsigned met = meeting(first, cut_first ? slab_lanes : 1, second) & lanes;
     const bool ended =
         pair.first.cell.level + 1 >= finest_first && pair.second.cell.level + 1 >= finest_second;
     for (bool is_first = true; met != 0U; met &= met - 1U, is_first = false) {

@@ -4,8 +4,13 @@ namespace spoonbill::SPOONBILL_KERNELS {
 
 namespace {
 
-// Of a slab's size: what rounding may add to an extent.
-constexpr double rounding = 1e-14;
+// What single precision may add to an extent: of a slab's size and of its place.
+constexpr double size_rounding = 1e-6;
+constexpr double place_rounding = 2.5e-7;
+// And of the way between two centres, and of its square.
+constexpr float way_rounding = 1e-6F;
+constexpr float less = 1.0F - 1e-5F;
+constexpr float more = 1.0F + 1e-5F;
 
 // Lanes that no compiler takes apart again; they need not begin on a whole vector.
 typedef double Lanes __attribute__((vector_size(slab_lanes * sizeof(double)), aligned(sizeof(double))));
@@ -91,14 +96,10 @@ inline __attribute__((always_inline)) double magnitude(double number) {
   return __builtin_fabs(number);
 }
 
-inline __attribute__((always_inline)) double larger(double a, double b) {
-  return a > b ? a : b;
-}
-
 void take_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
   constexpr int low_low[slab_lanes] = {0, 1, 3, 4};
   const double* const values[3] = {samples.x, samples.y, samples.z};
-  double twist[3][slab_lanes];
+  double centre[3][slab_lanes], u[3][slab_lanes], v[3][slab_lanes], twist[3][slab_lanes];
   for (int axis = 0; axis < 3; ++axis) {
     double p00[slab_lanes], p01[slab_lanes], p10[slab_lanes], p11[slab_lanes];
     for (int k = 0; k < slab_lanes; ++k) {
@@ -111,14 +112,16 @@ void take_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
     for (int k = 0; k < slab_lanes; ++k) {
       const double low = p00[k] + p01[k], high = p10[k] + p11[k];
       const double left = p00[k] + p10[k], right = p01[k] + p11[k];
-      group.centre[axis][k] = 0.25 * (low + high);
-      group.along_u[axis][k] = 0.25 * (high - low);
-      group.along_v[axis][k] = 0.25 * (right - left);
+      centre[axis][k] = 0.25 * (low + high);
+      u[axis][k] = 0.25 * (high - low);
+      v[axis][k] = 0.25 * (right - left);
       twist[axis][k] = 0.25 * ((p00[k] - p01[k]) - (p10[k] - p11[k]));
+      group.centre[axis][k] = static_cast<float>(centre[axis][k]);
+      group.along_u[axis][k] = static_cast<float>(u[axis][k]);
+      group.along_v[axis][k] = static_cast<float>(v[axis][k]);
     }
   }
-  const auto& u = group.along_u;
-  const auto& v = group.along_v;
+  // Unrolled too early, the lanes would not become vectors.
 #pragma GCC unroll 1
   for (int k = 0; k < slab_lanes; ++k) {
     const double x = u[1][k] * v[2][k] - u[2][k] * v[1][k];
@@ -128,59 +131,147 @@ void take_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
     const bool flat = squared > 0.0;
     const double scale = (flat ? 1.0 : 0.0) / __builtin_sqrt(flat ? squared : 1.0);
     const double nx = x * scale, ny = y * scale, nz = z * scale;
-    group.normal[0][k] = nx;
-    group.normal[1][k] = ny;
-    group.normal[2][k] = nz;
+    group.normal[0][k] = static_cast<float>(nx);
+    group.normal[1][k] = static_cast<float>(ny);
+    group.normal[2][k] = static_cast<float>(nz);
     const double twisted =
         __builtin_sqrt(twist[0][k] * twist[0][k] + twist[1][k] * twist[1][k] + twist[2][k] * twist[2][k]);
     const double size = magnitude(u[0][k]) + magnitude(u[1][k]) + magnitude(u[2][k]) + magnitude(v[0][k]) +
-                        magnitude(v[1][k]) + magnitude(v[2][k]) + magnitude(group.centre[0][k]) +
-                        magnitude(group.centre[1][k]) + magnitude(group.centre[2][k]);
-    const double slack = bulge + twisted + rounding * size;
+                        magnitude(v[1][k]) + magnitude(v[2][k]) + twisted + bulge;
+    const double place = magnitude(centre[0][k]) + magnitude(centre[1][k]) + magnitude(centre[2][k]);
+    const double off = bulge + size_rounding * size + place_rounding * place;
     // A normal of long, narrow cells is not quite across their sides.
-    group.thickness[k] = magnitude(nx * u[0][k] + ny * u[1][k] + nz * u[2][k]) +
-                         magnitude(nx * v[0][k] + ny * v[1][k] + nz * v[2][k]) +
-                         magnitude(nx * twist[0][k] + ny * twist[1][k] + nz * twist[2][k]) + bulge +
-                         rounding * size;
-    group.slack[k] = slack;
+    group.thickness[k] =
+        static_cast<float>(magnitude(nx * u[0][k] + ny * u[1][k] + nz * u[2][k]) +
+                           magnitude(nx * v[0][k] + ny * v[1][k] + nz * v[2][k]) +
+                           magnitude(nx * twist[0][k] + ny * twist[1][k] + nz * twist[2][k]) + off);
+    group.slack[k] = static_cast<float>(twisted + off);
   }
 }
 
-unsigned meeting(const SlabGroup& a, int lanes, const SlabGroup& b, double reach) {
-  double gap[slab_lanes * slab_lanes];  // above zero where something lies between
-  for (int i = 0; i < lanes; ++i) {
-    const double cx = a.centre[0][i], cy = a.centre[1][i], cz = a.centre[2][i];
-    const double nx = a.normal[0][i], ny = a.normal[1][i], nz = a.normal[2][i];
-    const double ux = a.along_u[0][i], uy = a.along_u[1][i], uz = a.along_u[2][i];
-    const double vx = a.along_v[0][i], vy = a.along_v[1][i], vz = a.along_v[2][i];
-    const double thick = a.thickness[i] + reach, slack = a.slack[i] + reach;
-    // Unrolled too early, the lanes would not become vectors.
-#pragma GCC unroll 1
-    for (int j = 0; j < slab_lanes; ++j) {
-      const double dx = b.centre[0][j] - cx, dy = b.centre[1][j] - cy, dz = b.centre[2][j] - cz;
-      const double bux = b.along_u[0][j], buy = b.along_u[1][j], buz = b.along_u[2][j];
-      const double bvx = b.along_v[0][j], bvy = b.along_v[1][j], bvz = b.along_v[2][j];
-      const double bnx = b.normal[0][j], bny = b.normal[1][j], bnz = b.normal[2][j];
-      const double across_a = magnitude(nx * dx + ny * dy + nz * dz);
-      const double reach_a = thick + b.slack[j] + magnitude(nx * bux + ny * buy + nz * buz) +
-                             magnitude(nx * bvx + ny * bvy + nz * bvz);
-      const double across_b = magnitude(bnx * dx + bny * dy + bnz * dz);
-      const double reach_b = slack + b.thickness[j] + magnitude(bnx * ux + bny * uy + bnz * uz) +
-                             magnitude(bnx * vx + bny * vy + bnz * vz);
-      const double squared = dx * dx + dy * dy + dz * dz;
-      // squared > along + slacks * length, without the root of squared.
-      const double along = magnitude(ux * dx + uy * dy + uz * dz) + magnitude(vx * dx + vy * dy + vz * dz) +
-                           magnitude(bux * dx + buy * dy + buz * dz) +
-                           magnitude(bvx * dx + bvy * dy + bvz * dz);
-      const double beyond = squared - along, slacks = slack + b.slack[j];
-      const double between = beyond * magnitude(beyond) - slacks * slacks * squared;
-      const double of_normals = larger(across_a - reach_a, across_b - reach_b);
-      gap[slab_lanes * i + j] = larger(of_normals, between);
+// One or two slabs of the first, against each of the second's four.
+#ifdef __AVX__
+constexpr int slabs_at_once = 2;
+#else
+constexpr int slabs_at_once = 1;
+#endif
+constexpr int lanes_at_once = slabs_at_once * slab_lanes;
+typedef float Many __attribute__((vector_size(lanes_at_once * sizeof(float))));
+typedef int ManyBits __attribute__((vector_size(lanes_at_once * sizeof(int))));
+typedef float Four __attribute__((vector_size(slab_lanes * sizeof(float)), aligned(sizeof(float))));
+
+struct ManyVectors {
+  Many x, y, z;
+};
+
+template <int a = 0>
+struct AllFour {
+  inline __attribute__((always_inline)) void operator()(const float* lanes, Many& out) const {
+    const Four four = *reinterpret_cast<const Four*>(lanes);
+    if constexpr (slabs_at_once == 1) {
+      out = __builtin_shufflevector(four, four, a, a + 1, a + 2, a + 3);
+    } else {
+      out = __builtin_shufflevector(four, four, a, a + 1, a + 2, a + 3, a, a + 1, a + 2, a + 3);
     }
   }
+};
+template <int first>
+struct FourOfEach {
+  inline __attribute__((always_inline)) void operator()(const float* lanes, Many& out) const {
+    const Four four = *reinterpret_cast<const Four*>(lanes);
+    if constexpr (slabs_at_once == 1) {
+      out = __builtin_shufflevector(four, four, first, first, first, first);
+    } else {
+      constexpr int next = first + 1;
+      out = __builtin_shufflevector(four, four, first, first, first, first, next, next, next, next);
+    }
+  }
+};
+
+template <class Spread>
+inline __attribute__((always_inline)) void spread(const Spread& by, const float (&lanes)[3][slab_lanes],
+                                                  ManyVectors& out) {
+  by(lanes[0], out.x);
+  by(lanes[1], out.y);
+  by(lanes[2], out.z);
+}
+
+inline __attribute__((always_inline)) void take_magnitude(const Many& number, Many& out) {
+  out = reinterpret_cast<Many>(reinterpret_cast<ManyBits>(number) & 0x7fffffff);
+}
+
+inline __attribute__((always_inline)) void magnitude_of_product(const ManyVectors& a, const ManyVectors& b,
+                                                                Many& out) {
+  take_magnitude(a.x * b.x + a.y * b.y + a.z * b.z, out);
+}
+
+struct ManySlabs {
+  ManyVectors centre, u, v, normal;
+  Many thickness, slack;
+};
+
+template <class Spread>
+inline __attribute__((always_inline)) void take_many(const Spread& by, const SlabGroup& group,
+                                                     ManySlabs& slabs) {
+  spread(by, group.centre, slabs.centre);
+  spread(by, group.along_u, slabs.u);
+  spread(by, group.along_v, slabs.v);
+  spread(by, group.normal, slabs.normal);
+  by(group.thickness, slabs.thickness);
+  by(group.slack, slabs.slack);
+}
+
+// Minus one in the lanes that are apart.
+inline __attribute__((always_inline)) void take_apart(const ManySlabs& a, const ManySlabs& b, float reach,
+                                                      ManyBits& apart) {
+  const ManyVectors way = {b.centre.x - a.centre.x, b.centre.y - a.centre.y, b.centre.z - a.centre.z};
+  Many x, y, z;
+  take_magnitude(way.x, x);
+  take_magnitude(way.y, y);
+  take_magnitude(way.z, z);
+  const Many further = way_rounding * (x + y + z) + reach;
+  Many across_a, u_a, v_a, across_b, u_b, v_b;
+  magnitude_of_product(a.normal, way, across_a);
+  magnitude_of_product(a.normal, b.u, u_a);
+  magnitude_of_product(a.normal, b.v, v_a);
+  magnitude_of_product(b.normal, way, across_b);
+  magnitude_of_product(b.normal, a.u, u_b);
+  magnitude_of_product(b.normal, a.v, v_b);
+  apart = across_a > a.thickness + b.slack + u_a + v_a + further;
+  apart |= across_b > b.thickness + a.slack + u_b + v_b + further;
+  // squared > along + slack * length, without the root of squared.
+  Many au, av, bu, bv;
+  magnitude_of_product(a.u, way, au);
+  magnitude_of_product(a.v, way, av);
+  magnitude_of_product(b.u, way, bu);
+  magnitude_of_product(b.v, way, bv);
+  const Many squared = way.x * way.x + way.y * way.y + way.z * way.z;
+  const Many beyond = less * squared - (au + av + bu + bv), slack = more * (a.slack + b.slack + reach);
+  apart |= (beyond > 0.0F) & (beyond * beyond > slack * slack * squared);
+}
+
+// From slab `first` of the first on; returns the bits of lanes that are not apart.
+template <int first>
+inline __attribute__((always_inline)) unsigned meeting_from(const SlabGroup& a, const ManySlabs& b,
+                                                            float reach) {
+  ManySlabs slabs;
+  ManyBits apart;
+  take_many(FourOfEach<first>{}, a, slabs);
+  take_apart(slabs, b, reach, apart);
   unsigned bits = 0;
-  for (int k = 0; k < lanes * slab_lanes; ++k) bits |= (gap[k] > 0.0 ? 0U : 1U) << k;
-  return bits;
+  for (int k = 0; k < lanes_at_once; ++k) bits |= (1U + static_cast<unsigned>(apart[k])) << k;
+  return bits << (slab_lanes * first);
+}
+
+unsigned meeting(const SlabGroup& a, int lanes, const SlabGroup& b, float reach) {
+  ManySlabs second;
+  take_many(AllFour<>{}, b, second);
+  unsigned bits = meeting_from<0>(a, second, reach);
+  if (lanes == 1) return bits & 15U;
+  if constexpr (slabs_at_once == 1) {
+    bits |= meeting_from<1>(a, second, reach) | meeting_from<3>(a, second, reach);
+  }
+  return bits | meeting_from<2>(a, second, reach);
 }
 
 }  // namespace

@@ -31,13 +31,15 @@ struct PlanarOutput {
 // the bilinear patch of a cell's corners, s and t from -1 to 1, the surface lies within the bulge of it:
 // along its unit normal it leaves the centre by `thickness` at most, along any unit vector d by
 // |d . along_u| + |d . along_v| + slack.
+//
+// In single precision; thickness and slack hold what that leaves out.
 struct SlabGroup {
-  double centre[3][slab_lanes];
-  double along_u[3][slab_lanes];
-  double along_v[3][slab_lanes];
-  double normal[3][slab_lanes];  // zero where the corners lie on a line
-  double thickness[slab_lanes];
-  double slack[slab_lanes];
+  float centre[3][slab_lanes];
+  float along_u[3][slab_lanes];
+  float along_v[3][slab_lanes];
+  float normal[3][slab_lanes];  // zero where the corners lie on a line
+  float thickness[slab_lanes];
+  float slack[slab_lanes];
 };
 
 struct PatchKernels {
@@ -51,10 +53,10 @@ struct PatchKernels {
   // `bulge` at most.
   void (*take_slabs)(const PlanarPoints& samples, double bulge, SlabGroup& group);
 
-  // Bit 4 i + j is set unless a plane lies between slab i of the first, of which there are `lanes`, and slab
-  // j of the second and more than `reach` apart from one of them: across either normal or across the line
-  // between their centres.
-  unsigned (*meeting)(const SlabGroup& first, int lanes, const SlabGroup& second, double reach);
+  // Bit 4 i + j is set unless a plane lies between slab i of the first, of which there are `lanes`, 1 or 4,
+  // and slab j of the second and more than `reach` apart from one of them: across either normal or across the
+  // line between their centres.
+  unsigned (*meeting)(const SlabGroup& first, int lanes, const SlabGroup& second, float reach);
 };
 
 namespace kernels_baseline {

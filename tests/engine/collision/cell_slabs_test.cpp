@@ -53,7 +53,7 @@ TEST(CellSlabs, SlabsHoldTheirPatches) {
     const int lane = random.integer(0, 3);
     const SlabGroup& group = slabs.within(element);
     const LevelCell cell = slabs.finer(element, lane).cell;
-    const auto vector = [&](const double(&values)[3][slab_lanes]) {
+    const auto vector = [&](const float(&values)[3][slab_lanes]) {
       return Vector3(values[0][lane], values[1][lane], values[2][lane]);
     };
     const Vector3 centre = vector(group.centre), normal = vector(group.normal);
@@ -89,7 +89,7 @@ TEST(CellSlabs, EveryInstructionSetFindsTheSameCells) {
       CellSlabs of_first(first), of_second(second);
       const SlabGroup groups[2] = {of_first.within(of_first.element(0, 0)),
                                    of_second.within(of_second.element(0, 0))};
-      const unsigned bits = first.kernels().meeting(groups[0], slab_lanes, groups[1], 0.1);
+      const unsigned bits = first.kernels().meeting(groups[0], slab_lanes, groups[1], 0.1F);
       if (set == InstructionSet::baseline) {
         std::memcpy(static_cast<void*>(reference), groups, sizeof groups);
         expected = bits;
