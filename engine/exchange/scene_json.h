@@ -33,6 +33,9 @@ void add_symmetry(const Symmetry& symmetry, Json& json);
 std::optional<Surface> read_surface(FieldReader& reader);
 Json surface_to_json(const Surface& surface);
 
+// False where it is not three lengths within position_range_m.
+bool read_point(const Json& json, Vector3& point_m);
+
 Json position_to_json(const Vector3& position_m);
 Json vector_to_json(const Vector3& vector);
 

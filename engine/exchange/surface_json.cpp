@@ -60,16 +60,6 @@ std::optional<KnotVector> read_direction(FieldReader reader) {
   return std::move(direction).value();
 }
 
-bool read_point(const Json& json, Vector3& point_m) {
-  if (!json.is_array() || json.size() != 3) return false;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::optional<double> length = length_from_json(json[axis]);
-    if (!length || !position_range_m.contains(*length)) return false;
-    point_m[static_cast<Eigen::Index>(axis)] = *length;
-  }
-  return true;
-}
-
 std::optional<ControlNet> read_net(FieldReader& reader, int row_count, int column_count) {
   const char* field = "control_points_mm";
   const Json& rows = reader.list(field, {row_count, row_count});
@@ -105,6 +95,16 @@ Json direction_to_json(const KnotVector& direction) {
 }
 
 }  // namespace
+
+bool read_point(const Json& json, Vector3& point_m) {
+  if (!json.is_array() || json.size() != 3) return false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<double> length = length_from_json(json[axis]);
+    if (!length || !position_range_m.contains(*length)) return false;
+    point_m[static_cast<Eigen::Index>(axis)] = *length;
+  }
+  return true;
+}
 
 std::optional<Surface> read_surface(FieldReader& reader) {
   std::optional<KnotVector> u = read_direction(reader.inner("u"));

@@ -8,7 +8,19 @@ namespace spoonbill {
 
 namespace {
 
-enum class Form { sphere, ellipsoid, cylinder, capsule, box, cone, torus, half_space, superquadric, surface };
+enum class Form {
+  sphere,
+  ellipsoid,
+  cylinder,
+  capsule,
+  box,
+  cone,
+  torus,
+  half_space,
+  superquadric,
+  mesh,
+  surface
+};
 
 Vector3 lengths_m(FieldReader& reader, const char* field) {
   return reader.position_m(field, shape_length_m);
@@ -43,6 +55,41 @@ ImplicitShape read_implicit(Form form, FieldReader& reader) {
   }
 }
 
+// Nothing where a list is not what it must be.
+std::optional<TriangleMesh> read_triangles(FieldReader& reader) {
+  TriangleMesh mesh;
+  const Range<int> counts{3, 3 * tool_triangle_limit};
+  for (const Json& item : reader.list("vertices_mm", counts)) {
+    Vector3& vertex = mesh.vertices_m.emplace_back();
+    if (read_point(item, vertex)) continue;
+    reader.refuse("vertices_mm[" + std::to_string(mesh.vertices_m.size() - 1) + "]",
+                  "must be 3 numbers from -100000 to 100000");
+    return std::nullopt;
+  }
+  for (const Json& item : reader.list("triangles", {1, tool_triangle_limit})) {
+    TriangleCorners& corners = mesh.triangles.emplace_back();
+    bool whole = item.is_array() && item.size() == 3;
+    for (std::size_t c = 0; whole && c < 3; ++c) {
+      whole = item[c].is_number_unsigned() && item[c].get<std::uint64_t>() < mesh.vertices_m.size();
+      if (whole) corners[c] = item[c].get<std::uint32_t>();
+    }
+    if (whole) continue;
+    reader.refuse("triangles[" + std::to_string(mesh.triangles.size() - 1) + "]",
+                  "must be 3 places in vertices_mm, from 0");
+    return std::nullopt;
+  }
+  return mesh;
+}
+
+std::optional<ToolSolid> read_mesh(FieldReader& reader) {
+  std::optional<TriangleMesh> mesh = read_triangles(reader);
+  if (!mesh || !reader.status().ok()) return std::nullopt;
+  Result<CleanMesh> clean = clean_mesh(*std::move(mesh), "mesh");
+  if (clean.ok()) return MeshSolid{std::move(clean).value()};
+  reader.refuse(clean.error().message);
+  return std::nullopt;
+}
+
 std::optional<ToolSolid> read_solid(FieldReader reader) {
   const Form form = reader.choice<Form>("shape", {{"sphere", Form::sphere},
                                                   {"ellipsoid", Form::ellipsoid},
@@ -53,11 +100,14 @@ std::optional<ToolSolid> read_solid(FieldReader reader) {
                                                   {"torus", Form::torus},
                                                   {"half_space", Form::half_space},
                                                   {"superquadric", Form::superquadric},
+                                                  {"mesh", Form::mesh},
                                                   {"surface", Form::surface}});
   std::optional<ToolSolid> solid;
   if (form == Form::surface) {
     std::optional<Surface> surface = read_surface(reader);
     if (surface) solid = SurfaceSolid{*std::move(surface)};
+  } else if (form == Form::mesh) {
+    solid = read_mesh(reader);
   } else {
     solid = read_implicit(form, reader);
   }
@@ -131,6 +181,13 @@ struct FieldsOfShape {
 
 struct FieldsOfSolid {
   Json operator()(const ImplicitShape& shape) const { return std::visit(FieldsOfShape{}, shape); }
+  Json operator()(const MeshSolid& solid) const {
+    Json json{{"shape", "mesh"}};
+    Json& vertices = json["vertices_mm"] = Json::array();
+    for (const Vector3& vertex : solid.mesh.mesh.vertices_m) vertices.push_back(position_to_json(vertex));
+    json["triangles"] = solid.mesh.mesh.triangles;
+    return json;
+  }
   Json operator()(const SurfaceSolid& solid) const {
     Json json{{"shape", "surface"}};
     json.update(surface_to_json(solid.surface));

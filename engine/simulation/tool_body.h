@@ -8,6 +8,7 @@
 
 #include "engine/bspline/surface.h"
 #include "engine/collision/implicit/implicit_shapes.h"
+#include "engine/collision/triangle_mesh.h"
 #include "engine/material/material.h"
 #include "engine/material/tube_lattice.h"
 #include "engine/simulation/fixing_plane.h"
@@ -19,7 +20,15 @@ struct SurfaceSolid {
   Surface surface;
 };
 
-using ToolSolid = std::variant<ImplicitShape, SurfaceSolid>;
+// Triangles, cleaned (triangle_mesh.h).
+struct MeshSolid {
+  CleanMesh mesh;
+};
+
+using ToolSolid = std::variant<ImplicitShape, MeshSolid, SurfaceSolid>;
+
+// What a document may hold of a mesh.
+inline constexpr int tool_triangle_limit = 200000;
 
 // A tool that gives way: a lattice of its own, held by the hand behind a plane.
 struct SoftTool {

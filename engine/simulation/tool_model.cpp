@@ -1,5 +1,7 @@
 #include "engine/simulation/tool_model.h"
 
+#include "engine/collision/mesh_distance.h"
+
 namespace spoonbill {
 namespace {
 
@@ -13,6 +15,12 @@ struct ModelOf {
   Result<ToolModel> operator()(const ImplicitShape& shape) const {
     ToolModel model;
     model.distance = make_signed_distance(shape);
+    return model;
+  }
+
+  Result<ToolModel> operator()(const MeshSolid& solid) const {
+    ToolModel model;
+    model.distance = std::make_shared<MeshDistance>(solid.mesh);
     return model;
   }
 

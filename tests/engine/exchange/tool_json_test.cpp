@@ -8,6 +8,13 @@
 namespace spoonbill {
 namespace {
 
+MeshSolid tetrahedron() {
+  TriangleMesh mesh;
+  mesh.vertices_m = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 1.0 / 300.0}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  return {clean_mesh(std::move(mesh), "tetrahedron").value()};
+}
+
 std::vector<ToolSolid> every_solid() {
   Surface surface = sample_document().scene.bodies[0].surface;
   return {ImplicitShape(SphereShape{0.006}),
@@ -19,6 +26,7 @@ std::vector<ToolSolid> every_solid() {
           ImplicitShape(TorusShape{0.006, 0.002}),
           ImplicitShape(HalfSpaceShape{}),
           ImplicitShape(SuperquadricShape{{0.006, 0.004, 0.006}, 0.5, 1.5}),
+          tetrahedron(),
           SurfaceSolid{std::move(surface)}};
 }
 
@@ -75,13 +83,25 @@ TEST(ToolJson, NamesWhatIsWrong) {
   EXPECT_EQ(refusal([](Json& j) { j["tool"].erase("solid"); }), "sample.json: tool.solid is missing");
   EXPECT_EQ(refusal([](Json& j) { j["tool"]["solid"]["shape"] = "blob"; }),
             "sample.json: tool.solid.shape is \"blob\", must be sphere or ellipsoid or cylinder or "
-            "capsule or box or cone or torus or half_space or superquadric or surface");
+            "capsule or box or cone or torus or half_space or superquadric or mesh or surface");
   EXPECT_EQ(refusal([](Json& j) { j["tool"]["solid"]["half_extents_mm"][1] = -4; }),
             "sample.json: tool.solid.half_extents_mm[1] is -4, must be 0.01 to 500");
   EXPECT_EQ(refusal([](Json& j) {
               j["tool"]["solid"] = {{"shape", "torus"}, {"ring_radius_mm", 2}, {"tube_radius_mm", 3}};
             }).substr(0, 18),
             "sample.json: tool ");
+  EXPECT_EQ(refusal([](Json& j) {
+              j["tool"]["solid"] = {{"shape", "mesh"},
+                                    {"vertices_mm", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
+                                    {"triangles", {{0, 1, 3}}}};
+            }),
+            "sample.json: tool.solid.triangles[0] must be 3 places in vertices_mm, from 0");
+  EXPECT_EQ(refusal([](Json& j) {
+              j["tool"]["solid"] = {{"shape", "mesh"},
+                                    {"vertices_mm", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}},
+                                    {"triangles", {{0, 1, 2}}}};
+            }).substr(0, 23),
+            "sample.json: tool.solid");
   EXPECT_EQ(refusal([](Json& j) {
               j["tool"]["soft"] = {{"material", 3}};
             }).substr(0, 30),

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -63,6 +64,21 @@ Reaction press(Simulation& simulation, double from_m, double to_m, int ticks = 3
   return felt;
 }
 
+MeshSolid cube(double half_m) {
+  TriangleMesh mesh;
+  for (int corner = 0; corner < 8; ++corner) {
+    mesh.vertices_m.push_back(half_m *
+                              Vector3(corner & 4 ? 1 : -1, corner & 2 ? 1 : -1, corner & 1 ? 1 : -1));
+  }
+  for (const auto& [a, b, c, d] :
+       {std::array{0u, 1u, 3u, 2u}, std::array{4u, 6u, 7u, 5u}, std::array{0u, 4u, 5u, 1u},
+        std::array{2u, 3u, 7u, 6u}, std::array{0u, 2u, 6u, 4u}, std::array{1u, 5u, 7u, 3u}}) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  }
+  return {clean_mesh(std::move(mesh), "cube").value()};
+}
+
 // Every rigid shape rests on the handle, 2.5 mm half as thick, with its lowest point 1 mm deep.
 TEST(SolidTool, OfEveryRigidShapePushes) {
   struct Case {
@@ -78,6 +94,7 @@ TEST(SolidTool, OfEveryRigidShapePushes) {
       {ImplicitShape(ConeShape{0.006, 0.01}), 0.0},
       {ImplicitShape(TorusShape{0.006, 0.002}), 0.002},
       {ImplicitShape(SuperquadricShape{{0.006, 0.004, 0.006}, 0.5, 0.5}), 0.004},
+      {cube(0.004), 0.004},
       {SurfaceSolid{finger()}, 0.0025},
   };
   for (const Case& each : cases) {
