@@ -45,7 +45,8 @@ struct Found {
 };
 
 Found climb(const ImplicitShape& shape, const Vector3& point, Found best) {
-  for (double step = 0.03; step > 1e-9; step *= 0.7) {
+  double step = 0.03;
+  for (int round = 0; round < 49; ++round, step *= 0.7) {
     for (bool better = true; better;) {
       better = false;
       const Vector3 side = best.direction.unitOrthogonal(), other = best.direction.cross(side);
