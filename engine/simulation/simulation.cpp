@@ -10,10 +10,10 @@
 
 #include "engine/denormals.h"
 #include "engine/simulation/command_applier.h"
+#include "engine/simulation/hand.h"
 #include "engine/simulation/simulation_state.h"
 #include "engine/simulation/snapshot_parts.h"
 #include "engine/simulation/state_hash.h"
-#include "engine/simulation/symmetry.h"
 
 namespace spoonbill {
 
@@ -75,72 +75,6 @@ Status Simulation::apply(const Command& command) {
 }
 
 namespace {
-
-double real_over_felt(const Simulation::State& s, std::size_t body) {
-  return s.material(body).youngs_modulus_pa / s.bodies[body].lattice.youngs_modulus_pa();
-}
-
-// The coupling is held against the body that was softened most of those that the tool may touch.
-double softest_ratio(const Simulation::State& s) {
-  double ratio = real_over_felt(s, 0);
-  for (std::size_t body = 1; body < s.stepped(); ++body) ratio = std::max(ratio, real_over_felt(s, body));
-  return ratio;
-}
-
-ToolMotion motion_of(const Simulation::State& s, const Pose& from, const Pose& to, double coupling_n_per_m) {
-  const Tool& tool = s.scene.tool;
-  ToolMotion motion;
-  motion.start_m = from.position_m;
-  motion.end_m = to.position_m;
-  motion.orientation = to.orientation;
-  motion.radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
-  motion.coupling_n_per_m = coupling_n_per_m / softest_ratio(s);
-  motion.body_yields = tool.action != ToolAction::smooth;
-  return motion;
-}
-
-// A soft tool as it was made, at the hand.
-void place_soft(BodyState& tool, const Pose& pose) {
-  for (int n = 0; n < tool.lattice.mesh().node_count(); ++n) {
-    const Vector3& rest = tool.lattice.mesh().nodes[n];
-    tool.lattice.set_displacement(n, pose.position_m + pose.orientation * rest - rest);
-    tool.lattice.set_velocity(n, Vector3::Zero());
-  }
-  tool.mapping.update(tool.lattice);
-}
-
-// Finds the contact of a tool and how the hand moves it from the last tick's pose to that of `hold`.
-TouchingTool touch(Simulation::State& s, HeldTool& held, ToolHold hold, double coupling_n_per_m) {
-  const Pose hand = hold.pose;
-  const bool appears = !held.placed;
-  if (appears) held.place(hand);
-  hold.pose.position_m = held.state.position_m;
-  if (s.tool_is_soft()) {
-    if (appears) place_soft(s.bodies.back(), hand);
-    held.contact.prepare_soft();
-  } else {
-    held.contact.prepare(s.scene_bodies(), s.scene.tool, s.model, hold);
-  }
-  ToolMotion motion = motion_of(s, held.hand, hand, coupling_n_per_m);
-  if (s.tool_is_soft()) {
-    motion.coupling_n_per_m = 0.0;
-    motion.carried = {static_cast<int>(s.bodies.size()) - 1, s.model.gripped};
-  }
-  held.hand = hand;
-  return {motion, &held.state, &held.contact.constraints()};
-}
-
-ToolHold hold_of(const ToolInput& input) {
-  return {input.pose, input.pose.orientation.toRotationMatrix(), input.gripping, input.hovering};
-}
-
-// The mirror image: of a tool that is not its own, its frame is one too.
-ToolHold mirrored_hold(const Symmetry& symmetry, const ToolInput& input) {
-  ToolHold hold = hold_of(input);
-  hold.pose = mirrored_pose(symmetry, input.pose);
-  hold.turn -= 2.0 * symmetry.normal * (symmetry.normal.transpose() * hold.turn);
-  return hold;
-}
 
 // The surface under the tool, as far as the tool reaches, or as a few cells do where it is small.
 void smooth(Simulation::State& s, const HeldTool& held) {
@@ -212,31 +146,6 @@ std::uint32_t flags_of(const Simulation::State& s) {
   return flags;
 }
 
-// The force of the real stiffnesses on the hand.
-Vector3 force_of(const Simulation::State& s) {
-  Vector3 force = Vector3::Zero();
-  for (std::size_t b = 0; b < s.stepped(); ++b) {
-    force += s.tool.contact.constraints().tool_impulse(static_cast<int>(b)) *
-             (real_over_felt(s, b) / s.relaxed.material_time_s);
-  }
-  return force;
-}
-
-// A soft tool has no coupling spring: its flesh takes the place of one. What the hand feels of it rises no
-// faster than one would let it.
-Vector3 force_of_soft(Simulation::State& s, double coupling_n_per_m) {
-  HeldTool& held = s.tool;
-  const bool near = std::isfinite(s.tool_gap_m);
-  if (near && !held.touched) held.touch_m = held.hand.position_m;
-  held.touched = near;
-  const Vector3 force = force_of(s);
-  const double size = force.norm();
-  if (!near || !(size > 0.0)) return Vector3::Zero();
-  if (coupling_n_per_m == 0.0) return force;
-  const double travel = std::max(0.0, force.dot(held.touch_m - held.hand.position_m) / size);
-  return force * std::min(1.0, coupling_n_per_m * travel / size);
-}
-
 void mark_touched(Simulation::State& s) {
   for (std::size_t b = 0; b < s.stepped(); ++b) {
     std::vector<std::uint8_t>& touched = s.bodies[b].touched;
@@ -270,10 +179,7 @@ Reaction Simulation::advance(const ToolInput& input) {
   for (std::size_t b = 0; b < s.stepped(); ++b) s.bodies[b].mapping.update(s.bodies[b].lattice);
   ++s.tick;
 
-  s.reaction.proxy = {s.tool.state.position_m, input.pose.orientation};
-  s.reaction.touching = s.tool_is_soft() ? s.between.acted(static_cast<int>(s.bodies.size()) - 1)
-                                         : s.tool.contact.constraints().acted();
-  s.reaction.force_n = s.tool_is_soft() ? force_of_soft(s, input.coupling_n_per_m) : force_of(s);
+  react(s, input);
   s.reaction.mirror_touching = both && s.mirrored.contact.constraints().acted();
   s.reaction.flags = flags_of(s);
   mark_touched(s);

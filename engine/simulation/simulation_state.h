@@ -20,7 +20,7 @@ struct HeldTool {
   Pose hand{};  // of the last tick
   ToolState state{};
   bool placed = false;
-  // Where the hand was when a soft tool last came near a body.
+  // Where the hand was when a soft tool last began to touch.
   Vector3 touch_m = Vector3::Zero();
   bool touched = false;
 

@@ -13,6 +13,10 @@ constexpr int constraint_capacity = 1024;
 // surface that collides and the lattice that gives way.
 constexpr double margin_cells = 0.5;
 
+double margin_of(const BodyState& body) {
+  return margin_cells * static_cast<double>(body.lattice.cell_size_m());
+}
+
 bool is_inside(const CollisionResult& collision) {
   return collision.found && collision.nearest.depth_m >= 0.0;
 }
@@ -74,8 +78,9 @@ void ToolContact::prepare(std::span<const BodyState> bodies, const Tool& tool, c
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     find(contacts_[b], bodies[b], tool, model, hold);
     overflow_ |= contacts_[b].collision.overflow;
-    inside |= is_inside(contacts_[b].collision);
-    near |= contacts_[b].collision.found;
+    const CollisionResult& collision = contacts_[b].collision;
+    inside |= is_inside(collision);
+    near |= collision.found && -collision.nearest.depth_m <= margin_of(bodies[b]);
   }
   if (!acts(inside, near, hold)) return release();
   const bool pulls = tool.action == ToolAction::pull;
@@ -107,7 +112,8 @@ void ToolContact::prepare_soft() {
 
 void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& tool, const ToolModel& model,
                        const ToolHold& hold) {
-  const double margin = margin_cells * static_cast<double>(body.lattice.cell_size_m());
+  // What a fast tool meets within the tick holds it off before it has passed.
+  const double margin = std::max(margin_of(body), hold.reach_m);
   if (placed_) return find_near(contact, body, margin, hold);
   shape_ = shape_of(tool, model, hold);
   contact.collision = contact.collider.collide(body.mapping.current(), shape_, margin, true);
@@ -149,16 +155,25 @@ void ToolContact::visit_near(BodyContact& contact, const BodyState& state, const
 void ToolContact::add_pushes(int body, const BodyState& state, const ToolModel& model, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
-  const EmbeddedPoint deepest = state.mapping.at(nearest.u, nearest.v);
-  if (!model.surface && !model.distance) {
-    overflow_ |= !constraints_.add_plane_push(body, state.lattice, deepest, -nearest.normal, shape_.radius_m);
-    for (const NearSample& sample : contact.collider.near_samples()) {
-      overflow_ |= !constraints_.add_push(body, state.lattice, state.mapping.sample(sample.index));
-    }
-    return;
-  }
-  add_plane_push(body, state, {deepest, -nearest.normal, -nearest.depth_m}, hold);
+  if (!model.surface && !model.distance) return add_sphere_pushes(body, state);
+  add_plane_push(body, state, {state.mapping.at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m},
+                 hold);
   visit_near(contact, state, [&](const Pushed& pushed) { add_plane_push(body, state, pushed, hold); });
+}
+
+// The samples, and the plane of the nearest point: for a tool that fits between samples always, for others
+// where they are so near that it is still the nearest a tick later.
+void ToolContact::add_sphere_pushes(int body, const BodyState& state) {
+  BodyContact& contact = contacts_[body];
+  const SurfaceContact& nearest = contact.collision.nearest;
+  const double cell = static_cast<double>(state.lattice.cell_size_m());
+  if (-nearest.depth_m <= margin_of(state) || shape_.radius_m < cell) {
+    overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping.at(nearest.u, nearest.v),
+                                              -nearest.normal, shape_.radius_m);
+  }
+  for (const NearSample& sample : contact.collider.near_samples()) {
+    overflow_ |= !constraints_.add_push(body, state.lattice, state.mapping.sample(sample.index));
+  }
 }
 
 // The gap is that of the surface; what its embedding is off by now stays the same over a tick.

@@ -20,6 +20,7 @@ struct ToolHold {
   Pose pose;
   // The tool's frame in the world: the pose's orientation, or the mirror image of one.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  double reach_m = 0.0;  // how far any part of the tool may come in this tick
   bool gripping = false;
   bool hovering = false;
 };
@@ -71,6 +72,7 @@ class ToolContact {
             const ToolHold& hold);
   void find_near(BodyContact& contact, const BodyState& body, double margin, const ToolHold& hold);
   void add_pushes(int body, const BodyState& state, const ToolModel& model, const ToolHold& hold);
+  void add_sphere_pushes(int body, const BodyState& state);
   void add_plane_push(int body, const BodyState& state, const Pushed& pushed, const ToolHold& hold);
   void add_grips(int body, const BodyState& state, const Pose& pose);
 

@@ -1,5 +1,7 @@
 #include "engine/simulation/tool_model.h"
 
+#include <algorithm>
+
 #include "engine/collision/mesh_distance.h"
 
 namespace spoonbill {
@@ -8,6 +10,12 @@ namespace {
 // Samples of a rigid tool, a quarter of an element apart.
 constexpr int levels = 2;
 
+// Of a half-space, which is everywhere, a hand's breadth counts.
+double extent_of(const Box& box) {
+  constexpr double most = 0.1;
+  return std::min(box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).norm(), most);
+}
+
 struct ModelOf {
   const ToolBody& body;
   InstructionSet set;
@@ -15,12 +23,14 @@ struct ModelOf {
   Result<ToolModel> operator()(const ImplicitShape& shape) const {
     ToolModel model;
     model.distance = make_signed_distance(shape);
+    model.extent_m = extent_of(model.distance->bounds());
     return model;
   }
 
   Result<ToolModel> operator()(const MeshSolid& solid) const {
     ToolModel model;
     model.distance = std::make_shared<MeshDistance>(solid.mesh);
+    model.extent_m = extent_of(model.distance->bounds());
     return model;
   }
 
@@ -43,6 +53,12 @@ struct ModelOf {
     if (!nested.ok()) return nested.error();
     model.nested = std::make_shared<NestedGrid>(std::move(nested).value());
     model.surface = std::make_shared<Surface>(solid.surface);
+    const ControlNet& net = solid.surface.net;
+    for (int i = 0; i < net.rows; ++i) {
+      for (int j = 0; j < net.columns; ++j) {
+        model.extent_m = std::max(model.extent_m, net.point(i, j).norm());
+      }
+    }
     return model;
   }
 };

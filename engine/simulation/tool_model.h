@@ -17,6 +17,7 @@ struct ToolModel {
   std::shared_ptr<const SignedDistance> distance;  // of a rigid implicit or tessellated one
   std::shared_ptr<const Surface> surface;          // of a rigid B-spline tool, in its frame
   std::shared_ptr<const NestedGrid> nested;        // its samples
+  double extent_m = 0.0;                           // the farthest of it from its frame's origin
   std::optional<BodyState> soft;  // of one that gives way; its rest shape is in the tool's frame
   std::vector<int> gripped;       // its nodes that the hand holds
 

@@ -14,6 +14,7 @@ namespace {
 
 const std::string program = SPOONBILL_PROGRAM;
 const std::string bend_recording = SPOONBILL_ASSETS "/recordings/spoon-handle-bend.recording.jsonl";
+const std::string press_recording = SPOONBILL_ASSETS "/recordings/soft-press.recording.jsonl";
 
 std::string hash_of(const std::string& of_program, const std::string& recording,
                     std::vector<std::string> more, const std::string& settings = "") {
@@ -31,9 +32,10 @@ TEST(StateHash, IsTheSameWithEveryInstructionSet) {
   for (const InstructionSet set : available_instruction_sets()) {
     EXPECT_EQ(hash_of(program, recording, {"--no-frames", "--instruction-set", std::string(name_of(set))}),
               hash);
-    EXPECT_EQ(
-        hash_of(program, bend_recording, {"--no-frames", "--instruction-set", std::string(name_of(set))}),
-        hash_of(program, bend_recording, {"--no-frames"}));
+    for (const std::string& bundled : {bend_recording, press_recording}) {
+      EXPECT_EQ(hash_of(program, bundled, {"--no-frames", "--instruction-set", std::string(name_of(set))}),
+                hash_of(program, bundled, {"--no-frames"}));
+    }
   }
 }
 
@@ -56,8 +58,9 @@ TEST(StateHash, IsTheSameInTheDebugBuild) {
   const Workplace place;
   const std::string recording = place.record("bend.jsonl").string();
   EXPECT_EQ(hash_of(debug_program, recording, {"--no-frames"}), hash_of(program, recording, {"--no-frames"}));
-  EXPECT_EQ(hash_of(debug_program, bend_recording, {"--no-frames"}),
-            hash_of(program, bend_recording, {"--no-frames"}));
+  for (const std::string& bundled : {bend_recording, press_recording}) {
+    EXPECT_EQ(hash_of(debug_program, bundled, {"--no-frames"}), hash_of(program, bundled, {"--no-frames"}));
+  }
 }
 
 TEST(Program, AKilledRecordingReplaysUpToTheCut) {

@@ -198,6 +198,28 @@ TEST(SolidTool, IsExchangedWhileTheSimulationRuns) {
   ASSERT_TRUE(simulation.restore(shape).ok());
 }
 
+// From above the handle to below it in one tick: it is met on the way.
+TEST(SolidTool, AFastToolIsMetOnItsWay) {
+  struct Case {
+    Tool tool;
+    double half_height_m;
+  };
+  Tool needle, ball;
+  needle.kind = ToolKind::point;
+  ball.radius_m = 0.001;
+  const Case cases[] = {{needle, 0.0},
+                        {ball, 0.001},
+                        {solid(ImplicitShape(BoxShape{{0.001, 0.001, 0.001}})), 0.001},
+                        {solid(cube(0.001)), 0.001},
+                        {solid(SurfaceSolid{finger()}), 0.00275}};
+  for (const Case& each : cases) {
+    Simulation simulation = simulate(held_handle(each.tool));
+    const double height = 0.0027 + each.half_height_m + 0.002;
+    EXPECT_FALSE(simulation.advance(above(0.03, height)).touching);
+    EXPECT_TRUE(simulation.advance(above(0.03, -height)).touching) << &each - cases;
+  }
+}
+
 TEST(SolidTool, IsRefusedWhereItCannotBe) {
   const auto refusal = [](const Tool& tool, const Symmetry& symmetry = {}) {
     Scene scene = held_handle(tool);
