@@ -4,6 +4,12 @@
 #include <bit>
 
 namespace spoonbill {
+namespace {
+
+// Of more, a coarser level tells as much.
+constexpr std::size_t fine_pairs = 1 << 16;
+
+}  // namespace
 CellPairs::CellPairs(SurfaceLevels& first, SurfaceLevels& second)
     : first_(&first),
       second_(&second),
@@ -41,8 +47,20 @@ std::vector<CellPair>& CellPairs::within(double reach_m) {
   return pairs_;
 }
 
+// From the middle of the smaller surface's box, then back.
+CellPair CellPairs::likely_near() const {
+  const auto middle = [](const Box& box) -> Vector3 { return 0.5 * (box.low + box.high); };
+  const bool first_is_smaller = first_tree_.size(first_tree_.root()) < second_tree_.size(second_tree_.root());
+  const ElementTree& small = first_is_smaller ? first_tree_ : second_tree_;
+  const ElementTree& large = first_is_smaller ? second_tree_ : first_tree_;
+  const int of_large = large.leaf_near(middle(small.box(small.root())));
+  const int of_small = small.leaf_near(middle(large.box(of_large)));
+  return first_is_smaller ? elements({of_small, of_large}) : elements({of_large, of_small});
+}
+
 void CellPairs::take_pairs(double reach, int level) {
   pairs_.clear();
+  limit_ = level == 0 ? cell_pair_capacity : fine_pairs;
   overflow_ = false;
   visit_near_elements(reach, [&](const CellPair& pair) { refine(pair, reach, level); });
 }
@@ -95,7 +113,7 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
 
 // Cells within the same two cells are each other's neighbours.
 void CellPairs::emit(const Places& places, bool is_first) {
-  overflow_ = overflow_ || pairs_.size() == cell_pair_capacity;
+  overflow_ = overflow_ || pairs_.size() == limit_;
   if (!overflow_) pairs_.push_back({places.first.cell, places.second.cell, is_first ? 0 : -1});
 }
 

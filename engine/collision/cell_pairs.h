@@ -13,7 +13,7 @@
 
 namespace spoonbill {
 
-inline constexpr std::size_t cell_pair_capacity = 1 << 16;
+inline constexpr std::size_t cell_pair_capacity = 1 << 19;
 
 struct CellPair {
   LevelCell first, second;
@@ -33,8 +33,11 @@ class CellPairs {
   // Brings the trees up to date; within() does so itself.
   void update();
 
-  // All pairs of cells that can be within `reach_m` of each other: of the finest level, or of the finest at
-  // which there are not too many.
+  // Two elements, as coarsest cells, that are likely to be near each other.
+  CellPair likely_near() const;
+
+  // All pairs of cells that can be within `reach_m` of each other: of the finest level, or where the surfaces
+  // meet over a whole area, of the finest at which there are not too many.
   std::vector<CellPair>& within(double reach_m);
   // Those of the last within(), in the order that others have given them.
   const std::vector<CellPair>& pairs() const { return pairs_; }
@@ -113,6 +116,7 @@ class CellPairs {
   void emit(const Places& places, bool is_first);
 
   std::vector<Places> path_;  // working memory: what is left to refine of two elements
+  std::size_t limit_ = cell_pair_capacity;
   bool overflow_ = false;
   bool first_is_stale_ = true, second_is_stale_ = true;
 };

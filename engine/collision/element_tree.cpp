@@ -1,6 +1,7 @@
 #include "engine/collision/element_tree.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace spoonbill {
 namespace {
@@ -64,6 +65,18 @@ void ElementTree::join_boxes() {
     boxes_[index] = joined(boxes_[node.left], boxes_[node.right]);
     sizes_[index] = (boxes_[index].high - boxes_[index].low).sum();
   }
+}
+
+int ElementTree::leaf_near(const Vector3& point) const {
+  int nearest = leaf_[0];
+  double least = std::numeric_limits<double>::infinity();
+  for (const int leaf : leaf_) {
+    const double squared = (0.5 * (boxes_[leaf].low + boxes_[leaf].high) - point).squaredNorm();
+    if (!(squared < least)) continue;
+    least = squared;
+    nearest = leaf;
+  }
+  return nearest;
 }
 
 // Where the surface may leave its corners by more than they are apart, its control points tell more.

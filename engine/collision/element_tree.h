@@ -26,6 +26,8 @@ class ElementTree {
   void update(SurfaceLevels& levels);
 
   int root() const { return 0; }
+  // The leaf whose box has its middle nearest to a point.
+  int leaf_near(const Vector3& point) const;
   const Node& node(int index) const { return nodes_[index]; }
   const Box& box(int index) const { return boxes_[index]; }
   // The sum of a box's sides.

@@ -326,6 +326,7 @@ void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& resul
   const Box& second = cells_.second_tree().box(cells_.second_tree().root());
   if (reach <= 0.0 || first.gap(second) > reach) return;
   search_.forget_best();
+  search_.offer(centre_of(first_, second_, cells_.likely_near()));
   // Beside a first guess far too long, nearer points were let go: once more, beside the one found.
   while (search_all(reach) > 2.0 * tolerance()) continue;
   if (nested && is_contained(query)) {

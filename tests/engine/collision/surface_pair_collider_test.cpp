@@ -149,6 +149,30 @@ TEST(SurfacePair, ABoxInABoxLeavesByTheNearestWall) {
   EXPECT_FALSE(collide(beside, outer, query).result.touching);
 }
 
+// 900 times smaller, in a body of 80 x 80 control points, a little off its middle.
+TEST(SurfacePair, ATinyBodyInAFineOneLeavesByTheNearestWall) {
+  PairQuery query;
+  query.first_closed = query.second_closed = true;
+  const Surface outer = ellipsoid_tube(80, 80);
+  Surface inner = ellipsoid_tube(8, 8);
+  for (std::vector<double>* values : {&inner.net.x, &inner.net.y, &inner.net.z}) {
+    for (double& value : *values) value /= 900.0;
+  }
+  move(inner, {0.0, 0.0, 0.004});
+  const Answer answer = collide(inner, outer, query);
+  ASSERT_TRUE(answer.result.contained);
+  EXPECT_FALSE(answer.result.overflow);
+  // Out by the wall that dense samples of the outer body say is nearest.
+  double nearest = infinity;
+  for (int i = 0; i < 400; ++i) {
+    for (int j = 0; j <= 400; ++j) {
+      nearest = std::min(nearest, (position(outer, i / 400.0, j / 400.0) - Vector3(0, 0, 0.004)).norm());
+    }
+  }
+  const double size = 0.1 / 900.0;
+  EXPECT_NEAR(answer.contacts[0].depth_m, nearest, size);
+}
+
 TEST(SurfacePair, PolesMeet) {
   PairQuery query;
   query.first_closed = query.second_closed = true;
