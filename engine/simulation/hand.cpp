@@ -96,6 +96,16 @@ Vector3 force_of(const Simulation::State& s) {
   return force;
 }
 
+// The same of a soft tool. It and what it presses were softened each by its own share: of two in a row the
+// real force is that of the softer.
+Vector3 force_of_soft(const Simulation::State& s) {
+  const std::size_t tool = s.bodies.size() - 1;
+  double ratio = real_over_felt(s, tool);
+  for (std::size_t b = 0; b < tool; ++b) ratio = std::min(ratio, real_over_felt(s, b));
+  return s.tool.contact.constraints().tool_impulse(static_cast<int>(tool)) *
+         (ratio / s.relaxed.material_time_s);
+}
+
 // It touches from when a contact acts until it is no longer near.
 bool soft_touches(Simulation::State& s) {
   HeldTool& held = s.tool;
@@ -109,7 +119,7 @@ bool soft_touches(Simulation::State& s) {
 // faster than one would let it, and the proxy is where one would hold it.
 void react_softly(Simulation::State& s, double coupling_n_per_m) {
   s.reaction.touching = soft_touches(s);
-  Vector3 force = s.reaction.touching ? force_of(s) : Vector3::Zero();
+  Vector3 force = s.reaction.touching ? force_of_soft(s) : Vector3::Zero();
   const double size = force.norm();
   if (coupling_n_per_m > 0.0 && size > 0.0) {
     const double travel = std::max(0.0, force.dot(s.tool.touch_m - s.tool.hand.position_m) / size);
