@@ -37,6 +37,7 @@ class Renderer::Parts {
     const FrameView view = make_frame_view(settings, target_->width_px(), target_->height_px());
     const double detail = settings.detail * pixels_per_metre(settings.camera, view.viewport);
     if (Status bodies = bodies_.update(snapshot, detail, settings.keep_level); !bodies) return bodies;
+    if (Status tool = scene_->follow(snapshot.tool); !tool) return tool;
     scene_->draw_shadows(view, snapshot, settings, bodies_);
     scene_->draw(view, snapshot, settings, bodies_, *target_);
     if (interface != nullptr) interface_->draw(*interface);

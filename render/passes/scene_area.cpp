@@ -8,6 +8,7 @@
 #include "render/overlay/contact_normals.h"
 #include "render/overlay/fixing_plane.h"
 #include "render/overlay/force_arrow.h"
+#include "render/overlay/solid_tool.h"
 #include "render/overlay/symmetry_plane.h"
 
 namespace spoonbill {
@@ -146,6 +147,19 @@ void include_planes(const Snapshot& snapshot, const Overlays& on, const Bounding
   }
 }
 
+void include_tools(const Snapshot& snapshot, Strips& strips) {
+  const ToolSnapshot& tool = snapshot.tool;
+  const ToolBody* body = rigid_body(tool);
+  const BoundingBox box = body != nullptr ? box_of(body->solid) : BoundingBox();
+  const auto include = [&](const ToolFrame& frame) {
+    if (body == nullptr) return strips.include_sphere(frame.origin_m, tool.radius_m);
+    Strips::Hull hull(strips);
+    for (int i = 0; i < 8; ++i) hull.include((frame.origin_m + frame.axes * box.corner(i)).cast<float>());
+  };
+  include(tool_frame(snapshot));
+  if (snapshot.symmetric) include(mirrored_tool_frame(snapshot));
+}
+
 }  // namespace
 
 std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& settings,
@@ -167,12 +181,7 @@ std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& 
     }
     if (on.control_net) strips.include(net_box(each.surface));
   }
-  if (on.tool) {
-    strips.include_sphere(snapshot.tool.proxy.position_m, snapshot.tool.radius_m);
-    if (snapshot.symmetric) {
-      strips.include_sphere(snapshot.mirrored_proxy.position_m, snapshot.tool.radius_m);
-    }
-  }
+  if (on.tool) include_tools(snapshot, strips);
   if (on.contact_normals) {
     for (const ContactSnapshot& contact : snapshot.contacts) {
       strips.include_sphere(contact.point_m, contact_normal_length_m(snapshot.tool));

@@ -9,6 +9,7 @@
 #include "render/overlay/force_arrow.h"
 #include "render/overlay/ground_grid.h"
 #include "render/overlay/node_marks.h"
+#include "render/overlay/solid_tool.h"
 #include "render/overlay/symmetry_plane.h"
 #include "render/passes/scene_area.h"
 
@@ -35,8 +36,17 @@ float pixels_at(const FrameView& view, const Eigen::Vector3f& point_m, float pix
   return pixels * view.interface_scale * depth / view.pixel_depth_ratio;
 }
 
+// What a solid darkens: as the ball in the middle of its box does.
+ToolSphere ball_within(const BoundingBox& box, const ToolFrame& frame) {
+  const Vector3 middle = frame.origin_m + frame.axes * (0.5 * (box.low_m + box.high_m));
+  return {middle.cast<float>(), static_cast<float>(0.5 * (box.high_m - box.low_m).minCoeff())};
+}
+
 ToolSphere tool_sphere(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) {
-  if (!settings.overlays.tool) return {};
+  if (!settings.overlays.tool || is_soft(snapshot.tool)) return {};
+  if (const ToolBody* body = rigid_body(snapshot.tool)) {
+    return ball_within(box_of(body->solid), tool_frame(snapshot));
+  }
   const Eigen::Vector3f centre = snapshot.tool.proxy.position_m.cast<float>();
   if (snapshot.tool.kind == ToolKind::sphere) return {centre, static_cast<float>(snapshot.tool.radius_m)};
   return {centre, pixels_at(view, centre, smallest_tool_px)};
@@ -78,7 +88,7 @@ Result<ScenePasses> ScenePasses::make(const GlFunctions& gl) {
   if (!resolve) return resolve.error();
   return ScenePasses(Passes{BackgroundPass(gl), std::move(ground).value(), std::move(shadow).value(),
                             std::move(surface).value(), std::move(solid).value(), std::move(line).value(),
-                            std::move(mark).value(), std::move(resolve).value()});
+                            std::move(mark).value(), std::move(resolve).value(), ToolBuffers(gl)});
 }
 
 void ScenePasses::draw_shadows(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
@@ -181,15 +191,18 @@ void ScenePasses::draw_symmetry(const FrameView& view, const Snapshot& snapshot,
   passes_.line.draw(view, lines_, 0.0f);
 }
 
-void ScenePasses::draw_tools(const FrameView& view, const Snapshot& snapshot) const {
-  draw_tool(view, snapshot, snapshot.tool.proxy);
-  if (snapshot.symmetric) draw_tool(view, snapshot, snapshot.mirrored_proxy);
+void ScenePasses::draw_tools(const FrameView& view, const Snapshot& snapshot) {
+  if (is_soft(snapshot.tool)) return;
+  draw_tool(view, snapshot.tool, tool_frame(snapshot));
+  if (snapshot.symmetric) draw_tool(view, snapshot.tool, mirrored_tool_frame(snapshot));
 }
 
-void ScenePasses::draw_tool(const FrameView& view, const Snapshot& snapshot, const Pose& pose) const {
-  const Eigen::Vector3f centre = pose.position_m.cast<float>();
-  if (snapshot.tool.kind == ToolKind::sphere) {
-    passes_.solid.draw_glass_sphere(view, centre, static_cast<float>(snapshot.tool.radius_m), palette::tool);
+void ScenePasses::draw_tool(const FrameView& view, const ToolSnapshot& tool, const ToolFrame& frame) {
+  const Eigen::Vector3f centre = frame.origin_m.cast<float>();
+  if (tool.kind == ToolKind::sphere) {
+    passes_.solid.draw_glass_sphere(view, centre, static_cast<float>(tool.radius_m), palette::tool);
+  } else if (rigid_body(tool) != nullptr && !passes_.tool.empty()) {
+    passes_.solid.draw_glass_tool(view, passes_.tool, frame, palette::tool);
   } else {
     passes_.solid.draw_sphere(view, centre, pixels_at(view, centre, smallest_tool_px), palette::tool);
   }

@@ -17,6 +17,7 @@
 #include "render/passes/shadow_pass.h"
 #include "render/passes/solid_pass.h"
 #include "render/passes/surface_pass.h"
+#include "render/passes/tool_buffers.h"
 #include "render/view_settings.h"
 
 namespace spoonbill {
@@ -24,6 +25,9 @@ namespace spoonbill {
 class ScenePasses {
  public:
   static Result<ScenePasses> make(const GlFunctions& gl);
+
+  // Before a frame. The error is that of a solid tool that cannot be drawn.
+  Status follow(const ToolSnapshot& tool) { return passes_.tool.update(tool); }
 
   // Before draw(), into maps of their own; nothing when shadows are off.
   void draw_shadows(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
@@ -43,6 +47,7 @@ class ScenePasses {
     LinePass line;
     MarkPass mark;
     ResolvePass resolve;
+    ToolBuffers tool;
   };
   explicit ScenePasses(Passes passes) : passes_(std::move(passes)) {}
 
@@ -53,8 +58,8 @@ class ScenePasses {
   void draw_overlays(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings);
   void draw_planes(const FrameView& view, const Snapshot& snapshot, const BoundingBox& body);
   void draw_symmetry(const FrameView& view, const Snapshot& snapshot, const BoundingBox& body);
-  void draw_tools(const FrameView& view, const Snapshot& snapshot) const;
-  void draw_tool(const FrameView& view, const Snapshot& snapshot, const Pose& pose) const;
+  void draw_tools(const FrameView& view, const Snapshot& snapshot);
+  void draw_tool(const FrameView& view, const ToolSnapshot& tool, const ToolFrame& frame);
   void draw_touched(const FrameView& view, const Snapshot& snapshot);
 
   Passes passes_;

@@ -132,6 +132,13 @@ void SolidPass::draw_solid(const FrameView& view, const Shape& shape, const Eige
 
 void SolidPass::draw_shape(const Program& program, const FrameView& view, const Shape& shape,
                            const Eigen::Matrix4f& model, const Eigen::Vector4f& colour) const {
+  use_program(program, view, model, colour);
+  gl_->BindVertexArray(vertex_array_.id());
+  gl_->DrawArrays(GL_TRIANGLES, shape.first, shape.count);
+}
+
+void SolidPass::use_program(const Program& program, const FrameView& view, const Eigen::Matrix4f& model,
+                            const Eigen::Vector4f& colour) const {
   program.use();
   set_frame_uniforms(program, view);
   Eigen::Matrix4f normal_to_world = Eigen::Matrix4f::Identity();
@@ -139,8 +146,6 @@ void SolidPass::draw_shape(const Program& program, const FrameView& view, const 
   program.set("model", model);
   program.set("normal_to_world", normal_to_world);
   program.set("colour", colour);
-  gl_->BindVertexArray(vertex_array_.id());
-  gl_->DrawArrays(GL_TRIANGLES, shape.first, shape.count);
 }
 
 // A chord of a circle of radius r, cut into n, lies within r (pi / n)^2 / 2 of its arc.
@@ -159,6 +164,15 @@ void SolidPass::draw_glass_sphere(const FrameView& view, const Eigen::Vector3f& 
   set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, Cull::back});
   draw_shape(programs_.glass, view, sphere_for(view, centre_m, radius_m),
              placed(centre_m, radius_m * Eigen::Matrix3f::Identity()), linear(colour));
+}
+
+void SolidPass::draw_glass_tool(const FrameView& view, ToolBuffers& tool, const ToolFrame& frame,
+                                Colour colour) const {
+  const bool mirrored = frame.axes.determinant() < 0.0;
+  set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, mirrored ? Cull::front : Cull::back});
+  use_program(programs_.glass, view, placed(frame.origin_m.cast<float>(), frame.axes.cast<float>()),
+              linear(colour));
+  tool.draw((frame.axes.transpose() * (view.eye_m.cast<double>() - frame.origin_m)).cast<float>());
 }
 
 void SolidPass::draw_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,

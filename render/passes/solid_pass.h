@@ -1,4 +1,4 @@
-// Draws simple solids (the tool's sphere, the force arrow) and flat translucent panes (fixing planes).
+// Draws simple solids (the tool, the force arrow) and flat translucent panes (fixing planes).
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,9 @@
 #include "render/gl/handle.h"
 #include "render/gl/program.h"
 #include "render/overlay/palette.h"
+#include "render/overlay/solid_tool.h"
 #include "render/passes/frame_view.h"
+#include "render/passes/tool_buffers.h"
 
 namespace spoonbill {
 
@@ -21,6 +23,9 @@ class SolidPass {
   // A glassy sphere: what lies inside and behind shows, most in the middle. After everything opaque.
   void draw_glass_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,
                          Colour colour) const;
+
+  // A tool of the same glass.
+  void draw_glass_tool(const FrameView& view, ToolBuffers& tool, const ToolFrame& frame, Colour colour) const;
 
   void draw_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,
                    Colour colour) const;
@@ -48,6 +53,9 @@ class SolidPass {
                   Colour colour) const;
   void draw_shape(const Program& program, const FrameView& view, const Shape& shape,
                   const Eigen::Matrix4f& model, const Eigen::Vector4f& colour) const;
+
+  void use_program(const Program& program, const FrameView& view, const Eigen::Matrix4f& model,
+                   const Eigen::Vector4f& colour) const;
 
   const GlFunctions* gl_;
   Programs programs_;

@@ -1,0 +1,92 @@
+#include "render/overlay/solid_tool.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace spoonbill {
+namespace {
+
+BoundingBox about_origin(const Vector3& half) {
+  return {-half, half};
+}
+
+struct BoxOfShape {
+  BoundingBox operator()(const SphereShape& shape) const {
+    return about_origin(Vector3::Constant(shape.radius_m));
+  }
+  BoundingBox operator()(const EllipsoidShape& shape) const { return about_origin(shape.semi_axes_m); }
+  BoundingBox operator()(const CylinderShape& shape) const {
+    return about_origin({shape.radius_m, shape.half_length_m, shape.radius_m});
+  }
+  BoundingBox operator()(const CapsuleShape& shape) const {
+    return about_origin({shape.radius_m, shape.half_length_m + shape.radius_m, shape.radius_m});
+  }
+  BoundingBox operator()(const BoxShape& shape) const { return about_origin(shape.half_extents_m); }
+  BoundingBox operator()(const ConeShape& shape) const {
+    return {{-shape.base_radius_m, 0.0, -shape.base_radius_m},
+            {shape.base_radius_m, shape.height_m, shape.base_radius_m}};
+  }
+  BoundingBox operator()(const TorusShape& shape) const {
+    const double out = shape.ring_radius_m + shape.tube_radius_m;
+    return about_origin({out, shape.tube_radius_m, out});
+  }
+  BoundingBox operator()(const HalfSpaceShape& /*shape*/) const {
+    return about_origin({half_space_radius_m, 0.0, half_space_radius_m});
+  }
+  BoundingBox operator()(const SuperquadricShape& shape) const { return about_origin(shape.semi_axes_m); }
+};
+
+struct BoxOfSolid {
+  BoundingBox operator()(const ImplicitShape& shape) const { return std::visit(BoxOfShape{}, shape); }
+  BoundingBox operator()(const MeshSolid& solid) const {
+    BoundingBox box;
+    for (const Vector3& vertex : solid.mesh.mesh.vertices_m) box.include(vertex);
+    return box;
+  }
+  BoundingBox operator()(const SurfaceSolid& solid) const {
+    BoundingBox box;
+    const ControlNet& net = solid.surface.net;
+    for (std::size_t i = 0; i < net.size(); ++i) box.include({net.x[i], net.y[i], net.z[i]});
+    return box;
+  }
+};
+
+}  // namespace
+
+const ToolBody* rigid_body(const ToolSnapshot& tool) {
+  return tool.kind == ToolKind::solid && tool.body && !tool.body->soft ? tool.body.get() : nullptr;
+}
+
+bool is_soft(const ToolSnapshot& tool) {
+  return tool.kind == ToolKind::solid && tool.body && tool.body->soft;
+}
+
+BoundingBox box_of(const ToolSolid& solid) {
+  return std::visit(BoxOfSolid{}, solid);
+}
+
+ToolFrame tool_frame(const Snapshot& snapshot) {
+  return {snapshot.tool.proxy.orientation.toRotationMatrix(), snapshot.tool.proxy.position_m};
+}
+
+// With S the reflection and R the tool's rotation, the image is S R. The mirrored pose is a rotation and can
+// only be S R S, so S follows it.
+ToolFrame mirrored_tool_frame(const Snapshot& snapshot) {
+  const Vector3& normal = snapshot.symmetry.normal;
+  const Eigen::Matrix3d reflection = Eigen::Matrix3d::Identity() - 2.0 * normal * normal.transpose();
+  return {snapshot.mirrored_proxy.orientation.toRotationMatrix() * reflection,
+          snapshot.mirrored_proxy.position_m};
+}
+
+Vector3 way_out(const BoundingBox& box, const ToolFrame& frame, const Vector3& direction) {
+  const Vector3 local = frame.axes.transpose() * direction;
+  const Vector3 middle = 0.5 * (box.low_m + box.high_m), half = 0.5 * (box.high_m - box.low_m);
+  double length = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (local[axis] != 0.0) length = std::min(length, half[axis] / std::abs(local[axis]));
+  }
+  return frame.origin_m + frame.axes * (middle + length * local);
+}
+
+}  // namespace spoonbill
