@@ -53,13 +53,15 @@ void draw_tool(const PanelModel& model, const Theme& theme, Requests& requests) 
   Tool tool = model.tool;
   int kind = static_cast<int>(tool.kind);
   int action = static_cast<int>(tool.action);
-  bool changed = choice_row("Kind", kind, {"Point", "Sphere"});
+  bool changed = tool.body ? choice_row("Kind", kind, {"Point", "Sphere", "Solid"})
+                           : choice_row("Kind", kind, {"Point", "Sphere"});
   changed |= choice_row("Action", action, {"Push", "Pull", "Smooth"});
   tool.kind = static_cast<ToolKind>(kind);
   tool.action = static_cast<ToolAction>(action);
-  ImGui::BeginDisabled(tool.kind == ToolKind::point);
+  const bool is_sphere = tool.kind == ToolKind::sphere;
+  ImGui::BeginDisabled(!is_sphere);
   changed |= slider_row("Radius", tool.radius_m, radius_slider_m, SliderScale::logarithmic,
-                        tool.kind == ToolKind::point ? "-" : millimetres_text(tool.radius_m));
+                        is_sphere ? millimetres_text(tool.radius_m) : "-");
   ImGui::EndDisabled();
   changed |= slider_row("Iterations", tool.iterations, tool_iterations_range,
                         std::to_string(tool.iterations) + " a tick");

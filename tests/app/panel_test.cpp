@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <imgui_internal.h>
 
+#include <memory>
+
 #include "app/panel/font_file.h"
 #include "app/panel/interface_context.h"
 #include "app/report/quantity_text.h"
@@ -69,8 +71,10 @@ TEST(Panel, ClipsNothingAtTheUsualSizes) {
   for (const auto& [width, height] :
        {std::pair{1280, 720}, {1366, 768}, {1920, 1080}, {2560, 1440}, {3840, 2160}}) {
     Frame frame(width, height);
-    frame.draw(full_model());
-    frame.draw(full_model());
+    PanelModel model = full_model();
+    model.tool.body = std::make_shared<ToolBody>();
+    frame.draw(model);
+    frame.draw(model);
     const ImGuiWindow* window = ImGui::FindWindowByName("Panel");
     ASSERT_NE(window, nullptr);
     EXPECT_LE(window->ContentSize.y + 2.0F * window->WindowPadding.y, window->Size.y)
@@ -99,6 +103,35 @@ TEST(Panel, UndoButtonAsksForUndo) {
   const auto requests = frame.draw(full_model());
   ASSERT_EQ(requests.size(), 1U);
   EXPECT_TRUE(std::holds_alternative<UndoStroke>(requests[0]));
+}
+
+// The requests of a click on what stands third in the row of kinds.
+std::vector<Request> click_third_kind(const PanelModel& model) {
+  Frame frame(1280, 720);
+  const float x = 241.0F, y = 83.0F;
+  frame.draw(model);
+  frame.draw(model);
+  ImGui::GetIO().MousePos = ImVec2(x, y);
+  frame.draw(model);
+  frame.press_at(x, y);
+  frame.draw(model);
+  frame.release();
+  return frame.draw(model);
+}
+
+TEST(Panel, OffersASolidWhereTheToolHasABody) {
+  PanelModel model = full_model();
+  EXPECT_TRUE(click_third_kind(model).empty());
+
+  model.tool.body = std::make_shared<ToolBody>();
+  const auto requests = click_third_kind(model);
+  ASSERT_EQ(requests.size(), 1U);
+  const auto* command = std::get_if<Command>(&requests[0]);
+  ASSERT_NE(command, nullptr);
+  const auto* set = std::get_if<SetTool>(command);
+  ASSERT_NE(set, nullptr);
+  EXPECT_EQ(set->tool.kind, ToolKind::solid);
+  EXPECT_EQ(set->tool.body, model.tool.body);
 }
 
 TEST(Panel, LeavesSmallPicturesAlone) {
