@@ -67,7 +67,7 @@ def main():
                 "grip": {"point_mm": [0, 3, 0], "normal": [0, -1, 0]},
             },
         },
-        "sculpting": {"damping_per_s": 8.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 10.0},
+        "sculpting": {"damping_per_s": 8.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 1.0},
         "view": {
             "camera": {"yaw_deg": 28, "pitch_deg": 14, "target_mm": [0, 8, 0], "distance_mm": 215},
             "ground_mm": -13,
