@@ -4,32 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/collision/surface_pair_collider.h"
 #include "engine/exchange/document.h"
 #include "engine/simulation/body_pair_contact.h"
 #include "haptic/script.h"
 #include "haptic/tick.h"
+#include "tests/engine/simulation/soft_bodies.h"
 
 namespace spoonbill {
 namespace {
 
 const std::filesystem::path script_file =
     std::filesystem::path(SPOONBILL_ASSETS) / "recordings" / "soft-press.script.json";
-
-// By the collider that knows nothing of constraints.
-double depth_m(const Surface& a, const Surface& b) {
-  const NestedGrid first = make_nested_grid(a.u, a.v, 2).value();
-  const NestedGrid second = make_nested_grid(b.u, b.v, 2).value();
-  SurfacePairCollider collider(first, second);
-  PairQuery query;
-  query.first_closed = query.second_closed = true;
-  const PairResult result = collider.collide(a, b, query);
-  EXPECT_FALSE(result.contained);
-  EXPECT_FALSE(result.overflow);
-  double deepest = 0.0;
-  for (const PairContact& contact : collider.contacts()) deepest = std::max(deepest, contact.depth_m);
-  return deepest;
-}
 
 double highest(const Surface& surface) {
   return *std::max_element(surface.net.y.begin(), surface.net.y.end());
@@ -51,7 +36,7 @@ TEST(SoftPress, BothGiveWayStayApartAndComeBack) {
     device.set_force(result.force_n);
     strongest = std::max(strongest, result.force_n.norm());
     lowest_top = std::min(lowest_top, evaluate(simulation.surface(0), 0.75, 0.0).position_m.y());
-    if (t % 25 == 0) deepest = std::max(deepest, depth_m(simulation.surface(0), simulation.surface(1)));
+    if (t % 25 == 0) deepest = std::max(deepest, depth_between(simulation.surface(0), simulation.surface(1)));
   }
   EXPECT_LT(deepest, body_depth_limit_cells * cell);
   EXPECT_GT(strongest, 0.5);

@@ -81,10 +81,11 @@ TEST(Document, NamesUnknownAndMissingFields) {
             "sample.json: tool has an unknown field \"colour\"; known: kind, action, radius_mm, iterations");
   EXPECT_EQ(refusal([](Json& j) { j["tool"].erase("radius_mm"); }), "sample.json: tool.radius_mm is missing");
   EXPECT_EQ(refusal([](Json& j) { j.erase("body"); }), "sample.json: body is missing");
-  EXPECT_EQ(refusal([](Json& j) { j["extra"] = 1; }),
-            "sample.json: has an unknown field \"extra\"; known: spoonbill_document, name, body, other_bodies, "
-            "fixing_planes, tool, "
-            "sculpting, view");
+  EXPECT_EQ(
+      refusal([](Json& j) { j["extra"] = 1; }),
+      "sample.json: has an unknown field \"extra\"; known: spoonbill_document, name, body, other_bodies, "
+      "fixing_planes, tool, "
+      "sculpting, view");
 }
 
 // Takes away each field in turn, at every depth: none may be accepted, each is named.

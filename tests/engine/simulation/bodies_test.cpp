@@ -4,28 +4,20 @@
 #include <array>
 #include <string>
 
-#include "engine/collision/surface_pair_collider.h"
 #include "engine/denormals.h"
 #include "engine/material/lattice_solver.h"
 #include "engine/simulation/body_pair_contact.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/simulation/handle.h"
+#include "tests/engine/simulation/soft_bodies.h"
 
 namespace spoonbill {
 namespace {
 
-Material rubber() {
-  Material material = small_handle().bodies[0].material;
-  material.name = "silicone";
-  material.plastic = false;
-  material.damping_ratio = 0.2;
-  return material;
-}
-
 // 40 x 20 x 100 mm, its flat side up.
 Body pebble(const Vector3& centre, int nodes) {
-  return {"pebble", ellipsoid_tube(12, 12, centre), rubber(), {nodes, {}}};
+  return {"pebble", ellipsoid_tube(12, 12, centre), silicone(), {nodes, {}}};
 }
 
 // Two bodies on each other and nothing else.
@@ -65,20 +57,7 @@ class Impact {
   }
 
   const BodyState& body(int number) const { return bodies_[number]; }
-  // By the collider that knows nothing of constraints.
-  double depth_m() const {
-    const Surface &a = bodies_[0].mapping.current(), &b = bodies_[1].mapping.current();
-    const NestedGrid first = make_nested_grid(a.u, a.v, 2).value();
-    const NestedGrid second = make_nested_grid(b.u, b.v, 2).value();
-    SurfacePairCollider collider(first, second);
-    PairQuery query;
-    query.first_closed = query.second_closed = true;
-    const PairResult result = collider.collide(a, b, query);
-    EXPECT_FALSE(result.contained);
-    double deepest = 0.0;
-    for (const PairContact& contact : collider.contacts()) deepest = std::max(deepest, contact.depth_m);
-    return deepest;
-  }
+  double depth_m() const { return depth_between(bodies_[0].mapping.current(), bodies_[1].mapping.current()); }
 
  private:
   std::array<BodyState, 2> bodies_;
@@ -167,10 +146,10 @@ TEST(Bodies, AreSavedUndoneAndHashedTogether) {
 
 TEST(Bodies, EachTakesItsOwnMaterial) {
   Simulation simulation = simulate(stacked_handles());
-  ASSERT_TRUE(simulation.apply(SetMaterial{rubber(), 1}).ok());
+  ASSERT_TRUE(simulation.apply(SetMaterial{silicone(), 1}).ok());
   EXPECT_EQ(simulation.scene().bodies[0].material.name, "clay");
   EXPECT_EQ(simulation.scene().bodies[1].material.name, "silicone");
-  const Status refused = simulation.apply(SetMaterial{rubber(), 2});
+  const Status refused = simulation.apply(SetMaterial{silicone(), 2});
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().message, "body: is 2, must be 0 to 1");
 }

@@ -8,17 +8,10 @@
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/simulation/handle.h"
+#include "tests/engine/simulation/soft_bodies.h"
 
 namespace spoonbill {
 namespace {
-
-Material silicone() {
-  Material material = small_handle().bodies[0].material;
-  material.name = "silicone";
-  material.plastic = false;
-  material.damping_ratio = 0.2;
-  return material;
-}
 
 Tool solid(ToolSolid of, std::optional<SoftTool> soft = std::nullopt) {
   Tool tool;
