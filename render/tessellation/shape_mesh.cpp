@@ -85,13 +85,13 @@ ToolMesh superquadric(const SuperquadricShape& shape) {
   ToolMesh mesh;
   mesh.convex = true;
   for (int row = -quarter; row <= quarter; ++row) {
-    const auto [out, up] = turn(row + around);
+    const Turn along = turn(row + around);
     for (int i = 0; i < around; ++i) {
-      const auto [c, s] = turn(i);
-      const auto place = [&](double along, double about) {
-        const double radius = signed_power(out, along);
-        return Vector3(radius * signed_power(c, about), signed_power(up, along),
-                       radius * signed_power(s, about));
+      const Turn about = turn(i);
+      const auto place = [&](double by_row, double by_piece) {
+        const double radius = signed_power(along.cosine, by_row);
+        return Vector3(radius * signed_power(about.cosine, by_piece), signed_power(along.sine, by_row),
+                       radius * signed_power(about.sine, by_piece));
       };
       add_vertex(place(e1, e2).cwiseProduct(size), place(2.0 - e1, 2.0 - e2).cwiseQuotient(size), mesh);
     }
