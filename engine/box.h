@@ -15,8 +15,11 @@ struct Box {
   }
   // Whether no axis keeps them farther apart than `reach_m`.
   bool is_near(const Box& other, double reach_m) const {
-    return (low.array() - reach_m <= other.high.array()).all() &&
-           (other.low.array() - reach_m <= high.array()).all();
+    bool near = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      near = near & (low[axis] - reach_m <= other.high[axis]) & (other.low[axis] - reach_m <= high[axis]);
+    }
+    return near;
   }
   bool holds(const Box& other) const {
     return (low.array() <= other.low.array()).all() && (other.high.array() <= high.array()).all();

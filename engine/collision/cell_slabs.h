@@ -20,32 +20,34 @@ class CellSlabs {
   // A cell by its place in the tree of its element's cells.
   struct Place {
     LevelCell cell;
-    int key;
+    int element_key, inside;
+    int key() const { return element_key + inside; }
   };
   Place element(int element_u, int element_v) const {
     const int stride = levels_->step(0);
     return {{element_u * stride, element_v * stride, 0},
-            (element_u * elements_v_ + element_v) * keys_an_element_};
+            (element_u * elements_v_ + element_v) * keys_an_element_,
+            0};
   }
   // A cell of the next level, by its lane in within().
   Place finer(const Place& place, int lane) const {
-    const int half = levels_->step(place.cell.level + 1), element = place.key / keys_an_element_;
-    const int inside = place.key - element * keys_an_element_;
+    const int half = levels_->step(place.cell.level + 1);
     return {{place.cell.i + (lane >> 1) * half, place.cell.j + (lane & 1) * half, place.cell.level + 1},
-            element * keys_an_element_ + 4 * inside + 1 + lane};
+            place.element_key,
+            4 * place.inside + 1 + lane};
   }
 
   // The four cells of the next level within a cell that is not of the finest: lane 2 a + b is the half a
   // along u and b along v.
   const SlabGroup& within(const Place& place) {
     SlabGroup* group = nullptr;
-    if (take_slot(place.key, group)) take_within(place.cell, *group);
+    if (take_slot(place.key(), group)) take_within(place.cell, *group);
     return *group;
   }
   // The cell itself, in each lane. Both are valid until the next call.
   const SlabGroup& alone(const Place& place) {
     SlabGroup* group = nullptr;
-    if (take_slot(keys_ + place.key, group)) take_alone(place.cell, *group);
+    if (take_slot(keys_ + place.key(), group)) take_alone(place.cell, *group);
     return *group;
   }
 

@@ -87,8 +87,9 @@ const std::vector<ContactRegions::Region>& ContactRegions::group(std::vector<Cel
   for (int k = 0; k < count; ++k) {
     if (previous_[k] >= 0) continue;
     const int cell = first_->cell_index(pairs[k].first);
-    join(pairs, cell, cell);
     split_[cell] = false;
+    if (last_pair_[cell] == k) continue;
+    join(pairs, cell, cell);
     for (int m = last_pair_[cell]; m >= 0; m = previous_[m])
       split_[cell] = split_[cell] || root(m) != root(k);
   }

@@ -28,6 +28,8 @@ ElementTree::ElementTree(const KnotVector& u, const KnotVector& v) : u_(unroll(u
   add({0, u_.elements(), 0, v_.elements()});
   boxes_.resize(nodes_.size());
   sizes_.resize(nodes_.size());
+  strip_.resize(static_cast<std::size_t>(v_.elements()));
+  bulges_.resize(static_cast<std::size_t>(v_.elements()));
 }
 
 int ElementTree::add(const Node& range) {
@@ -52,9 +54,7 @@ int ElementTree::add(const Node& range) {
 
 void ElementTree::update(SurfaceLevels& levels) {
   levels.bounds().update(levels.surface().net);
-  for (int e = 0; e < u_.elements(); ++e) {
-    for (int f = 0; f < v_.elements(); ++f) take_box(levels, e, f);
-  }
+  for (int e = 0; e < u_.elements(); ++e) take_strip(levels, e);
   join_boxes();
 }
 
@@ -80,26 +80,32 @@ int ElementTree::leaf_near(const Vector3& point) const {
 }
 
 // Where the surface may leave its corners by more than they are apart, its control points tell more.
-void ElementTree::take_box(SurfaceLevels& levels, int element_u, int element_v) {
-  const int index = leaf_[element_u * v_.elements() + element_v];
-  Box& box = boxes_[index];
-  double bulge = 0.0;
-  box = levels.element_box(element_u, element_v, bulge);
-  sizes_[index] = (box.high - box.low).sum();
-  if (4.0 * bulge < sizes_[index] - 6.0 * bulge) return;
-  const ControlNet& net = levels.surface().net;
+void ElementTree::take_strip(SurfaceLevels& levels, int element_u) {
+  levels.element_boxes(element_u, strip_.data(), bulges_.data());
+  for (int element_v = 0; element_v < v_.elements(); ++element_v) {
+    const int index = leaf_[element_u * v_.elements() + element_v];
+    Box& box = boxes_[index];
+    box = strip_[element_v];
+    sizes_[index] = (box.high - box.low).sum();
+    // Six bulges are in the sum.
+    if (bulges_[element_v] <= 0.1 * sizes_[index]) continue;
+    const Box hull = hull_of(levels.surface().net, element_u, element_v);
+    box = {box.low.cwiseMax(hull.low), box.high.cwiseMin(hull.high)};
+    sizes_[index] = (box.high - box.low).sum();
+  }
+}
+
+Box ElementTree::hull_of(const ControlNet& net, int element_u, int element_v) const {
   const int* const rows = u_.control.data() + u_.first_control[element_u];
   const int* const columns = v_.control.data() + v_.first_control[element_v];
-  Vector3 low = net.point(rows[0], columns[0]), high = low;
+  Box box{net.point(rows[0], columns[0]), net.point(rows[0], columns[0])};
   for (int i = 0; i <= u_.degree; ++i) {
     for (int j = 0; j <= v_.degree; ++j) {
       const Vector3 control = net.point(rows[i], columns[j]);
-      low = low.cwiseMin(control);
-      high = high.cwiseMax(control);
+      box = {box.low.cwiseMin(control), box.high.cwiseMax(control)};
     }
   }
-  box = {box.low.cwiseMax(low), box.high.cwiseMin(high)};
-  sizes_[index] = (box.high - box.low).sum();
+  return box;
 }
 
 }  // namespace spoonbill

@@ -42,14 +42,17 @@ class ElementTree {
   };
   static Direction unroll(const KnotVector& knots);
   int add(const Node& range);
-  void take_box(SurfaceLevels& levels, int element_u, int element_v);
+  void take_strip(SurfaceLevels& levels, int element_u);
+  Box hull_of(const ControlNet& net, int element_u, int element_v) const;
   void join_boxes();
 
   Direction u_, v_;
   std::vector<Node> nodes_;  // parents before their children
   std::vector<Box> boxes_;
   std::vector<double> sizes_;
-  std::vector<int> leaf_;  // of each element
+  std::vector<Box> strip_;      // working memory: of the elements of one span of u
+  std::vector<double> bulges_;  // working memory, as strip_
+  std::vector<int> leaf_;       // of each element
 };
 
 }  // namespace spoonbill

@@ -1,6 +1,7 @@
 #include "engine/collision/surface_levels.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace spoonbill {
 
@@ -207,25 +208,30 @@ PatchCorners SurfaceLevels::corners(const LevelCell& cell) {
           sample(index + along * columns + along)};
 }
 
-Box SurfaceLevels::element_box(int element_u, int element_v, double& bulge) {
-  const int stride = step(0), columns = nested_->grid.columns();
-  const int i = element_u * stride, j = element_v * stride;
-  sample_column(j);
-  sample_column(j + stride);
-  bounds_.update(surface_->net, element_v);
+void SurfaceLevels::element_boxes(int element_u, Box* boxes, double* bulges) {
+  const int stride = step(0), columns = nested_->grid.columns(), i = element_u * stride;
+  for (int j = 0; j < columns; j += stride) sample_column(j);
   const std::vector<double>& in_u = nested_->grid.u.parameters;
   const std::vector<double>& in_v = nested_->grid.v.parameters;
-  bulge = bounds_.bulge(element_u, element_v, in_u[i + stride] - in_u[i], in_v[j + stride] - in_v[j]);
   const PlanarPoints from = samples();
-  const double* const values[3] = {from.x, from.y, from.z};
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double* const low = values[axis] + i * columns + j;
-    const double* const high = low + stride * columns;
-    box.low[axis] = std::min(std::min(low[0], low[stride]), std::min(high[0], high[stride])) - bulge;
-    box.high[axis] = std::max(std::max(low[0], low[stride]), std::max(high[0], high[stride])) + bulge;
+  const double* const values[3] = {from.x + i * columns, from.y + i * columns, from.z + i * columns};
+  const double h_u = in_u[i + stride] - in_u[i];
+  for (int element = 0; element < bounds_.elements_v(); ++element) {
+    const int j = element * stride;
+    bounds_.update(surface_->net, element);
+    const double bulge = bounds_.bulge(element_u, element, h_u, in_v[j + stride] - in_v[j]);
+    Box& box = boxes[element];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double* const low = values[axis] + j;
+      const double* const high = low + stride * columns;
+      const double a = low[0], b = low[stride], c = high[0], d = high[stride];
+      const double least_low = a < b ? a : b, least_high = c < d ? c : d;
+      const double most_low = a < b ? b : a, most_high = c < d ? d : c;
+      box.low[axis] = (least_low < least_high ? least_low : least_high) - bulge;
+      box.high[axis] = (most_low < most_high ? most_high : most_low) + bulge;
+    }
+    bulges[element] = bulge;
   }
-  return box;
 }
 
 double SurfaceLevels::bulge(const LevelCell& cell) {
@@ -245,8 +251,10 @@ const CoverSphere& SurfaceLevels::cover(const LevelCell& cell) {
   const PatchCorners at = corners(cell);
   sphere.centre = 0.25 * (at[0] + at[1] + at[2] + at[3]);
   sphere.radius = 0.0;
-  for (const Vector3& corner : at) sphere.radius = std::max(sphere.radius, (corner - sphere.centre).norm());
-  sphere.radius += bulge(cell);
+  for (const Vector3& corner : at) {
+    sphere.radius = std::max(sphere.radius, (corner - sphere.centre).squaredNorm());
+  }
+  sphere.radius = std::sqrt(sphere.radius) + bulge(cell);
   return sphere;
 }
 

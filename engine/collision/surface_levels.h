@@ -74,8 +74,8 @@ class SurfaceLevels {
   bool is_finest(const LevelCell& cell) const { return cell.level >= nested_->levels; }
   PatchCorners corners(const LevelCell& cell);
 
-  // About one element, by its corners and its bulge, which it hands out.
-  Box element_box(int element_u, int element_v, double& bulge);
+  // About each of the elements (element_u, .), by its corners and its bulge, which go with them.
+  void element_boxes(int element_u, Box* boxes, double* bulges);
 
   // How far the surface can leave the bilinear patch through the corners of the cell.
   double bulge(const LevelCell& cell);

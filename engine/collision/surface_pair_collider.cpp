@@ -16,7 +16,8 @@ constexpr std::size_t region_seeds = 8;
 constexpr std::size_t depth_seeds = 8;
 // Candidates of a region that its middle is taken from.
 constexpr std::size_t middle_pairs = 64;
-constexpr std::size_t inner_places = 4;
+// From its middle outwards.
+constexpr std::size_t seed_ways = 2;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -53,12 +54,12 @@ class ParameterMean {
     ++count_;
   }
   double mean() const { return knots_->into_domain(first_ + sum_ / count_); }
-  // Half the way from the mean to another parameter.
-  double towards(double parameter) const {
+  // A share of the way from the mean to another parameter.
+  double towards(double parameter, double share) const {
     const double from = first_ + sum_ / count_, length = knots_->domain_end() - knots_->domain_start();
     double apart = parameter - from;
     if (knots_->is_periodic()) apart -= length * std::round(apart / length);
-    return knots_->into_domain(from + 0.5 * apart);
+    return knots_->into_domain(from + share * apart);
   }
 
  private:
@@ -81,8 +82,9 @@ class SurfacePairCollider::RegionMiddle {
     t_.add(at.t);
   }
   PairParameters mean() const { return {u_.mean(), v_.mean(), s_.mean(), t_.mean()}; }
-  PairParameters towards(const PairParameters& at) const {
-    return {u_.towards(at.u), v_.towards(at.v), s_.towards(at.s), t_.towards(at.t)};
+  PairParameters towards(const PairParameters& at, double share) const {
+    return {u_.towards(at.u, share), v_.towards(at.v, share), s_.towards(at.s, share),
+            t_.towards(at.t, share)};
   }
 
  private:
@@ -185,8 +187,8 @@ PairContact SurfacePairCollider::contact_of(const Pairs& pairs, const Region& re
   contact.normal = unit_normal(second_.surface(), touch.s, touch.t);
   // An open surface has no inside: of both its sides, the one with the shorter way out counts, which is
   // looked for first where the middle of the region lies.
-  const InnerSeeds seeds = inner_seeds(pairs, region, middle);
-  const double first_side = query.second_closed || seeds.depth[0] > 0.0 ? 1.0 : -1.0;
+  const Seeds seeds = seeds_of(pairs, region, middle);
+  const double first_side = query.second_closed || seeds.middle_depth > 0.0 ? 1.0 : -1.0;
   double shortest = infinity;
   for (const double outside : {first_side, -first_side}) {
     if (outside < 0.0 && query.second_closed) continue;
@@ -205,15 +207,12 @@ PairContact SurfacePairCollider::contact_of(const Pairs& pairs, const Region& re
 }
 
 // Of the middle of the region and a few places between it and the pairs, which lie where the surfaces cross,
-// those where the first surface is deepest behind the second and farthest before it.
-SurfacePairCollider::InnerSeeds SurfacePairCollider::inner_seeds(const Pairs& pairs, const Region& region,
-                                                                 const RegionMiddle& middle) const {
-  const std::size_t count = region.end - region.begin, places = std::min(count, inner_places);
-  InnerSeeds seeds;
-  for (std::size_t k = 0; k <= places; ++k) {
-    const PairParameters at =
-        k == 0 ? middle.mean()
-               : middle.towards(centre_of(first_, second_, pairs[region.begin + (k - 1) * count / places]));
+// and as far beyond: those where the first surface is deepest behind the second and farthest before it.
+SurfacePairCollider::Seeds SurfacePairCollider::seeds_of(const Pairs& pairs, const Region& region,
+                                                         const RegionMiddle& middle) const {
+  const std::size_t count = region.end - region.begin;
+  Seeds seeds;
+  const auto offer = [&](const PairParameters& at) {
     const double depth = depth_behind(first_.pieces(), second_.pieces(), at, 1.0);
     for (int side = 0; side < 2; ++side) {
       const double here = side == 0 ? depth : -depth;
@@ -221,6 +220,13 @@ SurfacePairCollider::InnerSeeds SurfacePairCollider::inner_seeds(const Pairs& pa
       seeds.depth[side] = here;
       seeds.at[side] = at;
     }
+    return depth;
+  };
+  seeds.middle_depth = offer(middle.mean());
+  for (std::size_t k = 0; k < seed_ways; ++k) {
+    const PairParameters way = centre_of(first_, second_, pairs[region.begin + k * count / seed_ways]);
+    offer(middle.towards(way, 0.5));
+    offer(middle.towards(way, 2.0));
   }
   return seeds;
 }

@@ -63,7 +63,8 @@ class SurfacePairCollider {
  private:
   class RegionMiddle;
   // By side of the second surface: behind it, before it.
-  struct InnerSeeds {
+  struct Seeds {
+    double middle_depth = 0.0;
     double depth[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     PairParameters at[2];
   };
@@ -73,7 +74,7 @@ class SurfacePairCollider {
   void take_contacts(const PairQuery& query);
   bool touches(const Pairs& pairs, const Region& region);
   PairContact contact_of(const Pairs& pairs, const Region& region, const PairQuery& query) const;
-  InnerSeeds inner_seeds(const Pairs& pairs, const Region& region, const RegionMiddle& middle) const;
+  Seeds seeds_of(const Pairs& pairs, const Region& region, const RegionMiddle& middle) const;
   PairParameters outer_seed(const Pairs& pairs, const Region& region, double outside) const;
   void take_inner_touch(const Pairs& pairs, const Region& region, PairContact& contact) const;
   void settle(PairContact& contact, const PairParameters& from, double outside, bool first_closed,
