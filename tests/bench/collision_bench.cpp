@@ -108,7 +108,7 @@ void sphere_fcl(benchmark::State& state) {
 void handle_sphere(benchmark::State& state) {
   const Result<Document> document = read_document(SPOONBILL_ASSETS "/models/spoon-handle.json");
   if (!document) return state.SkipWithError(document.error().message.c_str());
-  const Surface& handle = document.value().scene.body.surface;
+  const Surface& handle = document.value().scene.bodies.front().surface;
   Surface shapes[2] = {handle, handle};
   for (double& y : shapes[1].net.y) y *= 1.01;
   const NestedGrid nested = make_nested_grid(handle.u, handle.v, 1).value();
