@@ -90,8 +90,9 @@ const std::vector<ContactRegions::Region>& ContactRegions::group(std::vector<Cel
     split_[cell] = false;
     if (last_pair_[cell] == k) continue;
     join(pairs, cell, cell);
-    for (int m = last_pair_[cell]; m >= 0; m = previous_[m])
+    for (int m = last_pair_[cell]; m >= 0; m = previous_[m]) {
       split_[cell] = split_[cell] || root(m) != root(k);
+    }
   }
   for (int k = 0; k < count; ++k) {
     if (previous_[k] < 0) join_neighbours(pairs, k);

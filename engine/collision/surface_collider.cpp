@@ -204,10 +204,11 @@ void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, d
       cells_.push_back({i, j, cell.level + 1});
     }
   }
-  for (int i = cell.i; i <= cell.i + step; i += half) {
-    for (int j = cell.j; j <= cell.j + step; j += half) {
-      offer(tool, grid.u.parameters[i], grid.v.parameters[j], levels_.sample(i * grid.columns() + j));
-    }
+  // Its corners were offered when it was found.
+  constexpr int between[5][2] = {{0, 1}, {1, 0}, {1, 1}, {1, 2}, {2, 1}};
+  for (const auto& [in_u, in_v] : between) {
+    const int i = cell.i + in_u * half, j = cell.j + in_v * half;
+    offer(tool, grid.u.parameters[i], grid.v.parameters[j], levels_.sample(i * grid.columns() + j));
   }
 }
 

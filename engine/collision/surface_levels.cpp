@@ -195,8 +195,9 @@ void SurfaceLevels::sample_column(int column) {
     if (sampled_at_[index] == begun_) continue;
     const BandEntry u = u_bands_.at(row);
     Vector3 point = Vector3::Zero();
-    for (int a = 0; a < u_bands_.bandwidth; ++a)
+    for (int a = 0; a < u_bands_.bandwidth; ++a) {
       point += u.values[a * u_bands_.padded] * lines_[u.controls[a]];
+    }
     set_sample(index, point);
   }
 }
