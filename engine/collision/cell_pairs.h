@@ -76,7 +76,15 @@ class CellPairs {
         visit(elements(nodes));
         continue;
       }
-      for (const std::array<int, 2>& half : split(nodes)) node_pairs_.push_back(half);
+      const ElementTree::Node& a = first_tree_.node(nodes[0]);
+      const ElementTree::Node& b = second_tree_.node(nodes[1]);
+      if (a.is_leaf() || b.is_leaf()) {
+        for (const std::array<int, 2>& half : split(nodes)) node_pairs_.push_back(half);
+        continue;
+      }
+      for (const int part : {a.left, a.right}) {
+        for (const int other : {b.left, b.right}) node_pairs_.push_back({part, other});
+      }
     }
   }
 

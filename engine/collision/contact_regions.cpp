@@ -29,9 +29,8 @@ ContactRegions::ContactRegions(const SurfaceLevels& first, const SurfaceLevels& 
   parent_.reserve(cell_pair_capacity);
   previous_.reserve(cell_pair_capacity);
   unordered_.reserve(cell_pair_capacity);
-  last_pair_.assign(static_cast<std::size_t>(first.all_cells()), 0);
-  split_.assign(static_cast<std::size_t>(first.all_cells()), false);
-  paired_at_.assign(static_cast<std::size_t>(first.all_cells()), 0);
+  cell_.reserve(cell_pair_capacity);
+  paired_.resize(static_cast<std::size_t>(first.all_cells()));
   regions_.reserve(region_capacity);
   end_.reserve(region_capacity);
 }
@@ -42,12 +41,12 @@ int ContactRegions::root(int pair) {
 }
 
 // Joins pairs of two cells of the first surface, the same or neighbours.
-void ContactRegions::join(const std::vector<CellPair>& pairs, int cell, int other) {
-  const int step = second_->step(pairs[last_pair_[cell]].second.level);
-  const bool whole = cell != other && !split_[cell] && !split_[other];
-  if (whole && root(last_pair_[cell]) == root(last_pair_[other])) return;
-  for (int k = last_pair_[cell]; k >= 0; k = previous_[k]) {
-    for (int m = cell == other ? previous_[k] : last_pair_[other]; m >= 0; m = previous_[m]) {
+void ContactRegions::join(const std::vector<CellPair>& pairs, const Paired& cell, const Paired& other) {
+  const int step = second_->step(pairs[cell.last_pair].second.level);
+  const bool same = &cell == &other, whole = !same && !cell.split && !other.split;
+  if (whole && root(cell.last_pair) == root(other.last_pair)) return;
+  for (int k = cell.last_pair; k >= 0; k = previous_[k]) {
+    for (int m = same ? previous_[k] : other.last_pair; m >= 0; m = previous_[m]) {
       if (!are_neighbours(pairs[k].second, pairs[m].second, step)) continue;
       const int a = root(k), b = root(m);
       parent_[std::max(a, b)] = std::min(a, b);
@@ -60,39 +59,45 @@ void ContactRegions::join(const std::vector<CellPair>& pairs, int cell, int othe
 void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pair) {
   const LevelCell& cell = pairs[pair].first;
   const Grid& grid = first_->nested().grid;
-  const int step = first_->step(cell.level), here = first_->cell_index(cell);
-  constexpr int steps[4][2] = {{0, 1}, {1, -1}, {1, 0}, {1, 1}};
-  for (const auto& [along_u, along_v] : steps) {
-    const int i = into_grid(grid.u, cell.i + along_u * step);
-    const int j = into_grid(grid.v, cell.j + along_v * step);
-    if (i < 0 || j < 0) continue;
-    const int there = first_->cell_index({i, j, cell.level});
-    if (paired_at_[there] == group_) join(pairs, here, there);
+  const int step = first_->step(cell.level), here = cell_[pair];
+  const int next = into_grid(grid.u, cell.i + step);
+  const int columns[3] = {cell.j, into_grid(grid.v, cell.j + step), into_grid(grid.v, cell.j - step)};
+  const auto offer = [&](int there) {
+    if (paired_[there].at == group_) join(pairs, paired_[here], paired_[there]);
+  };
+  if (columns[1] >= 0) offer(first_->cell_index({cell.i, columns[1], cell.level}));
+  if (next < 0) return;
+  const int below = first_->cell_index({next, cell.j, cell.level}), shift = first_->shift(cell.level);
+  for (const int column : columns) {
+    if (column >= 0) offer(below + ((column - cell.j) >> shift));
+  }
+}
+
+void ContactRegions::take_cells(const std::vector<CellPair>& pairs) {
+  ++group_;
+  const std::size_t count = pairs.size();
+  parent_.resize(count);
+  previous_.resize(count);
+  cell_.resize(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    cell_[k] = first_->cell_index(pairs[k].first);
+    parent_[k] = k > 0 && pairs[k].region < 0 ? parent_[k - 1] : static_cast<int>(k);
+    Paired& cell = paired_[cell_[k]];
+    previous_[k] = cell.at == group_ ? cell.last_pair : -1;
+    cell = {group_, static_cast<int>(k), false};
   }
 }
 
 const std::vector<ContactRegions::Region>& ContactRegions::group(std::vector<CellPair>& pairs) {
-  ++group_;
-  parent_.clear();
-  previous_.clear();
   const int count = static_cast<int>(pairs.size());
-  for (int k = 0; k < count; ++k) {
-    const int cell = first_->cell_index(pairs[k].first);
-    parent_.push_back(k > 0 && pairs[k].region < 0 ? parent_[k - 1] : k);
-    previous_.push_back(paired_at_[cell] == group_ ? last_pair_[cell] : -1);
-    last_pair_[cell] = k;
-    paired_at_[cell] = group_;
-  }
+  take_cells(pairs);
   // Each cell once, by its first pair.
   for (int k = 0; k < count; ++k) {
     if (previous_[k] >= 0) continue;
-    const int cell = first_->cell_index(pairs[k].first);
-    split_[cell] = false;
-    if (last_pair_[cell] == k) continue;
+    Paired& cell = paired_[cell_[k]];
+    if (cell.last_pair == k) continue;
     join(pairs, cell, cell);
-    for (int m = last_pair_[cell]; m >= 0; m = previous_[m]) {
-      split_[cell] = split_[cell] || root(m) != root(k);
-    }
+    for (int m = cell.last_pair; m >= 0; m = previous_[m]) cell.split = cell.split || root(m) != root(k);
   }
   for (int k = 0; k < count; ++k) {
     if (previous_[k] < 0) join_neighbours(pairs, k);

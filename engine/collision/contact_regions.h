@@ -28,20 +28,27 @@ class ContactRegions {
     const int in_u = std::abs(a.i - b.i), in_v = std::abs(a.j - b.j);
     return (in_u <= step || around_u_ - in_u <= step) && (in_v <= step || around_v_ - in_v <= step);
   }
+  // A cell of the first surface.
+  struct Paired {
+    std::uint32_t at = 0;  // the group() in which it was last in a pair
+    int last_pair = 0;
+    bool split = false;  // whether not all its pairs hang together
+  };
+
   int root(int pair);
+  void take_cells(const std::vector<CellPair>& pairs);
   void join_neighbours(const std::vector<CellPair>& pairs, int pair);
-  void join(const std::vector<CellPair>& pairs, int cell, int other);
+  void join(const std::vector<CellPair>& pairs, const Paired& cell, const Paired& other);
   void order_by_region(std::vector<CellPair>& pairs);
 
   const SurfaceLevels* first_;
   const SurfaceLevels* second_;
   // Cells of the second surface around a periodic direction; without end on others.
   int around_u_ = 0, around_v_ = 0;
-  std::vector<int> parent_;               // of each pair, an earlier one or itself
-  std::vector<int> last_pair_;            // by cell_index() of the first surface's cell
-  std::vector<int> previous_;             // pair of the same cell, by pair; -1 before the first
-  std::vector<char> split_;               // whether not all pairs of such a cell hang together
-  std::vector<std::uint32_t> paired_at_;  // the group() in which such a cell was in a pair
+  std::vector<int> parent_;     // of each pair, an earlier one or itself
+  std::vector<int> previous_;   // pair of the same cell of the first surface, by pair; -1 before the first
+  std::vector<int> cell_;       // by pair: that cell, as cell_index() counts it
+  std::vector<Paired> paired_;  // by cell_index()
   std::uint32_t group_ = 0;
   std::vector<Region> regions_;
   std::vector<int> end_;             // working memory: where the next pair of each region goes

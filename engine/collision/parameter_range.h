@@ -7,6 +7,7 @@ namespace spoonbill {
 // ends.
 struct ParameterRange {
   double u0, u1, v0, v1;
+  bool holds(double u, double v) const { return u0 <= u && u <= u1 && v0 <= v && v <= v1; }
 };
 
 }  // namespace spoonbill

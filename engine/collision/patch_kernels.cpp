@@ -250,6 +250,17 @@ inline __attribute__((always_inline)) void take_apart(const ManySlabs& a, const 
   apart |= (beyond > 0.0F) & (beyond * beyond > slack * slack * squared);
 }
 
+// One bit a lane.
+inline __attribute__((always_inline)) unsigned bits_of(const ManyBits& lanes) {
+#ifdef __AVX__
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Many>(lanes)));
+#else
+  unsigned bits = 0;
+  for (int k = 0; k < lanes_at_once; ++k) bits |= static_cast<unsigned>(-lanes[k]) << k;
+  return bits;
+#endif
+}
+
 // From slab `first` of the first on; returns the bits of lanes that are not apart.
 template <int first>
 inline __attribute__((always_inline)) unsigned meeting_from(const SlabGroup& a, const ManySlabs& b,
@@ -258,9 +269,8 @@ inline __attribute__((always_inline)) unsigned meeting_from(const SlabGroup& a, 
   ManyBits apart;
   take_many(FourOfEach<first>{}, a, slabs);
   take_apart(slabs, b, reach, apart);
-  unsigned bits = 0;
-  for (int k = 0; k < lanes_at_once; ++k) bits |= (1U + static_cast<unsigned>(apart[k])) << k;
-  return bits << (slab_lanes * first);
+  constexpr unsigned all = (1U << lanes_at_once) - 1U;
+  return (~bits_of(apart) & all) << (slab_lanes * first);
 }
 
 unsigned meeting(const SlabGroup& a, int lanes, const SlabGroup& b, float reach) {

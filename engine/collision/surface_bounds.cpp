@@ -67,24 +67,28 @@ void SurfaceBounds::update(const ControlNet& net) {
   begin();
   std::fill(column_at_.begin(), column_at_.end(), stamp_);
   std::fill(element_at_.begin(), element_at_.end(), stamp_);
+  for (int i = 0; i < std::min(2, rows_); ++i) unroll_row(net, i);
   for (int i = 0; i < rows_; ++i) take_row(net, i);
   for (int eu = 0; eu < elements_u(); ++eu) take_elements(eu);
 }
 
-// The norms of one unrolled row of control points, all columns at once.
-void SurfaceBounds::take_row(const ControlNet& net, int i) {
+void SurfaceBounds::unroll_row(const ControlNet& net, int i) {
   const std::vector<double>* coordinates[3] = {&net.x, &net.y, &net.z};
-  for (int k = 0; k < 3; ++k) {
-    const int row = control_u_[std::min(i + k, rows_ - 1)];
-    for (int axis = 0; axis < 3; ++axis) {
-      const double* const from = coordinates[axis]->data() + row * net.columns;
-      double* const to = row_[k][axis].data();
-      for (int j = 0; j < columns_; ++j) to[j] = from[control_v_[j]];
-    }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double* const from = coordinates[axis]->data() + control_u_[i] * net.columns;
+    double* const to = row_[i % 3][axis].data();
+    for (int j = 0; j < columns_; ++j) to[j] = from[control_v_[j]];
   }
-  const double *x0 = row_[0][0].data(), *y0 = row_[0][1].data(), *z0 = row_[0][2].data();
-  const double *x1 = row_[1][0].data(), *y1 = row_[1][1].data(), *z1 = row_[1][2].data();
-  const double *x2 = row_[2][0].data(), *y2 = row_[2][1].data(), *z2 = row_[2][2].data();
+}
+
+// The norms of one unrolled row of control points, all columns at once. It and the next are unrolled already.
+void SurfaceBounds::take_row(const ControlNet& net, int i) {
+  if (i + 2 < rows_) unroll_row(net, i + 2);
+  const std::vector<double>*const here = row_[i % 3], *const next = row_[(i + 1) % 3],
+                                  *const after = row_[(i + 2) % 3];
+  const double *x0 = here[0].data(), *y0 = here[1].data(), *z0 = here[2].data();
+  const double *x1 = next[0].data(), *y1 = next[1].data(), *z1 = next[2].data();
+  const double *x2 = after[0].data(), *y2 = after[1].data(), *z2 = after[2].data();
   if (i + 2 < rows_) {
     double* const norm = norm_uu_.data() + i * columns_;
     const double low = first_scale_u_[i], high = first_scale_u_[i + 1], scale = second_scale_u_[i];

@@ -47,6 +47,7 @@ class SurfaceBounds {
   int rows_ = 0, columns_ = 0;  // of the unrolled net
   int degree_u_ = 0, degree_v_ = 0;
   void take_norms(const ControlNet& net, int column);
+  void unroll_row(const ControlNet& net, int i);
   void take_row(const ControlNet& net, int i);
   void take_elements(int element_u);
 
@@ -57,7 +58,7 @@ class SurfaceBounds {
   std::vector<double> second_uu_, second_vv_;
   std::uint64_t stamp_ = 1;
   std::vector<std::uint64_t> column_at_, element_at_;  // when taken: by unrolled column, by element_v
-  std::vector<double> row_[3][3];         // working memory: three unrolled rows of control points
+  std::vector<double> row_[3][3];         // working memory: unrolled row i of control points at i mod 3
   std::vector<double> low_[3], high_[3];  // of each control column
   std::vector<Box> row_boxes_;            // of each control row
 };

@@ -63,7 +63,7 @@ void SurfaceCollider::offer(const ToolShape& tool, double u, double v, const Vec
 CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape& tool, double margin_m,
                                          bool closed, const PlanarPoints& samples) {
   CollisionResult result;
-  levels_.begin(surface, samples);
+  moved_ |= levels_.begin(surface, samples);
   find_nearest(surface, tool, margin_m, Proof::deepest, result);
   take_near_samples(tool, margin_m, result);
   result.nearest = contact_at(surface, best_);
@@ -77,8 +77,7 @@ void SurfaceCollider::find_nearest(const Surface& surface, const ToolShape& tool
                                    CollisionResult& result) {
   ++query_;
   near_.clear();
-  best_ = {};
-  best_.distance_m = std::numeric_limits<double>::infinity();
+  offer_last(surface, tool);
   proof_ = proof;
   tolerance_ = tolerance_of(tool);
   cuts_left_ = tool.is_solid() ? cut_capacity : std::numeric_limits<int>::max();
@@ -86,11 +85,12 @@ void SurfaceCollider::find_nearest(const Surface& surface, const ToolShape& tool
   polish(surface, tool);
   result.samples_evaluated = levels_.samples_evaluated();
   for (const LevelCell& cell : finest_) search_between_samples(surface, tool, cell, result.overflow);
+  last_ = best_;
 }
 
 Clearance SurfaceCollider::clearance(const Surface& surface, const ToolShape& tool) {
   CollisionResult result;
-  levels_.begin(surface);
+  moved_ |= levels_.begin(surface);
   find_nearest(surface, tool, 0.0, Proof::clearance, result);
   const bool touching = best_.distance_m <= touch_tolerance_m;
   return {touching ? 0.0 : clearance_share * best_.distance_m, contact_at(surface, best_), result.overflow};
@@ -132,7 +132,8 @@ void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
     }
   };
   SurfaceBounds& bounds = levels_.bounds();
-  bounds.take_boxes(levels_.surface().net);
+  if (moved_) bounds.take_boxes(levels_.surface().net);
+  moved_ = false;
   for (int e = 0; e < bounds.elements_v(); ++e) column_bound_[e] = lower_bound(tool, bounds.box(e));
   for (int e = 0; e < bounds.elements_u(); ++e) row_bound_[e] = lower_bound(tool, bounds.row_box(e));
   const auto nearest = std::min_element(column_bound_.begin(), column_bound_.end()) - column_bound_.begin();
@@ -143,6 +144,14 @@ void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
     offer_column(e * stride);
     offer_column((e + 1) * stride);
   }
+}
+
+// What was nearest in the query before mostly almost is so still: much of the rest need not be looked at.
+void SurfaceCollider::offer_last(const Surface& surface, const ToolShape& tool) {
+  best_ = {};
+  best_.distance_m = std::numeric_limits<double>::infinity();
+  if (asked_) offer(tool, last_.u, last_.v, position(surface, last_.u, last_.v));
+  asked_ = true;
 }
 
 void SurfaceCollider::descend(const ToolShape& tool, double margin, CollisionResult& result) {

@@ -38,7 +38,8 @@ struct Clearance {
   bool overflow = false;  // a capacity was met, and nothing is sure
 };
 
-// One owner, one thread; allocates only when made. The grid must outlive it.
+// Keeps what it evaluated of a surface until its control points move, and looks first where it last found the
+// nearest point. One owner, one thread; allocates only when made. The grid must outlive it.
 class SurfaceCollider {
  public:
   explicit SurfaceCollider(const NestedGrid& nested);
@@ -77,6 +78,7 @@ class SurfaceCollider {
   // After SurfaceLevels::begin().
   void find_nearest(const Surface& surface, const ToolShape& tool, double margin, Proof proof,
                     CollisionResult& result);
+  void offer_last(const Surface& surface, const ToolShape& tool);
   void offer_coarsest(const ToolShape& tool, double margin);
   void descend(const ToolShape& tool, double margin, CollisionResult& result);
   void take_near_samples(const ToolShape& tool, double margin, CollisionResult& result);
@@ -111,6 +113,9 @@ class SurfaceCollider {
   std::vector<std::uint32_t> near_at_;  // the query in which a sample was looked at
   std::uint32_t query_ = 0;
   SurfaceSpot best_;
+  SurfaceSpot last_;    // the best of the query before
+  bool asked_ = false;  // whether there was one
+  bool moved_ = true;   // since the boxes were taken
   Proof proof_ = Proof::deepest;
   double tolerance_ = 0.0;
   int cuts_left_ = 0;

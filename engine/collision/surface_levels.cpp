@@ -86,6 +86,7 @@ SurfaceLevels::SurfaceLevels(const NestedGrid& nested, InstructionSet set)
   tile_lines_.resize(static_cast<std::size_t>(3 * u_bands_.bandwidth * v_bands_.padded));
   column_at_.assign(static_cast<std::size_t>(nested.grid.columns()), 0);
   lines_.resize(static_cast<std::size_t>(nested.grid.u.knots.control_point_count()));
+  net_ = ControlNet(nested.grid.u.knots.control_point_count(), nested.grid.v.knots.control_point_count());
   int cells = 0;
   for (int level = 0; level <= nested.levels; ++level) {
     first_cell_.push_back(cells);
@@ -100,23 +101,21 @@ int SurfaceLevels::cell_count(int level) const {
          ((nested_->grid.columns() - 1) >> (nested_->levels - level));
 }
 
-int SurfaceLevels::cell_index(const LevelCell& cell) const {
-  const int shift = nested_->levels - cell.level;
-  return first_cell_[cell.level] + (cell.i >> shift) * ((nested_->grid.columns() - 1) >> shift) +
-         (cell.j >> shift);
-}
-
-void SurfaceLevels::begin(const Surface& surface) {
+bool SurfaceLevels::begin(const Surface& surface, const PlanarPoints& samples) {
   surface_ = &surface;
-  given_ = {};
-  ++begun_;
+  given_ = samples;
   samples_evaluated_ = 0;
+  if (!take_net(surface.net)) return false;
+  ++begun_;
   bounds_.begin();
+  return true;
 }
 
-void SurfaceLevels::begin(const Surface& surface, const PlanarPoints& samples) {
-  begin(surface);
-  given_ = samples;
+// False where it is the one of before.
+bool SurfaceLevels::take_net(const ControlNet& net) {
+  const bool known = begun_ > 0 && net.x == net_.x && net.y == net_.y && net.z == net_.z;
+  if (!known) net_ = net;
+  return !known;
 }
 
 void SurfaceLevels::set_sample(int index, const Vector3& point) {

@@ -46,13 +46,11 @@ class SurfaceLevels {
  public:
   explicit SurfaceLevels(const NestedGrid& nested, InstructionSet set = best_instruction_set());
 
-  // To be called whenever the control points have moved; forgets the samples of before. The surface must have
-  // the grid's knots and outlive the calls below.
-  void begin(const Surface& surface);
-
-  // The same with all samples of the finest grid given, in its order, as GridEvaluator<double> has them: none
-  // is evaluated. They must be the surface's and outlive the calls below.
-  void begin(const Surface& surface, const PlanarPoints& samples);
+  // To be called whenever the control points may have moved. Where none has since the last time, returns
+  // false and keeps all that was evaluated of them. The surface must have the grid's knots and outlive the
+  // calls below. Where all samples of the finest grid are known already, they may be given in its order, as
+  // GridEvaluator<double> has them: none is then evaluated. They too must outlive the calls below.
+  bool begin(const Surface& surface, const PlanarPoints& samples = {});
 
   const Surface& surface() const { return *surface_; }
   PiecewiseSurface pieces() const { return {surface_, &u_pieces_, &v_pieces_}; }
@@ -82,7 +80,12 @@ class SurfaceLevels {
   const CoverSphere& cover(const LevelCell& cell);
 
   // Cells of all levels, counted through; those of one level follow each other.
-  int cell_index(const LevelCell& cell) const;
+  int cell_index(const LevelCell& cell) const {
+    const int down = shift(cell.level);
+    return first_cell_[cell.level] + (cell.i >> down) * ((nested_->grid.columns() - 1) >> down) +
+           (cell.j >> down);
+  }
+  int shift(int level) const { return nested_->levels - level; }  // a cell's step is 2^shift
   int cell_count(int level) const;
   int all_cells() const { return static_cast<int>(covers_.size()); }
 
@@ -101,6 +104,7 @@ class SurfaceLevels {
     BandEntry at(int row) const;
   };
   static Bands bands_of(const GridDirection& direction, int levels);
+  bool take_net(const ControlNet& net);
   PlanarPoints own_samples() const { return {x_.data(), y_.data(), z_.data()}; }
   void set_sample(int index, const Vector3& point);
 
@@ -108,6 +112,7 @@ class SurfaceLevels {
   const PatchKernels* kernels_;
   const Surface* surface_ = nullptr;
   PlanarPoints given_;
+  ControlNet net_;  // as of the last begin()
   SurfaceBounds bounds_;
   PieceBasis u_pieces_, v_pieces_;
   Bands u_bands_, v_bands_;

@@ -32,66 +32,19 @@ PairParameters centre_of(const SurfaceLevels& first, const SurfaceLevels& second
           middle(second, b.v.parameters, pair.second.j, pair.second.level)};
 }
 
-void widen(ParameterRange& range, const SurfaceLevels& levels, const LevelCell& cell) {
-  const Grid& grid = levels.nested().grid;
-  const int step = levels.step(cell.level);
-  range.u0 = std::min(range.u0, grid.u.parameters[cell.i]);
-  range.u1 = std::max(range.u1, grid.u.parameters[cell.i + step]);
-  range.v0 = std::min(range.v0, grid.v.parameters[cell.j]);
-  range.v1 = std::max(range.v1, grid.v.parameters[cell.j + step]);
-}
-
-// The mean of parameters, those of a periodic direction taken the short way from the first.
-class ParameterMean {
- public:
-  explicit ParameterMean(const KnotVector& knots) : knots_(&knots) {}
-  void add(double parameter) {
-    if (count_ == 0) first_ = parameter;
-    const double length = knots_->domain_end() - knots_->domain_start();
-    double apart = parameter - first_;
-    if (knots_->is_periodic()) apart -= length * std::round(apart / length);
-    sum_ += apart;
-    ++count_;
+// Of the finest samples, around cells.
+struct SampleRange {
+  int i0 = std::numeric_limits<int>::max(), i1 = 0, j0 = std::numeric_limits<int>::max(), j1 = 0;
+  void widen(const LevelCell& cell, int step) {
+    i0 = std::min(i0, cell.i);
+    i1 = std::max(i1, cell.i + step);
+    j0 = std::min(j0, cell.j);
+    j1 = std::max(j1, cell.j + step);
   }
-  double mean() const { return knots_->into_domain(first_ + sum_ / count_); }
-  // A share of the way from the mean to another parameter.
-  double towards(double parameter, double share) const {
-    const double from = first_ + sum_ / count_, length = knots_->domain_end() - knots_->domain_start();
-    double apart = parameter - from;
-    if (knots_->is_periodic()) apart -= length * std::round(apart / length);
-    return knots_->into_domain(from + share * apart);
+  ParameterRange of(const Grid& grid) const {
+    return {grid.u.parameters[i0], grid.u.parameters[i1], grid.v.parameters[j0], grid.v.parameters[j1]};
   }
-
- private:
-  const KnotVector* knots_;
-  double first_ = 0.0, sum_ = 0.0;
-  int count_ = 0;
 };
-
-}  // namespace
-
-// The mean of the parameters of a region.
-class SurfacePairCollider::RegionMiddle {
- public:
-  RegionMiddle(const Surface& first, const Surface& second)
-      : u_(first.u), v_(first.v), s_(second.u), t_(second.v) {}
-  void add(const PairParameters& at) {
-    u_.add(at.u);
-    v_.add(at.v);
-    s_.add(at.s);
-    t_.add(at.t);
-  }
-  PairParameters mean() const { return {u_.mean(), v_.mean(), s_.mean(), t_.mean()}; }
-  PairParameters towards(const PairParameters& at, double share) const {
-    return {u_.towards(at.u, share), v_.towards(at.v, share), s_.towards(at.s, share),
-            t_.towards(at.t, share)};
-  }
-
- private:
-  ParameterMean u_, v_, s_, t_;
-};
-
-namespace {
 
 // How long the control net is along a direction.
 double length_along(const ControlNet& net, const Vector3& direction) {
@@ -119,20 +72,18 @@ SurfacePairCollider::SurfacePairCollider(const NestedGrid& first, const NestedGr
       regions_(first_, second_),
       search_(first_, second_) {
   contacts_.reserve(contact_capacity);
+  seeds_.reserve(contact_capacity);
+  last_seeds_.reserve(contact_capacity);
 }
 
 PairResult SurfacePairCollider::collide(const Surface& first, const Surface& second, const PairQuery& query) {
   PairResult result;
   contacts_.clear();
-  if (query.first_moved) {
-    first_.begin(first, query.first_samples);
-    cells_.begin_first();
-  }
-  if (query.second_moved) {
-    second_.begin(second, query.second_samples);
-    cells_.begin_second();
-  }
-  const int samples_before = first_.samples_evaluated() + second_.samples_evaluated();
+  std::swap(seeds_, last_seeds_);
+  seeds_.clear();
+  ++query_;
+  if (first_.begin(first, query.first_samples)) cells_.begin_first();
+  if (second_.begin(second, query.second_samples)) cells_.begin_second();
   search_.begin();
   // Where they touched, they mostly do so still, and the hulls would be asked in vain.
   if (touched_ || !hulls_are_apart(first.net, second.net)) {
@@ -142,21 +93,50 @@ PairResult SurfacePairCollider::collide(const Surface& first, const Surface& sec
   result.touching = touched_ = !contacts_.empty();
   if (!result.touching) find_nearest(query, result);
   result.overflow = result.overflow || search_.overflow();
-  result.samples_evaluated = first_.samples_evaluated() + second_.samples_evaluated() - samples_before;
+  result.samples_evaluated = first_.samples_evaluated() + second_.samples_evaluated();
   return result;
 }
 
 void SurfacePairCollider::take_contacts(const PairQuery& query) {
   Pairs& pairs = cells_.within(0.5 * touch_tolerance_m);
   for (const Region& region : regions_.group(pairs)) {
-    if (touches(pairs, region)) contacts_.push_back(contact_of(pairs, region, query));
+    PairContact contact;
+    take_ranges(pairs, region, contact);
+    const Seed* const last = last_seed(contact);
+    if (!touches(pairs, region, last)) continue;
+    contact.pair = search_.best();
+    seeds_.push_back(settle(pairs, region, query, last, contact));
+    contacts_.push_back(contact);
   }
 }
 
-// First from a few places, which mostly finds a touch at once; then everywhere, to be sure that there is
-// none.
-bool SurfacePairCollider::touches(const Pairs& pairs, const Region& region) {
+void SurfacePairCollider::take_ranges(const Pairs& pairs, const Region& region, PairContact& contact) const {
+  SampleRange first, second;
+  for (std::size_t k = region.begin; k < region.end; ++k) {
+    first.widen(pairs[k].first, first_.step(pairs[k].first.level));
+    second.widen(pairs[k].second, second_.step(pairs[k].second.level));
+  }
+  contact.first = first.of(first_.nested().grid);
+  contact.second = second.of(second_.nested().grid);
+}
+
+// Of the last collide(), where it touched within the region; null where it did not. Ranges of regions may
+// overlap, and mostly they come in the same order.
+const SurfacePairCollider::Seed* SurfacePairCollider::last_seed(const PairContact& contact) const {
+  for (std::size_t k = 0; k < last_seeds_.size(); ++k) {
+    const Seed& seed = last_seeds_[(contacts_.size() + k) % last_seeds_.size()];
+    const PairParameters& at = seed.touch;
+    if (contact.first.holds(at.u, at.v) && contact.second.holds(at.s, at.t)) return &seed;
+  }
+  return nullptr;
+}
+
+// First where they last touched and from a few places, which mostly finds a touch at once; then everywhere,
+// to be sure that there is none.
+bool SurfacePairCollider::touches(const Pairs& pairs, const Region& region, const Seed* last) {
   search_.forget_best();
+  if (last != nullptr) search_.offer(last->touch);
+  if (search_.best_distance_m() <= touch_tolerance_m) return true;
   const std::size_t count = region.end - region.begin, seeds = std::min(count, region_seeds);
   for (std::size_t k = 0; k < seeds; ++k) {
     // From the middle outwards, where a region is most likely to be deep.
@@ -171,45 +151,54 @@ bool SurfacePairCollider::touches(const Pairs& pairs, const Region& region) {
   return false;
 }
 
-PairContact SurfacePairCollider::contact_of(const Pairs& pairs, const Region& region,
-                                            const PairQuery& query) const {
-  PairContact contact;
-  contact.first = contact.second = {infinity, -infinity, infinity, -infinity};
-  RegionMiddle middle(first_.surface(), second_.surface());
-  const std::size_t stride = (region.end - region.begin + middle_pairs - 1) / middle_pairs;
-  for (std::size_t k = region.begin; k < region.end; ++k) {
-    widen(contact.first, first_, pairs[k].first);
-    widen(contact.second, second_, pairs[k].second);
-    if ((k - region.begin) % stride == 0) middle.add(centre_of(first_, second_, pairs[k]));
-  }
-  contact.pair = search_.best();
-  const PairParameters& touch = contact.pair.at;
-  contact.normal = unit_normal(second_.surface(), touch.s, touch.t);
+// The pair of the contact is a touch of the region. Returns what the next collide() may begin from.
+SurfacePairCollider::Seed SurfacePairCollider::settle(const Pairs& pairs, const Region& region,
+                                                      const PairQuery& query, const Seed* last,
+                                                      PairContact& contact) const {
+  Seed found{contact.pair.at, {}};
+  contact.normal = unit_normal(second_.surface(), found.touch.s, found.touch.t);
   // An open surface has no inside: of both its sides, the one with the shorter way out counts, which is
   // looked for first where the middle of the region lies.
-  const Seeds seeds = seeds_of(pairs, region, middle);
+  Seeds seeds = seeds_of(pairs, region, last);
   const double first_side = query.second_closed || seeds.middle_depth > 0.0 ? 1.0 : -1.0;
   double shortest = infinity;
   for (const double outside : {first_side, -first_side}) {
     if (outside < 0.0 && query.second_closed) continue;
     PairContact way = contact;
-    settle(way, seeds.at[outside > 0.0 ? 0 : 1], outside, query.first_closed, shortest);
-    if (!(way.depth_m > 0.0)) {
-      settle(way, outer_seed(pairs, region, outside), outside, query.first_closed, shortest);
+    const int side = outside > 0.0 ? 0 : 1;
+    PairParameters& from = seeds.at[side];
+    settle_from(way, from, outside, query.first_closed, shortest);
+    const bool was_deep = last != nullptr && last->deep[side];
+    if (!(way.depth_m > 0.0) && (last == nullptr || was_deep || shortest == infinity)) {
+      from = was_deep ? last->deepest[side] : outer_seed(pairs, region, outside);
+      settle_from(way, from, outside, query.first_closed, shortest);
     }
+    found.deep[side] = way.depth_m > 0.0;
+    found.deepest[side] = from;
     if (!(way.depth_m > 0.0 && way.depth_m < shortest)) continue;
     shortest = way.depth_m;
     contact = way;
   }
   const bool bodies = query.first_closed && query.second_closed;
   if (shortest == infinity && bodies) take_inner_touch(pairs, region, contact);
-  return contact;
+  return found;
+}
+
+RegionMiddle SurfacePairCollider::middle_of(const Pairs& pairs, const Region& region) const {
+  RegionMiddle middle(first_.surface(), second_.surface());
+  const std::size_t stride = (region.end - region.begin + middle_pairs - 1) / middle_pairs;
+  for (std::size_t k = region.begin; k < region.end; k += stride) {
+    middle.add(centre_of(first_, second_, pairs[k]));
+  }
+  return middle;
 }
 
 // Of the middle of the region and a few places between it and the pairs, which lie where the surfaces cross,
-// and as far beyond: those where the first surface is deepest behind the second and farthest before it.
+// and as far beyond: those where the first surface is deepest behind the second and farthest before it. Where
+// it was deepest last is mostly the place; the others then take turns.
 SurfacePairCollider::Seeds SurfacePairCollider::seeds_of(const Pairs& pairs, const Region& region,
-                                                         const RegionMiddle& middle) const {
+                                                         const Seed* last) const {
+  const RegionMiddle middle = middle_of(pairs, region);
   const std::size_t count = region.end - region.begin;
   Seeds seeds;
   const auto offer = [&](const PairParameters& at) {
@@ -223,10 +212,15 @@ SurfacePairCollider::Seeds SurfacePairCollider::seeds_of(const Pairs& pairs, con
     return depth;
   };
   seeds.middle_depth = offer(middle.mean());
+  for (int side = 0; side < 2; ++side) {
+    if (last != nullptr && last->deep[side]) offer(last->deepest[side]);
+  }
   for (std::size_t k = 0; k < seed_ways; ++k) {
     const PairParameters way = centre_of(first_, second_, pairs[region.begin + k * count / seed_ways]);
-    offer(middle.towards(way, 0.5));
-    offer(middle.towards(way, 2.0));
+    for (std::size_t beyond = 0; beyond < 2; ++beyond) {
+      if (last != nullptr && (2 * k + beyond) != query_ % (2 * seed_ways)) continue;
+      offer(middle.towards(way, beyond == 0 ? 0.5 : 2.0));
+    }
   }
   return seeds;
 }
@@ -272,11 +266,12 @@ void SurfacePairCollider::take_inner_touch(const Pairs& pairs, const Region& reg
 }
 
 // How deep either surface is behind the other: the less of both moves them apart. Kept where it is deeper
-// than what is known; without care for how much beyond `shortest`.
-void SurfacePairCollider::settle(PairContact& contact, const PairParameters& from, double outside,
-                                 bool first_closed, double shortest) const {
+// than what is known; without care for how much beyond `shortest`. `from` becomes where the first is deepest.
+void SurfacePairCollider::settle_from(PairContact& contact, PairParameters& from, double outside,
+                                      bool first_closed, double shortest) const {
   const PiecewiseSurface first = first_.pieces(), second = second_.pieces();
   const DeepestPair of_first = deepest_pair(first, second, from, outside, shortest);
+  from = of_first.pair.at;
   if (!(of_first.depth_m > contact.depth_m)) return;
   // The surfaces face each other where they are deep.
   const PairParameters& deep = of_first.pair.at;
@@ -333,8 +328,11 @@ void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& resul
   if (reach <= 0.0 || first.gap(second) > reach) return;
   search_.forget_best();
   search_.offer(centre_of(first_, second_, cells_.likely_near()));
+  if (nearest_known_) search_.offer(nearest_);
   // Beside a first guess far too long, nearer points were let go: once more, beside the one found.
   while (search_all(reach) > 2.0 * tolerance()) continue;
+  nearest_ = search_.best().at;
+  nearest_known_ = true;
   if (nested && is_contained(query)) {
     contacts_.push_back(containment());
     result.touching = result.contained = true;

@@ -10,6 +10,7 @@
 #include "engine/collision/contact_regions.h"
 #include "engine/collision/pair_search.h"
 #include "engine/collision/parameter_range.h"
+#include "engine/collision/region_middle.h"
 
 namespace spoonbill {
 
@@ -27,9 +28,6 @@ struct PairQuery {
   bool first_closed = false, second_closed = false;
   // Up to which distance the nearest points of surfaces that do not touch are searched for.
   double reach_m = 0.0;
-  // Whether the control points have moved since the last collide(), which must have been of the same surfaces
-  // where they have not: what was evaluated of them is used again.
-  bool first_moved = true, second_moved = true;
   // All samples of a grid, where they are known already (see SurfaceLevels::begin()): none is then evaluated.
   PlanarPoints first_samples, second_samples;
 };
@@ -46,7 +44,8 @@ struct PairResult {
   int samples_evaluated = 0;
 };
 
-// One owner, one thread; allocates only when made. The grids must outlive it.
+// Keeps what it evaluated of a surface until its control points move, and looks first where it found the last
+// contacts. One owner, one thread; allocates only when made. The grids must outlive it.
 class SurfacePairCollider {
  public:
   SurfacePairCollider(const NestedGrid& first, const NestedGrid& second);
@@ -61,7 +60,6 @@ class SurfacePairCollider {
   const std::vector<CellPair>& cells() const { return cells_.pairs(); }
 
  private:
-  class RegionMiddle;
   // By side of the second surface: behind it, before it.
   struct Seeds {
     double middle_depth = 0.0;
@@ -71,14 +69,25 @@ class SurfacePairCollider {
   using Pairs = std::vector<CellPair>;
   using Region = ContactRegions::Region;
 
+  // Where the surfaces touched or crossed, and where the first was deepest, by side of the second as in
+  // Seeds.
+  struct Seed {
+    PairParameters touch, deepest[2];
+    bool deep[2] = {false, false};
+  };
+
   void take_contacts(const PairQuery& query);
-  bool touches(const Pairs& pairs, const Region& region);
-  PairContact contact_of(const Pairs& pairs, const Region& region, const PairQuery& query) const;
-  Seeds seeds_of(const Pairs& pairs, const Region& region, const RegionMiddle& middle) const;
+  void take_ranges(const Pairs& pairs, const Region& region, PairContact& contact) const;
+  const Seed* last_seed(const PairContact& contact) const;
+  bool touches(const Pairs& pairs, const Region& region, const Seed* last);
+  Seed settle(const Pairs& pairs, const Region& region, const PairQuery& query, const Seed* last,
+              PairContact& contact) const;
+  RegionMiddle middle_of(const Pairs& pairs, const Region& region) const;
+  Seeds seeds_of(const Pairs& pairs, const Region& region, const Seed* last) const;
   PairParameters outer_seed(const Pairs& pairs, const Region& region, double outside) const;
   void take_inner_touch(const Pairs& pairs, const Region& region, PairContact& contact) const;
-  void settle(PairContact& contact, const PairParameters& from, double outside, bool first_closed,
-              double shortest) const;
+  void settle_from(PairContact& contact, PairParameters& from, double outside, bool first_closed,
+                   double shortest) const;
   void find_nearest(const PairQuery& query, PairResult& result);
   bool may_contain(const PairQuery& query) const;
   double tolerance() const;
@@ -91,6 +100,10 @@ class SurfacePairCollider {
   ContactRegions regions_;
   PairSearch search_;
   std::vector<PairContact> contacts_;
+  std::vector<Seed> seeds_, last_seeds_;  // of the contacts, and of those of the last collide()
+  std::size_t query_ = 0;
+  PairParameters nearest_;  // of the last surfaces that did not touch
+  bool nearest_known_ = false;
   bool touched_ = false;  // in the last collide(): tells what to try first, never what comes of it
 };
 

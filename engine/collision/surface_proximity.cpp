@@ -65,10 +65,8 @@ void SurfaceProximity::find(const Surface& first, const Surface& second, double 
   overflow_ = false;
   first_.near.clear();
   second_.near.clear();
-  first_.levels.begin(first);
-  second_.levels.begin(second);
-  cells_.begin_first();
-  cells_.begin_second();
+  if (first_.levels.begin(first)) cells_.begin_first();
+  if (second_.levels.begin(second)) cells_.begin_second();
   cells_.update();
   const ElementTree &one = cells_.first_tree(), &other = cells_.second_tree();
   if (one.box(one.root()).gap(other.box(other.root())) > margin_m) return;

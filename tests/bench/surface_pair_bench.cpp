@@ -80,7 +80,6 @@ void surfaces_ours(benchmark::State& state, bool given) {
   PairQuery query;
   query.second_samples = view(sheets.other_samples);
   collider.collide(sheets.shapes[0], sheets.other, query);
-  query.second_moved = false;
   std::size_t turn = 0;
   PairResult result;
   for (auto _ : state) {

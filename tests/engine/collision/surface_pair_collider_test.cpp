@@ -196,12 +196,12 @@ TEST(SurfacePair, WhatHasNotMovedIsNotEvaluatedAgain) {
   EXPECT_GT(collider.collide(first, second, query).samples_evaluated, 0);
   const std::vector<PairContact> before = collider.contacts();
   ASSERT_FALSE(before.empty());
-  query.first_moved = query.second_moved = false;
   EXPECT_EQ(collider.collide(first, second, query).samples_evaluated, 0);
   ASSERT_EQ(collider.contacts().size(), before.size());
   for (std::size_t k = 0; k < before.size(); ++k) {
-    EXPECT_EQ(collider.contacts()[k].depth_m, before[k].depth_m);
-    EXPECT_EQ(collider.contacts()[k].pair.first_m, before[k].pair.first_m);
+    // What Newton's method leaves that begins at its own end.
+    EXPECT_NEAR(collider.contacts()[k].depth_m, before[k].depth_m, 1e-12);
+    EXPECT_LT((collider.contacts()[k].pair.first_m - before[k].pair.first_m).norm(), 1e-9);
   }
 }
 
@@ -219,14 +219,13 @@ TEST(SurfacePair, GivenSamplesAreNotEvaluatedAndTellTheSame) {
     y.push_back(sample.y());
     z.push_back(sample.z());
   }
-  SurfacePairCollider collider(a, b);
-  collider.collide(first, second, {});
-  const std::vector<PairContact> before = collider.contacts();
+  SurfacePairCollider without(a, b), collider(a, b);
+  const int of_both = without.collide(first, second, {}).samples_evaluated;
+  const std::vector<PairContact> before = without.contacts();
   ASSERT_FALSE(before.empty());
   PairQuery query;
-  query.second_moved = false;
   query.first_samples = {x.data(), y.data(), z.data()};
-  EXPECT_EQ(collider.collide(first, second, query).samples_evaluated, 0);
+  EXPECT_LT(collider.collide(first, second, query).samples_evaluated, of_both);
   ASSERT_EQ(collider.contacts().size(), before.size());
   for (std::size_t k = 0; k < before.size(); ++k) {
     EXPECT_EQ(collider.contacts()[k].depth_m, before[k].depth_m);
