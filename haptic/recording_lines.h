@@ -13,7 +13,7 @@
 namespace spoonbill {
 
 // Longest line but the first, its newline included.
-inline constexpr std::size_t recording_line_bytes_limit = std::size_t{64} << 10;
+inline constexpr std::size_t recording_line_bytes_limit = std::size_t{32} << 20;
 
 Json header_to_json(const RecordingHeader& header);
 Result<RecordingHeader> header_from_json(const Json& json, const std::string& source);

@@ -60,7 +60,7 @@ Status check_header(const Json& header, const std::string& name) {
 Status check_line(const Json& line, const std::string& source) {
   const std::string text = json_to_line(line);
   if (text.size() + 1 >= recording_line_bytes_limit) {
-    return Error{source + ": the command is longer than 64 KiB"};
+    return Error{source + ": the command is longer than 32 MiB"};
   }
   auto read_back = parse_json(text, source);
   if (!read_back.ok()) return read_back.error();

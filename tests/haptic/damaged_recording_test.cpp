@@ -147,7 +147,7 @@ TEST(DamagedRecording, NamesLineAndField) {
 }
 
 TEST(DamagedRecording, HasAbsurdSizes) {
-  EXPECT_EQ(refusal(std::string(70'000, ' ') + "\n"), "a.jsonl: line 2 is longer than 64 KiB");
+  EXPECT_EQ(refusal(std::string(34'000'000, ' ') + "\n"), "a.jsonl: line 2 is longer than 32 MiB");
   EXPECT_NE(refusal(std::string(60'000, '[') + "\n").find("line 2: column 65: nested deeper"),
             std::string::npos);
   std::string lines;

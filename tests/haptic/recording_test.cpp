@@ -153,10 +153,24 @@ TEST(RecordingWriter, RefusesWhatCouldNotBeReadBack) {
   EXPECT_NE(refusal({{"command", "x"}, {"deep", deep}}).find("nested deeper"), std::string::npos);
   EXPECT_NE(refusal({{"command", "x"}, {"nan", std::nan("")}}).find("JSON cannot keep"), std::string::npos);
   EXPECT_NE(refusal({{"command", "x"}, {"tick", 5}}).find("tick cannot be an argument"), std::string::npos);
-  EXPECT_NE(refusal({{"command", "x"}, {"long", std::string(70'000, 'x')}}).find("64 KiB"),
+  EXPECT_NE(refusal({{"command", "x"}, {"long", std::string(34'000'000, 'x')}}).find("32 MiB"),
             std::string::npos);
   EXPECT_NE(refusal({{"command", "set_tool"}}).find("kind is missing"), std::string::npos);
   EXPECT_EQ(refusal({{"command", "x"}, {"list", {1, 2.5, "three"}}}), "accepted");
+}
+
+// As a tool of many triangles is.
+TEST(RecordingWriter, KeepsACommandOfSeveralMegabytes) {
+  const TemporaryFolder folder;
+  Json large{{"command", "x"}, {"list", Json::array()}};
+  for (int k = 0; k < 900'000; ++k) large["list"].push_back(k);
+  auto writer = RecordingWriter::create(folder.path() / "a.jsonl", sample_header()).value();
+  ASSERT_TRUE(writer.command(large).ok());
+  ASSERT_TRUE(writer.finish(0).ok());
+  const auto recording = read_recording(folder.path() / "a.jsonl");
+  ASSERT_TRUE(recording.ok());
+  ASSERT_EQ(recording.value().commands.size(), 1u);
+  EXPECT_EQ(recording.value().commands[0].command, large);
 }
 
 TEST(RecordingWriter, RefusesReadingsOutOfReach) {
