@@ -2,7 +2,6 @@
 
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 
 namespace spoonbill {
@@ -11,16 +10,23 @@ namespace {
 // The first with zeros at its end, so that a multiple of it is exact; both together are log(2).
 constexpr double log_2_high = 0x1.62e42feep-1, log_2_low = 0x1.a39ef35793c76p-33;
 
-constexpr std::array<double, 14> make_inverse_factorials() {
-  std::array<double, 14> values{};
-  double factorial = 1.0;
-  for (int k = 0; k < 14; ++k) {
-    values[k] = 1.0 / factorial;
-    factorial *= k + 1;
+constexpr int parts = 64;  // of an octave
+
+// 2^(k / parts), by the Taylor series.
+constexpr std::array<double, parts> make_roots_of_two() {
+  std::array<double, parts> values{};
+  for (int k = 0; k < parts; ++k) {
+    const long double x = 0.693147180559945309417232121458L * k / parts;
+    long double sum = 1.0L;
+    for (int term = 30; term >= 1; --term) sum = 1.0L + sum * x / term;
+    values[k] = static_cast<double>(sum);
   }
   return values;
 }
-constexpr std::array<double, 14> inverse_factorials = make_inverse_factorials();
+constexpr std::array<double, parts> roots_of_two = make_roots_of_two();
+
+// Added and taken away again, rounds a number below 2^51 to a whole one.
+constexpr double to_whole = 0x1.8p52;
 
 // 1 / 3, 1 / 5 and so on.
 constexpr std::array<double, 10> make_inverse_odds() {
@@ -36,25 +42,29 @@ double power_of_two(int power) {
 
 }  // namespace
 
-// The Taylor series within half of log(2), whose fourteenth term is below rounding.
+// The Taylor series within half a part of an octave, whose sixth term is below rounding.
 double stable_exp(double x) {
   if (!(x > -700.0)) return 0.0;
-  const double twos = std::floor(x * 1.4426950408889634 + 0.5);
-  const double rest = (x - twos * log_2_high) - twos * log_2_low;
-  double sum = inverse_factorials[13];
-  for (int k = 12; k >= 0; --k) sum = inverse_factorials[k] + rest * sum;
+  const double whole = (x * (parts * 1.4426950408889634) + to_whole) - to_whole;
+  const double rest = (x - whole * (log_2_high / parts)) - whole * (log_2_low / parts);
+  const double square = rest * rest;
+  const double beyond =
+      rest + square * (0.5 + rest * (1.0 / 6.0) + square * (1.0 / 24.0 + rest * (1.0 / 120.0)));
+  const int number = static_cast<int>(whole), part = number & (parts - 1);
+  const double root = roots_of_two[part];
   // Neither factor is out of range where the product is not.
-  const int power = static_cast<int>(twos), half = power / 2;
-  return sum * power_of_two(half) * power_of_two(power - half);
+  const int power = (number - part) / parts, half = power / 2;
+  return (root + root * beyond) * power_of_two(half) * power_of_two(power - half);
 }
 
 // log(m) = 2 artanh((m - 1) / (m + 1)), m within sqrt(2) of 1.
 double stable_log(double x) {
-  int twos = 0;
-  double mantissa = std::frexp(x, &twos);
-  if (mantissa < 0.70710678118654752) {
-    mantissa *= 2.0;
-    --twos;
+  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x), mantissa_bits = (std::uint64_t{1} << 52) - 1;
+  int twos = static_cast<int>(bits >> 52) - 1023;
+  double mantissa = std::bit_cast<double>((bits & mantissa_bits) | std::bit_cast<std::uint64_t>(1.0));
+  if (mantissa > 1.4142135623730951) {
+    mantissa *= 0.5;
+    ++twos;
   }
   const double s = (mantissa - 1.0) / (mantissa + 1.0), square = s * s;
   double sum = 0.0;

@@ -9,6 +9,8 @@ namespace {
 
 constexpr double farthest_logit = 600.0;
 constexpr double least_share = 1e-60;
+// Of the square of a distance: below it a step of Newton's method gains nothing but rounding.
+constexpr double least_gain = 1e-15;
 
 double bounded(double logit) {
   return std::clamp(logit, -farthest_logit, farthest_logit);
@@ -18,14 +20,17 @@ double log_ratio(double value) {
   return stable_log(std::max(value, least_share));
 }
 
-// The logarithms of share and 1 - share.
+// Share and 1 - share, and their logarithms.
 struct Shares {
   explicit Shares(double logit) {
-    const double rest = stable_log(1.0 + stable_exp(-std::abs(logit)));
+    const double less = stable_exp(-std::abs(logit)), larger = 1.0 / (1.0 + less);
+    const double rest = stable_log(1.0 + less);
     log_share = std::min(logit, 0.0) - rest;
     log_other = std::min(-logit, 0.0) - rest;
+    share = logit < 0.0 ? less * larger : larger;
+    other = logit < 0.0 ? larger : less * larger;
   }
-  double log_share, log_other;
+  double share, other, log_share, log_other;
 };
 
 }  // namespace
@@ -39,8 +44,7 @@ struct SuperquadricDistance::Expansion {
 
 void SuperquadricDistance::expand(const Spot& spot, const Vector3& point, Expansion& out) const {
   const Shares around(spot.around), along(spot.along);
-  const double s = stable_exp(around.log_share), s_other = stable_exp(around.log_other);
-  const double t = stable_exp(along.log_share), t_other = stable_exp(along.log_other);
+  const double s = around.share, s_other = around.other, t = along.share, t_other = along.other;
   const double ring = along.log_share / along_;
   const Vector3 at = axes_.cwiseProduct(Vector3(stable_exp(ring + around.log_share / around_),
                                                 stable_exp(along.log_other / along_),
@@ -77,6 +81,8 @@ SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector
     }
     const double move_around = (b * here.slope[1] - c * here.slope[0]) / determinant;
     const double move_along = (b * here.slope[0] - a * here.slope[1]) / determinant;
+    const double promise = -0.5 * (here.slope[0] * move_around + here.slope[1] * move_along);
+    if (promise < least_gain * here.half_square) break;
     const double size = std::max({1.0, std::abs(move_around) / 20.0, std::abs(move_along) / 20.0});
     const Spot next{bounded(spot.around + move_around / size), bounded(spot.along + move_along / size)};
     expand(next, point, there);
@@ -89,7 +95,7 @@ SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector
     spot = next;
     here = there;
     damping = damping > 1e-6 ? 0.1 * damping : 0.0;
-    if (gain < 1e-17 * here.half_square) break;
+    if (gain < least_gain * here.half_square) break;
   }
   return spot;
 }
