@@ -28,6 +28,11 @@ class SignedDistance {
     return at(point_m);
   }
 
+  // Whether the distance is more than limit_m, which is not below 0.
+  virtual bool is_beyond(const Vector3& point_m, double limit_m) const {
+    return at_within(point_m, limit_m).distance_m > limit_m;
+  }
+
   // Of a convex solid the distance lies above each of its tangents: at(a) + gradient . (b - a) <= at(b),
   // which bounds it far better than the way moved alone.
   virtual bool is_convex() const = 0;

@@ -196,7 +196,7 @@ void SurfaceCollider::take_near_samples(const ToolShape& tool, double margin, Co
 void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, double reach,
                                  CollisionResult& result) {
   const CoverSphere sphere = levels_.cover(cell);
-  if (tool.distance_within(sphere.centre, reach + 2.0 * sphere.radius) - sphere.radius > reach) return;
+  if (tool.is_beyond(sphere.centre, sphere.radius, std::max(reach, 0.0))) return;
   if (levels_.is_finest(cell)) {
     finest_.push_back(cell);
     return;

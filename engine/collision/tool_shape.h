@@ -60,6 +60,12 @@ struct ToolShape {
     return is_solid() ? made_of->at_within(into_frame(point), enough).distance_m : distance(point);
   }
 
+  // Whether no point of a ball is within `reach`, which is not below 0.
+  bool is_beyond(const Vector3& centre, double radius, double reach) const {
+    return is_solid() ? made_of->is_beyond(into_frame(centre), reach + radius)
+                      : distance(centre) - radius > reach;
+  }
+
   // Of a solid alone, in the world frame.
   DistanceSample at_within(const Vector3& point, double enough) const {
     const DistanceSample sample = made_of->at_within(into_frame(point), enough);

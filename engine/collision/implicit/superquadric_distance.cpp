@@ -87,6 +87,10 @@ DistanceSample SuperquadricDistance::at_within(const Vector3& point_m, double en
   return plane.distance_m >= enough_m ? plane : at(point_m);
 }
 
+bool SuperquadricDistance::is_beyond(const Vector3& point_m, double limit_m) const {
+  return log_gauge(point_m) > 0.0 && at_within(point_m, limit_m).distance_m > limit_m;
+}
+
 DistanceSample SuperquadricDistance::at_surface(const Vector3& point) const {
   return tangent(radial(point), point);
 }

@@ -20,6 +20,8 @@ class SuperquadricDistance final : public SignedDistance {
   DistanceSample at(const Vector3& point_m) const override;
   // By the tangent plane where the ray from the middle leaves the solid, if that tells.
   DistanceSample at_within(const Vector3& point_m, double enough_m) const override;
+  // Most that are not are inside, which the gauge tells.
+  bool is_beyond(const Vector3& point_m, double limit_m) const override;
   bool is_convex() const override { return true; }
   Box bounds() const override { return {-axes_, axes_}; }
 
