@@ -17,7 +17,8 @@ Vector3 centre_of(const PatchCorners& corners) {
 
 }  // namespace
 
-PairSearch::PairSearch(SurfaceLevels& first, SurfaceLevels& second) : first_(&first), second_(&second) {
+PairSearch::PairSearch(SurfaceLevels& first, SurfaceLevels& second, const PairJudge* judge)
+    : first_(&first), second_(&second), judge_(judge) {
   pairs_.reserve(pair_capacity);
 }
 
@@ -31,7 +32,11 @@ void PairSearch::forget_best() {
 }
 
 void PairSearch::offer(const PairParameters& from) {
-  const SurfacePair polished = nearest_pair(first_->pieces(), second_->pieces(), from);
+  const PiecewiseSurface first = first_->pieces(), second = second_->pieces();
+  SurfacePair polished = nearest_pair(first, second, from);
+  if (judge_ != nullptr && !judge_->counts(polished.at)) {
+    polished = {from, position(first, from.u, from.v), position(second, from.s, from.t)};
+  }
   const double distance = polished.distance_m();
   if (!(distance < best_distance_m_)) return;
   best_ = polished;

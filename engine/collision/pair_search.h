@@ -9,15 +9,27 @@
 
 namespace spoonbill {
 
+// Says which pairs of places count. Of one surface with itself, Newton's method may lead to a single place,
+// which is no distance from itself.
+class PairJudge {
+ public:
+  virtual bool counts(const PairParameters& at) const = 0;
+
+ protected:
+  ~PairJudge() = default;
+};
+
 // One owner, one thread; allocates only when made.
 class PairSearch {
  public:
-  PairSearch(SurfaceLevels& first, SurfaceLevels& second);
+  // Both may be the same surface, with a judge, which must outlive it.
+  PairSearch(SurfaceLevels& first, SurfaceLevels& second, const PairJudge* judge = nullptr);
 
   void begin();
   void forget_best();
 
-  // The best pair so far is that of `from` polished, where it is nearer.
+  // The best pair so far is that of `from` polished, where it is nearer; as it is where, polished, it does
+  // not count.
   void offer(const PairParameters& from);
   const SurfacePair& best() const { return best_; }
   double best_distance_m() const { return best_distance_m_; }
@@ -47,6 +59,7 @@ class PairSearch {
 
   SurfaceLevels* first_;
   SurfaceLevels* second_;
+  const PairJudge* judge_;
   std::vector<Pair> pairs_;
   SurfacePair best_;
   double best_distance_m_ = 0.0;

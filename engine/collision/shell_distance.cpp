@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "engine/collision/mesh_edges.h"
+#include "engine/collision/mesh_self_contact.h"
 #include "engine/collision/nearest_on_triangle.h"
-#include "engine/collision/self_contact.h"
 
 namespace spoonbill {
 namespace {

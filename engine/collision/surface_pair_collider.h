@@ -8,19 +8,12 @@
 
 #include "engine/collision/cell_pairs.h"
 #include "engine/collision/contact_regions.h"
+#include "engine/collision/pair_contact.h"
 #include "engine/collision/pair_search.h"
 #include "engine/collision/parameter_range.h"
 #include "engine/collision/region_middle.h"
 
 namespace spoonbill {
-
-// One region in which the surfaces cross or touch.
-struct PairContact {
-  SurfacePair pair;              // the deepest points, one on each surface
-  Vector3 normal;                // unit, along which the first surface leaves the second
-  double depth_m = 0.0;          // how far; 0 where they only touch
-  ParameterRange first, second;  // all of the region is within
-};
 
 struct PairQuery {
   // Whether they bound bodies: du x dv then points outwards, and one body may be inside the other. An open

@@ -1,4 +1,4 @@
-#include "engine/collision/self_contact.h"
+#include "engine/collision/mesh_self_contact.h"
 
 #include <algorithm>
 #include <cstddef>
