@@ -66,35 +66,44 @@ bool NearPoints::begin(const Surface& surface) {
 }
 
 void NearPoints::offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch) {
-  const Grid& grid = levels_.nested().grid;
-  const Grid& of_patch = other.nested().grid;
   const PatchCorners corners = other.corners(patch);
-  const int step = levels_.step(cell.level), patch_step = other.step(patch.level);
+  const int step = levels_.step(cell.level);
+  for (int corner = 0; corner < 4; ++corner) {
+    offer(cell.i + (corner >> 1) * step, cell.j + (corner & 1) * step, other, patch, corners);
+  }
+}
+
+void NearPoints::offer(int i, int j, const SurfaceLevels& other, const LevelCell& patch,
+                       const PatchCorners& corners) {
+  const Grid& grid = levels_.nested().grid;
+  const int sample = i * grid.columns() + j;
+  const Vector3 point = levels_.sample(sample);
+  const OnCell on = nearest_on_cell(point, corners);
+  if (placed_at_[sample] != begun_) {
+    if (near_.size() == near_capacity) {
+      overflow_ = true;
+      return;
+    }
+    placed_at_[sample] = begun_;
+    place_[sample] = static_cast<int>(near_.size());
+    near_.push_back(
+        {sample, grid.u.parameters[i], grid.v.parameters[j], 0.0, 0.0, point, Vector3::UnitY(), infinity});
+  }
+  // Until settle(), the distance to the other's triangles.
+  NearPoint& near = near_[place_[sample]];
+  if (on.distance >= near.gap_m) return;
   const auto between = [](const std::vector<double>& parameters, int at, int to, double share) {
     return parameters[at] + share * (parameters[to] - parameters[at]);
   };
-  for (int corner = 0; corner < 4; ++corner) {
-    const int i = cell.i + (corner >> 1) * step, j = cell.j + (corner & 1) * step;
-    const int sample = i * grid.columns() + j;
-    const Vector3& point = levels_.sample(sample);
-    const OnCell on = nearest_on_cell(point, corners);
-    if (placed_at_[sample] != begun_) {
-      if (near_.size() == near_capacity) {
-        overflow_ = true;
-        return;
-      }
-      placed_at_[sample] = begun_;
-      place_[sample] = static_cast<int>(near_.size());
-      near_.push_back(
-          {sample, grid.u.parameters[i], grid.v.parameters[j], 0.0, 0.0, point, Vector3::UnitY(), infinity});
-    }
-    // Until settle(), the distance to the other's triangles.
-    NearPoint& near = near_[place_[sample]];
-    if (on.distance >= near.gap_m) continue;
-    near.gap_m = on.distance;
-    near.other_u = between(of_patch.u.parameters, patch.i, patch.i + patch_step, on.u);
-    near.other_v = between(of_patch.v.parameters, patch.j, patch.j + patch_step, on.v);
-  }
+  const Grid& of_patch = other.nested().grid;
+  const int step = other.step(patch.level);
+  near.gap_m = on.distance;
+  near.other_u = between(of_patch.u.parameters, patch.i, patch.i + step, on.u);
+  near.other_v = between(of_patch.v.parameters, patch.j, patch.j + step, on.v);
+}
+
+double NearPoints::offered_m(int sample) const {
+  return placed_at_[sample] == begun_ ? near_[place_[sample]].gap_m : infinity;
 }
 
 void NearPoints::settle(const SurfaceLevels& other, double outside, double margin_m) {

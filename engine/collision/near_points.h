@@ -31,6 +31,10 @@ class NearPoints {
 
   // The corners of a cell against a cell of the other surface, which may be this one.
   void offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch);
+  // One sample, (i, j) of the finest grid, against a cell of the given corners.
+  void offer(int i, int j, const SurfaceLevels& other, const LevelCell& patch, const PatchCorners& corners);
+  // The least distance of a sample to what it was offered, by the triangles of corners; infinite before.
+  double offered_m(int sample) const;
   // Each sample against the other surface's point nearest to it; those that are not within the margin after
   // all go. `outside` is -1 where the other's du x dv points inwards.
   void settle(const SurfaceLevels& other, double outside, double margin_m);

@@ -19,6 +19,27 @@ Vector3 displacement_now(const BodyPoint& side) {
   return sum;
 }
 
+// Of one body the impulses meet in the nodes that both points share.
+double compliance_between(const BodyPoint& first, const BodyPoint& second) {
+  if (first.body != second.body) {
+    return first.point.compliance(*first.lattice) + second.point.compliance(*second.lattice);
+  }
+  const SpringLattice& lattice = *first.lattice;
+  double sum = 0.0;
+  for (int i = 0; i < first.point.count; ++i) {
+    const int node = first.point.node[i];
+    const double share = first.point.weight[i] - second.point.share_of(node);
+    sum += share * share * static_cast<double>(lattice.inverse_mass(node));
+  }
+  for (int i = 0; i < second.point.count; ++i) {
+    const int node = second.point.node[i];
+    if (first.point.share_of(node) != 0.0) continue;
+    const double share = second.point.weight[i];
+    sum += share * share * static_cast<double>(lattice.inverse_mass(node));
+  }
+  return sum;
+}
+
 }  // namespace
 
 BodyContacts::BodyContacts(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {}
@@ -30,15 +51,9 @@ void BodyContacts::clear() {
 bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m) {
   if (count_ == static_cast<int>(constraints_.size())) return false;
   const double moved = normal.dot(displacement_now(first) - displacement_now(second));
-  constraints_[count_++] = {first.body,
-                            second.body,
-                            first.point,
-                            second.point,
-                            normal,
-                            first.point.compliance(*first.lattice),
-                            second.point.compliance(*second.lattice),
-                            gap_m - moved,
-                            false};
+  constraints_[count_++] = {first.body,    second.body, first.point,
+                            second.point,  normal,      compliance_between(first, second),
+                            gap_m - moved, false};
   return true;
 }
 
@@ -50,7 +65,7 @@ void BodyContacts::begin(double friction) {
 void BodyContacts::solve(std::span<const LatticeView> lattices, float h, std::span<const float> caps) {
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
-    if (constraint.first_compliance + constraint.second_compliance == 0.0) continue;
+    if (constraint.compliance == 0.0) continue;
     solve(lattices, constraint, h, std::min(caps[constraint.first_body], caps[constraint.second_body]));
   }
 }
@@ -63,7 +78,7 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
   const Vector3 relative =
       constraint.first.velocity_m_per_s(first) - constraint.second.velocity_m_per_s(second);
   const ContactPush push{constraint.base_m + constraint.normal.dot(apart), constraint.normal, relative,
-                         1.0 / (constraint.first_compliance + constraint.second_compliance)};
+                         1.0 / constraint.compliance};
   const auto impulse = push.impulse(h, pace, cap, friction_);
   if (!impulse) return;
   constraint.first.push(first, *impulse);

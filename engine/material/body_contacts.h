@@ -1,5 +1,6 @@
-// Contact between bodies that both give way: velocity constraints between points of their surfaces, solved
-// within each substep beside those of the tools. What one body gets the other loses, so that momentum stays.
+// Contact between bodies that both give way, or of one with itself: velocity constraints between points of
+// their surfaces, solved within each substep beside those of the tools. What one point gets the other loses,
+// so that momentum stays.
 #pragma once
 
 #include <span>
@@ -22,8 +23,9 @@ class BodyContacts {
   explicit BodyContacts(int capacity);
 
   void clear();
-  // The first point must stay on that side of the second to which `normal`, a unit vector, points; now it is
-  // `gap_m` beyond it, below zero where it is behind. False when full.
+  // Both may be of the same body, and share nodes. The first point must stay on that side of the second to
+  // which `normal`, a unit vector, points; now it is `gap_m` beyond it, below zero where it is behind. False
+  // when full.
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m);
 
   // Begins a tick. `friction` is Coulomb's coefficient.
@@ -44,8 +46,8 @@ class BodyContacts {
     int first_body = 0, second_body = 0;
     EmbeddedPoint first, second;
     Vector3 normal = Vector3::UnitY();
-    double first_compliance = 0.0, second_compliance = 0.0;  // 1/kg
-    double base_m = 0.0;  // the gap less the part that the displacements have in it
+    double compliance = 0.0;  // what an impulse between them gives them of velocity, 1/kg
+    double base_m = 0.0;      // the gap less the part that the displacements have in it
     bool acted = false;
   };
   void solve(std::span<const LatticeView> lattices, Constraint& constraint, double h, double cap);

@@ -31,6 +31,13 @@ bool EmbeddedPoint::add(const EmbeddedPoint& other, float share) {
   return true;
 }
 
+double EmbeddedPoint::share_of(int node_index) const {
+  for (int i = 0; i < count; ++i) {
+    if (node[i] == node_index) return weight[i];
+  }
+  return 0.0;
+}
+
 Vector3 EmbeddedPoint::rest_m(const SpringLattice& lattice) const {
   Vector3 sum = Vector3::Zero();
   for (int i = 0; i < count; ++i) sum += static_cast<double>(weight[i]) * lattice.mesh().nodes[node[i]];

@@ -17,6 +17,8 @@ struct EmbeddedPoint {
   // Adds share * the other point's weights, merging equal nodes. False when the capacity is exceeded.
   bool add(const EmbeddedPoint& other, float share);
 
+  // The weight of a node, 0 of one that it does not have.
+  double share_of(int node_index) const;
   // In the undeformed lattice.
   Vector3 rest_m(const SpringLattice& lattice) const;
   // What an impulse on the point gives it of velocity, 1/kg; 0 when every node is held.

@@ -15,6 +15,10 @@ namespace spoonbill {
 // is left is taken back as soon as they rest.
 inline constexpr double body_depth_limit_cells = 0.03;
 
+// How near a point must be to become a constraint, in lattice cells of the coarser body: about what a tick
+// can move it.
+inline constexpr double contact_margin_cells = 0.25;
+
 // Where the body stands among the simulation's, and its state.
 struct NumberedBody {
   int number;
@@ -23,6 +27,11 @@ struct NumberedBody {
 
 // The embedding of a point of a body's surface.
 EmbeddedPoint embedding_of(const BodyMapping& mapping, const NearPoint& near);
+
+// A constraint for each point of one body that is near the other, or near another part of the same. False
+// where a capacity was met.
+bool add_near_points(const NumberedBody& from, const NumberedBody& to, const std::vector<NearPoint>& points,
+                     BodyContacts& contacts);
 
 // One owner, the simulation; rebuilt with the mapping of a body. find() and add_contacts()
 // allocate nothing.

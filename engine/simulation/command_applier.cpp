@@ -15,10 +15,16 @@ std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies) {
   return pairs;
 }
 
-BodyContacts make_between(const std::vector<BodyPairContact>& pairs) {
+std::vector<BodySelfContact> make_self(const std::vector<BodyState>& bodies) {
+  std::vector<BodySelfContact> self;
+  for (const BodyState& body : bodies) self.emplace_back(body);
+  return self;
+}
+
+BodyContacts make_between() {
   // Each with the nodes around it; some hundreds act at once where two handles lie on each other.
   constexpr int capacity = 8192;
-  return BodyContacts(pairs.empty() ? 0 : capacity);
+  return BodyContacts(capacity);
 }
 
 Status CommandApplier::operator()(const PlacePlane& command) {
@@ -164,7 +170,8 @@ void CommandApplier::make_contacts() {
   state.tool.contact = ToolContact(state.scene_bodies(), state.model);
   state.mirrored.contact = ToolContact(state.scene_bodies(), state.model);
   state.pairs = make_pairs(state.bodies);
-  state.between = make_between(state.pairs);
+  state.self = make_self(state.bodies);
+  state.between = make_between();
 }
 
 }  // namespace spoonbill

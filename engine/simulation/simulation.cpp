@@ -57,11 +57,11 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
   HeldTool mirrored{ToolContact(bodies, model.value())};
   if (model->soft) bodies.push_back(*std::move(model->soft));
   std::vector<BodyPairContact> pairs = make_pairs(bodies);
-  BodyContacts between = make_between(pairs);
+  std::vector<BodySelfContact> self = make_self(bodies);
   std::vector<std::shared_ptr<const ToolBody>> kept = {modelled_body(scene.tool)};
-  return Simulation(std::make_unique<State>(
-      State{std::move(scene), set, std::move(bodies), std::move(model).value(), std::move(tool),
-            std::move(mirrored), std::move(between), std::move(pairs), false, 0.0, std::move(kept)}));
+  return Simulation(std::make_unique<State>(State{
+      std::move(scene), set, std::move(bodies), std::move(model).value(), std::move(tool),
+      std::move(mirrored), make_between(), std::move(pairs), std::move(self), false, 0.0, std::move(kept)}));
 }
 
 Simulation::Simulation(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -122,6 +122,9 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
     if (of_tool && !tool_acts) return;
     s.pairs_overflow |= !pair.add_contacts(first, second, s.between);
   });
+  for (std::size_t b = 0; b < s.stepped(); ++b) {
+    s.pairs_overflow |= !s.self[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, s.between);
+  }
   s.between.begin(0.0);
 }
 

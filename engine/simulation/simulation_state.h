@@ -7,6 +7,7 @@
 
 #include "engine/material/lattice_solver.h"
 #include "engine/simulation/body_pair_contact.h"
+#include "engine/simulation/body_self_contact.h"
 #include "engine/simulation/body_state.h"
 #include "engine/simulation/simulation.h"
 #include "engine/simulation/tool_contact.h"
@@ -41,6 +42,7 @@ struct Simulation::State {
   HeldTool mirrored;
   BodyContacts between;
   std::vector<BodyPairContact> pairs;  // 0 and 1, 0 and 2, 1 and 2, ...: see make_pairs()
+  std::vector<BodySelfContact> self;   // of each body
   bool pairs_overflow = false;
   double tool_gap_m = 0.0;  // of a soft tool to the bodies; infinite where it is not near
   // Of tools that were replaced: snapshots share them, and no tick must free the last of one.
@@ -61,7 +63,8 @@ struct Simulation::State {
 };
 
 std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies);
-// The memory of their constraints.
-BodyContacts make_between(const std::vector<BodyPairContact>& pairs);
+std::vector<BodySelfContact> make_self(const std::vector<BodyState>& bodies);
+// The memory of all their constraints.
+BodyContacts make_between();
 
 }  // namespace spoonbill

@@ -1,0 +1,16 @@
+#include "engine/simulation/body_self_contact.h"
+
+namespace spoonbill {
+
+BodySelfContact::BodySelfContact(const BodyState& body)
+    : proximity_(std::make_unique<SelfProximity>(body.mapping.nested(), body.mapping.rest(),
+                                                 static_cast<double>(body.lattice.cell_size_m()))) {}
+
+bool BodySelfContact::add_contacts(const NumberedBody& body, BodyContacts& contacts) const {
+  const double margin = contact_margin_cells * static_cast<double>(body.state->lattice.cell_size_m());
+  proximity_->find(body.state->mapping.current(), margin);
+  const bool complete = add_near_points(body, body, proximity_->points(), contacts);
+  return complete && !proximity_->overflow();
+}
+
+}  // namespace spoonbill
