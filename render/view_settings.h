@@ -2,10 +2,16 @@
 // the simulation.
 #pragma once
 
+#include <memory>
+
+#include "engine/collision/stages/contact_stages.h"
 #include "engine/pose.h"
 #include "render/camera.h"
 
 namespace spoonbill {
+
+// The stages in which a contact is found, in their order (section 4.1 of Pungotra et al. 2013).
+enum class ContactStage { none, hulls, spheres, triangles, contacts };
 
 // What is drawn over the bare scene; each has one meaning and can be switched off.
 struct Overlays {
@@ -21,6 +27,8 @@ struct Overlays {
   bool ground_grid = true;
   bool scale_bar = true;
   bool legend = true;  // names what is on
+  ContactStage contact_stage = ContactStage::none;
+  int sphere_level = 0;  // of the spheres: 0, the coarsest, to finest_stage_level
 };
 
 struct ViewSettings {
@@ -29,7 +37,8 @@ struct ViewSettings {
   double interface_scale = 1.0;  // widths of lines and sizes of marks: 1 at 720 pixels of height
 
   Overlays overlays;
-  bool see_through_body = false;  // draws the body as a ghost, so that nodes inside it show
+  std::shared_ptr<const ContactStages> stages;  // the snapshot's, for the contact stage; null draws none
+  bool see_through_body = false;                // draws the body as a ghost, so that nodes inside it show
 
   Vector3 toward_key_light = Vector3(-0.42, 0.80, 0.43);  // any length; kept above the horizon when drawn
   bool shadow = true;

@@ -197,6 +197,7 @@ Status Editor::lay_out(const LiveFrame& frame, double seconds) {
   for (const EditAction action : choice.actions) act(action, frame);
   set_overlays(choice);
   shown_ = view_settings(choice.height_px);
+  stages_.fill(frame.snapshot, shown_);
   const int width = window_.width_px();
   const int height = window_.height_px();
   draw_labels(overlay_labels(frame.snapshot, shown_, width, height), shown_, width, height, *theme.fonts.body,

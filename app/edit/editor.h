@@ -16,6 +16,7 @@
 #include "app/edit/mouse_hand.h"
 #include "app/edit/plots.h"
 #include "app/edit/prompts.h"
+#include "app/view/shown_stages.h"
 #include "app/view/view_choice.h"
 #include "haptic/space_mouse.h"
 #include "render/frame_budget.h"
@@ -107,6 +108,7 @@ class Editor {
   BoundingBox body_;
   std::uint64_t session_ = 0;
   ViewSettings shown_;
+  ShownStages stages_;
   SurfacePick pick_;
   MouseHand hand_;
   double strength_m_ = 0.004;

@@ -3,6 +3,8 @@
 #include <array>
 #include <utility>
 
+#include "app/view/stage_choice.h"
+
 namespace spoonbill {
 namespace {
 
@@ -68,6 +70,14 @@ void draw_overlays(MenuChoice& choice) {
   }};
   for (const auto& [name, member] : all) ImGui::MenuItem(name, nullptr, &(choice.overlays.*member));
   ImGui::MenuItem("See through the body", nullptr, &choice.see_through_body);
+  if (ImGui::BeginMenu("Contact stages")) {
+    for (const StageChoice& stage : stage_choices) {
+      if (ImGui::MenuItem(stage.name, nullptr, stage.is_chosen(choice.overlays))) {
+        stage.choose(choice.overlays);
+      }
+    }
+    ImGui::EndMenu();
+  }
   ImGui::EndMenu();
 }
 

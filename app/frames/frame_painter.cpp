@@ -55,7 +55,9 @@ FramePainter::~FramePainter() {
 
 Status FramePainter::paint(const Snapshot& snapshot, const ViewSettings& view, const PanelModel& panel,
                            Image& image) {
-  if (Status drawn = renderer_.draw(snapshot, view, &lay_out(snapshot, view, panel)); !drawn) return drawn;
+  ViewSettings shown = view;
+  stages_.fill(snapshot, shown);
+  if (Status drawn = renderer_.draw(snapshot, shown, &lay_out(snapshot, shown, panel)); !drawn) return drawn;
   renderer_.read_pixels(image);
   return {};
 }

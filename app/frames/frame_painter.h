@@ -7,6 +7,7 @@
 
 #include "app/panel/interface_context.h"
 #include "app/panel/panel_model.h"
+#include "app/view/shown_stages.h"
 #include "app/view/view_choice.h"
 #include "render/gl/osmesa_context.h"
 #include "render/image/image.h"
@@ -48,6 +49,7 @@ class FramePainter {
   std::optional<InterfaceContext> interface_;  // empty only in its last moment
   Renderer renderer_;                          // after the context, which it needs to the end
   std::mutex* interface_turn_;
+  ShownStages stages_;
 };
 
 }  // namespace spoonbill

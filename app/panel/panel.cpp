@@ -7,6 +7,7 @@
 
 #include "app/panel/rows.h"
 #include "app/report/quantity_text.h"
+#include "app/view/stage_choice.h"
 #include "app/view/view_choice.h"
 
 namespace spoonbill {
@@ -116,6 +117,18 @@ void draw_fixtures(const PanelModel& model, const Theme& theme) {
   fact_row("Fixed nodes", std::to_string(model.fixed_node_count) + " of " + std::to_string(model.node_count));
 }
 
+bool draw_stage(Overlays& overlays) {
+  std::vector<const char*> names;
+  int chosen = 0;
+  for (const StageChoice& choice : stage_choices) {
+    if (choice.is_chosen(overlays)) chosen = static_cast<int>(names.size());
+    names.push_back(choice.name);
+  }
+  if (!list_row("Contact", chosen, names)) return false;
+  stage_choices.at(static_cast<std::size_t>(chosen)).choose(overlays);
+  return true;
+}
+
 void draw_view(const PanelModel& model, const Theme& theme, Requests& requests) {
   const RowGroup group("View", theme);
   if (!group) return;
@@ -134,6 +147,7 @@ void draw_view(const PanelModel& model, const Theme& theme, Requests& requests) 
   pair("Lattice", overlays.lattice, "Control net", overlays.control_net);
   pair("Force", overlays.force, "Fixing planes", overlays.fixing_planes);
   pair("See through", see_through, "Legend", overlays.legend);
+  changed |= draw_stage(overlays);
   if (changed) requests.emplace_back(ChangeView{overlays_command(overlays, see_through)});
 }
 

@@ -70,6 +70,11 @@ bool choice_row(const char* label, int& chosen, std::initializer_list<const char
   return changed;
 }
 
+bool list_row(const char* label, int& chosen, const std::vector<const char*>& names) {
+  begin_row(label);
+  return ImGui::Combo(hidden_name(label).c_str(), &chosen, names.data(), static_cast<int>(names.size()));
+}
+
 void fact_row(const char* label, const std::string& text) {
   begin_row(label);
   ImGui::AlignTextToFramePadding();

@@ -5,6 +5,7 @@
 
 #include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "app/panel/theme.h"
 #include "engine/range.h"
@@ -34,6 +35,9 @@ bool slider_row(const char* label, int& value, Range<int> range, const std::stri
 
 // One of a few choices side by side.
 bool choice_row(const char* label, int& chosen, std::initializer_list<const char*> names);
+
+// One of many, in a list that opens.
+bool list_row(const char* label, int& chosen, const std::vector<const char*>& names);
 
 void fact_row(const char* label, const std::string& text);
 

@@ -34,6 +34,12 @@ constexpr std::array<std::pair<const char*, bool Overlays::*>, 12> overlay_field
     {"legend", &Overlays::legend},
 }};
 
+constexpr std::initializer_list<std::pair<const char*, ContactStage>> stage_names = {
+    {"none", ContactStage::none},         {"hulls", ContactStage::hulls},
+    {"spheres", ContactStage::spheres},   {"triangles", ContactStage::triangles},
+    {"contacts", ContactStage::contacts},
+};
+
 void read_angle(FieldReader& reader, const char* field, Range<double> range_deg, double& angle_rad) {
   if (reader.has(field)) angle_rad = radians_per_degree * reader.number(field, range_deg);
 }
@@ -56,6 +62,10 @@ void read_camera(FieldReader& reader, ViewChoice& choice) {
 void read_overlays(FieldReader& reader, Overlays& overlays) {
   for (const auto& [field, member] : overlay_fields) {
     if (reader.has(field)) overlays.*member = reader.boolean(field);
+  }
+  if (reader.has("contact_stage")) overlays.contact_stage = reader.choice("contact_stage", stage_names);
+  if (reader.has("sphere_level")) {
+    overlays.sphere_level = reader.integer("sphere_level", {0, finest_stage_level});
   }
 }
 
@@ -84,6 +94,10 @@ void add_camera(const ViewChoice& choice, Json& json) {
 
 void add_overlays(const Overlays& overlays, Json& json) {
   for (const auto& [field, member] : overlay_fields) json[field] = overlays.*member;
+  for (const auto& [name, stage] : stage_names) {
+    if (stage == overlays.contact_stage) json["contact_stage"] = name;
+  }
+  json["sphere_level"] = overlays.sphere_level;
 }
 
 std::string command_name(const Json& command) {

@@ -2,10 +2,12 @@
 //   "view": {"camera": {...}, "overlays": {"lattice": true, ...}, "see_through_body": false, "ground_mm":
 //   -40}
 //   {"command": "set_camera", ...}   {"command": "set_overlays", "lattice": true, ...}
-// Camera fields, all optional: "yaw_deg", "pitch_deg", "field_of_view_deg", and "target_mm": [x, y, z] with
-// "distance_mm"; without these two the whole body is shown. Overlays that are not named stay as they are.
-// The ground lies just below the body unless its height is given, for bodies that will be bent further down.
-// Unknown fields and values out of range are refused by name.
+//   {"command": "set_overlays", "contact_stage": "spheres", "sphere_level": 1}
+// A contact stage is "none", "hulls", "spheres", "triangles" or "contacts"; the level, from 0, the coarsest,
+// to 3, is that of the spheres. Camera fields, all optional: "yaw_deg", "pitch_deg", "field_of_view_deg", and
+// "target_mm": [x, y, z] with "distance_mm"; without these two the whole body is shown. Overlays that are not
+// named stay as they are. The ground lies just below the body unless its height is given, for bodies that
+// will be bent further down. Unknown fields and values out of range are refused by name.
 #pragma once
 
 #include <optional>

@@ -47,6 +47,12 @@ std::vector<CellPair>& CellPairs::within(double reach_m) {
   return pairs_;
 }
 
+const std::vector<CellPair>& CellPairs::within_at(double reach_m, int level) {
+  update();
+  take_pairs(reach_m, level);
+  return pairs_;
+}
+
 // From the middle of the smaller surface's box, then back.
 CellPair CellPairs::likely_near() const {
   const auto middle = [](const Box& box) -> Vector3 { return 0.5 * (box.low + box.high); };

@@ -39,6 +39,8 @@ class CellPairs {
   // All pairs of cells that can be within `reach_m` of each other: of the finest level, or where the surfaces
   // meet over a whole area, of the finest at which there are not too many.
   std::vector<CellPair>& within(double reach_m);
+  // The same on the way there: the pairs of cells of one level, counted from the coarsest, that were kept.
+  const std::vector<CellPair>& within_at(double reach_m, int level);
   // Those of the last within(), in the order that others have given them.
   const std::vector<CellPair>& pairs() const { return pairs_; }
 

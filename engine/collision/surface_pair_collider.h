@@ -52,6 +52,11 @@ class SurfacePairCollider {
   // The pairs of cells in which the surfaces could cross or touch, of regions that do and of others.
   const std::vector<CellPair>& cells() const { return cells_.pairs(); }
 
+  // For overlays, after collide(), of the same surfaces. Asked for pairs, they leave others in cells().
+  CellPairs& cell_pairs() { return cells_; }
+  SurfaceLevels& first_levels() { return first_; }
+  SurfaceLevels& second_levels() { return second_; }
+
  private:
   // By side of the second surface: behind it, before it.
   struct Seeds {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <functional>
 
+#include "render/overlay/contact_stage.h"
 #include "render/overlay/force_arrow.h"
 #include "render/overlay/ground_grid.h"
 
@@ -53,6 +55,69 @@ void add_scale_bar(const ViewSettings& settings, const Viewport& viewport, std::
   labels.push_back(label);
 }
 
+void add_stage(const Snapshot& snapshot, const ViewSettings& settings, const Viewport& viewport,
+               std::vector<Label>& labels) {
+  const auto caption = stage_caption(settings);
+  if (!caption) return;
+  const Rectangle& free = viewport.free_px;
+  Label label;
+  label.text = *caption;
+  label.position_px = {free.x + 0.5 * free.width, free.y + 18.0 * settings.interface_scale};
+  label.anchor = {0.5, 0.0};
+  labels.push_back(label);
+  // Of the deepest contact alone: names would hide each other.
+  const std::vector<OverlayArrow> arrows = contact_arrows(snapshot, settings);
+  for (std::size_t k = 0; k < std::min<std::size_t>(arrows.size(), 3); ++k) {
+    const auto start = project(settings.camera, viewport, arrows[k].start_m);
+    const auto tip = project(settings.camera, viewport, arrows[k].tip_m);
+    if (!start || !tip || (*tip - *start).norm() < 1.0) continue;
+    Label name;
+    name.text = arrows[k].name;
+    name.position_px = *tip + 12.0 * settings.interface_scale * (*tip - *start).normalized();
+    name.anchor = {0.5, 0.5};
+    labels.push_back(name);
+  }
+}
+
+std::string of_text(const char* what, std::size_t count, std::size_t all) {
+  return count_text(what, count) + " of " + std::to_string(all);
+}
+
+using AddToLegend = std::function<void(std::string, LabelSymbol, Colour)>;
+
+void add_stage_legend(const ContactStages& stages, const Overlays& on, const AddToLegend& add) {
+  std::size_t kept = 0, dropped = 0, deepest = 0;
+  for (const StageSphere& sphere : stages.spheres) {
+    if (sphere.cell.level == on.sphere_level) ++(sphere.kept ? kept : dropped);
+  }
+  for (const StageContact& contact : stages.contacts) deepest += contact.is_deepest ? 1 : 0;
+  switch (on.contact_stage) {
+    case ContactStage::none:
+      break;
+    case ContactStage::hulls:
+      add("convex hulls", LabelSymbol::line, palette::hull);
+      add(of_text("elements in range", static_cast<std::size_t>(stages.elements_within),
+                  static_cast<std::size_t>(stages.elements)),
+          LabelSymbol::line, palette::parameter_range);
+      break;
+    case ContactStage::spheres:
+      add(count_text("spheres kept", kept), LabelSymbol::sphere, palette::kept_sphere);
+      add(count_text("spheres dropped", dropped), LabelSymbol::sphere, palette::dropped_sphere);
+      break;
+    case ContactStage::triangles:
+      add(of_text("triangles that meet", stages.triangles.size(),
+                  static_cast<std::size_t>(stages.triangles_tested)),
+          LabelSymbol::plane, palette::active_triangle);
+      break;
+    case ContactStage::contacts:
+      add(count_text("contact points", stages.contacts.size()), LabelSymbol::disc, palette::touched_node);
+      add("normals", LabelSymbol::line, palette::contact_normal);
+      if (deepest > 0) add("tangent along u", LabelSymbol::arrow, palette::tangent_u);
+      if (deepest > 0) add("tangent along v", LabelSymbol::arrow, palette::tangent_v);
+      break;
+  }
+}
+
 std::vector<Label> legend_of(const Snapshot& snapshot, const ViewSettings& settings) {
   const Overlays& on = settings.overlays;
   std::vector<Label> legend;
@@ -87,6 +152,7 @@ std::vector<Label> legend_of(const Snapshot& snapshot, const ViewSettings& setti
   if (on.contact_normals && !snapshot.contacts.empty()) {
     add("contact normals", LabelSymbol::line, palette::contact_normal);
   }
+  if (settings.stages) add_stage_legend(*settings.stages, on, add);
   return legend;
 }
 
@@ -176,6 +242,7 @@ OverlayLabels overlay_labels(const Snapshot& snapshot, const ViewSettings& setti
   OverlayLabels labels;
   add_force(snapshot, settings, viewport, labels.in_scene);
   add_scale_bar(settings, viewport, labels.in_scene);
+  add_stage(snapshot, settings, viewport, labels.in_scene);
   if (settings.overlays.legend) labels.legend = legend_of(snapshot, settings);
   return labels;
 }

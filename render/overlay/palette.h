@@ -24,6 +24,14 @@ inline constexpr Colour symmetry_plane{38, 92, 168, 210};  // dash-dotted
 inline constexpr Colour tool{52, 118, 204};
 inline constexpr Colour ground_line{70, 78, 88};
 inline constexpr Colour scale_bar{48, 54, 62};
+inline constexpr Colour hull{96, 58, 160, 170};            // thin lines from point to point
+inline constexpr Colour parameter_range{0, 124, 132};      // thick borders on the surface
+inline constexpr Colour kept_sphere{178, 34, 116};         // translucent shells
+inline constexpr Colour dropped_sphere{92, 100, 112, 90};  // faint ones
+inline constexpr Colour active_triangle{246, 196, 24, 205};
+inline constexpr Colour triangle_edge{120, 84, 0};
+inline constexpr Colour tangent_u{0, 118, 196};  // an arrow, named in the picture
+inline constexpr Colour tangent_v{0, 132, 104};
 inline constexpr Colour text{38, 43, 50};
 
 }  // namespace palette

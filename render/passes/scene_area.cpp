@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "render/overlay/contact_normals.h"
+#include "render/overlay/contact_stage.h"
 #include "render/overlay/fixing_plane.h"
 #include "render/overlay/force_arrow.h"
 #include "render/overlay/solid_tool.h"
@@ -192,6 +193,7 @@ std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& 
     hull.include(arrow->start_m.cast<float>());
     hull.include(arrow->tip_m.cast<float>());
   }
+  strips.include(box_of(stage_shapes(snapshot, settings)));
   include_planes(snapshot, on, body, strips);
   return strips.areas();
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "render/overlay/contact_normals.h"
+#include "render/overlay/contact_stage.h"
 #include "render/overlay/control_net.h"
 #include "render/overlay/fixing_plane.h"
 #include "render/overlay/force_arrow.h"
@@ -18,6 +19,9 @@ namespace {
 
 constexpr float arrow_width_px = 5.0f;
 constexpr float smallest_tool_px = 5.0f;
+constexpr float stage_arrow_px = 3.0f;
+// What lies on the surface must not sink into its chords.
+constexpr float stage_lift_m = 0.0004f;
 constexpr float ghost_translucency = 0.85f;
 
 // Marks on the surface are lifted by this share of a lattice cell, so that chords over a curve show and what
@@ -84,11 +88,16 @@ Result<ScenePasses> ScenePasses::make(const GlFunctions& gl) {
   if (!line) return line.error();
   auto mark = MarkPass::make(gl);
   if (!mark) return mark.error();
+  auto shell = ShellPass::make(gl);
+  if (!shell) return shell.error();
+  auto triangle = TrianglePass::make(gl);
+  if (!triangle) return triangle.error();
   auto resolve = ResolvePass::make(gl);
   if (!resolve) return resolve.error();
   return ScenePasses(Passes{BackgroundPass(gl), std::move(ground).value(), std::move(shadow).value(),
                             std::move(surface).value(), std::move(solid).value(), std::move(line).value(),
-                            std::move(mark).value(), std::move(resolve).value(), ToolBuffers(gl)});
+                            std::move(mark).value(), std::move(shell).value(), std::move(triangle).value(),
+                            std::move(resolve).value(), ToolBuffers(gl)});
 }
 
 void ScenePasses::draw_shadows(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
@@ -126,6 +135,7 @@ void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, co
   if (settings.overlays.fixing_planes) draw_planes(view, snapshot, bodies.bounds());
   if (settings.overlays.symmetry_plane) draw_symmetry(view, snapshot, bodies.bounds());
   if (settings.overlays.tool) draw_tools(view, snapshot);
+  draw_stage(view, snapshot, settings);
   if (settings.overlays.touched_nodes) draw_touched(view, snapshot);
 }
 
@@ -205,6 +215,21 @@ void ScenePasses::draw_tool(const FrameView& view, const ToolSnapshot& tool, con
     passes_.solid.draw_glass_tool(view, passes_.tool, frame, palette::tool);
   } else {
     passes_.solid.draw_sphere(view, centre, pixels_at(view, centre, smallest_tool_px), palette::tool);
+  }
+}
+
+// After the tool, through which a contact is seen.
+void ScenePasses::draw_stage(const FrameView& view, const Snapshot& snapshot,
+                             const ViewSettings& settings) const {
+  StageShapes shapes = stage_shapes(snapshot, settings);
+  passes_.triangle.draw(view, shapes.corners, stage_lift_m);
+  passes_.line.draw(view, shapes.lines, 1.5F * stage_lift_m);
+  passes_.mark.draw(view, shapes.marks, 2.0F * stage_lift_m);
+  passes_.shell.draw(view, shapes.shells);
+  for (const OverlayArrow& arrow : shapes.arrows) {
+    const Eigen::Vector3f start = arrow.start_m.cast<float>();
+    passes_.solid.draw_arrow(view, start, arrow.tip_m.cast<float>(), pixels_at(view, start, stage_arrow_px),
+                             arrow.colour);
   }
 }
 

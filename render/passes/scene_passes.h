@@ -15,9 +15,11 @@
 #include "render/passes/mark_pass.h"
 #include "render/passes/resolve_pass.h"
 #include "render/passes/shadow_pass.h"
+#include "render/passes/shell_pass.h"
 #include "render/passes/solid_pass.h"
 #include "render/passes/surface_pass.h"
 #include "render/passes/tool_buffers.h"
+#include "render/passes/triangle_pass.h"
 #include "render/view_settings.h"
 
 namespace spoonbill {
@@ -46,6 +48,8 @@ class ScenePasses {
     SolidPass solid;
     LinePass line;
     MarkPass mark;
+    ShellPass shell;
+    TrianglePass triangle;
     ResolvePass resolve;
     ToolBuffers tool;
   };
@@ -60,6 +64,7 @@ class ScenePasses {
   void draw_symmetry(const FrameView& view, const Snapshot& snapshot, const BoundingBox& body);
   void draw_tools(const FrameView& view, const Snapshot& snapshot);
   void draw_tool(const FrameView& view, const ToolSnapshot& tool, const ToolFrame& frame);
+  void draw_stage(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) const;
   void draw_touched(const FrameView& view, const Snapshot& snapshot);
 
   Passes passes_;

@@ -1,0 +1,126 @@
+#include "engine/collision/stages/pair_stages.h"
+
+#include <cmath>
+#include <utility>
+
+#include "engine/collision/stages/element_marks.h"
+
+namespace spoonbill {
+
+Result<PairStages> PairStages::make(const Surface& first, const Surface& second) {
+  auto one = make_nested_grid(first.u, first.v, finest_stage_level);
+  if (!one.ok()) return one.error();
+  auto other = make_nested_grid(second.u, second.v, finest_stage_level);
+  if (!other.ok()) return other.error();
+  return PairStages(std::move(one).value(), std::move(other).value());
+}
+
+PairStages::PairStages(NestedGrid first, NestedGrid second)
+    : first_(std::make_unique<NestedGrid>(std::move(first))),
+      second_(std::make_unique<NestedGrid>(std::move(second))),
+      collider_(std::make_unique<SurfacePairCollider>(*first_, *second_)) {}
+
+void PairStages::add(const Surface& first, const Surface& second, double margin_m, bool first_closed,
+                     bool second_closed, ContactStages& stages) {
+  PairQuery query;
+  query.first_closed = first_closed;
+  query.second_closed = second_closed;
+  query.reach_m = margin_m;
+  const PairResult result = collider_->collide(first, second, query);
+  stages.overflow |= result.overflow;
+  const auto add_both = [&](const SurfacePair& pair, double distance) {
+    const PairParameters& at = pair.at;
+    keep(StageContact{contact_at(first, {at.u, at.v, pair.first_m, distance}), true}, stages.contacts,
+         stages);
+    keep(StageContact{contact_at(second, {at.s, at.t, pair.second_m, distance}), true}, stages.contacts,
+         stages);
+  };
+  for (const PairContact& contact : collider_->contacts()) add_both(contact.pair, -contact.depth_m);
+  if (!result.touching && std::isfinite(result.distance_m)) add_both(result.nearest, result.distance_m);
+  const int number = stages.surfaces;
+  stages.surfaces += 2;
+  const int level = add_spheres(margin_m, number, stages);
+  add_triangles(collider_->cell_pairs().within_at(margin_m, level), margin_m, number, stages);
+}
+
+// The cells of one level with their spheres; returns those that were kept, refined. Those of the last level
+// are not, and what is returned of them is not used.
+std::vector<LevelCell> PairStages::add_level(SurfaceLevels& levels, const std::vector<LevelCell>& visited,
+                                             const Marks& kept, int surface, ContactStages& stages) {
+  std::vector<LevelCell> finer;
+  for (const LevelCell& cell : visited) {
+    const bool is_kept = kept[static_cast<std::size_t>(levels.cell_index(cell))] != 0;
+    keep(StageSphere{levels.cover(cell), cell, surface, is_kept}, stages.spheres, stages);
+    if (!is_kept || levels.is_finest(cell)) continue;
+    const int half = levels.step(cell.level) / 2;
+    for (int k = 0; k < 4; ++k) {
+      finer.push_back({cell.i + (k >> 1) * half, cell.j + (k & 1) * half, cell.level + 1});
+    }
+  }
+  return finer;
+}
+
+// Returns the last level at which there are not too many pairs to tell.
+int PairStages::add_spheres(double margin_m, int first_surface, ContactStages& stages) {
+  SurfaceLevels* const levels[2] = {&collider_->first_levels(), &collider_->second_levels()};
+  CellPairs& pairs = collider_->cell_pairs();
+  std::vector<LevelCell> visited[2];
+  pairs.update();
+  ElementMarks within[2] = {ElementMarks(*levels[0]), ElementMarks(*levels[1])};
+  pairs.visit_near_elements(margin_m, [&](const CellPair& pair) {
+    within[0].mark(pair.first);
+    within[1].mark(pair.second);
+  });
+  for (int side = 0; side < 2; ++side) {
+    within[side].add_to(stages);
+    within[side].visit([&](const LevelCell& element) { visited[side].push_back(element); });
+  }
+  for (int level = 0;; ++level) {
+    Marks kept[2];
+    for (int side = 0; side < 2; ++side) {
+      kept[side].assign(static_cast<std::size_t>(levels[side]->all_cells()), 0);
+    }
+    for (const CellPair& pair : pairs.within_at(margin_m, level)) {
+      kept[0][static_cast<std::size_t>(levels[0]->cell_index(pair.first))] = 1;
+      kept[1][static_cast<std::size_t>(levels[1]->cell_index(pair.second))] = 1;
+    }
+    for (int side = 0; side < 2; ++side) {
+      visited[side] = add_level(*levels[side], visited[side], kept[side], first_surface + side, stages);
+    }
+    if (level == finest_stage_level) return level;
+    pairs.within_at(margin_m, level + 1);
+    if (pairs.overflow()) return level;
+  }
+}
+
+void PairStages::add_triangles(const std::vector<CellPair>& pairs, double margin_m, int first_surface,
+                               ContactStages& stages) {
+  SurfaceLevels* const levels[2] = {&collider_->first_levels(), &collider_->second_levels()};
+  // By cell and triangle: 1 where it was tested, 2 where it was kept.
+  Marks marks[2];
+  for (int side = 0; side < 2; ++side) {
+    marks[side].assign(static_cast<std::size_t>(2 * levels[side]->all_cells()), 0);
+  }
+  const auto take = [&](int side, const LevelCell& cell, int k, const Triangle& triangle, bool meets) {
+    std::uint8_t& mark = marks[side][static_cast<std::size_t>(2 * levels[side]->cell_index(cell) + k)];
+    if (mark == 0) ++stages.triangles_tested;
+    if (meets && mark != 2)
+      keep(StageTriangle{triangle, cell, first_surface + side}, stages.triangles, stages);
+    mark = meets || mark == 2 ? 2 : 1;
+  };
+  for (const CellPair& pair : pairs) {
+    const double slack =
+        margin_m + triangle_slack(*levels[0], pair.first) + triangle_slack(*levels[1], pair.second);
+    const auto of_first = triangles_of(levels[0]->corners(pair.first));
+    const auto of_second = triangles_of(levels[1]->corners(pair.second));
+    for (int k = 0; k < 4; ++k) {
+      const Triangle &one = of_first[static_cast<std::size_t>(k >> 1)],
+                     &other = of_second[static_cast<std::size_t>(k & 1)];
+      const bool meet = triangles_meet(one, other, slack);
+      take(0, pair.first, k >> 1, one, meet);
+      take(1, pair.second, k & 1, other, meet);
+    }
+  }
+}
+
+}  // namespace spoonbill

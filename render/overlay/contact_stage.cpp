@@ -1,0 +1,146 @@
+#include "render/overlay/contact_stage.h"
+
+#include <algorithm>
+#include <array>
+
+#include "render/overlay/contact_normals.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr float hull_width_px = 1.2f;
+constexpr float range_width_px = 2.4f;
+constexpr float triangle_edge_width_px = 1.0f;
+constexpr float normal_width_px = 1.3f;
+constexpr float contact_radius_m = 0.0003f;
+constexpr double short_normal = 0.6;  // of the deepest contact's
+constexpr std::size_t most_arrows = 24;
+
+void add_line(const Vector3& start, const Vector3& end, Colour colour, float width_px,
+              std::vector<OverlayLine>& lines) {
+  lines.push_back({start.cast<float>(), end.cast<float>(), colour, colour, width_px});
+}
+
+void add_hulls(const ContactStages& stages, StageShapes& shapes) {
+  for (const StageLine& line : stages.hulls) {
+    add_line(line.start_m, line.end_m, palette::hull, hull_width_px, shapes.lines);
+  }
+  for (const StageLine& line : stages.ranges) {
+    add_line(line.start_m, line.end_m, palette::parameter_range, range_width_px, shapes.lines);
+  }
+}
+
+void add_spheres(const ContactStages& stages, int level, StageShapes& shapes) {
+  for (const StageSphere& sphere : stages.spheres) {
+    if (sphere.cell.level != level) continue;
+    shapes.shells.push_back({sphere.cover.centre.cast<float>(), static_cast<float>(sphere.cover.radius),
+                             sphere.kept ? palette::kept_sphere : palette::dropped_sphere});
+  }
+}
+
+void add_triangles(const ContactStages& stages, StageShapes& shapes) {
+  for (const StageTriangle& triangle : stages.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3 &from = triangle.corners[k], &to = triangle.corners[(k + 1) % 3];
+      shapes.corners.push_back({from.cast<float>(), palette::active_triangle});
+      add_line(from, to, palette::triangle_edge, triangle_edge_width_px, shapes.lines);
+    }
+  }
+}
+
+void add_contacts(const ContactStages& stages, double length, StageShapes& shapes) {
+  for (const StageContact& contact : stages.contacts) {
+    const Vector3& point = contact.at.point_m;
+    shapes.marks.push_back({point.cast<float>(), palette::touched_node, contact_radius_m, 2.2f,
+                            static_cast<float>(MarkShape::disc)});
+    if (contact.is_deepest) continue;
+    add_line(point, point + short_normal * length * contact.at.normal, palette::contact_normal,
+             normal_width_px, shapes.lines);
+  }
+}
+
+bool is_shown(const ViewSettings& settings) {
+  return settings.stages && settings.overlays.contact_stage != ContactStage::none;
+}
+
+}  // namespace
+
+StageShapes stage_shapes(const Snapshot& snapshot, const ViewSettings& settings) {
+  StageShapes shapes;
+  if (!is_shown(settings)) return shapes;
+  const ContactStages& stages = *settings.stages;
+  switch (settings.overlays.contact_stage) {
+    case ContactStage::none:
+      break;
+    case ContactStage::hulls:
+      add_hulls(stages, shapes);
+      break;
+    case ContactStage::spheres:
+      add_spheres(stages, settings.overlays.sphere_level, shapes);
+      break;
+    case ContactStage::triangles:
+      add_triangles(stages, shapes);
+      break;
+    case ContactStage::contacts:
+      add_contacts(stages, contact_normal_length_m(snapshot.tool), shapes);
+      shapes.arrows = contact_arrows(snapshot, settings);
+      break;
+  }
+  return shapes;
+}
+
+std::vector<OverlayArrow> contact_arrows(const Snapshot& snapshot, const ViewSettings& settings) {
+  std::vector<OverlayArrow> arrows;
+  if (!is_shown(settings) || settings.overlays.contact_stage != ContactStage::contacts) return arrows;
+  const double length = contact_normal_length_m(snapshot.tool);
+  for (const StageContact& contact : settings.stages->contacts) {
+    if (!contact.is_deepest || arrows.size() >= most_arrows) continue;
+    const SurfaceContact& at = contact.at;
+    const auto add = [&](const Vector3& direction, Colour colour, const char* name) {
+      arrows.push_back({at.point_m, at.point_m + length * direction, colour, name});
+    };
+    add(at.normal, palette::contact_normal, "n");
+    add(at.tangent_u, palette::tangent_u, "u");
+    add(at.tangent_v, palette::tangent_v, "v");
+  }
+  return arrows;
+}
+
+std::optional<std::string> stage_caption(const ViewSettings& settings) {
+  if (!is_shown(settings)) return std::nullopt;
+  const std::string level = std::to_string(settings.overlays.sphere_level);
+  switch (settings.overlays.contact_stage) {
+    case ContactStage::none:
+      return std::nullopt;
+    case ContactStage::hulls:
+      return "Hulls of the control points, and the range of parameters they leave";
+    case ContactStage::spheres:
+      return settings.overlays.sphere_level < finest_stage_level
+                 ? "Spheres of level " + level + ": what meets is refined, the rest dropped"
+                 : "Spheres of level " + level + ", the last: what meets becomes triangles";
+    case ContactStage::triangles:
+      return "Triangles of the last level that meet";
+    case ContactStage::contacts:
+      return "Contact points with normals; where deepest, tangents along u and v";
+  }
+  return std::nullopt;
+}
+
+BoundingBox box_of(const StageShapes& shapes) {
+  BoundingBox box;
+  const auto include = [&](const Eigen::Vector3f& point) { box.include(point.cast<double>()); };
+  for (const OverlayLine& line : shapes.lines) {
+    include(line.start_m);
+    include(line.end_m);
+  }
+  for (const OverlayShell& shell : shapes.shells) {
+    include((shell.centre_m.array() - shell.radius_m).matrix());
+    include((shell.centre_m.array() + shell.radius_m).matrix());
+  }
+  for (const OverlayCorner& corner : shapes.corners) include(corner.position_m);
+  for (const OverlayMark& mark : shapes.marks) include(mark.position_m);
+  for (const OverlayArrow& arrow : shapes.arrows) box.include(arrow.tip_m);
+  return box;
+}
+
+}  // namespace spoonbill
