@@ -12,7 +12,7 @@ constexpr float hull_width_px = 1.2f;
 constexpr float range_width_px = 2.4f;
 constexpr float triangle_edge_width_px = 1.0f;
 constexpr float normal_width_px = 1.3f;
-constexpr float contact_radius_m = 0.0003f;
+constexpr float contact_radius_m = 0.00015f;
 constexpr double short_normal = 0.6;  // of the deepest contact's
 constexpr std::size_t most_arrows = 24;
 
@@ -51,7 +51,7 @@ void add_triangles(const ContactStages& stages, StageShapes& shapes) {
 void add_contacts(const ContactStages& stages, double length, StageShapes& shapes) {
   for (const StageContact& contact : stages.contacts) {
     const Vector3& point = contact.at.point_m;
-    shapes.marks.push_back({point.cast<float>(), palette::touched_node, contact_radius_m, 2.2f,
+    shapes.marks.push_back({point.cast<float>(), palette::touched_node, contact_radius_m, 2.0f,
                             static_cast<float>(MarkShape::disc)});
     if (contact.is_deepest) continue;
     add_line(point, point + short_normal * length * contact.at.normal, palette::contact_normal,

@@ -116,6 +116,7 @@ void add_stage_legend(const ContactStages& stages, const Overlays& on, const Add
       if (deepest > 0) add("tangent along v", LabelSymbol::arrow, palette::tangent_v);
       break;
   }
+  if (stages.overflow) add("not all are shown", LabelSymbol::none, palette::text);
 }
 
 std::vector<Label> legend_of(const Snapshot& snapshot, const ViewSettings& settings) {

@@ -18,7 +18,8 @@ Result<PairStages> PairStages::make(const Surface& first, const Surface& second)
 PairStages::PairStages(NestedGrid first, NestedGrid second)
     : first_(std::make_unique<NestedGrid>(std::move(first))),
       second_(std::make_unique<NestedGrid>(std::move(second))),
-      collider_(std::make_unique<SurfacePairCollider>(*first_, *second_)) {}
+      collider_(std::make_unique<SurfacePairCollider>(*first_, *second_)),
+      proximity_(std::make_unique<SurfaceProximity>(*first_, *second_)) {}
 
 void PairStages::add(const Surface& first, const Surface& second, double margin_m, bool first_closed,
                      bool second_closed, ContactStages& stages) {
@@ -28,6 +29,23 @@ void PairStages::add(const Surface& first, const Surface& second, double margin_
   query.reach_m = margin_m;
   const PairResult result = collider_->collide(first, second, query);
   stages.overflow |= result.overflow;
+  add_contacts(first, second, query, result, stages);
+  const int number = stages.surfaces;
+  stages.surfaces += 2;
+  const int level = add_spheres(margin_m, number, stages);
+  add_triangles(collider_->cell_pairs().within_at(margin_m, level), margin_m, number, stages);
+}
+
+void PairStages::add_contacts(const Surface& first, const Surface& second, const PairQuery& query,
+                              const PairResult& result, ContactStages& stages) {
+  const bool near = std::isfinite(result.distance_m);
+  if (!result.touching && !near) return;
+  proximity_->find(first, second, query.reach_m, query.second_closed ? 1.0 : -1.0);
+  stages.overflow |= proximity_->overflow();
+  for (const NearPoint& point : proximity_->of_first()) {
+    keep(StageContact{contact_at(first, {point.u, point.v, point.point_m, point.gap_m})}, stages.contacts,
+         stages);
+  }
   const auto add_both = [&](const SurfacePair& pair, double distance) {
     const PairParameters& at = pair.at;
     keep(StageContact{contact_at(first, {at.u, at.v, pair.first_m, distance}), true}, stages.contacts,
@@ -36,11 +54,7 @@ void PairStages::add(const Surface& first, const Surface& second, double margin_
          stages);
   };
   for (const PairContact& contact : collider_->contacts()) add_both(contact.pair, -contact.depth_m);
-  if (!result.touching && std::isfinite(result.distance_m)) add_both(result.nearest, result.distance_m);
-  const int number = stages.surfaces;
-  stages.surfaces += 2;
-  const int level = add_spheres(margin_m, number, stages);
-  add_triangles(collider_->cell_pairs().within_at(margin_m, level), margin_m, number, stages);
+  if (!result.touching) add_both(result.nearest, result.distance_m);
 }
 
 // The cells of one level with their spheres; returns those that were kept, refined. Those of the last level

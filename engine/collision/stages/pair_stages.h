@@ -7,6 +7,7 @@
 
 #include "engine/collision/stages/contact_stages.h"
 #include "engine/collision/surface_pair_collider.h"
+#include "engine/collision/surface_proximity.h"
 #include "engine/result.h"
 
 namespace spoonbill {
@@ -27,12 +28,15 @@ class PairStages {
   using Marks = std::vector<std::uint8_t>;
   static std::vector<LevelCell> add_level(SurfaceLevels& levels, const std::vector<LevelCell>& visited,
                                           const Marks& kept, int surface, ContactStages& stages);
+  void add_contacts(const Surface& first, const Surface& second, const PairQuery& query,
+                    const PairResult& result, ContactStages& stages);
   int add_spheres(double margin_m, int first_surface, ContactStages& stages);
   void add_triangles(const std::vector<CellPair>& pairs, double margin_m, int first_surface,
                      ContactStages& stages);
 
   std::unique_ptr<NestedGrid> first_, second_;  // by pointer, which the collider keeps
   std::unique_ptr<SurfacePairCollider> collider_;
+  std::unique_ptr<SurfaceProximity> proximity_;
 };
 
 }  // namespace spoonbill

@@ -1,0 +1,111 @@
+#include "engine/collision/stages/hull_facets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/bspline/tube.h"
+
+namespace spoonbill {
+namespace {
+
+std::vector<Vector3> points_of(const ControlNet& net) {
+  std::vector<Vector3> points;
+  for (std::size_t k = 0; k < net.size(); ++k) points.emplace_back(net.x[k], net.y[k], net.z[k]);
+  return points;
+}
+
+double size_of(const std::vector<Vector3>& points) {
+  Vector3 low = points[0], high = points[0];
+  for (const Vector3& point : points) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  return (high - low).maxCoeff();
+}
+
+double volume_of(const HullFacets& hull, const std::vector<Vector3>& points) {
+  double six_volumes = 0.0;
+  for (const auto& [a, b, c] : hull.triangles) six_volumes += points[a].dot(points[b].cross(points[c]));
+  return six_volumes / 6.0;
+}
+
+void expect_closed(const HullFacets& hull) {
+  std::set<std::pair<int, int>> directed;
+  std::set<int> corners;
+  for (const auto& triangle : hull.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_TRUE(directed.insert({triangle[k], triangle[(k + 1) % 3]}).second);
+      corners.insert(triangle[k]);
+    }
+  }
+  for (const auto& [from, to] : directed) EXPECT_TRUE(directed.contains({to, from}));
+  // Euler: a closed surface without holes.
+  EXPECT_EQ(corners.size() + hull.triangles.size(), directed.size() / 2 + 2);
+}
+
+// As far along any direction as the points themselves: the hull is neither too small nor too large.
+void expect_farthest(Random& random, const HullFacets& hull, const std::vector<Vector3>& points) {
+  const double step = size_of(points) * 0x1p-20;
+  for (int k = 0; k < 200; ++k) {
+    const Vector3 direction =
+        Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+    double of_points = -1e30, of_hull = -1e30;
+    for (const Vector3& point : points) of_points = std::max(of_points, direction.dot(point));
+    for (const auto& triangle : hull.triangles) {
+      for (const int corner : triangle) of_hull = std::max(of_hull, direction.dot(points[corner]));
+    }
+    // Half a step an axis for either of both.
+    EXPECT_NEAR(of_hull, of_points, 2.0 * step);
+  }
+}
+
+TEST(HullFacets, OfRandomNetsAreTheirHulls) {
+  Random random(7);
+  for (int trial = 0; trial < 40; ++trial) {
+    const std::vector<Vector3> points = points_of(random_surface(random).net);
+    const HullFacets hull = hull_facets(points);
+    ASSERT_FALSE(hull.triangles.empty()) << trial;
+    expect_closed(hull);
+    expect_farthest(random, hull, points);
+  }
+}
+
+// Rings that lie in planes, and poles where many points are one.
+TEST(HullFacets, OfTubesAreTheirHulls) {
+  Random random(8);
+  const Surface tube = ellipsoid_tube(12, 14);
+  const std::vector<Vector3> points = points_of(tube.net);
+  const HullFacets hull = hull_facets(points);
+  expect_closed(hull);
+  expect_farthest(random, hull, points);
+}
+
+TEST(HullFacets, OfALatticeInACubeAreTheCube) {
+  std::vector<Vector3> points;
+  for (int k = 0; k < 125; ++k) points.emplace_back(0.25 * (k / 25), 0.25 * (k / 5 % 5), 0.25 * (k % 5));
+  const HullFacets hull = hull_facets(points);
+  expect_closed(hull);
+  EXPECT_NEAR(volume_of(hull, points), 1.0, 1e-12);
+  double length = 0.0;
+  for (const auto& [a, b] : hull.edges) length += (points[a] - points[b]).norm();
+  EXPECT_NEAR(length, 12.0, 1e-12) << "no edge within a side";
+}
+
+TEST(HullFacets, AreNoneOfWhatHasNoVolume) {
+  std::vector<Vector3> flat;
+  for (int k = 0; k < 20; ++k) flat.emplace_back(0.1 * k, 0.01 * k * k, 0.0);
+  EXPECT_TRUE(hull_facets(flat).triangles.empty());
+  EXPECT_TRUE(hull_facets(std::vector<Vector3>(10, Vector3::Ones())).triangles.empty());
+  EXPECT_TRUE(hull_facets({}).triangles.empty());
+  std::vector<Vector3> odd = {Vector3::Zero(), Vector3::UnitX(), Vector3::UnitY(), Vector3::UnitZ()};
+  EXPECT_EQ(hull_facets(odd).triangles.size(), 4u);
+  odd.push_back(Vector3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_TRUE(hull_facets(odd).triangles.empty());
+}
+
+}  // namespace
+}  // namespace spoonbill
