@@ -113,8 +113,9 @@ void draw_material(const PanelModel& model, const Theme& theme, Requests& reques
 void draw_fixtures(const PanelModel& model, const Theme& theme) {
   const RowGroup group("Fixtures", theme);
   if (!group) return;
-  fact_row("Planes", std::to_string(model.plane_count));
-  fact_row("Fixed nodes", std::to_string(model.fixed_node_count) + " of " + std::to_string(model.node_count));
+  fact_row("Fixed nodes", std::to_string(model.fixed_node_count) + " of " + std::to_string(model.node_count) +
+                              ", " + std::to_string(model.plane_count) +
+                              (model.plane_count == 1 ? " plane" : " planes"));
 }
 
 bool draw_stage(Overlays& overlays) {

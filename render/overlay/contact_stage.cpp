@@ -33,8 +33,9 @@ void add_hulls(const ContactStages& stages, StageShapes& shapes) {
 void add_spheres(const ContactStages& stages, int level, StageShapes& shapes) {
   for (const StageSphere& sphere : stages.spheres) {
     if (sphere.cell.level != level) continue;
+    const Colour kept = sphere.is_second ? palette::kept_second_sphere : palette::kept_sphere;
     shapes.shells.push_back({sphere.cover.centre.cast<float>(), static_cast<float>(sphere.cover.radius),
-                             sphere.kept ? palette::kept_sphere : palette::dropped_sphere});
+                             sphere.kept ? kept : palette::dropped_sphere});
   }
 }
 

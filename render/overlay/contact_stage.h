@@ -14,7 +14,7 @@
 
 namespace spoonbill {
 
-// A translucent sphere with its outline and three great circles.
+// A translucent sphere with its outline; where its colour is faint, the outline alone.
 struct OverlayShell {
   Eigen::Vector3f centre_m = Eigen::Vector3f::Zero();
   float radius_m = 0.0f;

@@ -86,9 +86,10 @@ std::string of_text(const char* what, std::size_t count, std::size_t all) {
 using AddToLegend = std::function<void(std::string, LabelSymbol, Colour)>;
 
 void add_stage_legend(const ContactStages& stages, const Overlays& on, const AddToLegend& add) {
-  std::size_t kept = 0, dropped = 0, deepest = 0;
+  std::size_t kept = 0, kept_second = 0, dropped = 0, deepest = 0;
   for (const StageSphere& sphere : stages.spheres) {
-    if (sphere.cell.level == on.sphere_level) ++(sphere.kept ? kept : dropped);
+    if (sphere.cell.level != on.sphere_level) continue;
+    ++(!sphere.kept ? dropped : sphere.is_second ? kept_second : kept);
   }
   for (const StageContact& contact : stages.contacts) deepest += contact.is_deepest ? 1 : 0;
   switch (on.contact_stage) {
@@ -102,6 +103,10 @@ void add_stage_legend(const ContactStages& stages, const Overlays& on, const Add
       break;
     case ContactStage::spheres:
       add(count_text("spheres kept", kept), LabelSymbol::sphere, palette::kept_sphere);
+      if (kept_second > 0) {
+        add(count_text("of the other surface", kept_second), LabelSymbol::sphere,
+            palette::kept_second_sphere);
+      }
       add(count_text("spheres dropped", dropped), LabelSymbol::sphere, palette::dropped_sphere);
       break;
     case ContactStage::triangles:

@@ -27,6 +27,7 @@ inline constexpr Colour scale_bar{48, 54, 62};
 inline constexpr Colour hull{96, 58, 160, 170};            // thin lines from point to point
 inline constexpr Colour parameter_range{0, 124, 132};      // thick borders on the surface
 inline constexpr Colour kept_sphere{178, 34, 116};         // translucent shells
+inline constexpr Colour kept_second_sphere{20, 92, 168};   // of the other surface
 inline constexpr Colour dropped_sphere{92, 100, 112, 90};  // faint ones
 inline constexpr Colour active_triangle{246, 196, 24, 205};
 inline constexpr Colour triangle_edge{120, 84, 0};

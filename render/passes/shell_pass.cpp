@@ -53,10 +53,6 @@ flat in float radius;
 flat in vec4 colour;
 out vec4 result;
 
-float line(float away_px, float width_px) {
-  return clamp(0.5 * width_px * width_scale + 0.5 - away_px, 0.0, 1.0);
-}
-
 void main() {
   vec3 way = normalize(position - eye);
   vec3 from_centre = eye - centre;
@@ -70,15 +66,11 @@ void main() {
   gl_FragDepth = 0.5 * clip.z / clip.w + 0.5;
 
   float within = clamp(0.5 + (radius - aside) / pixel, 0.0, 1.0);
-  float outline = line(abs(radius - aside - 0.7 * pixel) / pixel, 1.5);
+  float outline = clamp(0.75 * width_scale + 0.5 - abs(radius - aside - 0.7 * pixel) / pixel, 0.0, 1.0);
   float facing = max(-dot(normal, way), 0.15);
-  vec3 off_circles = abs(normal) * radius * facing / pixel;
-  float circles = line(min(off_circles.x, min(off_circles.y, off_circles.z)), 0.6);
   bool solid = colour.a > 0.9;
   float shade = solid ? 0.16 + 0.14 * (1.0 - facing) : 0.0;
-  float room = smoothstep(8.0, 24.0, radius / pixel);
-  float ink = max(outline * (solid ? 0.9 : 0.75), solid ? 0.35 * circles * room : 0.0);
-  float alpha = within * colour.a * max(shade, ink);
+  float alpha = within * colour.a * max(shade, outline * (solid ? 0.9 : 0.75));
   result = vec4(mix(colour.rgb, 0.8 * colour.rgb, outline) * alpha, alpha);
 }
 )";

@@ -1,4 +1,4 @@
-// Draws translucent spheres with their outline and three great circles, where no body hides them.
+// Draws translucent spheres with their outline, where no body hides them.
 #pragma once
 
 #include <vector>

@@ -8,6 +8,8 @@
 #include "app/panel/font_file.h"
 #include "app/panel/interface_context.h"
 #include "app/report/quantity_text.h"
+#include "app/view/stage_choice.h"
+#include "app/view/view_choice.h"
 
 namespace spoonbill {
 namespace {
@@ -23,6 +25,7 @@ PanelModel full_model() {
   model.mass_kg = 1.2345;
   model.fixed_node_count = 39999;
   model.node_count = 40000;
+  model.plane_count = 64;
   model.device = "virtual";
   model.force_n = 3.3;
   model.force_limit_n = 3.3;
@@ -132,6 +135,36 @@ TEST(Panel, OffersASolidWhereTheToolHasABody) {
   ASSERT_NE(set, nullptr);
   EXPECT_EQ(set->tool.kind, ToolKind::solid);
   EXPECT_EQ(set->tool.body, model.tool.body);
+}
+
+// Opens the list of stages, which stands over the last rows, and clicks what is second in it.
+TEST(Panel, OffersTheStagesOfContact) {
+  Frame frame(1280, 720);
+  const auto click = [&](float x, float y) {
+    ImGui::GetIO().MousePos = ImVec2(x, y);
+    frame.draw(full_model());
+    frame.press_at(x, y);
+    frame.draw(full_model());
+    frame.release();
+    return frame.draw(full_model());
+  };
+  frame.draw(full_model());
+  frame.draw(full_model());
+  EXPECT_TRUE(click(200.0F, 501.0F).empty());
+  frame.draw(full_model());
+  const ImGuiWindow* list = nullptr;
+  for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+    if (window->WasActive && (window->Flags & ImGuiWindowFlags_Popup) != 0) list = window;
+  }
+  ASSERT_NE(list, nullptr);
+  const float row = list->Size.y / static_cast<float>(stage_choices.size());
+  const auto requests = click(list->Pos.x + 40.0F, list->Pos.y + 1.5F * row);
+  ASSERT_EQ(requests.size(), 1U);
+  const auto* change = std::get_if<ChangeView>(&requests[0]);
+  ASSERT_NE(change, nullptr);
+  ViewChoice choice;
+  ASSERT_TRUE(apply_view_command(change->command, "panel", choice));
+  EXPECT_EQ(choice.overlays.contact_stage, ContactStage::hulls);
 }
 
 TEST(Panel, LeavesSmallPicturesAlone) {

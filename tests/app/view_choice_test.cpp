@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "app/view/stage_choice.h"
+
 namespace spoonbill {
 namespace {
 
@@ -42,6 +44,54 @@ TEST(ViewChoice, CommandsChangeWhatTheyName) {
   ASSERT_TRUE(apply_view_command(
       parsed(R"({"command": "set_camera", "target_mm": [0, 0, 0], "distance_mm": 100})"), "test", choice));
   EXPECT_FALSE(choice.shows_whole_body);
+}
+
+TEST(ViewChoice, TellsTheStageOfContact) {
+  ViewChoice choice;
+  ASSERT_TRUE(apply_view_command(
+      parsed(R"({"command": "set_overlays", "contact_stage": "spheres", "sphere_level": 3})"), "test",
+      choice));
+  EXPECT_EQ(choice.overlays.contact_stage, ContactStage::spheres);
+  EXPECT_EQ(choice.overlays.sphere_level, 3);
+  ASSERT_TRUE(apply_view_command(parsed(R"({"command": "set_overlays", "tool": false})"), "test", choice));
+  EXPECT_EQ(choice.overlays.contact_stage, ContactStage::spheres) << "what is not named stays";
+  for (const ContactStage stage : {ContactStage::none, ContactStage::hulls, ContactStage::spheres,
+                                   ContactStage::triangles, ContactStage::contacts}) {
+    choice.overlays.contact_stage = stage;
+    const auto read = view_from_json(view_to_json(choice), "test");
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->overlays.contact_stage, stage);
+    EXPECT_EQ(read->overlays.sphere_level, 3);
+  }
+}
+
+// Each message names the field.
+TEST(ViewChoice, RefusesStagesThatAreNone) {
+  for (const auto& [text, field] :
+       {std::pair{R"({"command": "set_overlays", "contact_stage": "sphere"})", "contact_stage"},
+        {R"({"command": "set_overlays", "contact_stage": 1})", "contact_stage"},
+        {R"({"command": "set_overlays", "contact_stage": null})", "contact_stage"},
+        {R"({"command": "set_overlays", "sphere_level": 4})", "sphere_level"},
+        {R"({"command": "set_overlays", "sphere_level": -1})", "sphere_level"},
+        {R"({"command": "set_overlays", "sphere_level": 1.5})", "sphere_level"},
+        {R"({"command": "set_overlays", "contact_stage": "hulls", "sphere_level": "1"})", "sphere_level"}}) {
+    ViewChoice choice;
+    const Status applied = apply_view_command(parsed(text), "test", choice);
+    ASSERT_FALSE(applied) << text;
+    EXPECT_NE(applied.error().message.find(field), std::string::npos) << applied.error().message;
+    EXPECT_EQ(choice.overlays.contact_stage, ContactStage::none);
+  }
+}
+
+TEST(StageChoices, AreEachTheirOwn) {
+  for (const StageChoice& chosen : stage_choices) {
+    Overlays overlays;
+    chosen.choose(overlays);
+    int matches = 0;
+    for (const StageChoice& other : stage_choices) matches += other.is_chosen(overlays) ? 1 : 0;
+    EXPECT_EQ(matches, 1) << chosen.name;
+    EXPECT_TRUE(chosen.is_chosen(overlays)) << chosen.name;
+  }
 }
 
 TEST(ViewChoice, RefusesByName) {

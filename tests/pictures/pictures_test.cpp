@@ -1,12 +1,14 @@
-// The bend as a designer sees it, compared with the approved pictures in screenshots/ by their worst 16 x 16
-// block. A picture that differs leaves itself, the approved one and their difference in picture-failures/ of
-// the build folder. tests/approve makes what the program draws now the approved pictures.
+// The bend as a designer sees it and the stages of a contact, compared with the approved pictures in
+// screenshots/ by their worst 16 x 16 block. A picture that differs leaves itself, the approved one and their
+// difference in picture-failures/ of the build folder. tests/approve makes what the program draws now the
+// approved pictures.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cstdlib>
 #include <functional>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -26,22 +28,20 @@ constexpr double tolerance = 2.0;
 
 constexpr int width_px = 1280, height_px = 720;
 
-const std::filesystem::path recording_file = SPOONBILL_ASSETS "/recordings/spoon-handle-bend.recording.jsonl";
+const std::filesystem::path recording_folder = SPOONBILL_ASSETS "/recordings";
 const std::filesystem::path approved_folder = SPOONBILL_SCREENSHOTS;
 const std::filesystem::path failure_folder = SPOONBILL_PICTURE_FAILURES;
 
 using Edit = std::function<void(ViewSettings&, PanelModel&)>;
 
-// The replay at three moments, each of which can be painted with something changed.
-class BendPictures : public ::testing::Test {
+// Replays at a moment, each of which can be painted with something changed.
+class MomentPictures : public ::testing::Test {
  protected:
   struct Moment {
     const char* name;
     double share;  // of the recording's time
+    const char* recording;
   };
-  static constexpr Moment before{"bend-before", 0.0};
-  static constexpr Moment pushed{"bend-pushed", 0.72};
-  static constexpr Moment settled{"bend-settled", 1.0};
 
   // A moment of the replay, made ready to be painted as often as wanted.
   struct Stage {
@@ -52,7 +52,7 @@ class BendPictures : public ::testing::Test {
   };
 
   static Stage stage_of(const Moment& moment) {
-    auto recording = read_recording(recording_file);
+    auto recording = read_recording(recording_folder / (std::string(moment.recording) + ".recording.jsonl"));
     EXPECT_TRUE(recording) << recording.error().message;
     auto session = Session::make(recording->header.document, "recording", recording->header.device,
                                  best_instruction_set());
@@ -110,9 +110,11 @@ class BendPictures : public ::testing::Test {
            << difference->y_px << "; see " << failure_folder.string();
   }
 
-  // By how much each edit changes the picture of the push.
-  static std::vector<double> changes(const std::vector<Edit>& edits) {
-    Stage stage = stage_of(pushed);
+  static void compare_moment(const Moment& moment) { compare(moment.name, picture(moment)); }
+
+  // By how much each edit changes the picture.
+  static std::vector<double> changes(const Moment& moment, const std::vector<Edit>& edits) {
+    Stage stage = stage_of(moment);
     const Image unchanged = paint(stage, {});
     std::vector<double> result;
     for (const Edit& edit : edits) {
@@ -122,16 +124,24 @@ class BendPictures : public ::testing::Test {
   }
 };
 
+class BendPictures : public MomentPictures {
+ protected:
+  static constexpr const char* bend = "spoon-handle-bend";
+  static constexpr Moment before{"bend-before", 0.0, bend};
+  static constexpr Moment pushed{"bend-pushed", 0.72, bend};
+  static constexpr Moment settled{"bend-settled", 1.0, bend};
+};
+
 TEST_F(BendPictures, Before) {
-  compare(before.name, picture(before));
+  compare_moment(before);
 }
 
 TEST_F(BendPictures, Pushed) {
-  compare(pushed.name, picture(pushed));
+  compare_moment(pushed);
 }
 
 TEST_F(BendPictures, Settled) {
-  compare(settled.name, picture(settled));
+  compare_moment(settled);
 }
 
 TEST_F(BendPictures, SettledWithLatticeAndControlNet) {
@@ -157,13 +167,39 @@ TEST_F(BendPictures, WhatMustShowShows) {
         &Overlays::tool, &Overlays::scale_bar, &Overlays::legend}) {
     edits.emplace_back([overlay](ViewSettings& view, PanelModel&) { view.overlays.*overlay = false; });
   }
-  const std::vector<double> change = changes(edits);
+  const std::vector<double> change = changes(pushed, edits);
   EXPECT_EQ(change[0], 0.0);  // the same again is the same
   EXPECT_GT(change[1], tolerance) << "a light moved by 5 degrees";
   EXPECT_GT(change[2], tolerance) << "one changed label";
   for (std::size_t overlay = 3; overlay < change.size(); ++overlay) {
     EXPECT_GT(change[overlay], tolerance) << "missing overlay " << overlay - 3;
   }
+}
+
+class ContactPictures : public MomentPictures {
+ protected:
+  static constexpr const char* sphere = "contact-stages";
+  static constexpr const char* surfaces = "surface-contact-stages";
+};
+
+TEST_F(ContactPictures, Hulls) {
+  compare_moment({"contact-hulls", 0.35, sphere});
+}
+
+TEST_F(ContactPictures, Spheres) {
+  compare_moment({"contact-spheres", 0.45, sphere});
+}
+
+TEST_F(ContactPictures, Triangles) {
+  compare_moment({"contact-triangles", 0.85, sphere});
+}
+
+TEST_F(ContactPictures, Points) {
+  compare_moment({"contact-points", 0.95, sphere});
+}
+
+TEST_F(ContactPictures, SpheresOfTwoSurfaces) {
+  compare_moment({"contact-surfaces", 0.625, surfaces});
 }
 
 }  // namespace

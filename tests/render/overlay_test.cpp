@@ -64,6 +64,38 @@ TEST(Labels, TheLegendSaysWhatIsOnAndThere) {
   EXPECT_TRUE(overlay_labels(snapshot, settings, 1280, 720).legend.empty());
 }
 
+TEST(Labels, TellTheStageOfAContact) {
+  const Snapshot snapshot = sample_scene();
+  ViewSettings settings = framed(snapshot);
+  const auto labels = [&](ContactStage stage, int level) {
+    settings.overlays.contact_stage = stage;
+    settings.overlays.sphere_level = level;
+    return overlay_labels(snapshot, settings, 1280, 720);
+  };
+  EXPECT_FALSE(has_line(labels(ContactStage::spheres, 1).in_scene, "Spheres")) << "without stages";
+  settings.stages = sample_stages(snapshot);
+  EXPECT_TRUE(has_line(labels(ContactStage::hulls, 0).in_scene, "Hulls of the control points"));
+  EXPECT_TRUE(has_line(labels(ContactStage::hulls, 0).legend, "elements in range"));
+  EXPECT_TRUE(has_line(labels(ContactStage::spheres, 1).in_scene, "Spheres of level 1: "));
+  EXPECT_TRUE(
+      has_line(labels(ContactStage::spheres, finest_stage_level).in_scene, "Spheres of level 3, the last"));
+  const auto kept =
+      std::count_if(settings.stages->spheres.begin(), settings.stages->spheres.end(),
+                    [](const StageSphere& sphere) { return sphere.kept && sphere.cell.level == 1; });
+  EXPECT_GT(kept, 0);
+  EXPECT_TRUE(has_line(labels(ContactStage::spheres, 1).legend, "spheres kept " + std::to_string(kept)));
+  EXPECT_FALSE(has_line(labels(ContactStage::spheres, 1).legend, "of the other surface"));
+  EXPECT_TRUE(has_line(labels(ContactStage::triangles, 0).legend, "triangles that meet"));
+  const OverlayLabels contacts = labels(ContactStage::contacts, 0);
+  EXPECT_TRUE(has_line(contacts.legend, "contact points"));
+  for (const char* name : {"n", "u", "v"}) EXPECT_TRUE(has_line(contacts.in_scene, name));
+  EXPECT_FALSE(has_line(contacts.legend, "not all"));
+  ContactStages cut = *settings.stages;
+  cut.overflow = true;
+  settings.stages = std::make_shared<const ContactStages>(cut);
+  EXPECT_TRUE(has_line(labels(ContactStage::contacts, 0).legend, "not all are shown"));
+}
+
 TEST(ForceArrow, IsAsLongAsTheForceWithinBounds) {
   Snapshot snapshot = sample_scene();
   const ViewSettings settings;

@@ -133,6 +133,48 @@ TEST_F(Rendering, EveryOverlayShows) {
   }
 }
 
+TEST_F(Rendering, EveryStageOfAContactShows) {
+  settings_.stages = sample_stages(snapshot_);
+  const auto shown = [&](ContactStage stage, int level) {
+    return change([&](ViewSettings& s) {
+      s.overlays.contact_stage = stage;
+      s.overlays.sphere_level = level;
+    });
+  };
+  EXPECT_GT(shown(ContactStage::hulls, 0), tolerance);
+  for (int level = 0; level <= finest_stage_level; ++level) {
+    EXPECT_GT(shown(ContactStage::spheres, level), tolerance) << level;
+  }
+  EXPECT_GT(shown(ContactStage::triangles, 0), tolerance);
+  EXPECT_GT(shown(ContactStage::contacts, 0), tolerance);
+  EXPECT_EQ(shown(ContactStage::none, 0), 0.0);
+  settings_.stages = nullptr;
+  EXPECT_EQ(shown(ContactStage::contacts, 0), 0.0);
+}
+
+TEST_F(Rendering, AStageOutsideTheBodyIsDrawnWhole) {
+  auto stages = std::make_shared<ContactStages>();
+  const Vector3 far = snapshot_.tool.proxy.position_m + Vector3(0.0, 0.02, 0.0);
+  stages->spheres.push_back({{far, 0.006}, {0, 0, 0}, 0, false, true});
+  settings_.stages = stages;
+  settings_.overlays.contact_stage = ContactStage::spheres;
+  settings_.overlays.tool = settings_.overlays.force = false;
+  const Image shell = picture();
+  settings_.stages = nullptr;
+  const Image without = picture();
+  const auto centre = project(settings_.camera, make_viewport(width_px, height_px, {}), far);
+  ASSERT_TRUE(centre);
+  const int x = static_cast<int>(centre->x()), y = static_cast<int>(centre->y());
+  int redder = 0;
+  for (int k = -4; k <= 4; ++k) {
+    const auto redness = [&](const Image& image) {
+      return image.pixel(x + k, y)[0] - image.pixel(x + k, y)[1];
+    };
+    redder += redness(shell) > redness(without) ? 1 : 0;
+  }
+  EXPECT_EQ(redder, 9) << "a shell of its colour";
+}
+
 TEST_F(Rendering, TheMirroredToolShowsFarFromTheOther) {
   settings_.overlays.symmetry_plane = false;
   const Image without = picture();

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/bspline/surface.h"
+#include "engine/simulation/snapshot_stages.h"
 
 namespace spoonbill {
 namespace {
@@ -119,6 +120,10 @@ Snapshot sample_scene(const SampleSceneOptions& options) {
 
   snapshot.planes.push_back({Vector3(length_m * fixed_share, 0.5 * thickness_m, 0.0), Vector3::UnitX()});
   return snapshot;
+}
+
+std::shared_ptr<const ContactStages> sample_stages(const Snapshot& snapshot) {
+  return std::make_shared<const ContactStages>(SnapshotStages().find(snapshot));
 }
 
 }  // namespace spoonbill

@@ -2,8 +2,10 @@
 // sphere on its free end, and a force. No physics ran.
 #pragma once
 
+#include <memory>
 #include <string>
 
+#include "engine/collision/stages/contact_stages.h"
 #include "engine/simulation/snapshot.h"
 
 namespace spoonbill {
@@ -16,5 +18,8 @@ struct SampleSceneOptions {
 
 // 100 x 12 x 5 mm, its lower side at y = 0, its axis along x, the first third fixed.
 Snapshot sample_scene(const SampleSceneOptions& options = {});
+
+// Of its sphere and tube, which touch.
+std::shared_ptr<const ContactStages> sample_stages(const Snapshot& snapshot);
 
 }  // namespace spoonbill

@@ -77,6 +77,25 @@ TEST(SceneArea, LeavesOutWhatABentBodyLeavesFree) {
   EXPECT_LT(pixels(areas), 0.8 * (right - left) * (top - bottom));
 }
 
+TEST(SceneArea, HoldsTheStageThatIsShown) {
+  const Snapshot snapshot = sample_scene();
+  ViewSettings settings = framed(snapshot);
+  settings.overlays.tool = settings.overlays.force = false;
+  auto stages = std::make_shared<ContactStages>();
+  const Vector3 high = snapshot.tool.proxy.position_m + Vector3(0.0, 0.02, 0.0);
+  stages->spheres.push_back({{high, 0.004}, {0, 0, 0}, 0, false, true});
+  settings.stages = stages;
+  const auto holds_centre = [&] {
+    const auto centre = project(settings.camera, make_viewport(width, height, settings.panel_px), high);
+    return centre && holds(areas_of(snapshot, settings), centre->x(), height - centre->y());
+  };
+  EXPECT_FALSE(holds_centre());
+  settings.overlays.contact_stage = ContactStage::spheres;
+  EXPECT_TRUE(holds_centre());
+  settings.overlays.sphere_level = 1;
+  EXPECT_FALSE(holds_centre());
+}
+
 TEST(SceneArea, IsTheWholePictureWhereTheBodyReachesBehindTheEye) {
   const Snapshot snapshot = sample_scene();
   ViewSettings settings = framed(snapshot);

@@ -14,7 +14,8 @@
 
 namespace spoonbill {
 
-// The finest level of the spheres that are shown.
+// The finest level of the spheres that are shown. A body's own grid in a simulation ends at level 1, and the
+// search goes on below by cutting patches in four, as these levels do.
 inline constexpr int finest_stage_level = 3;
 
 // What is kept of each kind; beyond, ContactStages::overflow says so.
@@ -28,8 +29,9 @@ struct StageLine {
 struct StageSphere {
   CoverSphere cover;
   LevelCell cell;
-  int surface = 0;    // counted through all surfaces of the stages
-  bool kept = false;  // refined, or triangulated on the last level; dropped otherwise
+  int surface = 0;         // counted through all surfaces of the stages
+  bool is_second = false;  // of two surfaces
+  bool kept = false;       // refined, or triangulated on the last level; dropped otherwise
 };
 
 // One of the two triangles of a cell of the last level that can meet the other side: with the slack by which

@@ -60,11 +60,12 @@ void PairStages::add_contacts(const Surface& first, const Surface& second, const
 // The cells of one level with their spheres; returns those that were kept, refined. Those of the last level
 // are not, and what is returned of them is not used.
 std::vector<LevelCell> PairStages::add_level(SurfaceLevels& levels, const std::vector<LevelCell>& visited,
-                                             const Marks& kept, int surface, ContactStages& stages) {
+                                             const Marks& kept, int surface, bool is_second,
+                                             ContactStages& stages) {
   std::vector<LevelCell> finer;
   for (const LevelCell& cell : visited) {
     const bool is_kept = kept[static_cast<std::size_t>(levels.cell_index(cell))] != 0;
-    keep(StageSphere{levels.cover(cell), cell, surface, is_kept}, stages.spheres, stages);
+    keep(StageSphere{levels.cover(cell), cell, surface, is_second, is_kept}, stages.spheres, stages);
     if (!is_kept || levels.is_finest(cell)) continue;
     const int half = levels.step(cell.level) / 2;
     for (int k = 0; k < 4; ++k) {
@@ -99,7 +100,8 @@ int PairStages::add_spheres(double margin_m, int first_surface, ContactStages& s
       kept[1][static_cast<std::size_t>(levels[1]->cell_index(pair.second))] = 1;
     }
     for (int side = 0; side < 2; ++side) {
-      visited[side] = add_level(*levels[side], visited[side], kept[side], first_surface + side, stages);
+      visited[side] =
+          add_level(*levels[side], visited[side], kept[side], first_surface + side, side == 1, stages);
     }
     if (level == finest_stage_level) return level;
     pairs.within_at(margin_m, level + 1);

@@ -27,7 +27,8 @@ class PairStages {
   // By SurfaceLevels::cell_index().
   using Marks = std::vector<std::uint8_t>;
   static std::vector<LevelCell> add_level(SurfaceLevels& levels, const std::vector<LevelCell>& visited,
-                                          const Marks& kept, int surface, ContactStages& stages);
+                                          const Marks& kept, int surface, bool is_second,
+                                          ContactStages& stages);
   void add_contacts(const Surface& first, const Surface& second, const PairQuery& query,
                     const PairResult& result, ContactStages& stages);
   int add_spheres(double margin_m, int first_surface, ContactStages& stages);

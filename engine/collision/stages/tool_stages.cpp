@@ -73,7 +73,7 @@ void ToolStages::add_spheres(int surface, ContactStages& stages) {
         ++finer;
       }
     }
-    keep(StageSphere{levels.cover(cell), cell, surface, kept}, stages.spheres, stages);
+    keep(StageSphere{levels.cover(cell), cell, surface, false, kept}, stages.spheres, stages);
   }
   within.add_to(stages);
 }
