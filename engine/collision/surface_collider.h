@@ -64,8 +64,8 @@ class SurfaceCollider {
 
   // For tests and overlays, after collide().
   SurfaceLevels& levels() { return levels_; }
-  // The cells that were looked at, level by level. Those within a cell that was kept follow each other, in the
-  // order of the cells that were kept.
+  // The cells that were looked at, level by level. Those within a cell that was kept follow each other, in
+  // the order of the cells that were kept.
   const std::vector<LevelCell>& visited_cells() const { return cells_; }
   // Those of the finest level that were kept, in the same order.
   const std::vector<LevelCell>& finest_cells() const { return finest_; }

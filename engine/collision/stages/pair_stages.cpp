@@ -120,8 +120,9 @@ void PairStages::add_triangles(const std::vector<CellPair>& pairs, double margin
   const auto take = [&](int side, const LevelCell& cell, int k, const Triangle& triangle, bool meets) {
     std::uint8_t& mark = marks[side][static_cast<std::size_t>(2 * levels[side]->cell_index(cell) + k)];
     if (mark == 0) ++stages.triangles_tested;
-    if (meets && mark != 2)
+    if (meets && mark != 2) {
       keep(StageTriangle{triangle, cell, first_surface + side}, stages.triangles, stages);
+    }
     mark = meets || mark == 2 ? 2 : 1;
   };
   for (const CellPair& pair : pairs) {
