@@ -62,7 +62,9 @@ void add_stage(const Snapshot& snapshot, const ViewSettings& settings, const Vie
   const Rectangle& free = viewport.free_px;
   Label label;
   label.text = *caption;
-  label.position_px = {free.x + 0.5 * free.width, free.y + 18.0 * settings.interface_scale};
+  // Below a menu, where the panel begins below one.
+  const double top = std::max(free.y, settings.panel_px.y);
+  label.position_px = {free.x + 0.5 * free.width, top + 18.0 * settings.interface_scale};
   label.anchor = {0.5, 0.0};
   labels.push_back(label);
   // Of the deepest contact alone: names would hide each other.
