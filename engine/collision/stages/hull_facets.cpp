@@ -4,12 +4,16 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 
 namespace spoonbill {
 namespace {
 
 // Products of three differences then stay below 2^63.
 constexpr double steps_a_side = 1 << 20;
+
+// How nearly flat sides are cut to triangles depends on the last digits of their points, and nobody sees it.
+constexpr double least_bend_rad = 0.5 * std::numbers::pi / 180.0;
 
 using Steps = Eigen::Matrix<std::int64_t, 3, 1>;
 using Edge = std::array<int, 2>;
@@ -113,19 +117,16 @@ std::vector<Face> Builder::faces() const {
 }
 
 std::vector<Edge> Builder::edges() const {
-  std::map<Edge, int> opposite;  // the third corner, by directed edge
+  std::map<Edge, Eigen::Vector3d> normals;  // of the triangle to the left of each directed edge
   for (const Plane& plane : planes_) {
-    for (int k = 0; k < 3; ++k) {
-      opposite[{plane.face[k], plane.face[(k + 1) % 3]}] = plane.face[(k + 2) % 3];
-    }
+    const Eigen::Vector3d normal = plane.normal.cast<double>().normalized();
+    for (int k = 0; k < 3; ++k) normals[{plane.face[k], plane.face[(k + 1) % 3]}] = normal;
   }
   std::vector<Edge> edges;
-  for (const Plane& plane : planes_) {
-    for (int k = 0; k < 3; ++k) {
-      const Edge edge{plane.face[k], plane.face[(k + 1) % 3]};
-      if (edge[0] > edge[1]) continue;
-      if (volume(plane, opposite.at({edge[1], edge[0]})) != 0) edges.push_back(edge);
-    }
+  for (const auto& [edge, normal] : normals) {
+    if (edge[0] > edge[1]) continue;
+    const Eigen::Vector3d& other = normals.at({edge[1], edge[0]});
+    if (std::atan2(normal.cross(other).norm(), normal.dot(other)) > least_bend_rad) edges.push_back(edge);
   }
   return edges;
 }

@@ -12,7 +12,7 @@ namespace spoonbill {
 // Indices into the points.
 struct HullFacets {
   std::vector<std::array<int, 3>> triangles;  // counter-clockwise from outside
-  std::vector<std::array<int, 2>> edges;      // between triangles of different planes
+  std::vector<std::array<int, 2>> edges;      // between triangles that bend by half a degree or more
 };
 
 // For points rounded to 2^20 steps of their box's longest side, on which the sign of a volume is exact: the

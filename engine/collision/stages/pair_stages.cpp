@@ -18,7 +18,6 @@ Result<PairStages> PairStages::make(const Surface& first, const Surface& second)
 PairStages::PairStages(NestedGrid first, NestedGrid second)
     : first_(std::make_unique<NestedGrid>(std::move(first))),
       second_(std::make_unique<NestedGrid>(std::move(second))),
-      collider_(std::make_unique<SurfacePairCollider>(*first_, *second_)),
       proximity_(std::make_unique<SurfaceProximity>(*first_, *second_)) {}
 
 void PairStages::add(const Surface& first, const Surface& second, double margin_m, bool first_closed,
@@ -27,6 +26,8 @@ void PairStages::add(const Surface& first, const Surface& second, double margin_
   query.first_closed = first_closed;
   query.second_closed = second_closed;
   query.reach_m = margin_m;
+  // A used one looks first where it last found contacts.
+  collider_ = std::make_unique<SurfacePairCollider>(*first_, *second_);
   const PairResult result = collider_->collide(first, second, query);
   stages.overflow |= result.overflow;
   add_contacts(first, second, query, result, stages);

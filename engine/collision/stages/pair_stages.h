@@ -35,8 +35,8 @@ class PairStages {
   void add_triangles(const std::vector<CellPair>& pairs, double margin_m, int first_surface,
                      ContactStages& stages);
 
-  std::unique_ptr<NestedGrid> first_, second_;  // by pointer, which the collider keeps
-  std::unique_ptr<SurfacePairCollider> collider_;
+  std::unique_ptr<NestedGrid> first_, second_;     // by pointer, which the collider keeps
+  std::unique_ptr<SurfacePairCollider> collider_;  // of the last add()
   std::unique_ptr<SurfaceProximity> proximity_;
 };
 

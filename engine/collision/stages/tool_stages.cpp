@@ -34,12 +34,12 @@ Result<ToolStages> ToolStages::make(const KnotVector& u, const KnotVector& v) {
   return ToolStages(std::move(nested).value());
 }
 
-ToolStages::ToolStages(NestedGrid nested)
-    : nested_(std::make_unique<NestedGrid>(std::move(nested))),
-      collider_(std::make_unique<SurfaceCollider>(*nested_)) {}
+ToolStages::ToolStages(NestedGrid nested) : nested_(std::make_unique<NestedGrid>(std::move(nested))) {}
 
 void ToolStages::add(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
                      ContactStages& stages) {
+  // A used one looks first where it last found a contact.
+  collider_ = std::make_unique<SurfaceCollider>(*nested_);
   const CollisionResult result = collider_->collide(surface, tool, margin_m, closed);
   stages.overflow |= result.overflow;
   const int number = stages.surfaces++;

@@ -9,8 +9,8 @@
 
 namespace spoonbill {
 
-// What is shown is what SurfaceCollider did: its cells, its
-// spheres, its contacts. One owner, one thread. The knots are those of the surfaces given later.
+// What is shown is what a SurfaceCollider does that is asked for the first time: its cells, its spheres, its
+// contacts. One owner, one thread. The knots are those of the surfaces given later.
 class ToolStages {
  public:
   static Result<ToolStages> make(const KnotVector& u, const KnotVector& v);
@@ -26,8 +26,8 @@ class ToolStages {
   void add_contacts(const Surface& surface, const ToolShape& tool, const CollisionResult& result,
                     ContactStages& stages);
 
-  std::unique_ptr<NestedGrid> nested_;  // by pointer, which the collider keeps
-  std::unique_ptr<SurfaceCollider> collider_;
+  std::unique_ptr<NestedGrid> nested_;         // by pointer, which the collider keeps
+  std::unique_ptr<SurfaceCollider> collider_;  // of the last add()
 };
 
 }  // namespace spoonbill

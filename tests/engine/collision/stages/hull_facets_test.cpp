@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 
 #include "tests/engine/bspline/random_surface.h"
@@ -93,6 +94,21 @@ TEST(HullFacets, OfALatticeInACubeAreTheCube) {
   double length = 0.0;
   for (const auto& [a, b] : hull.edges) length += (points[a] - points[b]).norm();
   EXPECT_NEAR(length, 12.0, 1e-12) << "no edge within a side";
+}
+
+// A roof of that angle on a box: its ridge is an edge from half a degree on.
+TEST(HullFacets, HaveEdgesWhereTheyBend) {
+  for (const auto& [bend_deg, edges] : {std::pair{0.4, 12u}, {0.6, 13u}}) {
+    const double height = 0.5 * std::tan(0.5 * bend_deg * std::numbers::pi / 180.0);
+    std::vector<Vector3> points;
+    for (int k = 0; k < 8; ++k) points.emplace_back(k & 1, -((k >> 1) & 1), k >> 2);
+    points.emplace_back(0.5, height, 0.0);
+    points.emplace_back(0.5, height, 1.0);
+    const HullFacets hull = hull_facets(points);
+    expect_closed(hull);
+    // Its four slanting edges stand in for two of the box's.
+    EXPECT_EQ(hull.edges.size(), edges + 2u) << bend_deg;
+  }
 }
 
 TEST(HullFacets, AreNoneOfWhatHasNoVolume) {
