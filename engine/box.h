@@ -27,4 +27,8 @@ struct Box {
   double size() const { return (high - low).norm(); }
 };
 
+inline Box joined(const Box& a, const Box& b) {
+  return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
+}
+
 }  // namespace spoonbill

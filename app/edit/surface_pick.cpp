@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "render/overlay/solid_tool.h"
+
 namespace spoonbill {
 namespace {
 
@@ -42,7 +44,8 @@ double ball_radius(const TessellatedSurface& surface) {
 }  // namespace
 
 void SurfacePick::update(const Snapshot& snapshot) {
-  surfaces_.resize(snapshot.bodies.size());
+  // The last of the bodies may be a soft tool, which is no body to bring it to.
+  surfaces_.resize(snapshot.bodies.size() - (is_soft(snapshot.tool) ? 1 : 0));
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     Sampled& sampled = surfaces_[i];
     const SamplingLevel level =

@@ -22,6 +22,9 @@ BoundingBox framed_box(const Snapshot& start) {
     for (std::size_t i = 0; i < surface.x.size(); ++i) {
       box.include({surface.x[i], surface.y[i], surface.z[i]});
     }
+    for (std::size_t i = 0; i < body.mesh.x.size(); ++i) {
+      box.include({body.mesh.x[i], body.mesh.y[i], body.mesh.z[i]});
+    }
   }
   return box;
 }

@@ -15,6 +15,9 @@ inline constexpr int max_degree = 9;
 
 class KnotVector {
  public:
+  // No knots, of no surface: to be assigned before anything is asked of it but whether it equals another.
+  KnotVector() = default;
+
   // An open knot vector of n + degree + 1 nondecreasing knots for n control points, clamped or not. The
   // domain is [knots[degree], knots[n]]. Refused, with the offending knot named: degree out of 1..max_degree,
   // fewer than degree + 1 control points, a non-finite or decreasing knot, an empty domain, multiplicity
@@ -60,8 +63,6 @@ class KnotVector {
   friend bool operator==(const KnotVector&, const KnotVector&) = default;
 
  private:
-  KnotVector() = default;
-
   int degree_ = 0;
   int control_point_count_ = 0;
   bool periodic_ = false;

@@ -72,19 +72,7 @@ BoxTree::BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size) {
   }
   order_.reserve(items.size());
   for (const Item& item : items) order_.push_back(item.index);
-  // Children stand behind their parents.
-  for (auto index = static_cast<std::uint32_t>(nodes_.size()); index-- > 0;) {
-    Node& node = nodes_[index];
-    const bool leaf = node.is_leaf();
-    node.box = leaf ? boxes[order_[node.first]] : nodes_[index + 1].box;
-    for (std::uint32_t k = 1; k < node.count; ++k) {
-      const Box& other = boxes[order_[node.first + k]];
-      node.box = {node.box.low.cwiseMin(other.low), node.box.high.cwiseMax(other.high)};
-    }
-    if (leaf) continue;
-    const Box& right = nodes_[node.first].box;
-    node.box = {node.box.low.cwiseMin(right.low), node.box.high.cwiseMax(right.high)};
-  }
+  refit([&](std::uint32_t place) { return boxes[order_[place]]; });
 }
 
 }  // namespace spoonbill

@@ -9,7 +9,7 @@
 
 namespace spoonbill {
 
-// Never changes once made, so any thread may read it.
+// Which items lie together never changes once made; any thread may read it while none refits.
 class BoxTree {
  public:
   struct Node {
@@ -21,6 +21,17 @@ class BoxTree {
 
   // Halves the items by the middles of their boxes along the longest side. At least one box.
   BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size);
+
+  // Takes the boxes that the same items have now: box_of(place) of each place in order(). Allocates nothing.
+  template <class BoxOf>
+  void refit(const BoxOf& box_of) {
+    // Children stand behind their parents.
+    for (auto index = static_cast<std::uint32_t>(nodes_.size()); index-- > 0;) {
+      Node& node = nodes_[index];
+      node.box = node.is_leaf() ? box_of(node.first) : joined(nodes_[index + 1].box, nodes_[node.first].box);
+      for (std::uint32_t k = 1; k < node.count; ++k) node.box = joined(node.box, box_of(node.first + k));
+    }
+  }
 
   const std::vector<Node>& nodes() const { return nodes_; }           // the root first
   const std::vector<std::uint32_t>& order() const { return order_; }  // the items, leaf by leaf

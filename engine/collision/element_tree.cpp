@@ -4,13 +4,6 @@
 #include <limits>
 
 namespace spoonbill {
-namespace {
-
-Box joined(const Box& a, const Box& b) {
-  return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
-}
-
-}  // namespace
 
 ElementTree::Direction ElementTree::unroll(const KnotVector& knots) {
   Direction direction{knots.degree(), {}, {}};

@@ -15,6 +15,8 @@ namespace spoonbill {
 struct LatticeMesh {
   std::array<int, 3> count{};
   std::vector<Vector3> nodes;  // m
+  // How much of each cell there is, in the order of its first corners; empty: all of every one.
+  std::vector<double> cell_shares;
 
   int index(int i, int j, int k) const { return (k * count[0] + i) * count[1] + j; }
   // The inverse: i, j, k.
@@ -22,6 +24,15 @@ struct LatticeMesh {
     return {index / count[1] % count[0], index % count[1], index / (count[0] * count[1])};
   }
   int node_count() const { return count[0] * count[1] * count[2]; }
+  std::size_t cell_count() const {
+    return static_cast<std::size_t>((count[0] - 1) * (count[1] - 1) * (count[2] - 1));
+  }
+  std::size_t cell_index(int i, int j, int k) const {
+    return static_cast<std::size_t>((k * (count[0] - 1) + i) * (count[1] - 1) + j);
+  }
+  double share(int i, int j, int k) const {
+    return cell_shares.empty() ? 1.0 : cell_shares[cell_index(i, j, k)];
+  }
   // The corners of the cell whose first corner is (i, j, k): bit 0 of the corner adds to k, bit 1 to j, bit 2
   // to i.
   std::array<Vector3, 8> cell(int i, int j, int k) const;

@@ -160,6 +160,8 @@ void SpringLattice::assemble(const Material& material, double youngs_modulus_pa)
 void SpringLattice::add_cell(int i, int j, int k, Assembly& sum) {
   const CellCorners corners = mesh_.cell(i, j, k);
   const CellSprings springs = cell_springs(corners, sum.shear_pa);
+  // Mass and stiffness by the same share: what vibrates in a part of a cell is no faster than the whole.
+  const double share = mesh_.share(i, j, k), volume_m3 = share * springs.volume_m3;
   const auto node_of = [&](int corner) {
     return mesh_.index(i + (corner >> 2 & 1), j + (corner >> 1 & 1), k + (corner & 1));
   };
@@ -172,23 +174,22 @@ void SpringLattice::add_cell(int i, int j, int k, Assembly& sum) {
       d = direction_of(step(2), step(1), step(0));
     }
     sum.stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(node_of(from))] +=
-        springs.stiffness_n_per_m[s];
+        share * springs.stiffness_n_per_m[s];
   }
   for (int c = 0; c < 8; ++c) {
     const auto node = static_cast<std::size_t>(node_of(c));
-    sum.mass[node] += sum.density_kg_per_m3 * springs.volume_m3 / 8.0;
+    sum.mass[node] += sum.density_kg_per_m3 * volume_m3 / 8.0;
     sum.cell_count[node] += 1.0;
   }
   const int first = node_of(0);
-  bulk_[first] = static_cast<float>(sum.bulk_pa * springs.volume_m3);
+  bulk_[first] = static_cast<float>(sum.bulk_pa * volume_m3);
   inverse_volume_[first] = static_cast<float>(1.0 / springs.volume_m3);
   has_cell_[first] = 1.0f;
-  rest_volume_ += springs.volume_m3;
+  rest_volume_ += volume_m3;
   const AchievedElasticity achieved = achieved_elasticity(corners, springs, sum.bulk_pa);
   for (int axis = 0; axis < 3; ++axis) {
-    report_.youngs_modulus_ratio[axis] +=
-        springs.volume_m3 * achieved.youngs_modulus_pa[axis] / youngs_modulus_;
-    report_.poissons_ratio[axis] += springs.volume_m3 * achieved.poissons_ratio[axis];
+    report_.youngs_modulus_ratio[axis] += volume_m3 * achieved.youngs_modulus_pa[axis] / youngs_modulus_;
+    report_.poissons_ratio[axis] += volume_m3 * achieved.poissons_ratio[axis];
   }
   report_.worst_cell_misfit = std::max(report_.worst_cell_misfit, springs.misfit);
   report_.worst_jacobian = std::min(report_.worst_jacobian, smallest_jacobian_ratio(corners));
@@ -304,7 +305,7 @@ double SpringLattice::volume_m3() const {
         for (int c = 0; c < 8; ++c) {
           corners[c] = position(mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1)));
         }
-        volume += cell_volume(corners);
+        volume += mesh_.share(i, j, k) * cell_volume(corners);
       }
     }
   }

@@ -264,19 +264,6 @@ void fill_ring(const Surface& surface, const RingParameters& ring, LatticeMesh& 
   }
 }
 
-std::array<int, 3> near_cubic_counts(double width, double thickness, double length, int budget) {
-  double edge = std::cbrt(width * thickness * length / budget);
-  for (;; edge *= 1.01) {
-    // More than the budget in one direction is too many, however many more.
-    const auto cells = [&](double size, int least) {
-      return std::max(least, static_cast<int>(std::lround(std::min(size / edge, 1.0 * budget))));
-    };
-    const std::array<int, 3> counts = {cells(width, 2) + 1, cells(thickness, 2) + 1, cells(length, 2) + 1};
-    const double nodes = 1.0 * counts[0] * counts[1] * counts[2];
-    if (nodes <= budget || counts[0] + counts[1] + counts[2] == 9) return counts;
-  }
-}
-
 }  // namespace
 
 Status check_closed_tube(const Surface& surface) {
@@ -321,13 +308,11 @@ Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& r
                  number_text(section.width * 1e3) +
                  " mm wide: too flat for a lattice; make it at least a ten-thousandth as thick"};
   }
+  const Result<std::array<int, 3>> counts =
+      lattice_counts(request, {section.width, section.thickness, last_distance - first_distance});
+  if (!counts.ok()) return counts.error();
   LatticeMesh mesh;
-  mesh.count = request.counts ? *request.counts
-                              : near_cubic_counts(section.width, section.thickness,
-                                                  last_distance - first_distance, request.node_budget);
-  for (int axis_index = 0; axis_index < 3; ++axis_index) {
-    if (mesh.count[axis_index] < 2) return Error{"lattice: node counts must be at least 2 in each direction"};
-  }
+  mesh.count = counts.value();
   mesh.nodes.assign(static_cast<std::size_t>(mesh.node_count()), Vector3::Zero());
   const RingParameters ring = ring_parameters(surface, middle, section, mesh.count[0], mesh.count[1]);
   const Table distance_to_v{profile.distance, profile.v};

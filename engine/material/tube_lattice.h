@@ -1,21 +1,12 @@
 // Fills a closed tube with lattice nodes: shell nodes on the surface, interior by transfinite interpolation.
 #pragma once
 
-#include <array>
-#include <optional>
-
 #include "engine/bspline/surface.h"
 #include "engine/material/lattice_mesh.h"
+#include "engine/material/lattice_request.h"
 #include "engine/result.h"
 
 namespace spoonbill {
-
-// How many nodes a body gets across (first, second) and along (third) itself: given, or counted out so that
-// cells are near-cubic and at most `node_budget` nodes are spent.
-struct LatticeRequest {
-  int node_budget = 2000;
-  std::optional<std::array<int, 3>> counts;  // each at least 2
-};
 
 // Whether the surface is a closed tube: periodic in u, a single point (a pole) at both ends of v, normals
 // outward. The message says which of these fails.

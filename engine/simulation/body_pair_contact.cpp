@@ -3,6 +3,7 @@
 #include <algorithm>
 
 namespace spoonbill {
+
 EmbeddedPoint embedding_of(const BodyMapping& mapping, const NearPoint& near) {
   return near.sample >= 0 ? mapping.sample(near.sample) : mapping.at(near.u, near.v);
 }
@@ -12,29 +13,73 @@ bool add_near_points(const NumberedBody& from, const NumberedBody& to, const std
   bool complete = true;
   for (const NearPoint& near : points) {
     complete &=
-        contacts.add({from.number, &from.state->lattice, embedding_of(from.state->mapping, near)},
-                     {to.number, &to.state->lattice, to.state->mapping.at(near.other_u, near.other_v)},
+        contacts.add({from.number, &from.state->lattice, embedding_of(from.state->mapping(), near)},
+                     {to.number, &to.state->lattice, to.state->mapping().at(near.other_u, near.other_v)},
                      near.normal, near.gap_m);
   }
   return complete;
 }
 
-BodyPairContact::BodyPairContact(const BodyMapping& first, const BodyMapping& second)
-    : proximity_(std::make_unique<SurfaceProximity>(first.nested(), second.nested())) {}
+namespace {
+
+bool add_all(const NumberedBody& first, const NumberedBody& second, const SurfaceProximity& proximity,
+             BodyContacts& contacts) {
+  const bool all_of_first = add_near_points(first, second, proximity.of_first(), contacts);
+  const bool all_of_second = add_near_points(second, first, proximity.of_second(), contacts);
+  return all_of_first && all_of_second;
+}
+
+bool add_all(const NumberedBody& first, const NumberedBody& second, const MeshProximity& proximity,
+             BodyContacts& contacts) {
+  const BodyMapping& surface = first.state->mapping();
+  const MeshMapping& mesh = *second.state->mesh();
+  bool complete = true;
+  for (const SampleNearMesh& near : proximity.of_surface()) {
+    complete &= contacts.add({first.number, &first.state->lattice, surface.sample(near.sample)},
+                             {second.number, &second.state->lattice, mesh.at(near.mesh.on)}, near.mesh.normal,
+                             near.mesh.gap_m);
+  }
+  for (const VertexNearSurface& near : proximity.of_mesh()) {
+    complete &= contacts.add({second.number, &second.state->lattice, mesh.vertex(near.vertex)},
+                             {first.number, &first.state->lattice, surface.at(near.u, near.v)}, near.normal,
+                             near.gap_m);
+  }
+  return complete;
+}
+
+void find_near(SurfaceProximity& proximity, const BodyState& first, const BodyState& second, double margin) {
+  proximity.find(first.mapping().current(), second.mapping().current(), margin);
+}
+
+void find_near(MeshProximity& proximity, const BodyState& first, const BodyState& second, double margin) {
+  proximity.find(first.mapping().current(), second.mesh()->current(), margin);
+}
+
+}  // namespace
+
+BodyPairContact::BodyPairContact(const BodyState& first, const BodyState& second) {
+  const NestedGrid& grid = first.mapping().nested();
+  if (const MeshMapping* const mesh = second.mesh()) {
+    proximity_ = std::make_unique<MeshProximity>(grid, mesh->patches());
+  } else {
+    proximity_ = std::make_unique<SurfaceProximity>(grid, second.mapping().nested());
+  }
+}
 
 bool BodyPairContact::find(const NumberedBody& first, const NumberedBody& second) {
   const double cell =
       static_cast<double>(std::max(first.state->lattice.cell_size_m(), second.state->lattice.cell_size_m()));
-  proximity_->find(first.state->mapping.current(), second.state->mapping.current(),
-                   contact_margin_cells * cell);
-  return !proximity_->overflow();
+  return std::visit(
+      [&](const auto& of) {
+        find_near(*of, *first.state, *second.state, contact_margin_cells * cell);
+        return !of->overflow();
+      },
+      proximity_);
 }
 
 bool BodyPairContact::add_contacts(const NumberedBody& first, const NumberedBody& second,
                                    BodyContacts& contacts) const {
-  const bool all_of_first = add_near_points(first, second, proximity_->of_first(), contacts);
-  const bool all_of_second = add_near_points(second, first, proximity_->of_second(), contacts);
-  return all_of_first && all_of_second;
+  return std::visit([&](const auto& of) { return add_all(first, second, *of, contacts); }, proximity_);
 }
 
 }  // namespace spoonbill

@@ -1,9 +1,11 @@
-// Two bodies of a simulation on each other: where their surfaces come near, as constraints between their
+// Two bodies of a simulation on each other: where their skins come near, as constraints between their
 // lattices.
 #pragma once
 
 #include <memory>
+#include <variant>
 
+#include "engine/collision/mesh_proximity.h"
 #include "engine/collision/surface_proximity.h"
 #include "engine/material/body_contacts.h"
 #include "engine/simulation/body_state.h"
@@ -37,17 +39,21 @@ bool add_near_points(const NumberedBody& from, const NumberedBody& to, const std
 // allocate nothing.
 class BodyPairContact {
  public:
-  BodyPairContact(const BodyMapping& first, const BodyMapping& second);
+  // The first must have a surface; the second, a surface or a mesh.
+  BodyPairContact(const BodyState& first, const BodyState& second);
 
   // Finds each point of either surface that is near the other. False where a capacity was met.
   bool find(const NumberedBody& first, const NumberedBody& second);
   // Of the last find(), below zero where they are in each other; infinite where they are not near.
-  double least_gap_m() const { return proximity_->least_gap_m(); }
+  double least_gap_m() const {
+    return std::visit([](const auto& of) { return of->least_gap_m(); }, proximity_);
+  }
   // Adds a constraint for each of them. False where a capacity was met.
   bool add_contacts(const NumberedBody& first, const NumberedBody& second, BodyContacts& contacts) const;
 
  private:
-  std::unique_ptr<SurfaceProximity> proximity_;  // by pointer: it does not move
+  // By pointer: they do not move.
+  std::variant<std::unique_ptr<SurfaceProximity>, std::unique_ptr<MeshProximity>> proximity_;
 };
 
 }  // namespace spoonbill

@@ -2,13 +2,16 @@
 
 namespace spoonbill {
 
-BodySelfContact::BodySelfContact(const BodyState& body)
-    : proximity_(std::make_unique<SelfProximity>(body.mapping.nested(), body.mapping.rest(),
-                                                 static_cast<double>(body.lattice.cell_size_m()))) {}
+BodySelfContact::BodySelfContact(const BodyState& body) {
+  if (body.mesh() != nullptr) return;
+  proximity_ = std::make_unique<SelfProximity>(body.mapping().nested(), body.mapping().rest(),
+                                               static_cast<double>(body.lattice.cell_size_m()));
+}
 
 bool BodySelfContact::add_contacts(const NumberedBody& body, BodyContacts& contacts) const {
+  if (!proximity_) return true;
   const double margin = contact_margin_cells * static_cast<double>(body.state->lattice.cell_size_m());
-  proximity_->find(body.state->mapping.current(), margin);
+  proximity_->find(body.state->mapping().current(), margin);
   const bool complete = add_near_points(body, body, proximity_->points(), contacts);
   return complete && !proximity_->overflow();
 }

@@ -22,7 +22,7 @@ class BodySelfContact {
   bool add_contacts(const NumberedBody& body, BodyContacts& contacts) const;
 
  private:
-  std::unique_ptr<SelfProximity> proximity_;  // by pointer: it does not move
+  std::unique_ptr<SelfProximity> proximity_;  // by pointer: it does not move; none of a mesh
 };
 
 }  // namespace spoonbill

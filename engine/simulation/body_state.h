@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <variant>
 #include <vector>
 
 #include "engine/instruction_set.h"
 #include "engine/material/spring_lattice.h"
 #include "engine/result.h"
 #include "engine/simulation/body_mapping.h"
+#include "engine/simulation/mesh_mapping.h"
 #include "engine/simulation/scene.h"
 #include "engine/simulation/smoothing.h"
 
@@ -16,9 +18,20 @@ namespace spoonbill {
 // Plain data, one owner: the simulation.
 struct BodyState {
   SpringLattice lattice;
-  BodyMapping mapping;
+  std::variant<BodyMapping, MeshMapping> skin;
   Smoothing smoothing;
   std::vector<std::uint8_t> held, touched;  // one byte a node
+
+  // What every body has but a tessellated tool that gives way.
+  BodyMapping& mapping() { return *std::get_if<BodyMapping>(&skin); }
+  const BodyMapping& mapping() const { return *std::get_if<BodyMapping>(&skin); }
+  // Of such a tool; null of any other body.
+  const MeshMapping* mesh() const { return std::get_if<MeshMapping>(&skin); }
+
+  // The skin follows the lattice.
+  void update_skin() {
+    std::visit([this](auto& of) { of.update(lattice); }, skin);
+  }
 };
 
 // Refused with the field named where the body cannot be simulated.

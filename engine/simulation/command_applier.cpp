@@ -9,7 +9,7 @@ std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies) {
   std::vector<BodyPairContact> pairs;
   for (std::size_t second = 1; second < bodies.size(); ++second) {
     for (std::size_t first = 0; first < second; ++first) {
-      pairs.emplace_back(bodies[first].mapping, bodies[second].mapping);
+      pairs.emplace_back(bodies[first], bodies[second]);
     }
   }
   return pairs;
@@ -112,7 +112,7 @@ Status CommandApplier::operator()(const KeepShape&) {
     Result<SpringLattice> lattice = sculpting_lattice(mesh, state.scene.bodies[b].material, state.set);
     if (!lattice.ok()) return lattice.error();
     lattice->hold(body.held);
-    const Surface& surface = body.mapping.current();
+    const Surface& surface = body.mapping().current();
     Result<BodyMapping> mapping =
         BodyMapping::make(surface, surface, lattice.value(), state.scene.planes, state.set);
     if (!mapping.ok()) return mapping.error();
@@ -136,7 +136,7 @@ Status CommandApplier::set_planes(std::vector<FixingPlane> planes) {
   std::vector<BodyMapping> mappings;
   for (const BodyState& body : state.scene_bodies()) {
     Result<BodyMapping> mapping =
-        BodyMapping::make(body.mapping.rest(), body.mapping.current(), body.lattice, planes, state.set);
+        BodyMapping::make(body.mapping().rest(), body.mapping().current(), body.lattice, planes, state.set);
     if (!mapping.ok()) return mapping.error();
     mappings.push_back(std::move(mapping).value());
   }
@@ -151,8 +151,8 @@ Status CommandApplier::set_planes(std::vector<FixingPlane> planes) {
 
 void CommandApplier::set_mappings(std::vector<BodyMapping> mappings) {
   for (std::size_t b = 0; b < mappings.size(); ++b) {
-    state.bodies[b].mapping = std::move(mappings[b]);
-    state.scene.bodies[b].surface = state.bodies[b].mapping.current();
+    state.bodies[b].mapping() = std::move(mappings[b]);
+    state.scene.bodies[b].surface = state.bodies[b].mapping().current();
   }
   make_contacts();
 }
@@ -162,6 +162,7 @@ void CommandApplier::take_model(ToolModel model) {
   while (state.bodies.size() > state.scene.bodies.size()) state.bodies.pop_back();
   if (model.soft) state.bodies.push_back(*std::move(model.soft));
   model.soft.reset();
+  if (state.model.triangles) state.kept_triangles.push_back(std::move(state.model.triangles));
   state.model = std::move(model);
   make_contacts();
 }

@@ -39,7 +39,7 @@ void place_soft(BodyState& tool, const Pose& pose) {
     tool.lattice.set_displacement(n, pose.position_m + pose.orientation * rest - rest);
     tool.lattice.set_velocity(n, Vector3::Zero());
   }
-  tool.mapping.update(tool.lattice);
+  tool.update_skin();
 }
 
 // How far any part of the tool may come in this tick.

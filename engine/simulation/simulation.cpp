@@ -61,7 +61,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
   std::vector<std::shared_ptr<const ToolBody>> kept = {modelled_body(scene.tool)};
   return Simulation(std::make_unique<State>(State{
       std::move(scene), set, std::move(bodies), std::move(model).value(), std::move(tool),
-      std::move(mirrored), make_between(), std::move(pairs), std::move(self), false, 0.0, std::move(kept)}));
+      std::move(mirrored), make_between(), std::move(pairs), std::move(self), false, 0.0, std::move(kept), {}}));
 }
 
 Simulation::Simulation(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -179,7 +179,7 @@ Reaction Simulation::advance(const ToolInput& input) {
     smooth(s, s.tool);
     if (both) smooth(s, s.mirrored);
   }
-  for (std::size_t b = 0; b < s.stepped(); ++b) s.bodies[b].mapping.update(s.bodies[b].lattice);
+  for (std::size_t b = 0; b < s.stepped(); ++b) s.bodies[b].update_skin();
   ++s.tick;
 
   react(s, input);
@@ -195,7 +195,7 @@ const Scene& Simulation::scene() const {
 void Simulation::write_scene(Scene& scene) const {
   scene = state_->scene;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    scene.bodies[b].surface = state_->bodies[b].mapping.current();
+    scene.bodies[b].surface = state_->bodies[b].mapping().current();
   }
 }
 std::uint64_t Simulation::tick() const {
@@ -205,7 +205,7 @@ const SpringLattice& Simulation::lattice(int body) const {
   return state_->bodies[static_cast<std::size_t>(body)].lattice;
 }
 const Surface& Simulation::surface(int body) const {
-  return state_->bodies[static_cast<std::size_t>(body)].mapping.current();
+  return state_->bodies[static_cast<std::size_t>(body)].mapping().current();
 }
 
 namespace {
@@ -232,7 +232,8 @@ std::uint64_t Simulation::state_hash() const {
   for (std::size_t b = 0; b < s.stepped(); ++b) {
     const BodyState& body = s.bodies[b];
     body.lattice.visit_state([&](const float* data, std::size_t count) { hash.add(data, count); });
-    const ControlNet& net = body.mapping.current().net;
+    if (body.mesh()) continue;  // its vertices are where the nodes have them
+    const ControlNet& net = body.mapping().current().net;
     for (const std::vector<double>* coordinate : {&net.x, &net.y, &net.z}) {
       for (const double value : *coordinate) hash.add(value);
     }
@@ -265,7 +266,7 @@ Status Simulation::restore(const ShapeState& shape) {
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
     BodyState& body = state_->bodies[b];
     body.lattice.set_shape(shape.lattices[b]);
-    body.mapping.update(body.lattice);
+    body.update_skin();
   }
   state_->tool.contact.release();
   state_->mirrored.contact.release();

@@ -47,6 +47,7 @@ struct Simulation::State {
   double tool_gap_m = 0.0;  // of a soft tool to the bodies; infinite where it is not near
   // Of tools that were replaced: snapshots share them, and no tick must free the last of one.
   std::vector<std::shared_ptr<const ToolBody>> kept;
+  std::vector<std::shared_ptr<const std::vector<TriangleCorners>>> kept_triangles;
   std::uint64_t tick = 0;
   RelaxReport relaxed{};
   Reaction reaction{};

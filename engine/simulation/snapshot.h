@@ -2,6 +2,7 @@
 // simulation is built; copying one snapshot onto another of the same sizes allocates nothing.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -29,6 +30,12 @@ struct SurfaceSnapshot {
   KnotVector u, v;
   std::uint64_t structure = 0;  // the knot vectors' fingerprint: while it stays, a Grid can be kept
   std::vector<float> x, y, z;   // control points in metres, as in ControlNet
+};
+
+// The triangles of a soft tool that is made of them, counter-clockwise seen from outside.
+struct MeshSnapshot {
+  std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles;  // the same while the tool is
+  std::vector<float> x, y, z;                                                  // vertices in metres
 };
 
 // The nodes of a body's lattice, k fastest: node (i, j, k) at (i * count[1] + j) * count[2] + k, with k along
@@ -80,6 +87,9 @@ struct BodySnapshot {
   SurfaceSnapshot surface;
   LatticeSnapshot lattice;
   MaterialSnapshot material;
+  MeshSnapshot mesh = {};  // of a soft mesh, which has no surface; no triangles otherwise
+
+  bool is_mesh() const { return mesh.triangles != nullptr; }
 };
 
 struct DeviceSnapshot {

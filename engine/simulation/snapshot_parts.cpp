@@ -23,12 +23,26 @@ std::uint64_t structure_of(const Surface& surface) {
 }
 
 void write_surface(const Surface& surface, SurfaceSnapshot& out) {
+  const std::uint64_t structure = structure_of(surface);
+  if (out.structure != structure) out = {surface.u, surface.v, structure, {}, {}, {}};
   const auto copy = [](const std::vector<double>& from, std::vector<float>& to) {
     to.assign(from.begin(), from.end());
   };
   copy(surface.net.x, out.x);
   copy(surface.net.y, out.y);
   copy(surface.net.z, out.z);
+}
+
+void write_mesh(const MeshMapping& mesh, MeshSnapshot& out) {
+  const std::vector<Vector3>& vertices = mesh.current().vertices_m();
+  out.triangles = mesh.triangles();
+  std::vector<float>* const axes[3] = {&out.x, &out.y, &out.z};
+  for (int axis = 0; axis < 3; ++axis) {
+    axes[axis]->resize(vertices.size());
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      (*axes[axis])[v] = static_cast<float>(vertices[v][axis]);
+    }
+  }
 }
 
 void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>& held,
@@ -72,14 +86,14 @@ void write_material(const Material& material, const Sculpting& sculpting, const 
 void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::vector<BodySnapshot>& out) {
   if (out.size() > bodies.size()) out.clear();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const Surface& surface = bodies[b].mapping.current();
-    const std::uint64_t structure = structure_of(surface);
-    if (b == out.size()) {
-      out.push_back({{surface.u, surface.v, structure, {}, {}, {}}, {}, {}});
-    } else if (out[b].surface.structure != structure) {
-      out[b].surface = {surface.u, surface.v, structure, {}, {}, {}};
+    if (b == out.size()) out.emplace_back();
+    const MeshMapping* const mesh = bodies[b].mesh();
+    if (out[b].is_mesh() != (mesh != nullptr)) out[b] = {};
+    if (mesh) {
+      write_mesh(*mesh, out[b].mesh);
+    } else {
+      write_surface(bodies[b].mapping().current(), out[b].surface);
     }
-    write_surface(surface, out[b].surface);
     write_lattice(bodies[b].lattice, bodies[b].held, bodies[b].touched, out[b].lattice);
     write_material(b < scene.bodies.size() ? scene.bodies[b].material : scene.tool.body->soft->material,
                    scene.sculpting, bodies[b].lattice, out[b].material);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <climits>
+#include <string>
 
 #include "engine/simulation/scene.h"
 
@@ -26,15 +27,34 @@ Status check_solid(const SurfaceSolid& solid) {
   return check_closed_tube(solid.surface);
 }
 
+Status check_soft(const ImplicitShape&) {
+  return Error{"only a mesh or a B-spline surface can be soft; leave soft out"};
+}
+
+Status check_soft(const MeshSolid& solid) {
+  const std::size_t triangles = solid.mesh.mesh.triangles.size();
+  if (triangles > soft_mesh_triangle_limit) {
+    return Error{"mesh: has " + std::to_string(triangles) + " triangles, a soft one at most " +
+                 std::to_string(soft_mesh_triangle_limit) + "; reduce it, or leave soft out"};
+  }
+  const bool closed = std::all_of(solid.mesh.parts.begin(), solid.mesh.parts.end(),
+                                  [](const MeshPart& part) { return part.closed; });
+  if (!closed) return Error{"mesh: is not closed, as a soft one must be; close its holes, or leave soft out"};
+  return {};
+}
+
+Status check_soft(const SurfaceSolid&) {
+  return {};
+}
+
 }  // namespace
 
 Status check_tool_body(const ToolBody& body) {
   const Status solid = std::visit([](const auto& of) { return check_solid(of); }, body.solid);
   if (!solid.ok()) return of_tool(solid.error());
   if (!body.soft) return {};
-  if (!std::holds_alternative<SurfaceSolid>(body.solid)) {
-    return Error{"tool: only a B-spline surface can be soft; leave soft out"};
-  }
+  const Status soft = std::visit([](const auto& of) { return check_soft(of); }, body.solid);
+  if (!soft.ok()) return of_tool(soft.error());
   for (const Status& status : {check_material(body.soft->material), check_lattice_request(body.soft->lattice),
                                check_fixing_plane(body.soft->grip)}) {
     if (!status.ok()) return of_tool(status.error());

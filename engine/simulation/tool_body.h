@@ -29,6 +29,8 @@ using ToolSolid = std::variant<ImplicitShape, MeshSolid, SurfaceSolid>;
 
 // What a document may hold of a mesh.
 inline constexpr int tool_triangle_limit = 200000;
+// What of a soft one is moved and searched in every tick of a millisecond.
+inline constexpr int soft_mesh_triangle_limit = 20000;
 
 // A tool that gives way: a lattice of its own, held by the hand behind a plane.
 struct SoftTool {

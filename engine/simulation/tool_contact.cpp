@@ -41,9 +41,9 @@ ToolContact::ToolContact(std::span<const BodyState> bodies, const ToolModel& mod
     : constraints_(constraint_capacity) {
   contacts_.reserve(bodies.size());
   for (const BodyState& body : bodies) {
-    contacts_.push_back({SurfaceCollider(body.mapping.nested()), nullptr, {}});
+    contacts_.push_back({SurfaceCollider(body.mapping().nested()), nullptr, {}});
     if (!model.surface) continue;
-    contacts_.back().proximity = std::make_unique<SurfaceProximity>(body.mapping.nested(), *model.nested);
+    contacts_.back().proximity = std::make_unique<SurfaceProximity>(body.mapping().nested(), *model.nested);
   }
   if (model.surface) placed_ = std::make_unique<Surface>(*model.surface);
 }
@@ -116,12 +116,12 @@ void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& 
   const double margin = std::max(margin_of(body), hold.reach_m);
   if (placed_) return find_near(contact, body, margin, hold);
   shape_ = shape_of(tool, model, hold);
-  contact.collision = contact.collider.collide(body.mapping.current(), shape_, margin, true);
+  contact.collision = contact.collider.collide(body.mapping().current(), shape_, margin, true);
 }
 
 void ToolContact::find_near(BodyContact& contact, const BodyState& body, double margin,
                             const ToolHold& hold) {
-  const Surface& surface = body.mapping.current();
+  const Surface& surface = body.mapping().current();
   SurfaceProximity& proximity = *contact.proximity;
   proximity.find(surface, *placed_, margin, hold.turn.determinant() < 0.0 ? -1.0 : 1.0);
   contact.collision = {};
@@ -139,16 +139,16 @@ template <class Visit>
 void ToolContact::visit_near(BodyContact& contact, const BodyState& state, const Visit& visit) {
   if (placed_) {
     for (const NearPoint& near : contact.proximity->of_first()) {
-      visit(Pushed{embedding_of(state.mapping, near), near.normal, near.gap_m});
+      visit(Pushed{embedding_of(state.mapping(), near), near.normal, near.gap_m});
     }
     for (const NearPoint& near : contact.proximity->of_second()) {
-      visit(Pushed{state.mapping.at(near.other_u, near.other_v), -near.normal, near.gap_m});
+      visit(Pushed{state.mapping().at(near.other_u, near.other_v), -near.normal, near.gap_m});
     }
     return;
   }
   for (const NearSample& sample : contact.collider.near_samples()) {
     const DistanceSample distance = shape_.at(contact.collider.levels().sample(sample.index));
-    visit(Pushed{state.mapping.sample(sample.index), distance.gradient, distance.distance_m});
+    visit(Pushed{state.mapping().sample(sample.index), distance.gradient, distance.distance_m});
   }
 }
 
@@ -156,7 +156,7 @@ void ToolContact::add_pushes(int body, const BodyState& state, const ToolModel& 
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
   if (!model.surface && !model.distance) return add_sphere_pushes(body, state);
-  add_plane_push(body, state, {state.mapping.at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m},
+  add_plane_push(body, state, {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m},
                  hold);
   visit_near(contact, state, [&](const Pushed& pushed) { add_plane_push(body, state, pushed, hold); });
 }
@@ -168,11 +168,11 @@ void ToolContact::add_sphere_pushes(int body, const BodyState& state) {
   const SurfaceContact& nearest = contact.collision.nearest;
   const double cell = static_cast<double>(state.lattice.cell_size_m());
   if (-nearest.depth_m <= margin_of(state) || shape_.radius_m < cell) {
-    overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping.at(nearest.u, nearest.v),
+    overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping().at(nearest.u, nearest.v),
                                               -nearest.normal, shape_.radius_m);
   }
   for (const NearSample& sample : contact.collider.near_samples()) {
-    overflow_ |= !constraints_.add_push(body, state.lattice, state.mapping.sample(sample.index));
+    overflow_ |= !constraints_.add_push(body, state.lattice, state.mapping().sample(sample.index));
   }
 }
 
@@ -191,7 +191,7 @@ void ToolContact::add_grips(int body, const BodyState& state, const Pose& pose) 
     overflow_ |= !constraints_.add_grip(body, state.lattice, point, offset);
   };
   BodyContact& contact = contacts_[body];
-  grip(state.mapping.at(contact.collision.nearest.u, contact.collision.nearest.v));
+  grip(state.mapping().at(contact.collision.nearest.u, contact.collision.nearest.v));
   if (placed_) {
     visit_near(contact, state, [&](const Pushed& near) {
       if (near.gap_m <= 0.0) grip(near.point);
@@ -199,7 +199,7 @@ void ToolContact::add_grips(int body, const BodyState& state, const Pose& pose) 
     return;
   }
   for (const NearSample& sample : contact.collider.near_samples()) {
-    if (sample.distance_m <= 0.0) grip(state.mapping.sample(sample.index));
+    if (sample.distance_m <= 0.0) grip(state.mapping().sample(sample.index));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/collision/mesh_distance.h"
+#include "engine/simulation/soft_mesh.h"
 
 namespace spoonbill {
 namespace {
@@ -28,6 +29,7 @@ struct ModelOf {
   }
 
   Result<ToolModel> operator()(const MeshSolid& solid) const {
+    if (body.soft) return soft_model(make_soft_mesh(solid, *body.soft, set));
     ToolModel model;
     model.distance = std::make_shared<MeshDistance>(solid.mesh);
     model.extent_m = extent_of(model.distance->bounds());
@@ -37,17 +39,8 @@ struct ModelOf {
   Result<ToolModel> operator()(const SurfaceSolid& solid) const {
     ToolModel model;
     if (body.soft) {
-      Result<BodyState> soft =
-          make_body_state({"tool", solid.surface, body.soft->material, body.soft->lattice}, {}, set);
-      if (!soft.ok()) return Error{"tool: " + soft.error().message};
-      soft->held = nodes_behind(soft->lattice, {body.soft->grip});
-      for (int n = 0; n < soft->lattice.mesh().node_count(); ++n) {
-        if (soft->held[static_cast<std::size_t>(n)] != 0) model.gripped.push_back(n);
-      }
-      if (model.gripped.empty()) return Error{"tool: its grip plane holds none of its nodes, move it"};
-      soft->lattice.hold(soft->held);
-      model.soft = std::move(soft).value();
-      return model;
+      return soft_model(
+          make_body_state({"tool", solid.surface, body.soft->material, body.soft->lattice}, {}, set));
     }
     Result<NestedGrid> nested = make_nested_grid(solid.surface.u, solid.surface.v, levels);
     if (!nested.ok()) return nested.error();
@@ -59,6 +52,24 @@ struct ModelOf {
         model.extent_m = std::max(model.extent_m, net.point(i, j).norm());
       }
     }
+    return model;
+  }
+
+  // One that gives way, held by the hand.
+  Result<ToolModel> soft_model(Result<BodyState> soft) const {
+    if (!soft.ok()) return Error{"tool: " + soft.error().message};
+    soft->held = nodes_behind(soft->lattice, {body.soft->grip});
+    ToolModel model;
+    for (int n = 0; n < soft->lattice.mesh().node_count(); ++n) {
+      if (soft->held[static_cast<std::size_t>(n)] != 0) model.gripped.push_back(n);
+    }
+    const MeshMapping* const mesh = soft->mesh();
+    if (model.gripped.empty() || (mesh && !holds_any(*mesh, soft->held))) {
+      return Error{"tool: its grip plane holds none of its nodes, move it"};
+    }
+    if (mesh) model.triangles = mesh->triangles();
+    soft->lattice.hold(soft->held);
+    model.soft = std::move(soft).value();
     return model;
   }
 };

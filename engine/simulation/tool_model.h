@@ -20,6 +20,7 @@ struct ToolModel {
   double extent_m = 0.0;                           // the farthest of it from its frame's origin
   std::optional<BodyState> soft;  // of one that gives way; its rest shape is in the tool's frame
   std::vector<int> gripped;       // its nodes that the hand holds
+  std::shared_ptr<const std::vector<TriangleCorners>> triangles;  // of a soft mesh; snapshots share them
 
   bool is_soft() const { return soft.has_value(); }
 };

@@ -63,6 +63,7 @@ class Strips {
   void include_triangles(const TessellatedSurface& surface) {
     const GridSamples<float>& at = surface.samples();
     const std::vector<std::uint32_t>& indices = surface.indices();
+    if (surface.is_mesh()) return include_each(at, indices);
     // Two triangles a cell.
     for (std::size_t first = 0; first + 5 < indices.size(); first += 6) {
       Hull hull(*this);
@@ -86,6 +87,16 @@ class Strips {
   }
 
  private:
+  void include_each(const GridSamples<float>& at, const std::vector<std::uint32_t>& indices) {
+    for (std::size_t first = 0; first < indices.size(); first += 3) {
+      Hull hull(*this);
+      for (std::size_t corner = first; corner < first + 3; ++corner) {
+        const std::uint32_t v = indices[corner];
+        hull.include({at.x[v], at.y[v], at.z[v]});
+      }
+    }
+  }
+
   struct Heights {
     int low = 1 << 20, high = 0;  // pixels from the bottom
   };
@@ -180,7 +191,7 @@ std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& 
     if (on.lattice || on.fixed_nodes || on.touched_nodes) {
       strips.include_points(lattice.x, lattice.y, lattice.z);
     }
-    if (on.control_net) strips.include(net_box(each.surface));
+    if (on.control_net && !each.is_mesh()) strips.include(net_box(each.surface));
   }
   if (on.tool) include_tools(snapshot, strips);
   if (on.contact_normals) {

@@ -171,7 +171,7 @@ void ScenePasses::draw_overlays(const FrameView& view, const Snapshot& snapshot,
   marks_.clear();
   for (const BodySnapshot& body : snapshot.bodies) {
     if (on.lattice) append_lattice_lines(body.lattice, settings.see_through_body, lines_);
-    if (on.control_net) append_control_net(body.surface, lines_, marks_);
+    if (on.control_net && !body.is_mesh()) append_control_net(body.surface, lines_, marks_);
     if (on.fixed_nodes) append_fixed_marks(body.lattice, settings.see_through_body, marks_);
   }
   if (on.contact_normals) {

@@ -24,7 +24,7 @@ Status check_net(const SurfaceSnapshot& surface) {
 
 Status TessellatedSurface::update(const SurfaceSnapshot& surface, const SamplingLevel& level) {
   if (Status net = check_net(surface); !net) return net;
-  const bool keep = evaluator_ && structure_ == surface.structure && level_ == level &&
+  const bool keep = !is_mesh_ && evaluator_ && structure_ == surface.structure && level_ == level &&
                     grid_->u.knots == surface.u && grid_->v.knots == surface.v;
   if (!keep) {
     if (Status built = rebuild(surface, level); !built) return built;
@@ -39,6 +39,17 @@ Status TessellatedSurface::update(const SurfaceSnapshot& surface, const Sampling
   return {};
 }
 
+void TessellatedSurface::update(const MeshSnapshot& mesh) {
+  if (!is_mesh_ || !shading_.is_of(mesh)) {
+    shading_.make(mesh);
+    indices_ = shading_.indices();
+    ++topology_version_;
+    closed_ = is_mesh_ = true;
+    level_ = {};
+  }
+  shading_.shade(mesh, samples_);
+}
+
 Status TessellatedSurface::rebuild(const SurfaceSnapshot& surface, const SamplingLevel& level) {
   auto grid = make_grid(surface.u, surface.v, drawing_parameters(surface.u, level.u_pieces),
                         drawing_parameters(surface.v, level.v_pieces));
@@ -49,6 +60,7 @@ Status TessellatedSurface::rebuild(const SurfaceSnapshot& surface, const Samplin
   samples_.resize(static_cast<std::size_t>(grid_->rows()) * static_cast<std::size_t>(grid_->columns()));
   structure_ = surface.structure;
   level_ = level;
+  is_mesh_ = false;
   build_indices(surface.u.is_periodic(), surface.v.is_periodic());
   ++topology_version_;
   return {};
@@ -127,8 +139,12 @@ BoundingBox drawn_bounds(const Snapshot& snapshot) {
   for (const BodySnapshot& body : snapshot.bodies) {
     const SurfaceSnapshot& surface = body.surface;
     TessellatedSurface tessellated;
-    if (!check_net(surface)) continue;
-    if (!tessellated.update(surface, uniform_sampling_level(surface, fine_enough))) continue;
+    if (body.is_mesh()) {
+      tessellated.update(body.mesh);
+    } else if (!check_net(surface) ||
+               !tessellated.update(surface, uniform_sampling_level(surface, fine_enough))) {
+      continue;
+    }
     const BoundingBox one = tessellated.bounds();
     if (one.empty()) continue;
     box.include(one.low_m);

@@ -1,5 +1,5 @@
-// A surface as triangles: samples on a knot-aligned grid and the indices that join them. No GL. One owner,
-// one thread.
+// A surface as triangles: samples on a knot-aligned grid and the indices that join them, or those that a mesh
+// has. No GL. One owner, one thread.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include "engine/result.h"
 #include "engine/simulation/snapshot.h"
 #include "render/camera.h"
+#include "render/tessellation/mesh_shading.h"
 #include "render/tessellation/sampling_level.h"
 
 namespace spoonbill {
@@ -25,6 +26,11 @@ class TessellatedSurface {
   // when the surface's structure or the level changed; otherwise this allocates nothing. The error names what
   // the grid refused, or a control net whose size does not fit its knots.
   Status update(const SurfaceSnapshot& surface, const SamplingLevel& level);
+
+  // The same of a mesh, which has its triangles whatever the level.
+  void update(const MeshSnapshot& mesh);
+  // Whether it holds one now.
+  bool is_mesh() const { return is_mesh_; }
 
   const SamplingLevel& level() const { return level_; }
 
@@ -54,6 +60,8 @@ class TessellatedSurface {
 
   std::uint64_t structure_ = 0;
   SamplingLevel level_;
+  MeshShading shading_;
+  bool is_mesh_ = false;
   std::uint64_t topology_version_ = 0;
   bool closed_ = false;
   bool inward_ = false;  // du x dv points into the closed surface

@@ -1,15 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 
-#include "engine/denormals.h"
-#include "engine/material/lattice_solver.h"
-#include "engine/simulation/body_pair_contact.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/simulation/handle.h"
+#include "tests/engine/simulation/impact.h"
 #include "tests/engine/simulation/soft_bodies.h"
 
 namespace spoonbill {
@@ -20,62 +17,24 @@ Body pebble(const Vector3& centre, int nodes) {
   return {"pebble", ellipsoid_tube(12, 12, centre), silicone(), {nodes, {}}};
 }
 
-// Two bodies on each other and nothing else.
-class Impact {
- public:
-  Impact(const Body& first, const Body& second)
-      : bodies_{make_body_state(first, {}, InstructionSet::baseline).value(),
-                make_body_state(second, {}, InstructionSet::baseline).value()},
-        pair_(bodies_[0].mapping, bodies_[1].mapping) {}
+BodyState state_of(const Body& body) {
+  return make_body_state(body, {}, InstructionSet::baseline).value();
+}
 
-  void throw_at(int body, const Vector3& velocity) {
-    SpringLattice& lattice = bodies_[body].lattice;
-    for (int n = 0; n < lattice.mesh().node_count(); ++n) lattice.set_velocity(n, velocity);
-  }
-
-  bool tick() {
-    const DenormalsFlushed flushed;
-    contacts_.clear();
-    EXPECT_TRUE(pair_.find({0, &bodies_[0]}, {1, &bodies_[1]}));
-    EXPECT_TRUE(pair_.add_contacts({0, &bodies_[0]}, {1, &bodies_[1]}, contacts_));
-    contacts_.begin(0.0);
-    relax(std::array{RelaxedLattice{&bodies_[0].lattice}, RelaxedLattice{&bodies_[1].lattice}}, {tick_++}, {},
-          &contacts_);
-    for (BodyState& body : bodies_) body.mapping.update(body.lattice);
-    return contacts_.acted(0);
-  }
-
-  Vector3 momentum_of(int body, double* sum_of_sizes = nullptr) const {
-    const SpringLattice& lattice = bodies_[body].lattice;
-    Vector3 sum = Vector3::Zero();
-    for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-      const Vector3 each = static_cast<double>(lattice.mass(n)) * lattice.velocity(n);
-      sum += each;
-      if (sum_of_sizes) *sum_of_sizes += each.norm();
-    }
-    return sum;
-  }
-
-  const BodyState& body(int number) const { return bodies_[number]; }
-  double depth_m() const { return depth_between(bodies_[0].mapping.current(), bodies_[1].mapping.current()); }
-
- private:
-  std::array<BodyState, 2> bodies_;
-  BodyPairContact pair_;
-  BodyContacts contacts_{8192};
-  std::uint64_t tick_ = 0;
-};
+double depth_of(const Impact& impact) {
+  return depth_between(impact.body(0).mapping().current(), impact.body(1).mapping().current());
+}
 
 // Flat on flat and off the middle, so that they also begin to turn.
 TEST(Bodies, ThatCollideKeepTheirMomentum) {
-  Impact impact(pebble({0, 0, 0}, 400), pebble({0.012, 0.0235, 0.02}, 700));
+  Impact impact(state_of(pebble({0, 0, 0}, 400)), state_of(pebble({0.012, 0.0235, 0.02}, 700)));
   impact.throw_at(1, {0.01, -0.06, 0.005});
   double sum_of_sizes = 0.0, deepest = 0.0;
   const Vector3 before = impact.momentum_of(1, &sum_of_sizes);
   int touching = 0;
   for (int tick = 0; tick < 400; ++tick) {
     touching += impact.tick() ? 1 : 0;
-    if (tick % 5 == 0) deepest = std::max(deepest, impact.depth_m());
+    if (tick % 5 == 0) deepest = std::max(deepest, depth_of(impact));
   }
   EXPECT_GT(touching, 50);
   EXPECT_FALSE(impact.tick()) << "they have parted";
@@ -88,10 +47,10 @@ TEST(Bodies, ThatCollideKeepTheirMomentum) {
 }
 
 TEST(Bodies, ThatBeginInEachOtherPart) {
-  Impact impact(pebble({0, 0, 0}, 400), pebble({0.0, 0.0215, 0.0}, 400));
-  EXPECT_GT(impact.depth_m(), 0.5e-3) << "they begin in each other";
+  Impact impact(state_of(pebble({0, 0, 0}, 400)), state_of(pebble({0.0, 0.0215, 0.0}, 400)));
+  EXPECT_GT(depth_of(impact), 0.5e-3) << "they begin in each other";
   for (int tick = 0; tick < 100; ++tick) impact.tick();
-  EXPECT_LT(impact.depth_m(), 0.1e-3);
+  EXPECT_LT(depth_of(impact), 0.1e-3);
   EXPECT_LT(impact.momentum_of(0).y(), 0.0);
   EXPECT_GT(impact.momentum_of(1).y(), 0.0);
 }

@@ -1,0 +1,21 @@
+// A tessellated tool that gives way, as a body.
+#pragma once
+
+#include "engine/instruction_set.h"
+#include "engine/result.h"
+#include "engine/simulation/body_state.h"
+#include "engine/simulation/tool_body.h"
+
+namespace spoonbill {
+
+// How long an edge may be, in lattice cells: a longer one would not follow a dent, and is halved first.
+inline constexpr double soft_edge_cells = 0.5;
+
+// Its lattice and its triangles, with nothing held. Refused with the field named: a mesh that passes through
+// itself or that has, with edges so short, more than soft_mesh_triangle_limit triangles.
+Result<BodyState> make_soft_mesh(const MeshSolid& solid, const SoftTool& soft, InstructionSet set);
+
+// Whether any node that is held has a part in the place of any vertex. The void around a solid has none.
+bool holds_any(const MeshMapping& mesh, const std::vector<std::uint8_t>& held);
+
+}  // namespace spoonbill

@@ -1,0 +1,58 @@
+// Two bodies on each other for tests.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <utility>
+
+#include "engine/denormals.h"
+#include "engine/material/lattice_solver.h"
+#include "engine/simulation/body_pair_contact.h"
+
+namespace spoonbill {
+
+// Two bodies on each other and nothing else.
+class Impact {
+ public:
+  Impact(BodyState first, BodyState second)
+      : bodies_{std::move(first), std::move(second)}, pair_(bodies_[0], bodies_[1]) {}
+
+  void throw_at(int body, const Vector3& velocity) {
+    SpringLattice& lattice = bodies_[body].lattice;
+    for (int n = 0; n < lattice.mesh().node_count(); ++n) lattice.set_velocity(n, velocity);
+  }
+
+  bool tick() {
+    const DenormalsFlushed flushed;
+    contacts_.clear();
+    EXPECT_TRUE(pair_.find({0, &bodies_[0]}, {1, &bodies_[1]}));
+    EXPECT_TRUE(pair_.add_contacts({0, &bodies_[0]}, {1, &bodies_[1]}, contacts_));
+    contacts_.begin(0.0);
+    relax(std::array{RelaxedLattice{&bodies_[0].lattice}, RelaxedLattice{&bodies_[1].lattice}}, {tick_++}, {},
+          &contacts_);
+    for (BodyState& body : bodies_) body.update_skin();
+    return contacts_.acted(0);
+  }
+
+  Vector3 momentum_of(int body, double* sum_of_sizes = nullptr) const {
+    const SpringLattice& lattice = bodies_[body].lattice;
+    Vector3 sum = Vector3::Zero();
+    for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+      const Vector3 each = static_cast<double>(lattice.mass(n)) * lattice.velocity(n);
+      sum += each;
+      if (sum_of_sizes) *sum_of_sizes += each.norm();
+    }
+    return sum;
+  }
+
+  const BodyState& body(int number) const { return bodies_[number]; }
+
+ private:
+  std::array<BodyState, 2> bodies_;
+  BodyPairContact pair_;
+  BodyContacts contacts_{8192};
+  std::uint64_t tick_ = 0;
+};
+
+}  // namespace spoonbill
