@@ -43,6 +43,23 @@ double inside_share(const ShellDistance& solid, const CellCorners& corners) {
   return static_cast<double>(within) / (samples_a_side * samples_a_side * samples_a_side);
 }
 
+// Of the body are the corners of its cells; on the shell, those of void ones too, or of the box's sides.
+void find_places(LatticeMesh& box, const std::vector<bool>& filled) {
+  box.places.assign(static_cast<std::size_t>(box.node_count()), NodePlace::beside_body);
+  for (int n = 0; n < box.node_count(); ++n) {
+    const std::array<int, 3> at = box.place(n);
+    int cells = 0;
+    for (int c = 0; c < 8; ++c) {
+      const std::array<int, 3> cell = {at[0] - (c >> 2 & 1), at[1] - (c >> 1 & 1), at[2] - (c & 1)};
+      bool exists = true;
+      for (int axis = 0; axis < 3; ++axis) exists &= cell[axis] >= 0 && cell[axis] < box.count[axis] - 1;
+      if (exists && filled[box.cell_index(cell[0], cell[1], cell[2])]) ++cells;
+    }
+    NodePlace& place = box.places[static_cast<std::size_t>(n)];
+    if (cells > 0) place = cells == 8 ? NodePlace::in_body : NodePlace::on_shell;
+  }
+}
+
 }  // namespace
 
 Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
@@ -56,10 +73,10 @@ Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
   }
   LatticeMesh box = box_mesh(size, counts);
   for (Vector3& node : box.nodes) node += bounds.low;
-  std::vector<bool> holds_skin(box.cell_count(), false);
+  std::vector<bool> filled(box.cell_count(), false);  // from where it holds any skin
   for (const Vector3& point : skin_m) {
     const auto [i, j, k] = locate(box, point).cell;
-    holds_skin[box.cell_index(i, j, k)] = true;
+    filled[box.cell_index(i, j, k)] = true;
   }
   box.cell_shares.assign(box.cell_count(), void_share);
   double volume = 0.0;
@@ -68,13 +85,15 @@ Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
       for (int j = 0; j + 1 < counts[1]; ++j) {
         const CellCorners corners = box.cell(i, j, k);
         const double share = inside_share(inside, corners);
-        double& stored = box.cell_shares[box.cell_index(i, j, k)];
-        if (share > 0.0 || holds_skin[box.cell_index(i, j, k)]) stored = std::max(share, least_filled_share);
-        volume += stored * cell_volume(corners);
+        const std::size_t cell = box.cell_index(i, j, k);
+        filled[cell] = filled[cell] || share > 0.0;
+        if (filled[cell]) box.cell_shares[cell] = std::max(share, least_filled_share);
+        volume += box.cell_shares[cell] * cell_volume(corners);
       }
     }
   }
   for (double& share : box.cell_shares) share *= volume_m3 / volume;
+  find_places(box, filled);
   return box;
 }
 

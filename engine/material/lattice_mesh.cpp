@@ -12,8 +12,11 @@ CellCorners LatticeMesh::cell(int i, int j, int k) const {
   return corners;
 }
 
-bool LatticeMesh::is_shell(int i, int j, int k) const {
-  return i == 0 || j == 0 || k == 0 || i == count[0] - 1 || j == count[1] - 1 || k == count[2] - 1;
+NodePlace LatticeMesh::place_of(int i, int j, int k) const {
+  if (!places.empty()) return places[static_cast<std::size_t>(index(i, j, k))];
+  const bool shell =
+      i == 0 || j == 0 || k == 0 || i == count[0] - 1 || j == count[1] - 1 || k == count[2] - 1;
+  return shell ? NodePlace::on_shell : NodePlace::in_body;
 }
 
 double LatticeMesh::mean_edge() const {

@@ -10,6 +10,8 @@
 
 namespace spoonbill {
 
+enum class NodePlace : std::uint8_t { beside_body, in_body, on_shell };
+
 // i and j run across the body, k along it, slowest: neighbours in memory are near whatever the body's length,
 // and what a plane holds of it is one stretch of memory.
 struct LatticeMesh {
@@ -17,6 +19,7 @@ struct LatticeMesh {
   std::vector<Vector3> nodes;  // m
   // How much of each cell there is, in the order of its first corners; empty: all of every one.
   std::vector<double> cell_shares;
+  std::vector<NodePlace> places;  // of each node; empty: the block is the body
 
   int index(int i, int j, int k) const { return (k * count[0] + i) * count[1] + j; }
   // The inverse: i, j, k.
@@ -36,7 +39,7 @@ struct LatticeMesh {
   // The corners of the cell whose first corner is (i, j, k): bit 0 of the corner adds to k, bit 1 to j, bit 2
   // to i.
   std::array<Vector3, 8> cell(int i, int j, int k) const;
-  bool is_shell(int i, int j, int k) const;
+  NodePlace place_of(int i, int j, int k) const;
   // The mean edge length, m.
   double mean_edge() const;
 };

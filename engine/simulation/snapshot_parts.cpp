@@ -50,7 +50,8 @@ void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>
   const LatticeMesh& mesh = lattice.mesh();
   const std::size_t count = static_cast<std::size_t>(mesh.node_count());
   for (std::vector<float>* values : {&out.x, &out.y, &out.z}) values->resize(count);
-  for (std::vector<std::uint8_t>* marks : {&out.fixed, &out.touched, &out.on_shell}) marks->resize(count);
+  for (std::vector<std::uint8_t>* marks : {&out.fixed, &out.touched, &out.on_shell, &out.in_body})
+    marks->resize(count);
   std::copy(mesh.count.begin(), mesh.count.end(), out.count);
   std::size_t at = 0;
   for (int i = 0; i < mesh.count[0]; ++i) {
@@ -61,9 +62,11 @@ void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>
         out.x[at] = static_cast<float>(position.x());
         out.y[at] = static_cast<float>(position.y());
         out.z[at] = static_cast<float>(position.z());
-        out.fixed[at] = held[static_cast<std::size_t>(node)];
-        out.touched[at] = touched[static_cast<std::size_t>(node)];
-        out.on_shell[at] = mesh.is_shell(i, j, k);
+        const NodePlace place = mesh.place_of(i, j, k);
+        out.in_body[at] = place != NodePlace::beside_body;
+        out.fixed[at] = out.in_body[at] & held[static_cast<std::size_t>(node)];
+        out.touched[at] = out.in_body[at] & touched[static_cast<std::size_t>(node)];
+        out.on_shell[at] = place == NodePlace::on_shell;
       }
     }
   }

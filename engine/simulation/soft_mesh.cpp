@@ -46,14 +46,4 @@ Result<BodyState> make_soft_mesh(const MeshSolid& solid, const SoftTool& soft, I
   return BodyState{std::move(lattice).value(), std::move(mapping), Smoothing(box.value()), none, none};
 }
 
-bool holds_any(const MeshMapping& mesh, const std::vector<std::uint8_t>& held) {
-  for (std::uint32_t v = 0; v < mesh.current().vertices_m().size(); ++v) {
-    const EmbeddedPoint point = mesh.vertex(v);
-    for (int i = 0; i < point.count; ++i) {
-      if (held[static_cast<std::size_t>(point.node[i])] != 0 && point.weight[i] > 0.0f) return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace spoonbill

@@ -15,7 +15,4 @@ inline constexpr double soft_edge_cells = 0.5;
 // itself or that has, with edges so short, more than soft_mesh_triangle_limit triangles.
 Result<BodyState> make_soft_mesh(const MeshSolid& solid, const SoftTool& soft, InstructionSet set);
 
-// Whether any node that is held has a part in the place of any vertex. The void around a solid has none.
-bool holds_any(const MeshMapping& mesh, const std::vector<std::uint8_t>& held);
-
 }  // namespace spoonbill

@@ -60,14 +60,16 @@ struct ModelOf {
     if (!soft.ok()) return Error{"tool: " + soft.error().message};
     soft->held = nodes_behind(soft->lattice, {body.soft->grip});
     ToolModel model;
-    for (int n = 0; n < soft->lattice.mesh().node_count(); ++n) {
-      if (soft->held[static_cast<std::size_t>(n)] != 0) model.gripped.push_back(n);
+    const LatticeMesh& mesh = soft->lattice.mesh();
+    bool holds_any = false;
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      if (soft->held[static_cast<std::size_t>(n)] == 0) continue;
+      const auto [i, j, k] = mesh.place(n);
+      holds_any |= mesh.place_of(i, j, k) != NodePlace::beside_body;
+      model.gripped.push_back(n);
     }
-    const MeshMapping* const mesh = soft->mesh();
-    if (model.gripped.empty() || (mesh && !holds_any(*mesh, soft->held))) {
-      return Error{"tool: its grip plane holds none of its nodes, move it"};
-    }
-    if (mesh) model.triangles = mesh->triangles();
+    if (!holds_any) return Error{"tool: its grip plane holds none of its nodes, move it"};
+    if (soft->mesh()) model.triangles = soft->mesh()->triangles();
     soft->lattice.hold(soft->held);
     model.soft = std::move(soft).value();
     return model;

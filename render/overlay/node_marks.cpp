@@ -85,6 +85,7 @@ void append_touched_marks(const LatticeSnapshot& lattice, std::vector<OverlayMar
 
 void append_lattice_lines(const LatticeSnapshot& lattice, bool inner, std::vector<OverlayLine>& lines) {
   for_each_edge(lattice, [&](int, std::size_t a, std::size_t b) {
+    if (lattice.in_body[a] == 0 || lattice.in_body[b] == 0) return;
     if (!inner && (lattice.on_shell[a] == 0 || lattice.on_shell[b] == 0)) return;
     lines.push_back(
         {node(lattice, a), node(lattice, b), palette::lattice, palette::lattice, lattice_width_px});

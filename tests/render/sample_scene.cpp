@@ -85,6 +85,7 @@ LatticeSnapshot make_lattice(const Surface& surface, const SampleSceneOptions& o
         lattice.fixed.push_back(k < options.along / 3 ? 1 : 0);
         lattice.touched.push_back(0);
         lattice.on_shell.push_back(rim > 0.999 ? 1 : 0);
+        lattice.in_body.push_back(1);
       }
     }
   }

@@ -1,0 +1,37 @@
+#!/usr/bin/env python3
+"""Makes soft-egg.json: the cushion of soft-press.json, and the egg of egg.stl in silicone to press it with.
+
+The egg is a mesh with a lattice of its own, held by its upper part. Both files are read from beside this one.
+
+Usage: soft_egg.py > soft-egg.json
+"""
+import json
+import os
+import struct
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+def egg():
+    """Its corners, each once, and its triangles as places among them."""
+    data = open(os.path.join(HERE, "egg.stl"), "rb").read()
+    places, triangles = {}, []
+    for t in range(struct.unpack_from("<I", data, 80)[0]):
+        values = struct.unpack_from("<12f", data, 84 + 50 * t)[3:]
+        corners = [tuple(round(value, 4) for value in values[3 * c : 3 * c + 3]) for c in range(3)]
+        triangles.append([places.setdefault(corner, len(places)) for corner in corners])
+    return {"shape": "mesh", "vertices_mm": [list(corner) for corner in places], "triangles": triangles}
+
+
+def main():
+    with open(os.path.join(HERE, "soft-press.json")) as file:
+        document = json.load(file)
+    document["name"] = "soft-egg"
+    document["tool"]["solid"] = egg()
+    document["tool"]["soft"]["lattice"] = {"node_budget": 700}
+    document["tool"]["soft"]["grip"] = {"point_mm": [0, 10, 0], "normal": [0, -1, 0]}
+    document["view"]["camera"].update({"target_mm": [0, 20, 0], "distance_mm": 280})
+    print(json.dumps(document, separators=(",", ":")))
+
+
+main()
