@@ -32,13 +32,18 @@ MeshProximity::MeshProximity(const NestedGrid& surface, std::vector<int> patches
     : levels_(surface), tree_(surface.grid.u.knots, surface.grid.v.knots), patches_(std::move(patches)) {
   const auto samples = static_cast<std::size_t>(surface.grid.rows() * surface.grid.columns());
   sampled_at_.assign(samples, 0);
-  offered_at_.assign(patches_.size(), 0);
-  held_at_.assign(patches_.size(), 0);
-  place_.assign(patches_.size(), 0);
   const int last_patch = patches_.empty() ? -1 : *std::max_element(patches_.begin(), patches_.end());
-  patch_at_.assign(static_cast<std::size_t>(last_patch + 1), 0);
-  deepest_.assign(static_cast<std::size_t>(last_patch + 1), 0);
-  candidates_.reserve(patches_.size());
+  const auto patch_count = static_cast<std::size_t>(last_patch + 1);
+  first_vertex_.assign(patch_count + 1, 0);
+  for (const int patch : patches_) ++first_vertex_[patch + 1];
+  for (std::size_t p = 1; p < first_vertex_.size(); ++p) first_vertex_[p] += first_vertex_[p - 1];
+  patch_vertices_.resize(patches_.size());
+  std::vector<std::uint32_t> next(first_vertex_.begin(), first_vertex_.end() - 1);
+  for (std::uint32_t v = 0; v < patches_.size(); ++v) patch_vertices_[next[patches_[v]]++] = v;
+  patch_at_.assign(patch_count, 0);
+  offered_at_.assign(patch_count, 0);
+  place_.assign(patch_count, 0);
+  candidates_.reserve(patch_count);
   samples_.reserve(near_capacity);
   vertices_.reserve(near_capacity);
   // A path down a tree of two children each leaves one behind at every step.
@@ -56,7 +61,7 @@ void MeshProximity::find(const Surface& surface, const DeformingMesh& mesh, doub
   levels_.begin(surface);
   tree_.update(levels_);
   visit_elements(mesh, margin_m);
-  settle_vertices(mesh, margin_m);
+  settle_patches(mesh, margin_m);
 }
 
 void MeshProximity::visit_elements(const DeformingMesh& mesh, double margin) {
@@ -88,14 +93,27 @@ void MeshProximity::take_element(const ElementTree::Node& element, const Box& bo
                        is_near = true;
                        for (std::uint32_t t = first; t < first + count; ++t) {
                          for (const std::uint32_t vertex : mesh.triangles()[t]) {
-                           if (offered_at_[vertex] == elements_) continue;
-                           offered_at_[vertex] = elements_;
-                           const Vector3& point = mesh.vertices_m()[vertex];
-                           if (signed_distance(box, point) <= margin) offer(element, vertex, point, margin);
+                           take_vertex(element, box, vertex, mesh.vertices_m()[vertex], margin);
                          }
                        }
                      });
   if (is_near) take_samples(element, mesh, margin);
+}
+
+// Of a patch the first vertex that is near stands for all.
+void MeshProximity::take_vertex(const ElementTree::Node& element, const Box& box, std::uint32_t vertex,
+                                const Vector3& point, double margin) {
+  const int patch = patches_[vertex];
+  const bool found = patch_at_[patch] == search_;
+  if (found && (offered_at_[patch] == elements_ || candidates_[place_[patch]].vertex != vertex)) return;
+  if (signed_distance(box, point) > margin) return;
+  if (!found) {
+    patch_at_[patch] = search_;
+    place_[patch] = static_cast<int>(candidates_.size());
+    candidates_.push_back({patch, vertex, 0.0, 0.0, infinity});
+  }
+  offered_at_[patch] = elements_;
+  offer(element, point, candidates_[place_[patch]]);
 }
 
 void MeshProximity::take_samples(const ElementTree::Node& element, const DeformingMesh& mesh, double margin) {
@@ -117,58 +135,55 @@ void MeshProximity::take_samples(const ElementTree::Node& element, const Deformi
   }
 }
 
-void MeshProximity::offer(const ElementTree::Node& element, std::uint32_t vertex, const Vector3& point,
-                          double margin) {
-  const Grid& grid = levels_.nested().grid;
+void MeshProximity::offer(const ElementTree::Node& element, const Vector3& point, Candidate& candidate) {
+  const std::vector<double>&u = levels_.nested().grid.u.parameters, &v = levels_.nested().grid.v.parameters;
   const int side = levels_.step(0);
-  Candidate best{vertex, 0.0, 0.0, infinity, 0.0};
   for (int i = element.first_u * side; i < element.end_u * side; ++i) {
     for (int j = element.first_v * side; j < element.end_v * side; ++j) {
-      const PatchCorners at = levels_.corners({i, j, levels_.nested().levels});
-      const OnCell on = nearest_on_cell(point, at);
-      if (on.distance >= best.distance_m) continue;
-      const std::vector<double>&u = grid.u.parameters, &v = grid.v.parameters;
-      const Vector3 outwards = (at[2] - at[0] + at[3] - at[1]).cross(at[1] - at[0] + at[3] - at[2]);
-      const Vector3 foot =
-          (1 - on.u) * ((1 - on.v) * at[0] + on.v * at[1]) + on.u * ((1 - on.v) * at[2] + on.v * at[3]);
-      const double sign = (point - foot).dot(outwards) < 0.0 ? -1.0 : 1.0;
-      best = {vertex, u[i] + on.u * (u[i + 1] - u[i]), v[j] + on.v * (v[j + 1] - v[j]), on.distance,
-              sign * on.distance};
+      const OnCell on = nearest_on_cell(point, levels_.corners({i, j, levels_.nested().levels}));
+      if (on.distance >= candidate.distance_m) continue;
+      candidate.distance_m = on.distance;
+      candidate.u = u[i] + on.u * (u[i + 1] - u[i]);
+      candidate.v = v[j] + on.v * (v[j + 1] - v[j]);
     }
-  }
-  // The surface leaves its samples' triangles by less.
-  if (best.distance_m > 2.0 * margin) return;
-  if (held_at_[vertex] != search_) {
-    held_at_[vertex] = search_;
-    place_[vertex] = static_cast<int>(candidates_.size());
-    candidates_.push_back(best);
-  } else if (best.distance_m < candidates_[place_[vertex]].distance_m) {
-    candidates_[place_[vertex]] = best;
   }
 }
 
-void MeshProximity::settle_vertices(const DeformingMesh& mesh, double margin) {
-  for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    const int patch = patches_[candidates_[c].vertex];
-    const bool first = patch_at_[patch] != search_;
-    if (!first && candidates_[deepest_[patch]].gap_m <= candidates_[c].gap_m) continue;
-    patch_at_[patch] = search_;
-    deepest_[patch] = static_cast<int>(c);
+VertexNearSurface MeshProximity::settled(std::uint32_t vertex, const Vector3& point, double u,
+                                         double v) const {
+  const NearestPoint nearest = nearest_point(levels_.pieces(), point, u, v);
+  const Vector3 normal = unit_normal(levels_.surface(), nearest.u, nearest.v);
+  return {vertex, nearest.u, nearest.v, normal, (point - nearest.at.position_m).dot(normal)};
+}
+
+std::uint32_t MeshProximity::deepest_of(int patch, const DeformingMesh& mesh, const Vector3& normal) const {
+  std::uint32_t deepest = patch_vertices_[first_vertex_[patch]];
+  double least = infinity;
+  for (std::uint32_t k = first_vertex_[patch]; k < first_vertex_[patch + 1]; ++k) {
+    const double height = normal.dot(mesh.vertices_m()[patch_vertices_[k]]);
+    if (height >= least) continue;
+    least = height;
+    deepest = patch_vertices_[k];
   }
-  for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    const Candidate& candidate = candidates_[c];
-    if (deepest_[patches_[candidate.vertex]] != static_cast<int>(c)) continue;
-    const Vector3& point = mesh.vertices_m()[candidate.vertex];
-    const NearestPoint nearest = nearest_point(levels_.pieces(), point, candidate.u, candidate.v);
-    const Vector3 normal = unit_normal(levels_.surface(), nearest.u, nearest.v);
-    const double gap = (point - nearest.at.position_m).dot(normal);
-    if (gap > margin) continue;
+  return deepest;
+}
+
+void MeshProximity::settle_patches(const DeformingMesh& mesh, double margin) {
+  for (const Candidate& candidate : candidates_) {
+    const std::vector<Vector3>& points = mesh.vertices_m();
+    VertexNearSurface near = settled(candidate.vertex, points[candidate.vertex], candidate.u, candidate.v);
+    const std::uint32_t deepest = deepest_of(candidate.patch, mesh, near.normal);
+    if (deepest != near.vertex) {
+      const VertexNearSurface other = settled(deepest, points[deepest], near.u, near.v);
+      if (other.gap_m < near.gap_m) near = other;
+    }
+    if (near.gap_m > margin) continue;
     if (vertices_.size() == near_capacity) {
       overflow_ = true;
       return;
     }
-    vertices_.push_back({candidate.vertex, nearest.u, nearest.v, normal, gap});
-    least_gap_m_ = std::min(least_gap_m_, gap);
+    vertices_.push_back(near);
+    least_gap_m_ = std::min(least_gap_m_, near.gap_m);
   }
 }
 

@@ -28,7 +28,7 @@ struct VertexNearSurface {
 class MeshProximity {
  public:
   // `patches`: where each vertex of the mesh belongs, from 0. Vertices may be far denser than what they move:
-  // of each patch only the one that is deepest, or nearest, is told.
+  // of each patch only the one that is deepest, or nearest, is told, as far as the surface is flat beside it.
   MeshProximity(const NestedGrid& surface, std::vector<int> patches);
   MeshProximity(const MeshProximity&) = delete;
   MeshProximity& operator=(const MeshProximity&) = delete;
@@ -45,27 +45,32 @@ class MeshProximity {
   bool overflow() const { return overflow_; }
 
  private:
-  // The nearest point of the sampled surface to a vertex, before it is sought on the surface itself.
+  // Of a patch, one vertex that is near, and the nearest point to it of the surface's samples.
   struct Candidate {
+    int patch;
     std::uint32_t vertex;
-    double u, v, distance_m, gap_m;
+    double u, v, distance_m;
   };
   void visit_elements(const DeformingMesh& mesh, double margin);
   void take_element(const ElementTree::Node& element, const Box& box, const DeformingMesh& mesh,
                     double margin);
+  void take_vertex(const ElementTree::Node& element, const Box& box, std::uint32_t vertex,
+                   const Vector3& point, double margin);
   void take_samples(const ElementTree::Node& element, const DeformingMesh& mesh, double margin);
-  void offer(const ElementTree::Node& element, std::uint32_t vertex, const Vector3& point, double margin);
-  void settle_vertices(const DeformingMesh& mesh, double margin);
+  void offer(const ElementTree::Node& element, const Vector3& point, Candidate& candidate);
+  void settle_patches(const DeformingMesh& mesh, double margin);
+  VertexNearSurface settled(std::uint32_t vertex, const Vector3& point, double u, double v) const;
+  std::uint32_t deepest_of(int patch, const DeformingMesh& mesh, const Vector3& normal) const;
 
   SurfaceLevels levels_;
   ElementTree tree_;
   std::vector<int> patches_;
-  std::vector<std::uint32_t> offered_at_;  // the element to which a vertex was offered last, counted through
-  std::vector<std::uint32_t> sampled_at_;  // the find() in which a sample was taken
-  std::vector<std::uint32_t> held_at_;     // the same of a vertex in candidates_, at place_
+  std::vector<std::uint32_t> first_vertex_;    // of each patch, into patch_vertices_; one more at the end
+  std::vector<std::uint32_t> patch_vertices_;  // patch by patch
+  std::vector<std::uint32_t> sampled_at_;      // the find() in which a sample was taken
+  std::vector<std::uint32_t> patch_at_;        // the same of a patch in candidates_, at place_
+  std::vector<std::uint32_t> offered_at_;  // the element to which a patch was offered last, counted through
   std::vector<int> place_;
-  std::vector<std::uint32_t> patch_at_;  // the same of a patch's deepest, at deepest_
-  std::vector<int> deepest_;
   std::vector<Candidate> candidates_;
   std::vector<SampleNearMesh> samples_;
   std::vector<VertexNearSurface> vertices_;

@@ -161,8 +161,9 @@ TEST(MeshProximity, TellsTheDeepestOfAPatch) {
   double least = 1.0;
   for (const VertexNearSurface& near : all.of_mesh()) least = std::min(least, near.gap_m);
   EXPECT_LT(least, -2e-4);
-  // It is chosen by the samples' triangles, which leave the surface by less than this.
-  EXPECT_NEAR(one.of_mesh()[0].gap_m, least, 5e-5);
+  // It is chosen by the plane at the foot of another, here up to 6 mm away on a surface of some 20 mm of
+  // radius.
+  EXPECT_NEAR(one.of_mesh()[0].gap_m, least, 3e-4);
 }
 
 TEST(MeshProximity, AllocatesNothing) {
