@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Makes soft-egg.json: the cushion of soft-press.json, and the egg of egg.stl in silicone to press it with.
+"""Makes soft-egg.json: the cushion of soft-press.json, and the egg of egg.stl to press it with.
 
-The egg is a mesh with a lattice of its own, held by its upper part. Both files are read from beside this one.
+The egg is a mesh with a lattice of its own, held by its upper part. The materials are exchanged: here the tool is of
+gelatin and the body of silicone, which the board holds nearly to its top, so that the egg gives way. Both files are
+read from beside this one.
 
 Usage: soft_egg.py > soft-egg.json
 """
@@ -28,8 +30,11 @@ def main():
         document = json.load(file)
     document["name"] = "soft-egg"
     document["tool"]["solid"] = egg()
-    document["tool"]["soft"]["lattice"] = {"node_budget": 700}
-    document["tool"]["soft"]["grip"] = {"point_mm": [0, 10, 0], "normal": [0, -1, 0]}
+    body, soft = document["body"], document["tool"]["soft"]
+    body["material"], soft["material"] = soft["material"], body["material"]
+    document["fixing_planes"][0]["point_mm"] = [0, 8, 0]
+    soft["lattice"] = {"node_budget": 2500}
+    soft["grip"] = {"point_mm": [0, 10, 0], "normal": [0, -1, 0]}
     document["view"]["camera"].update({"target_mm": [0, 20, 0], "distance_mm": 280})
     print(json.dumps(document, separators=(",", ":")))
 

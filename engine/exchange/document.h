@@ -26,7 +26,8 @@
 // half_length_mm), box (half_extents_mm), cone (base_radius_mm, height_mm), torus (ring_radius_mm,
 // tube_radius_mm), half_space, superquadric (semi_axes_mm, exponent_along, exponent_around), mesh
 // (vertices_mm, triangles as three places of vertices each), and surface, with the fields of a body's
-// surface, which alone may be soft. implicit_shapes.h and triangle_mesh.h say what is meant.
+// surface. Soft may be a surface, or a mesh that is closed; its "nodes" count along x, y and z.
+// implicit_shapes.h and triangle_mesh.h say what is meant.
 //
 // Version 1. The ranges stand in scene.h and material.h; knots lie within a million of zero and are equal or
 // at least a billionth of the domain apart. A length is a number, or a decimal in quotes where no double of

@@ -31,7 +31,9 @@ Status check_tool(const Tool& tool) {
     return status;
   }
   if (tool.kind != ToolKind::solid) return {};
-  return tool.body ? check_tool_body(*tool.body) : Error{"tool: a solid must have a body"};
+  if (!tool.body) return Error{"tool: a solid must have a body"};
+  const Status status = check_tool_body(*tool.body);
+  return status.ok() ? status : Error{"tool: " + status.error().message};
 }
 
 Status check_together(const Tool& tool, const Symmetry& symmetry) {

@@ -9,10 +9,6 @@
 namespace spoonbill {
 namespace {
 
-Error of_tool(const Error& error) {
-  return Error{"tool: " + error.message};
-}
-
 Status check_solid(const ImplicitShape& shape) {
   return check_implicit_shape(shape);
 }
@@ -51,13 +47,13 @@ Status check_soft(const SurfaceSolid&) {
 
 Status check_tool_body(const ToolBody& body) {
   const Status solid = std::visit([](const auto& of) { return check_solid(of); }, body.solid);
-  if (!solid.ok()) return of_tool(solid.error());
+  if (!solid.ok()) return solid;
   if (!body.soft) return {};
   const Status soft = std::visit([](const auto& of) { return check_soft(of); }, body.solid);
-  if (!soft.ok()) return of_tool(soft.error());
+  if (!soft.ok()) return soft;
   for (const Status& status : {check_material(body.soft->material), check_lattice_request(body.soft->lattice),
                                check_fixing_plane(body.soft->grip)}) {
-    if (!status.ok()) return of_tool(status.error());
+    if (!status.ok()) return status;
   }
   return {};
 }

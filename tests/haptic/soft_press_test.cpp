@@ -13,15 +13,20 @@
 namespace spoonbill {
 namespace {
 
-const std::filesystem::path script_file =
-    std::filesystem::path(SPOONBILL_ASSETS) / "recordings" / "soft-press.script.json";
+const std::filesystem::path scripts = std::filesystem::path(SPOONBILL_ASSETS) / "recordings";
 
 double highest(const Surface& surface) {
   return *std::max_element(surface.net.y.begin(), surface.net.y.end());
 }
 
+double top_in_the_middle(const Surface& surface) {
+  double top = -1.0;
+  for (int i = 0; i < 32; ++i) top = std::max(top, evaluate(surface, i / 32.0, 0.0).position_m.y());
+  return top;
+}
+
 TEST(SoftPress, BothGiveWayStayApartAndComeBack) {
-  const Script script = read_script(script_file).value();
+  const Script script = read_script(scripts / "soft-press.script.json").value();
   const Document document = read_document(script.model_file).value();
   Simulation simulation = Simulation::make(document.scene, best_instruction_set()).value();
   VirtualDevice device = VirtualDevice::make(script.hand, script.start).value();
@@ -47,6 +52,40 @@ TEST(SoftPress, BothGiveWayStayApartAndComeBack) {
     farthest = std::max(farthest, std::abs(cushion.net.y[p] - simulation.surface(0).net.y[p]));
   }
   EXPECT_LT(farthest, 0.3e-3) << "elastic";
+}
+
+// The same with the bundled egg, which is a mesh.
+TEST(SoftPress, AMeshGivesWayTooAndComesBack) {
+  const Script script = read_script(scripts / "soft-egg.script.json").value();
+  const Document document = read_document(script.model_file).value();
+  Simulation simulation = Simulation::make(document.scene, best_instruction_set()).value();
+  VirtualDevice device = VirtualDevice::make(script.hand, script.start).value();
+  CouplingState coupling;
+  Snapshot snapshot;
+  // How far the lowest point of the egg is below the hand.
+  const auto hangs_m = [&](double hand_m) {
+    simulation.write_snapshot(snapshot);
+    const std::vector<float>& y = snapshot.bodies.back().mesh.y;
+    return hand_m - static_cast<double>(*std::min_element(y.begin(), y.end()));
+  };
+  const double first_top = top_in_the_middle(simulation.surface(0));
+  double strongest = 0.0, shortest = 1.0, last = 0.0, lowest_top = first_top;
+  for (std::uint64_t t = 0; t < script.tick_count(); ++t) {
+    device.set_target(script.target_at(t));
+    const DeviceReading reading = device.read();
+    const TickResult result = tick(simulation, coupling, device.specification(), reading);
+    device.set_force(result.force_n);
+    strongest = std::max(strongest, result.force_n.norm());
+    lowest_top = std::min(lowest_top, top_in_the_middle(simulation.surface(0)));
+    EXPECT_EQ(result.flags & tick_flag_contact_overflow, 0u);
+    if (t % 25 != 0) continue;
+    last = hangs_m(reading.pose().position_m.y());
+    shortest = std::min(shortest, last);
+  }
+  EXPECT_GT(strongest, 0.1);
+  EXPECT_LT(lowest_top, first_top - 1e-3) << "the cushion has a dent";
+  EXPECT_LT(shortest, last - 0.5e-3) << "and so has the egg";
+  EXPECT_NEAR(last, 0.025, 0.2e-3) << "which is as it was made";
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -182,6 +183,46 @@ TEST_F(SolidToolPicture, TheMirrorImageLooksLikeAMirroredMesh) {
   const Changed rest = difference(picture(alone, settings), picture(both, settings));
   EXPECT_EQ(rest.count, right.count);
   EXPECT_GE(rest.low.x(), right.low.x());
+}
+
+// A box of triangles as a soft tool, at a frame: opaque, where it should be, and lit as a body is.
+TEST_F(SolidToolPicture, ASoftMeshIsDrawnWhereItsVerticesAre) {
+  auto triangles = std::make_shared<std::vector<TriangleCorners>>();
+  for (const auto& [a, b, c, d] :
+       {std::array{0U, 2U, 3U, 1U}, std::array{4U, 5U, 7U, 6U}, std::array{0U, 1U, 5U, 4U},
+        std::array{2U, 6U, 7U, 3U}, std::array{0U, 4U, 6U, 2U}, std::array{1U, 3U, 7U, 5U}}) {
+    triangles->push_back({a, b, c});
+    triangles->push_back({a, c, d});
+  }
+  Snapshot snapshot = scene_with(ImplicitShape(BoxShape{half_m}), oblique);
+  const ToolFrame frame = tool_frame(snapshot);
+  const BoundingBox box{-half_m, half_m};
+  snapshot = without_bodies(std::move(snapshot));
+  snapshot.tool.body = std::make_shared<ToolBody>(ToolBody{ImplicitShape(BoxShape{half_m}), SoftTool{}});
+  BodySnapshot& body = snapshot.bodies.emplace_back();
+  body.mesh.triangles = triangles;
+  for (int corner = 0; corner < 8; ++corner) {
+    // The k-th bit of a corner's number is its side along axis k.
+    const Vector3 local(corner & 1 ? half_m.x() : -half_m.x(), corner & 2 ? half_m.y() : -half_m.y(),
+                        corner & 4 ? half_m.z() : -half_m.z());
+    const Eigen::Vector3f at = (frame.origin_m + frame.axes * local).cast<float>();
+    body.mesh.x.push_back(at.x());
+    body.mesh.y.push_back(at.y());
+    body.mesh.z.push_back(at.z());
+  }
+  ViewSettings settings = plain_view();
+  settings.overlays.lattice = settings.overlays.control_net = settings.overlays.fixed_nodes = true;
+  Snapshot nothing = snapshot;
+  nothing.bodies.clear();
+  const Changed seen = difference(picture(nothing, settings), picture(snapshot, settings));
+  expect_same_bounds(seen, projected(box, frame));
+  EXPECT_GT(seen.count, 300);
+  // As it moves, so does its picture.
+  for (float& y : snapshot.bodies[0].mesh.y) y += 0.01F;
+  ToolFrame higher = frame;
+  higher.origin_m.y() += 0.01;
+  expect_same_bounds(difference(picture(nothing, settings), picture(snapshot, settings)),
+                     projected(box, higher));
 }
 
 TEST_F(SolidToolPicture, ASoftToolShowsNothingBesideItsBody) {

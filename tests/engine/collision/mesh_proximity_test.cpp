@@ -34,32 +34,57 @@ std::vector<int> each_its_own(std::size_t vertices) {
   return patches;
 }
 
-// By the densest samples around the nearest of coarse ones, again and again.
-double brute_distance(const Surface& surface, const Vector3& point, double& u, double& v) {
-  const double u0 = surface.u.domain_start(), u1 = surface.u.domain_end(), v0 = surface.v.domain_start(),
-               v1 = surface.v.domain_end();
-  double best = 1e30, reach_u = 0.5 * (u1 - u0), reach_v = 0.5 * (v1 - v0);
-  u = u0 + reach_u;
-  v = v0 + reach_v;
-  constexpr int side = 40;
-  for (int round = 0; round < 12; ++round) {
-    const double middle_u = u, middle_v = v;
-    for (int i = -side; i <= side; ++i) {
-      for (int j = -side; j <= side; ++j) {
-        const double a = middle_u + reach_u * i / side, b = std::clamp(middle_v + reach_v * j / side, v0, v1);
-        const double distance = (evaluate(surface, surface.u.into_domain(a), b).position_m - point).norm();
-        if (distance >= best) continue;
-        best = distance;
-        u = a;
-        v = b;
+struct Foot {
+  double distance_m, u, v;
+};
+
+// From the nearest of many samples, by ever finer ones about it.
+class BruteSurface {
+ public:
+  explicit BruteSurface(const Surface& surface) : surface_(surface) {
+    for (int i = 0; i < around; ++i) {
+      for (int j = 0; j <= along; ++j) {
+        const double u = at(surface.u, i, around), v = at(surface.v, j, along);
+        samples_.push_back({evaluate(surface, u, v).position_m, u, v});
       }
     }
-    reach_u *= 0.15;
-    reach_v *= 0.15;
   }
-  u = surface.u.into_domain(u);
-  return best;
-}
+
+  Foot nearest(const Vector3& point) const {
+    const auto first = std::min_element(samples_.begin(), samples_.end(), [&](const auto& a, const auto& b) {
+      return (a.point - point).squaredNorm() < (b.point - point).squaredNorm();
+    });
+    Foot best{(first->point - point).norm(), first->u, first->v};
+    double reach_u = (surface_.u.domain_end() - surface_.u.domain_start()) / around;
+    double reach_v = (surface_.v.domain_end() - surface_.v.domain_start()) / along;
+    for (int round = 0; round < 20; ++round) {
+      const Foot middle = best;
+      for (int i = -side; i <= side; ++i) {
+        for (int j = -side; j <= side; ++j) {
+          const double u = surface_.u.into_domain(middle.u + reach_u * i / side);
+          const double v = surface_.v.into_domain(middle.v + reach_v * j / side);
+          const double distance = (evaluate(surface_, u, v).position_m - point).norm();
+          if (distance < best.distance_m) best = {distance, u, v};
+        }
+      }
+      reach_u *= 0.5;
+      reach_v *= 0.5;
+    }
+    return best;
+  }
+
+ private:
+  static constexpr int around = 100, along = 200, side = 3;
+  struct Sample {
+    Vector3 point;
+    double u, v;
+  };
+  static double at(const KnotVector& knots, int index, int count) {
+    return knots.domain_start() + (knots.domain_end() - knots.domain_start()) * index / count;
+  }
+  const Surface& surface_;
+  std::vector<Sample> samples_;
+};
 
 struct Scene {
   Surface surface = ellipsoid_tube(12, 12);
@@ -117,6 +142,7 @@ TEST(MeshProximity, FindsEverySampleThatIsNear) {
 TEST(MeshProximity, FindsEveryVertexThatIsNear) {
   Random random(12);
   const Scene scene;
+  const BruteSurface brute(scene.surface);
   constexpr double margin = 1e-3;
   int found = 0;
   for (int trial = 0; trial < trials(9); ++trial) {
@@ -130,8 +156,7 @@ TEST(MeshProximity, FindsEveryVertexThatIsNear) {
     }
     for (std::size_t vertex = 0; vertex < triangles.vertices_m.size(); ++vertex) {
       const Vector3& point = triangles.vertices_m[vertex];
-      double u = 0.0, v = 0.0;
-      const double distance = brute_distance(scene.surface, point, u, v);
+      const auto [distance, u, v] = brute.nearest(point);
       const Vector3 normal = unit_normal(scene.surface, u, v);
       const double gap =
           normal.dot(point - evaluate(scene.surface, u, v).position_m) < 0.0 ? -distance : distance;

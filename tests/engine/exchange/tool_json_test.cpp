@@ -68,9 +68,15 @@ TEST(ToolJson, KeepsEverySolid) {
 TEST(ToolJson, KeepsASoftOne) {
   const Material clay = sample_document().scene.bodies[0].material;
   const SoftTool soft{clay, {300, {}}, {Vector3(0, 0.001, 0), -Vector3::UnitY()}};
-  const std::string text = page(with_tool(every_solid().back(), soft));
-  EXPECT_NE(text.find("\"grip\""), std::string::npos);
-  EXPECT_EQ(read_and_written(text), text);
+  for (const ToolSolid& solid : {every_solid().back(), ToolSolid(tetrahedron())}) {
+    const std::string text = page(with_tool(solid, soft));
+    EXPECT_NE(text.find("\"grip\""), std::string::npos);
+    EXPECT_EQ(read_and_written(text), text);
+    const Json command = command_to_json(SetTool{with_tool(solid, soft).scene.tool});
+    const auto read = command_from_json(command, "script");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(command_to_json(read.value()), command);
+  }
 }
 
 TEST(ToolJson, KeepsASolidThatIsNotInTheHand) {
@@ -106,6 +112,35 @@ TEST(ToolJson, NamesWhatIsWrong) {
               j["tool"]["soft"] = {{"material", 3}};
             }).substr(0, 30),
             "sample.json: tool.soft.materia");
+}
+
+TEST(ToolJson, NamesWhatIsWrongWithASoftMesh) {
+  const Material clay = sample_document().scene.bodies[0].material;
+  const SoftTool soft{clay, {300, {}}, {Vector3(0, 0.001, 0), -Vector3::UnitY()}};
+  const auto refused = [&](const std::function<void(Json&)>& change) {
+    Json json = document_to_json(with_tool(tetrahedron(), soft));
+    change(json["tool"]);
+    const auto read = document_from_json(json, "sample.json");
+    return read.ok() ? "accepted" : read.error().message;
+  };
+  EXPECT_EQ(refused([](Json&) {}), "accepted");
+  EXPECT_EQ(refused([](Json& tool) { tool["soft"].erase("lattice"); }),
+            "sample.json: tool.soft.lattice is missing");
+  EXPECT_EQ(refused([](Json& tool) { tool["soft"]["lattice"]["node_budget"] = 3; }),
+            "sample.json: tool.soft.lattice.node_budget is 3, must be 50 to 40000");
+  EXPECT_EQ(refused([](Json& tool) { tool["soft"]["material"]["density_kg_per_m3"] = -1; }).substr(0, 49),
+            "sample.json: tool.soft.material.density_kg_per_m3");
+  EXPECT_EQ(refused([](Json& tool) {
+              tool["soft"]["grip"]["normal"] = {0, 0, 0};
+            }).substr(0, 34),
+            "sample.json: tool.soft.grip.normal");
+  EXPECT_EQ(refused([](Json& tool) { tool["solid"]["triangles"].erase(3); }),
+            "sample.json: tool mesh: is not closed, as a soft one must be; close its holes, or leave soft "
+            "out");
+  EXPECT_EQ(refused([](Json& tool) {
+              tool["solid"] = {{"shape", "half_space"}};
+            }),
+            "sample.json: tool only a mesh or a B-spline surface can be soft; leave soft out");
 }
 
 TEST(ToolJson, KeepsSeveralBodies) {
