@@ -58,8 +58,7 @@ void MeshProximity::find(const Surface& surface, const DeformingMesh& mesh, doub
   samples_.clear();
   vertices_.clear();
   if (net_box(surface.net).gap(mesh.bounds()) > margin_m) return;
-  levels_.begin(surface);
-  tree_.update(levels_);
+  if (levels_.begin(surface)) tree_.update(levels_);
   visit_elements(mesh, margin_m);
   settle_patches(mesh, margin_m);
 }
