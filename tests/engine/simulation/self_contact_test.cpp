@@ -94,7 +94,7 @@ class Folding {
     EXPECT_TRUE(!meets_itself_ || self_.add_contacts({0, &body_}, contacts_));
     contacts_.begin(0.0);
     relax(std::array{RelaxedLattice{&body_.lattice}}, {tick_++, 1, 1e-3, damping_per_s_}, {}, &contacts_);
-    body_.mapping.update(body_.lattice);
+    body_.mapping().update(body_.lattice);
     return contacts_.acted(0);
   }
 
@@ -118,7 +118,7 @@ class Folding {
 
   double cell_m() const { return static_cast<double>(body_.lattice.cell_size_m()); }
   double depth_m(bool* touching = nullptr) const {
-    return depth_in_itself(body_.mapping.current(), touching);
+    return depth_in_itself(body_.mapping().current(), touching);
   }
 
  private:
