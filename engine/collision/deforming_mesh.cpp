@@ -109,7 +109,7 @@ Vector3 DeformingMesh::vertex_normal(std::uint32_t vertex) const {
 Vector3 DeformingMesh::normal_at(const Nearest& nearest) const {
   using On = NearestOnTriangle::On;
   if (nearest.on.on == On::corner) return vertex_normal(triangles_[nearest.triangle][nearest.on.which]);
-  const Vector3 face = face_normal(nearest.triangle);
+  Vector3 face = face_normal(nearest.triangle);
   if (nearest.on.on == On::face) return face;
   return face + face_normal(across_[3 * nearest.triangle + nearest.on.which]);
 }

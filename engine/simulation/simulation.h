@@ -79,7 +79,8 @@ class Simulation {
   // Refused when the state is of another lattice.
   Status restore(const ShapeState& shape);
 
-  // For studies and tests: a body's lattice, and its surface as it is now.
+  // For studies and tests: a body's lattice, and its surface as it is now, where it has one: any of the
+  // scene's.
   const SpringLattice& lattice(int body = 0) const;
   const Surface& surface(int body = 0) const;
 

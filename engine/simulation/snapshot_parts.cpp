@@ -50,8 +50,9 @@ void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>
   const LatticeMesh& mesh = lattice.mesh();
   const std::size_t count = static_cast<std::size_t>(mesh.node_count());
   for (std::vector<float>* values : {&out.x, &out.y, &out.z}) values->resize(count);
-  for (std::vector<std::uint8_t>* marks : {&out.fixed, &out.touched, &out.on_shell, &out.in_body})
+  for (std::vector<std::uint8_t>* marks : {&out.fixed, &out.touched, &out.on_shell, &out.in_body}) {
     marks->resize(count);
+  }
   std::copy(mesh.count.begin(), mesh.count.end(), out.count);
   std::size_t at = 0;
   for (int i = 0; i < mesh.count[0]; ++i) {

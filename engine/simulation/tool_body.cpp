@@ -46,10 +46,10 @@ Status check_soft(const SurfaceSolid&) {
 }  // namespace
 
 Status check_tool_body(const ToolBody& body) {
-  const Status solid = std::visit([](const auto& of) { return check_solid(of); }, body.solid);
+  Status solid = std::visit([](const auto& of) { return check_solid(of); }, body.solid);
   if (!solid.ok()) return solid;
   if (!body.soft) return {};
-  const Status soft = std::visit([](const auto& of) { return check_soft(of); }, body.solid);
+  Status soft = std::visit([](const auto& of) { return check_soft(of); }, body.solid);
   if (!soft.ok()) return soft;
   for (const Status& status : {check_material(body.soft->material), check_lattice_request(body.soft->lattice),
                                check_fixing_plane(body.soft->grip)}) {
