@@ -21,7 +21,8 @@ ContactSide on_surface(const SurfaceContact& contact) {
 
 // The mesh leaves the body along the surface's normal.
 ContactOfTwo contact_of(const ToolShape& tool, const SurfaceContact& at, bool mesh_is_a) {
-  ContactOfTwo contact{on_surface(at), on_mesh(tool, at.point_m), -at.normal, at.depth_m};
+  ContactOfTwo contact{on_surface(at), on_mesh(tool, at.point_m), -at.normal, at.depth_m, at.tangent_u,
+                       at.tangent_v};
   if (!mesh_is_a) return contact;
   std::swap(contact.a, contact.b);
   contact.normal = at.normal;

@@ -46,6 +46,8 @@ Json side_json(const ContactSide& side) {
 Json contact_json(const ContactOfTwo& contact) {
   return {{"point_m", vector_json(contact.a.point_m)},
           {"normal", vector_json(contact.normal)},
+          {"tangent_u", vector_json(contact.tangent_u)},
+          {"tangent_v", vector_json(contact.tangent_v)},
           {"depth_m", contact.depth_m},
           {"a", side_json(contact.a)},
           {"b", side_json(contact.b)}};
@@ -81,7 +83,9 @@ CollisionAnswer answer_of(const PairResult& result, const std::vector<PairContac
     answer.contacts.push_back({{contact.pair.first_m, SurfacePlace{at.u, at.v, contact.first}},
                                {contact.pair.second_m, SurfacePlace{at.s, at.t, contact.second}},
                                contact.normal,
-                               contact.depth_m});
+                               contact.depth_m,
+                               contact.tangent_u,
+                               contact.tangent_v});
   }
   return answer;
 }

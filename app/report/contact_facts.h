@@ -25,6 +25,7 @@ struct ContactOfTwo {
   ContactSide a, b;
   Vector3 normal = Vector3::UnitY();  // unit, along which A leaves B
   double depth_m = 0.0;
+  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // unit, across the normal
 };
 
 struct CollisionAnswer {

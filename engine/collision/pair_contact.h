@@ -3,6 +3,7 @@
 
 #include "engine/collision/pair_polish.h"
 #include "engine/collision/parameter_range.h"
+#include "engine/collision/surface_contact.h"
 
 namespace spoonbill {
 
@@ -12,6 +13,14 @@ struct PairContact {
   Vector3 normal;                // unit, along which the first surface leaves the second
   double depth_m = 0.0;          // how far; 0 where they only touch
   ParameterRange first, second;  // all of the region is within
+  Vector3 tangent_u, tangent_v;  // tangents_across() the normal, by the first surface
 };
+
+inline void take_tangents(const PiecewiseSurface& first, PairContact& contact) {
+  const PairParameters& at = contact.pair.at;
+  const Tangents tangents = tangents_across(contact.normal, evaluate(first, at.u, at.v));
+  contact.tangent_u = tangents.u;
+  contact.tangent_v = tangents.v;
+}
 
 }  // namespace spoonbill

@@ -8,6 +8,20 @@ constexpr double vanishing = 1e-9;
 
 }  // namespace
 
+Tangents tangents_across(const Vector3& normal, const SurfacePoint& at) {
+  const auto in_plane = [&](const Vector3& way) -> Vector3 { return way - way.dot(normal) * normal; };
+  const Vector3 du = in_plane(at.du), dv = in_plane(at.dv);
+  Vector3 along = du;
+  if (!(du.norm() > vanishing * dv.norm())) along = dv.cross(normal);
+  if (!(along.norm() > 0.0)) along = normal.unitOrthogonal();
+  Tangents tangents;
+  tangents.u = along.normalized();
+  tangents.v = normal.cross(tangents.u);
+  // A surface that is a line or a point here has no normal: any frame about the tangent serves.
+  if (!(tangents.v.norm() > 0.5)) tangents.v = tangents.u.unitOrthogonal();
+  return tangents;
+}
+
 SurfaceContact contact_at(const Surface& surface, const SurfaceSpot& spot) {
   SurfaceContact contact;
   contact.u = spot.u;
@@ -15,18 +29,9 @@ SurfaceContact contact_at(const Surface& surface, const SurfaceSpot& spot) {
   contact.point_m = spot.point_m;
   contact.depth_m = -spot.distance_m;
   contact.normal = unit_normal(surface, spot.u, spot.v);
-  const SurfacePoint at = evaluate(surface, spot.u, spot.v);
-  const auto in_plane = [&](const Vector3& way) -> Vector3 {
-    return way - way.dot(contact.normal) * contact.normal;
-  };
-  const Vector3 du = in_plane(at.du), dv = in_plane(at.dv);
-  Vector3 along = du;
-  if (!(du.norm() > vanishing * dv.norm())) along = dv.cross(contact.normal);
-  if (!(along.norm() > 0.0)) along = contact.normal.unitOrthogonal();
-  contact.tangent_u = along.normalized();
-  contact.tangent_v = contact.normal.cross(contact.tangent_u);
-  // A surface that is a line or a point here has no normal: any frame about the tangent serves.
-  if (!(contact.tangent_v.norm() > 0.5)) contact.tangent_v = contact.tangent_u.unitOrthogonal();
+  const Tangents tangents = tangents_across(contact.normal, evaluate(surface, spot.u, spot.v));
+  contact.tangent_u = tangents.u;
+  contact.tangent_v = tangents.v;
   return contact;
 }
 

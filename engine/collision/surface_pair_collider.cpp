@@ -106,6 +106,7 @@ void SurfacePairCollider::take_contacts(const PairQuery& query) {
     if (!touches(pairs, region, last)) continue;
     contact.pair = search_.best();
     seeds_.push_back(settle(pairs, region, query, last, contact));
+    take_tangents(first_.pieces(), contact);
     contacts_.push_back(contact);
   }
 }
@@ -335,6 +336,7 @@ void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& resul
   nearest_known_ = true;
   if (nested && is_contained(query)) {
     contacts_.push_back(containment());
+    take_tangents(first_.pieces(), contacts_.back());
     result.touching = result.contained = true;
   } else if (search_.best_distance_m() <= query.reach_m) {
     result.nearest = search_.best();

@@ -255,6 +255,7 @@ PairContact SurfaceSelfCollider::contact_of(const Region& region, const SelfQuer
   double shortest = infinity;
   settle(contact, deepest_seed(region, 1.0), 1.0, query, shortest);
   if (!query.closed) settle(contact, deepest_seed(region, -1.0), -1.0, query, shortest);
+  take_tangents(levels_.pieces(), contact);
   return contact;
 }
 

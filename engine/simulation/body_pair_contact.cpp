@@ -47,6 +47,27 @@ bool add_all(const NumberedBody& first, const NumberedBody& second, const MeshPr
   return complete;
 }
 
+std::optional<SurfaceSpot> deepest_of(const std::vector<NearPoint>& points) {
+  const auto deepest =
+      std::min_element(points.begin(), points.end(),
+                       [](const NearPoint& one, const NearPoint& other) { return one.gap_m < other.gap_m; });
+  if (deepest == points.end()) return std::nullopt;
+  return SurfaceSpot{deepest->u, deepest->v, deepest->point_m, deepest->gap_m};
+}
+
+std::optional<SurfaceSpot> deepest_of(const std::vector<SampleNearMesh>& samples,
+                                      const BodyMapping& mapping) {
+  const auto deepest = std::min_element(samples.begin(), samples.end(),
+                                        [](const SampleNearMesh& one, const SampleNearMesh& other) {
+                                          return one.mesh.gap_m < other.mesh.gap_m;
+                                        });
+  if (deepest == samples.end()) return std::nullopt;
+  const Grid& grid = mapping.nested().grid;
+  const double u = grid.u.parameters[deepest->sample / grid.columns()],
+               v = grid.v.parameters[deepest->sample % grid.columns()];
+  return SurfaceSpot{u, v, evaluate(mapping.current(), u, v).position_m, deepest->mesh.gap_m};
+}
+
 void find_near(SurfaceProximity& proximity, const BodyState& first, const BodyState& second, double margin) {
   proximity.find(first.mapping().current(), second.mapping().current(), margin);
 }
@@ -75,6 +96,18 @@ bool BodyPairContact::find(const NumberedBody& first, const NumberedBody& second
         return !of->overflow();
       },
       proximity_);
+}
+
+std::optional<SurfaceSpot> BodyPairContact::deepest_on_first(const BodyState& first) const {
+  if (const auto* const meshes = std::get_if<std::unique_ptr<MeshProximity>>(&proximity_)) {
+    return deepest_of((*meshes)->of_surface(), first.mapping());
+  }
+  return deepest_of((*std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_))->of_first());
+}
+
+std::optional<SurfaceSpot> BodyPairContact::deepest_on_second() const {
+  const auto* const surfaces = std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_);
+  return surfaces != nullptr ? deepest_of((*surfaces)->of_second()) : std::nullopt;
 }
 
 bool BodyPairContact::add_contacts(const NumberedBody& first, const NumberedBody& second,

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <variant>
 
 #include "engine/collision/mesh_proximity.h"
+#include "engine/collision/surface_contact.h"
 #include "engine/collision/surface_proximity.h"
 #include "engine/material/body_contacts.h"
 #include "engine/simulation/body_state.h"
@@ -48,6 +50,10 @@ class BodyPairContact {
   double least_gap_m() const {
     return std::visit([](const auto& of) { return of->least_gap_m(); }, proximity_);
   }
+  // Of the last find(), the place on a body's surface that is deepest in the other, or nearest to it. None
+  // where nothing is near, or on a mesh.
+  std::optional<SurfaceSpot> deepest_on_first(const BodyState& first) const;
+  std::optional<SurfaceSpot> deepest_on_second() const;
   // Adds a constraint for each of them. False where a capacity was met.
   bool add_contacts(const NumberedBody& first, const NumberedBody& second, BodyContacts& contacts) const;
 

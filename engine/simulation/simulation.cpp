@@ -10,6 +10,7 @@
 
 #include "engine/denormals.h"
 #include "engine/simulation/command_applier.h"
+#include "engine/simulation/contact_snapshots.h"
 #include "engine/simulation/hand.h"
 #include "engine/simulation/simulation_state.h"
 #include "engine/simulation/snapshot_parts.h"
@@ -59,9 +60,19 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
   std::vector<BodyPairContact> pairs = make_pairs(bodies);
   std::vector<BodySelfContact> self = make_self(bodies);
   std::vector<std::shared_ptr<const ToolBody>> kept = {modelled_body(scene.tool)};
-  return Simulation(std::make_unique<State>(State{
-      std::move(scene), set, std::move(bodies), std::move(model).value(), std::move(tool),
-      std::move(mirrored), make_between(), std::move(pairs), std::move(self), false, 0.0, std::move(kept), {}}));
+  return Simulation(std::make_unique<State>(State{std::move(scene),
+                                                  set,
+                                                  std::move(bodies),
+                                                  std::move(model).value(),
+                                                  std::move(tool),
+                                                  std::move(mirrored),
+                                                  make_between(),
+                                                  std::move(pairs),
+                                                  std::move(self),
+                                                  false,
+                                                  0.0,
+                                                  std::move(kept),
+                                                  {}}));
 }
 
 Simulation::Simulation(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -279,18 +290,6 @@ void write_symmetry(const Simulation::State& s, Snapshot& snapshot) {
   snapshot.symmetric = s.scene.symmetry.on;
   snapshot.symmetry = {s.scene.symmetry.point_m, s.scene.symmetry.normal};
   snapshot.mirrored_proxy = {s.mirrored.state.position_m, s.mirrored.hand.orientation};
-}
-
-void write_contacts(const Simulation::State& s, std::vector<ContactSnapshot>& contacts) {
-  contacts.reserve(s.scene.bodies.size());  // before the first contact, which must not allocate
-  contacts.clear();
-  if (!s.reaction.touching) return;
-  for (std::size_t b = 0; b < s.scene.bodies.size(); ++b) {
-    const CollisionResult& collision = s.tool.contact.collision(static_cast<int>(b));
-    if (!collision.found) continue;
-    const SurfaceContact& nearest = collision.nearest;
-    contacts.push_back({nearest.point_m, nearest.normal, nearest.depth_m, nearest.u, nearest.v});
-  }
 }
 
 }  // namespace

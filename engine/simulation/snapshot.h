@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/bspline/knot_vector.h"
+#include "engine/material/embedded_point.h"
 #include "engine/pose.h"
 
 namespace spoonbill {
@@ -67,11 +68,15 @@ struct PlaneSnapshot {
   Vector3 normal = Vector3::UnitX();
 };
 
+// Where a body is touched deepest: by the tool, or by another body.
 struct ContactSnapshot {
-  Vector3 point_m = Vector3::Zero();  // on the surface
-  Vector3 normal = Vector3::UnitY();  // outward from the body
-  double depth_m = 0.0;
+  int body = 0;                       // of the snapshot's
+  Vector3 point_m = Vector3::Zero();  // on its surface, where the tick found it
+  Vector3 normal = Vector3::UnitY();  // unit, outward from the body
+  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // tangents_across() it
+  double depth_m = 0.0;  // negative where what pushes it does not yet touch
   double u = 0.0, v = 0.0;
+  EmbeddedPoint nodes;  // of its lattice, which a push there acts on, each by its weight
 };
 
 struct MaterialSnapshot {

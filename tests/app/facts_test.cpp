@@ -80,6 +80,16 @@ TEST(Collide, TellsTheDistanceAndThenTheDepth) {
   EXPECT_NEAR(deep["depth_m"].get<double>(), 1e-4, 1e-9);
   const Json& contact = deep["contacts"][0];
   EXPECT_NEAR(contact["normal"][1].get<double>(), -1.0, 1e-6);
+  for (const char* tangent : {"tangent_u", "tangent_v"}) {
+    double square = 0.0, along_normal = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double share = contact[tangent][axis].get<double>();
+      square += share * share;
+      along_normal += share * contact["normal"][axis].get<double>();
+    }
+    EXPECT_NEAR(square, 1.0, 1e-12);
+    EXPECT_NEAR(along_normal, 0.0, 1e-12);
+  }
   for (const char* side : {"a", "b"}) {
     const Json& at = contact[side];
     EXPECT_LE(at["u_range"][0], at["u"]);

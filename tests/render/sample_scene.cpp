@@ -115,7 +115,13 @@ Snapshot sample_scene(const SampleSceneOptions& options) {
   snapshot.tool.radius_m = 0.008;
   snapshot.tool.proxy.position_m = touched + 0.0079 * normal;
   snapshot.tool.device = snapshot.tool.proxy;
-  snapshot.contacts.push_back({touched, normal, 0.0002, 0.25, 0.88});
+  ContactSnapshot contact;
+  contact.point_m = touched;
+  contact.normal = normal;
+  contact.depth_m = 0.0002;
+  contact.u = 0.25;
+  contact.v = 0.88;
+  snapshot.contacts.push_back(contact);
   snapshot.force_n = 1.84 * normal;
   touch(snapshot.tool, body.lattice);
 

@@ -70,6 +70,41 @@ double lowest(const Surface& surface) {
   return *std::min_element(surface.net.y.begin(), surface.net.y.end());
 }
 
+// The frame is one of the surface, and the nodes carry the point: their weighted places are where it is.
+void expect_is_on_its_body(const Simulation& simulation, const ContactSnapshot& contact) {
+  const SpringLattice& lattice = simulation.lattice(contact.body);
+  double sum = 0.0;
+  Vector3 carried = Vector3::Zero();
+  for (int k = 0; k < contact.nodes.count; ++k) {
+    sum += static_cast<double>(contact.nodes.weight[k]);
+    carried += static_cast<double>(contact.nodes.weight[k]) * lattice.position(contact.nodes.node[k]);
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-5);
+  // The tick has moved them since, and the surface follows the lattice only to its control points.
+  EXPECT_LT((carried - contact.point_m).norm(), 0.1 * static_cast<double>(lattice.cell_size_m()));
+  const SurfacePoint at = evaluate(simulation.surface(contact.body), contact.u, contact.v);
+  EXPECT_LT((at.position_m - contact.point_m).norm(), 0.1 * static_cast<double>(lattice.cell_size_m()));
+  EXPECT_GT(contact.tangent_u.dot(at.du.normalized()), 0.99);
+  EXPECT_NEAR(contact.normal.dot(contact.tangent_u), 0.0, 1e-12);
+  EXPECT_LT((contact.tangent_v - contact.normal.cross(contact.tangent_u)).norm(), 1e-12);
+}
+
+TEST(Bodies, TellWhereTheyAreTouchedAndByWhichNodes) {
+  Simulation simulation = simulate(stacked_handles());
+  const double top = 0.006 + 0.0025 + 0.006;
+  for (int tick = 0; tick < 400; ++tick) simulation.advance(above(0.055, top - 1e-5 * tick));
+  Snapshot snapshot;
+  simulation.write_snapshot(snapshot);
+  int of_body[2] = {0, 0};
+  for (const ContactSnapshot& contact : snapshot.contacts) {
+    ASSERT_TRUE(contact.body == 0 || contact.body == 1);
+    ++of_body[contact.body];
+    expect_is_on_its_body(simulation, contact);
+  }
+  EXPECT_GE(of_body[0], 1) << "the upper handle lies on it";
+  EXPECT_GE(of_body[1], 2) << "it lies on the lower one, and the tool is on it";
+}
+
 TEST(Bodies, PassAPushOn) {
   Simulation simulation = simulate(stacked_handles());
   const double before = lowest(simulation.surface(0));
