@@ -26,6 +26,7 @@ namespace {
 struct CollideOptions {
   std::filesystem::path first, second;
   Pose pose;
+  bool posed = false;
   std::optional<LengthUnit> unit;
   bool json = false;
 };
@@ -46,7 +47,7 @@ Result<Surface> read_body(const std::filesystem::path& file) {
 FactSheet facts_of(const CollideOptions& options) {
   FactSheet facts;
   facts.add("A", options.first.string(), "a", options.first.string());
-  facts.add("B", options.second.string(), "b", options.second.string());
+  if (!options.second.empty()) facts.add("B", options.second.string(), "b", options.second.string());
   return facts;
 }
 
@@ -74,6 +75,18 @@ Result<CollisionAnswer> collide_surfaces(const CollideOptions& options) {
   return answer_of(result, collider.contacts());
 }
 
+Result<CollisionAnswer> collide_with_itself(const CollideOptions& options) {
+  const auto body = read_body(options.first);
+  if (!body) return body.error();
+  const auto grid = make_nested_grid(body->u, body->v, levels);
+  if (!grid) return grid.error();
+  SurfaceSelfCollider collider(grid.value());
+  SelfQuery query;
+  query.closed = true;
+  const SelfResult result = collider.collide(body.value(), query);
+  return answer_of(result, collider.contacts());
+}
+
 // What the mesh is goes to the facts.
 Result<CollisionAnswer> collide_with_mesh(const CollideOptions& options, bool mesh_is_a, FactSheet& facts) {
   const auto body = read_body(mesh_is_a ? options.second : options.first);
@@ -98,12 +111,17 @@ Status collide(const CollideOptions& options, Console& console) {
                  " are both meshes; one of them must be a document (.json)"};
   }
   if (options.unit && !mesh_is_a && !mesh_is_b) {
-    return Error{options.first.string() + " and " + options.second.string() +
-                 " are documents, which have their unit; leave --unit out"};
+    return Error{options.first.string() + ": a document has its unit; leave --unit out"};
   }
+  const bool alone = options.second.empty();
+  if (alone && mesh_is_a) {
+    return Error{options.first.string() + " is a mesh; name a document (.json) that it is to touch"};
+  }
+  if (alone && options.posed) return Error{"--pose is where B is; name B, or leave it out"};
   FactSheet facts = facts_of(options);
-  const auto answer =
-      mesh_is_a || mesh_is_b ? collide_with_mesh(options, mesh_is_a, facts) : collide_surfaces(options);
+  const auto answer = alone                    ? collide_with_itself(options)
+                      : mesh_is_a || mesh_is_b ? collide_with_mesh(options, mesh_is_a, facts)
+                                               : collide_surfaces(options);
   if (!answer) return answer.error();
   add_contact_facts(facts, answer.value());
   facts.print(console.out, options.json);
@@ -114,7 +132,8 @@ Status collide(const CollideOptions& options, Console& console) {
 
 CommandEntry add_collide(CLI::App& root) {
   auto options = std::make_shared<CollideOptions>();
-  CLI::App* parser = root.add_subcommand("collide", "Tell whether and how deep two models touch");
+  CLI::App* parser =
+      root.add_subcommand("collide", "Tell whether and how deep two models touch, or one touches itself");
   parser->footer(
       "Found on the B-spline surfaces themselves, to a micrometre: where they touch, how deep, which way A\n"
       "gets out, and the parameters on both; where they do not, the distance and the nearest points.\n"
@@ -122,7 +141,8 @@ CommandEntry add_collide(CLI::App& root) {
       "Example: spoonbill collide assets/models/spoon-handle.json assets/models/spoon-handle.json "
       "--pose 0,5mm,0,1,0,0,0");
   parser->add_option("A", options->first, "A document (.json) or a mesh (.obj, .stl, .ply)")->required();
-  parser->add_option("B", options->second, "Another, or the same; at least one is a document")->required();
+  parser->add_option("B", options->second,
+                     "Another, or the same; at least one is a document. Without it, A with itself");
   parser
       ->add_option_function<std::string>(
           "--pose",
@@ -130,6 +150,7 @@ CommandEntry add_collide(CLI::App& root) {
             const auto pose = parse_pose(text);
             if (!pose) throw CLI::ValidationError("--pose", pose.error().message);
             options->pose = pose.value();
+            options->posed = true;
           },
           "Where B is: x,y,z, each with its unit (mm, cm, m or in) unless 0, and a turn as a quaternion "
           "w,x,y,z")

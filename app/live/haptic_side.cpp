@@ -68,7 +68,7 @@ bool HapticSide::do_command() {
   if (auto* asked = std::get_if<AskedRequest>(&command_)) {
     if (concerns_the_main_thread_alone(asked->request)) {
       record(std::move(asked->json));
-    } else if (rebuilds(asked->request)) {
+    } else if (rebuilds(*lent_.session, asked->request)) {
       lend();
       return false;
     } else {

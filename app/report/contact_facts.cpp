@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -66,7 +67,30 @@ void add_contacts(FactSheet& facts, const std::vector<ContactOfTwo>& contacts, J
   }
 }
 
+std::vector<ContactOfTwo> contacts_of(const std::vector<PairContact>& found) {
+  std::vector<ContactOfTwo> contacts;
+  for (const PairContact& contact : found) {
+    const PairParameters& at = contact.pair.at;
+    contacts.push_back({{contact.pair.first_m, SurfacePlace{at.u, at.v, contact.first}},
+                        {contact.pair.second_m, SurfacePlace{at.s, at.t, contact.second}},
+                        contact.normal,
+                        contact.depth_m,
+                        contact.tangent_u,
+                        contact.tangent_v});
+  }
+  return contacts;
+}
+
 }  // namespace
+
+CollisionAnswer answer_of(const SelfResult& result, const std::vector<PairContact>& contacts) {
+  CollisionAnswer answer;
+  answer.touching = result.touching;
+  answer.complete = !result.overflow;
+  answer.distance_m = std::numeric_limits<double>::infinity();
+  answer.contacts = contacts_of(contacts);
+  return answer;
+}
 
 CollisionAnswer answer_of(const PairResult& result, const std::vector<PairContact>& contacts) {
   CollisionAnswer answer;
@@ -77,16 +101,7 @@ CollisionAnswer answer_of(const PairResult& result, const std::vector<PairContac
   const PairParameters& nearest = result.nearest.at;
   answer.nearest_a = {result.nearest.first_m, SurfacePlace{nearest.u, nearest.v, {}}};
   answer.nearest_b = {result.nearest.second_m, SurfacePlace{nearest.s, nearest.t, {}}};
-  if (!result.touching) return answer;
-  for (const PairContact& contact : contacts) {
-    const PairParameters& at = contact.pair.at;
-    answer.contacts.push_back({{contact.pair.first_m, SurfacePlace{at.u, at.v, contact.first}},
-                               {contact.pair.second_m, SurfacePlace{at.s, at.t, contact.second}},
-                               contact.normal,
-                               contact.depth_m,
-                               contact.tangent_u,
-                               contact.tangent_v});
-  }
+  if (result.touching) answer.contacts = contacts_of(contacts);
   return answer;
 }
 
@@ -100,7 +115,7 @@ void add_contact_facts(FactSheet& facts, const CollisionAnswer& answer) {
   Json list = Json::array();
   if (answer.touching) {
     add_contacts(facts, answer.contacts, list);
-  } else {
+  } else if (std::isfinite(answer.distance_m)) {
     facts.add("Distance", millimetres_text(answer.distance_m), "distance_m", answer.distance_m);
     facts.add("Nearest of A", point_text(answer.nearest_a.point_m), "nearest",
               {{"a", side_json(answer.nearest_a)}, {"b", side_json(answer.nearest_b)}});

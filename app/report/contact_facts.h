@@ -7,6 +7,7 @@
 #include "app/report/fact_sheet.h"
 #include "engine/collision/parameter_range.h"
 #include "engine/collision/surface_pair_collider.h"
+#include "engine/collision/surface_self_collider.h"
 
 namespace spoonbill {
 
@@ -30,14 +31,17 @@ struct ContactOfTwo {
 
 struct CollisionAnswer {
   bool touching = false;
-  bool contained = false;   // one is inside the other
-  bool complete = true;     // nothing can be missing
-  double distance_m = 0.0;  // where they do not touch
+  bool contained = false;  // one is inside the other
+  bool complete = true;    // nothing can be missing
+  double distance_m =
+      0.0;  // where they do not touch; infinite of one with itself, which has no nearest points
   ContactSide nearest_a, nearest_b;
   std::vector<ContactOfTwo> contacts;
 };
 
 CollisionAnswer answer_of(const PairResult& result, const std::vector<PairContact>& contacts);
+// Of one with itself, A and B its parts.
+CollisionAnswer answer_of(const SelfResult& result, const std::vector<PairContact>& contacts);
 
 // Those that touch have a depth, the deepest contact's, and contacts; others the distance between their
 // nearest points.

@@ -97,12 +97,14 @@ Status apply_request(Session& session, const Request& request) {
   return std::visit(RequestApplier{session}, request);
 }
 
-bool rebuilds(const Request& request) {
+bool rebuilds(const Session& session, const Request& request) {
   if (std::holds_alternative<MarkFile>(request)) return true;
   const auto* command = std::get_if<Command>(&request);
   if (command == nullptr) return false;
   const auto* tool = std::get_if<SetTool>(command);
-  return (tool != nullptr && tool->tool.kind == ToolKind::solid) ||
+  // What snapshots hold changes with a soft tool that comes or goes.
+  const bool held_solid = session.simulation.scene().tool.kind == ToolKind::solid;
+  return (tool != nullptr && (held_solid || tool->tool.kind == ToolKind::solid)) ||
          (changes_what_a_shape_means(*command) || std::holds_alternative<SetMaterial>(*command));
 }
 

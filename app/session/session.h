@@ -51,11 +51,11 @@ std::uint64_t state_hash(const Session& session);
 // What would be saved now.
 Document document_of(const Session& session);
 
-// An error leaves the session as it was. Allocates nothing unless rebuilds(request).
+// An error leaves the session as it was. Allocates nothing unless rebuilds(session, request).
 Status apply_request(Session& session, const Request& request);
 
 // Whether applying it builds grids or lattices anew: takes milliseconds and memory.
-bool rebuilds(const Request& request);
+bool rebuilds(const Session& session, const Request& request);
 
 // As JSON. An error also names the command's origin.
 Status apply_command(Session& session, const TimedCommand& command);

@@ -9,7 +9,7 @@ namespace spoonbill {
 
 // Parameters on the first surface, then on the second.
 struct PairParameters {
-  double u, v, s, t;
+  double u = 0.0, v = 0.0, s = 0.0, t = 0.0;
 };
 
 struct SurfacePair {

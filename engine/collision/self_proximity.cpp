@@ -85,6 +85,7 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
   if (nearby_.empty()) {
     find_near_elements(margin_m + lead_cells * cell_m_);
     clear_ = nearby_.empty();
+    missing_elements_ = false;  // of those that are too far to count
     if (clear_) clear_net_ = surface.net;
     return;
   }

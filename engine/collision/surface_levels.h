@@ -49,7 +49,8 @@ class SurfaceLevels {
   // To be called whenever the control points may have moved. Where none has since the last time, returns
   // false and keeps all that was evaluated of them. The surface must have the grid's knots and outlive the
   // calls below. Where all samples of the finest grid are known already, they may be given in its order, as
-  // GridEvaluator<double> has them: none is then evaluated. They too must outlive the calls below.
+  // GridEvaluator<double> has them: none is then evaluated. They must be the surface's and outlive the calls
+  // below.
   bool begin(const Surface& surface, const PlanarPoints& samples = {});
 
   const Surface& surface() const { return *surface_; }

@@ -170,8 +170,12 @@ SurfacePairCollider::Seed SurfacePairCollider::settle(const Pairs& pairs, const 
     PairParameters& from = seeds.at[side];
     settle_from(way, from, outside, query.first_closed, shortest);
     const bool was_deep = last != nullptr && last->deep[side];
+    if (!(way.depth_m > 0.0) && was_deep) {
+      from = last->deepest[side];
+      settle_from(way, from, outside, query.first_closed, shortest);
+    }
     if (!(way.depth_m > 0.0) && (last == nullptr || was_deep || shortest == infinity)) {
-      from = was_deep ? last->deepest[side] : outer_seed(pairs, region, outside);
+      from = outer_seed(pairs, region, outside);
       settle_from(way, from, outside, query.first_closed, shortest);
     }
     found.deep[side] = way.depth_m > 0.0;

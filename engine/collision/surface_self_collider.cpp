@@ -81,13 +81,15 @@ SelfResult SurfaceSelfCollider::collide(const Surface& surface, const SelfQuery&
   search_.begin();
   int level = levels_.nested().levels;
   take_pairs(level);
+  // Coarser, cells that are joined are larger, and what they do with each other is not told.
+  const bool coarser = overflow_;
   while (overflow_ && level > 0) take_pairs(--level);
   const std::vector<Region>& regions = regions_.group(pairs_);
   for (const Region& region : regions) {
     if (is_mirror_of_earlier(region) || !touches(region)) continue;
     contacts_.push_back(contact_of(region, query));
   }
-  return {!contacts_.empty(), overflow_ || search_.overflow()};
+  return {!contacts_.empty(), coarser || search_.overflow()};
 }
 
 // By the samples of the two edges.

@@ -92,6 +92,14 @@ bool BodyContacts::acted(int body) const {
   });
 }
 
+bool BodyContacts::acted(int body, int other) const {
+  return std::any_of(constraints_.begin(), constraints_.begin() + count_, [&](const Constraint& constraint) {
+    const bool between = (constraint.first_body == body && constraint.second_body == other) ||
+                         (constraint.first_body == other && constraint.second_body == body);
+    return constraint.acted && between;
+  });
+}
+
 void BodyContacts::mark_touched(int body, std::uint8_t* touched) const {
   for (int c = 0; c < count_; ++c) {
     const Constraint& constraint = constraints_[c];

@@ -36,8 +36,9 @@ class BodyContacts {
              std::span<const float> push_speed_caps_m_per_s);
 
   int count() const { return count_; }
-  // Whether any of a body's has acted since begin().
+  // Whether any of a body's, or of two bodies with each other, has acted since begin().
   bool acted(int body) const;
+  bool acted(int body, int other) const;
   // Marks the nodes of a body's constraints that acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 

@@ -32,8 +32,7 @@ void add_of_tool(const Simulation::State& s, std::vector<ContactSnapshot>& conta
 // Of two bodies that push each other, on the surface of each.
 void add_of_pair(const Simulation::State& s, const BodyPairContact& pair, std::size_t first,
                  std::size_t second, std::vector<ContactSnapshot>& contacts) {
-  const bool pushed = s.between.acted(static_cast<int>(first)) && s.between.acted(static_cast<int>(second));
-  if (!pushed) return;
+  if (!s.between.acted(static_cast<int>(first), static_cast<int>(second))) return;
   const auto add = [&](std::size_t body, const std::optional<SurfaceSpot>& spot) {
     if (!spot) return;
     const BodyState& state = s.bodies[body];

@@ -47,6 +47,7 @@ double reach_of(const Simulation::State& s, const HeldTool& held, const Pose& ha
   const double time_s = s.scene.tool.iterations * tick_s;
   const double way =
       std::max((hand.position_m - held.hand.position_m).norm(), time_s * held.state.velocity_m_per_s.norm());
+  if (s.scene.tool.kind != ToolKind::solid) return way;
   return way + held.hand.orientation.angularDistance(hand.orientation) * s.model.extent_m;
 }
 
@@ -109,7 +110,9 @@ Vector3 force_of_soft(const Simulation::State& s) {
 // It touches from when a contact acts until it is no longer near.
 bool soft_touches(Simulation::State& s) {
   HeldTool& held = s.tool;
-  const bool acted = s.between.acted(static_cast<int>(s.bodies.size()) - 1);
+  const int tool = static_cast<int>(s.bodies.size()) - 1;
+  bool acted = false;
+  for (int body = 0; body < tool; ++body) acted |= s.between.acted(tool, body);
   if (acted && !held.touched) held.touch_m = held.hand.position_m;
   held.touched = std::isfinite(s.tool_gap_m) && (acted || held.touched);
   return held.touched;

@@ -45,7 +45,7 @@ struct LatticeSnapshot {
   int count[3] = {0, 0, 0};
   std::vector<float> x, y, z;          // metres
   std::vector<std::uint8_t> fixed;     // 1 where the node is held
-  std::vector<std::uint8_t> touched;   // 1 where a tool acts on the node in this tick
+  std::vector<std::uint8_t> touched;   // 1 where a contact acts on the node in this tick
   std::vector<std::uint8_t> on_shell;  // 1 where the node lies on the surface, or about it
   // 0 where a box about triangles has nodes far from them: those are neither fixed, touched nor drawn.
   std::vector<std::uint8_t> in_body;

@@ -52,6 +52,7 @@ ContactStages SnapshotStages::find(const Snapshot& snapshot) {
   std::vector<Numbered> bodies;
   surfaces.reserve(snapshot.bodies.size());
   for (const BodySnapshot& body : snapshot.bodies) {
+    if (body.is_mesh()) continue;
     std::optional<Surface> surface = surface_of(body.surface);
     if (!surface) continue;
     surfaces.push_back(*std::move(surface));

@@ -30,7 +30,8 @@ Vector3 position_of(const SpringLattice& lattice, const EmbeddedPoint& point) {
 }
 
 ToolShape shape_of(const Tool& tool, const ToolModel& model, const ToolHold& hold) {
-  if (model.distance) return ToolShape::solid(*model.distance, hold.pose.position_m, hold.turn);
+  if (tool.kind == ToolKind::solid && model.distance)
+    return ToolShape::solid(*model.distance, hold.pose.position_m, hold.turn);
   const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
   return ToolShape::sphere(hold.pose.position_m, radius);
 }
@@ -72,7 +73,8 @@ int ToolContact::deepest_body() const {
 
 void ToolContact::prepare(std::span<const BodyState> bodies, const Tool& tool, const ToolModel& model,
                           const ToolHold& hold) {
-  if (placed_) place(model.surface->net, hold.turn, hold.pose.position_m, placed_->net);
+  is_solid_ = tool.kind == ToolKind::solid;
+  if (is_surface()) place(model.surface->net, hold.turn, hold.pose.position_m, placed_->net);
   overflow_ = false;
   bool inside = false, near = false;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -89,7 +91,7 @@ void ToolContact::prepare(std::span<const BodyState> bodies, const Tool& tool, c
   if (!pulls || grips) constraints_.clear();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const int body = static_cast<int>(b);
-    if (!pulls && contacts_[b].collision.found) add_pushes(body, bodies[b], model, hold);
+    if (!pulls && contacts_[b].collision.found) add_pushes(body, bodies[b], hold);
     if (grips && is_inside(contacts_[b].collision)) add_grips(body, bodies[b], hold.pose);
   }
   gripped_ |= grips;
@@ -114,7 +116,7 @@ void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& 
                        const ToolHold& hold) {
   // What a fast tool meets within the tick holds it off before it has passed.
   const double margin = std::max(margin_of(body), hold.reach_m);
-  if (placed_) return find_near(contact, body, margin, hold);
+  if (is_surface()) return find_near(contact, body, margin, hold);
   shape_ = shape_of(tool, model, hold);
   contact.collision = contact.collider.collide(body.mapping().current(), shape_, margin, true);
 }
@@ -137,7 +139,7 @@ void ToolContact::find_near(BodyContact& contact, const BodyState& body, double 
 // Every point of the body's surface that is near the tool, with the plane of the tool there.
 template <class Visit>
 void ToolContact::visit_near(BodyContact& contact, const BodyState& state, const Visit& visit) {
-  if (placed_) {
+  if (is_surface()) {
     for (const NearPoint& near : contact.proximity->of_first()) {
       visit(Pushed{embedding_of(state.mapping(), near), near.normal, near.gap_m});
     }
@@ -152,10 +154,10 @@ void ToolContact::visit_near(BodyContact& contact, const BodyState& state, const
   }
 }
 
-void ToolContact::add_pushes(int body, const BodyState& state, const ToolModel& model, const ToolHold& hold) {
+void ToolContact::add_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
-  if (!model.surface && !model.distance) return add_sphere_pushes(body, state);
+  if (!is_solid_) return add_sphere_pushes(body, state);
   add_plane_push(body, state, {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m},
                  hold);
   visit_near(contact, state, [&](const Pushed& pushed) { add_plane_push(body, state, pushed, hold); });
@@ -192,7 +194,7 @@ void ToolContact::add_grips(int body, const BodyState& state, const Pose& pose) 
   };
   BodyContact& contact = contacts_[body];
   grip(state.mapping().at(contact.collision.nearest.u, contact.collision.nearest.v));
-  if (placed_) {
+  if (is_surface()) {
     visit_near(contact, state, [&](const Pushed& near) {
       if (near.gap_m <= 0.0) grip(near.point);
     });

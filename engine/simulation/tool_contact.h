@@ -71,7 +71,9 @@ class ToolContact {
   void find(BodyContact& contact, const BodyState& body, const Tool& tool, const ToolModel& model,
             const ToolHold& hold);
   void find_near(BodyContact& contact, const BodyState& body, double margin, const ToolHold& hold);
-  void add_pushes(int body, const BodyState& state, const ToolModel& model, const ToolHold& hold);
+  // Whether the tool is a B-spline: the model is of the last solid, and what is held may be none.
+  bool is_surface() const { return is_solid_ && placed_ != nullptr; }
+  void add_pushes(int body, const BodyState& state, const ToolHold& hold);
   void add_sphere_pushes(int body, const BodyState& state);
   void add_plane_push(int body, const BodyState& state, const Pushed& pushed, const ToolHold& hold);
   void add_grips(int body, const BodyState& state, const Pose& pose);
@@ -83,6 +85,7 @@ class ToolContact {
   std::unique_ptr<Surface> placed_;    // of a B-spline tool, in the world
   ToolShape shape_;                    // of any other
   ContactConstraints constraints_;
+  bool is_solid_ = false;
   bool gripped_ = false;
   bool lifted_ = false;
   bool hovered_ = false;

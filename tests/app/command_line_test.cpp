@@ -39,7 +39,7 @@ TEST(CommandLine, WrongUseIsTwoAndSaysWhatIsWrong) {
       {"sample", place.text("model.json"), "--grid", "1x5", "--out", "-"},
       {"sample", place.text("model.json"), "--grid", "5", "--out", "-"},
       {"sample", place.text("model.json"), "--grid", "5x5x5", "--out", "-"},
-      {"collide", place.text("model.json")},
+      {"collide"},
   };
   for (const auto& arguments : wrong) {
     const Outcome outcome = run(arguments);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "app/program.h"
@@ -54,6 +55,34 @@ TEST(Info, TellsOfRecordingScriptAndMaterial) {
   const Json material = json_of(run({"info", place.text("material.json"), "--json"}).out);
   EXPECT_EQ(material["kind"], "material");
   EXPECT_EQ(material["material"]["youngs_modulus_pa"], document->scene.bodies[0].material.youngs_modulus_pa);
+}
+
+// A handle, and one bent round so far that its ends are in each other.
+TEST(Collide, TellsOfOneModelWhetherItPassesThroughItself) {
+  const Workplace place;
+  const Json straight = json_of(run({"collide", place.text("model.json"), "--json"}).out);
+  EXPECT_EQ(straight["touching"], false);
+  EXPECT_FALSE(straight.contains("b"));
+  EXPECT_FALSE(straight.contains("nearest"));
+
+  auto document = read_document(place.path("model.json"));
+  ASSERT_TRUE(document);
+  ControlNet& net = document->scene.bodies[0].surface.net;
+  const double low = *std::min_element(net.x.begin(), net.x.end());
+  const double radius = (*std::max_element(net.x.begin(), net.x.end()) - low) / 6.6;
+  for (std::size_t k = 0; k < net.size(); ++k) {
+    const double angle = (net.x[k] - low) / radius, from_middle = radius - net.y[k];
+    net.x[k] = low + from_middle * std::sin(angle);
+    net.y[k] = radius - from_middle * std::cos(angle);
+  }
+  place.write("ring.json", json_to_page(document_to_json(document.value())));
+  const Json folded = json_of(run({"collide", place.text("ring.json"), "--json"}).out);
+  EXPECT_EQ(folded["touching"], true);
+  EXPECT_FALSE(folded["contacts"].empty());
+
+  const auto refused = run({"collide", place.text("model.json"), "--pose", "0,1mm,0,1,0,0,0"});
+  EXPECT_EQ(refused.code, exit_failed);
+  EXPECT_NE(refused.err.find("name B"), std::string::npos) << refused.err;
 }
 
 TEST(Collide, TellsTheDistanceAndThenTheDepth) {

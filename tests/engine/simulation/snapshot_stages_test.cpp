@@ -49,6 +49,20 @@ TEST(SnapshotStages, ShowTheContactOfTheTool) {
   EXPECT_NEAR(hull_height(stages), *std::max_element(y.begin(), y.end()), 1e-9);
 }
 
+// It has no control points to take a hull of.
+TEST(SnapshotStages, LeaveOutAMeshThatGivesWay) {
+  Snapshot snapshot = pressed();
+  SnapshotStages finder;
+  const ContactStages alone = finder.find(snapshot);
+  BodySnapshot mesh;
+  mesh.mesh.triangles = std::make_shared<const std::vector<TriangleCorners>>();
+  ASSERT_TRUE(mesh.is_mesh());
+  snapshot.bodies.push_back(mesh);
+  const ContactStages stages = finder.find(snapshot);
+  EXPECT_EQ(stages.surfaces, alone.surfaces);
+  EXPECT_EQ(stages.spheres.size(), alone.spheres.size());
+}
+
 TEST(SnapshotStages, AreTheSameWhateverWasFoundBefore) {
   const Snapshot snapshot = pressed();
   Snapshot other = snapshot;

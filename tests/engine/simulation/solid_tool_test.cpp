@@ -191,6 +191,19 @@ TEST(SolidTool, IsExchangedWhileTheSimulationRuns) {
   ASSERT_TRUE(simulation.restore(shape).ok());
 }
 
+// What a sphere does is the same whatever was held before it.
+TEST(SolidTool, LeavesNothingOfItselfToASphere) {
+  const Tool solids[] = {solid(ImplicitShape(BoxShape{{0.02, 0.02, 0.02}})), solid(SurfaceSolid{finger()})};
+  for (const Tool& before : solids) {
+    Simulation always = simulate(held_handle(Tool{})), exchanged = simulate(held_handle(before));
+    ASSERT_TRUE(always.apply(SetTool{Tool{}}).ok());
+    ASSERT_TRUE(exchanged.apply(SetTool{Tool{}}).ok());
+    EXPECT_TRUE(press(always, 0.011, 0.0085).touching);
+    EXPECT_TRUE(press(exchanged, 0.011, 0.0085).touching);
+    EXPECT_EQ(always.state_hash(), exchanged.state_hash()) << &before - solids;
+  }
+}
+
 // From above the handle to below it in one tick: it is met on the way.
 TEST(SolidTool, AFastToolIsMetOnItsWay) {
   struct Case {
