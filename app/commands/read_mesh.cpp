@@ -1,6 +1,9 @@
+#include <sys/prctl.h>
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <new>
@@ -37,7 +40,11 @@ CommandEntry add_read_mesh(CLI::App& root) {
   CLI::App* parser = root.add_subcommand("read-mesh", "Hand a mesh file's triangles to the program itself");
   parser->group("");  // hidden
   parser->add_option("FILE", *file, "A mesh (.obj, .stl or .ply)")->required();
-  return {parser, [file](Console& console) { return read_mesh(*file, console); }};
+  return {parser, [file](Console& console) {
+            // Whoever asked may be stopped while a file keeps this one busy.
+            prctl(PR_SET_PDEATHSIG, SIGKILL);
+            return read_mesh(*file, console);
+          }};
 }
 
 }  // namespace spoonbill

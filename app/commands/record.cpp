@@ -9,6 +9,7 @@
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/files/file_kind.h"
+#include "app/files/recording_place.h"
 #include "app/interrupt.h"
 #include "app/live/performance.h"
 #include "app/report/fact_sheet.h"
@@ -53,11 +54,13 @@ Status record_input(const RecordOptions& options, const RecordingHeader& header,
   if (Status checked = check_commands(input.commands); !checked) return checked;
   auto session = Session::make(header.document, input.source, header.device, options.instruction_set);
   if (!session) return session.error();
-  auto writer = RecordingWriter::create(options.out, header);
+  const RecordingPlace place(options.out);
+  auto writer = RecordingWriter::create(place.written(), header);
   if (!writer) return writer.error();
   const std::size_t command_count = input.commands.size();
   Lockstep lockstep(session.value(), std::move(input), &writer.value());
   if (Status ran = run(lockstep, session.value(), console); !ran) return ran;
+  if (Status placed = place.commit(); !placed) return placed;
 
   FactSheet facts;
   const double duration_s = tick_s * static_cast<double>(lockstep.tick());
@@ -119,6 +122,10 @@ Status record_live(const RecordOptions& options, const Script& script, const Doc
 Status record_script(const RecordOptions& options, Console& console) {
   const auto script = read_script(options.source);
   if (!script) return script.error();
+  std::error_code ignored;
+  if (std::filesystem::equivalent(script->model_file, options.out, ignored)) {
+    return Error{options.out.string() + ": is the model of the script; choose another name"};
+  }
   auto document = read_document(script->model_file);
   if (!document) return document.error();
   if (options.live) return record_live(options, script.value(), document.value(), console);

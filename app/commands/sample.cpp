@@ -83,6 +83,10 @@ Status sample(const SampleOptions& options, Console& console) {
       return {};
     });
   }
+  std::error_code ignored;
+  if (std::filesystem::equivalent(options.model, options.out, ignored)) {
+    return Error{options.out.string() + ": is the model itself; choose another name"};
+  }
   auto file = OutputFile::create(options.out);
   if (!file) return file.error();
   const Status sampled =

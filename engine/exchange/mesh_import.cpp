@@ -16,16 +16,16 @@
 #include <utility>
 #include <vector>
 
+#include "engine/exchange/ply_check.h"
+
 namespace spoonbill {
 namespace {
-
-constexpr std::size_t longest_header = 65536;
 
 // Assimp 5.2 takes a line feed that begins the numbers of a binary PLY for the end of the header, and every
 // number after it from a byte too far. True for such a file, whose numbers begin at `begin`.
 bool begins_with_line_feed(const std::string& file, std::size_t& begin) {
   constexpr std::string_view last_line = "\nend_header\n";
-  std::string start(longest_header, '\0');
+  std::string start(ply_header_bytes_limit, '\0');
   std::ifstream stream(file, std::ios::binary);
   stream.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<std::size_t>(stream.gcount()));
@@ -147,6 +147,9 @@ bool is_mesh_name(const std::filesystem::path& file) {
 }
 
 Result<TriangleMesh> import_mesh(const std::filesystem::path& file) {
+  if (format_of(file) == "ply") {
+    if (Status status = check_ply(file); !status.ok()) return status.error();
+  }
   Assimp::Importer importer;
   importer.SetIOHandler(new OneFile(file.string()));  // the importer's from now on
   keep_importers_of(importer, format_of(file));

@@ -153,17 +153,20 @@ TEST(BadInput, PlacesThatCannotBeWritten) {
       {"record", place.text("script.json"), "--out", "/dev/full"},
       {"record", place.text("script.json"), "--out", blocked + "/out.jsonl"},
       {"record", recording, "--out", recording},
+      {"record", place.text("script.json"), "--out", place.text("model.json")},
+      {"sample", place.text("model.json"), "--grid", "4x4", "--out", place.text("model.json")},
       {"sample", place.text("model.json"), "--grid", "40x40", "--out", "/dev/full"},
       {"sample", place.text("model.json"), "--grid", "4x4", "--out", place.path("").string()},
       {"sample", place.text("model.json"), "--grid", "4x4", "--out", blocked + "/points.csv"},
   };
-  const std::string before = content_of(recording);
+  const std::string before = content_of(recording), model = content_of(place.path("model.json"));
   for (const auto& arguments : uses) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, exit_failed) << testing::PrintToString(arguments);
     EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
   }
   EXPECT_EQ(content_of(recording), before);
+  EXPECT_EQ(content_of(place.path("model.json")), model);
 }
 
 }  // namespace

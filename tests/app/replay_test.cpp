@@ -96,9 +96,15 @@ TEST(Replay, NamesTheTickWhereTheStateDiffers) {
   EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
   EXPECT_NE(outcome.err.find("after 600 ticks"), std::string::npos) << outcome.err;
 
+  const std::string older = place.write("older.jsonl", "of before").string();
+  EXPECT_EQ(run({"replay", changed, "--no-frames", "--rerecord", older}).code, exit_failed);
+  EXPECT_EQ(content_of(older), "of before") << "what could not be made anew stays";
+
   const Outcome again = run({"record", changed, "--out", place.text("again.jsonl")});
   EXPECT_EQ(again.code, exit_done) << again.err;
   EXPECT_EQ(content_of(place.path("again.jsonl")), content_of(place.path("bend.jsonl")));
+  EXPECT_EQ(run({"record", changed, "--out", older}).code, exit_done);
+  EXPECT_EQ(content_of(older), content_of(place.path("bend.jsonl")));
 }
 
 TEST(Replay, GoesUpToTheCut) {
