@@ -15,8 +15,8 @@
 #include "app/files/mesh_file.h"
 #include "app/report/contact_facts.h"
 #include "app/report/mesh_facts.h"
-#include "engine/collision/mesh_distance.h"
-#include "engine/collision/surface_pair_collider.h"
+#include "engine/collision/meshes/mesh_distance.h"
+#include "engine/collision/surfaces/surface_pair_collider.h"
 #include "engine/exchange/document.h"
 #include "engine/material/tube_lattice.h"
 

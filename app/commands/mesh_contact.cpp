@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/collision/surface_collider.h"
+#include "engine/collision/solids/surface_collider.h"
 
 namespace spoonbill {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "app/report/contact_facts.h"
 #include "engine/bspline/surface.h"
-#include "engine/collision/signed_distance.h"
+#include "engine/collision/solids/signed_distance.h"
 #include "engine/pose.h"
 #include "engine/result.h"
 

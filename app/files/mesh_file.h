@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "app/files/length_unit.h"
-#include "engine/collision/triangle_mesh.h"
+#include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/result.h"
 
 namespace spoonbill {

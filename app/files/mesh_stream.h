@@ -7,7 +7,7 @@
 #include <ostream>
 #include <string>
 
-#include "engine/collision/triangle_mesh.h"
+#include "engine/collision/meshes/triangle_mesh.h"
 
 namespace spoonbill {
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "app/report/fact_sheet.h"
-#include "engine/collision/parameter_range.h"
-#include "engine/collision/surface_pair_collider.h"
-#include "engine/collision/surface_self_collider.h"
+#include "engine/collision/levels/parameter_range.h"
+#include "engine/collision/surfaces/surface_pair_collider.h"
+#include "engine/collision/surfaces/surface_self_collider.h"
 
 namespace spoonbill {
 

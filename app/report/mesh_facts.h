@@ -3,7 +3,7 @@
 
 #include "app/files/length_unit.h"
 #include "app/report/fact_sheet.h"
-#include "engine/collision/triangle_mesh.h"
+#include "engine/collision/meshes/triangle_mesh.h"
 
 namespace spoonbill {
 

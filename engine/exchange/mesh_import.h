@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "engine/collision/triangle_mesh.h"
+#include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/result.h"
 
 namespace spoonbill {

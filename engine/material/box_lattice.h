@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/box.h"
-#include "engine/collision/shell_distance.h"
+#include "engine/collision/meshes/shell_distance.h"
 #include "engine/material/embedded_point.h"
 #include "engine/material/lattice_mesh.h"
 #include "engine/result.h"

@@ -8,7 +8,7 @@
 #include "engine/aligned_vector.h"
 #include "engine/bspline/refit.h"
 #include "engine/bspline/surface.h"
-#include "engine/collision/surface_collider.h"
+#include "engine/collision/solids/surface_collider.h"
 #include "engine/instruction_set.h"
 #include "engine/material/contact_constraints.h"
 #include "engine/material/spring_lattice.h"

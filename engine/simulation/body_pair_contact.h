@@ -6,9 +6,9 @@
 #include <optional>
 #include <variant>
 
-#include "engine/collision/mesh_proximity.h"
-#include "engine/collision/surface_contact.h"
-#include "engine/collision/surface_proximity.h"
+#include "engine/collision/proximity/mesh_proximity.h"
+#include "engine/collision/proximity/surface_proximity.h"
+#include "engine/collision/solids/surface_contact.h"
 #include "engine/material/body_contacts.h"
 #include "engine/simulation/body_state.h"
 

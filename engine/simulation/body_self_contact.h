@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "engine/collision/self_proximity.h"
+#include "engine/collision/proximity/self_proximity.h"
 #include "engine/simulation/body_pair_contact.h"
 
 namespace spoonbill {

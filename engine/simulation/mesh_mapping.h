@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/aligned_vector.h"
-#include "engine/collision/deforming_mesh.h"
-#include "engine/collision/triangle_mesh.h"
+#include "engine/collision/meshes/deforming_mesh.h"
+#include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/material/embedded_point.h"
 #include "engine/material/spring_lattice.h"
 

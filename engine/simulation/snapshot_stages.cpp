@@ -3,7 +3,7 @@
 #include <optional>
 #include <variant>
 
-#include "engine/collision/mesh_distance.h"
+#include "engine/collision/meshes/mesh_distance.h"
 #include "engine/simulation/tool_body.h"
 
 namespace spoonbill {

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "engine/collision/mesh_parts.h"
-#include "engine/collision/mesh_refinement.h"
-#include "engine/collision/shell_distance.h"
+#include "engine/collision/meshes/mesh_parts.h"
+#include "engine/collision/meshes/mesh_refinement.h"
+#include "engine/collision/meshes/shell_distance.h"
 #include "engine/material/box_lattice.h"
 
 namespace spoonbill {

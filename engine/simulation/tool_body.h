@@ -7,8 +7,8 @@
 #include <variant>
 
 #include "engine/bspline/surface.h"
-#include "engine/collision/implicit/implicit_shapes.h"
-#include "engine/collision/triangle_mesh.h"
+#include "engine/collision/meshes/triangle_mesh.h"
+#include "engine/collision/solids/implicit/implicit_shapes.h"
 #include "engine/material/material.h"
 #include "engine/material/tube_lattice.h"
 #include "engine/simulation/fixing_plane.h"

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/collision/surface_collider.h"
-#include "engine/collision/surface_proximity.h"
+#include "engine/collision/proximity/surface_proximity.h"
+#include "engine/collision/solids/surface_collider.h"
 #include "engine/material/contact_constraints.h"
 #include "engine/simulation/body_state.h"
 #include "engine/simulation/scene.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/collision/mesh_distance.h"
+#include "engine/collision/meshes/mesh_distance.h"
 #include "engine/simulation/soft_mesh.h"
 
 namespace spoonbill {

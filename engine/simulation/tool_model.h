@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "engine/collision/signed_distance.h"
-#include "engine/collision/surface_levels.h"
+#include "engine/collision/levels/surface_levels.h"
+#include "engine/collision/solids/signed_distance.h"
 #include "engine/instruction_set.h"
 #include "engine/simulation/body_state.h"
 #include "engine/simulation/scene.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "engine/collision/mesh_edges.h"
+#include "engine/collision/meshes/mesh_edges.h"
 
 namespace spoonbill {
 namespace {

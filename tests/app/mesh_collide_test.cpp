@@ -11,7 +11,7 @@
 #include "tests/app/mesh_texts.h"
 #include "tests/app/process.h"
 #include "tests/app/workplace.h"
-#include "tests/engine/collision/mesh_shapes.h"
+#include "tests/engine/collision/meshes/mesh_shapes.h"
 
 namespace spoonbill {
 namespace {

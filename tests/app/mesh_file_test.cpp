@@ -12,7 +12,7 @@
 #include <cstring>
 
 #include "tests/app/mesh_texts.h"
-#include "tests/engine/collision/mesh_shapes.h"
+#include "tests/engine/collision/meshes/mesh_shapes.h"
 #include "tests/engine/exchange/sample_document.h"
 
 namespace spoonbill {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/collision/triangle_mesh.h"
+#include "engine/collision/meshes/triangle_mesh.h"
 
 namespace spoonbill {
 

@@ -5,7 +5,7 @@
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
 
-#include "engine/collision/surface_collider.h"
+#include "engine/collision/solids/surface_collider.h"
 #include "engine/exchange/document.h"
 #include "tests/bench/fcl_sheet.h"
 #include "tests/bench/sheet.h"

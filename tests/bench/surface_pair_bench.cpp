@@ -8,7 +8,7 @@
 #include <functional>
 #include <set>
 
-#include "engine/collision/surface_pair_collider.h"
+#include "engine/collision/surfaces/surface_pair_collider.h"
 #include "tests/bench/fcl_sheet.h"
 #include "tests/bench/sheet.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "render/tessellation/tessellated_surface.h"
-#include "tests/engine/collision/mesh_shapes.h"
+#include "tests/engine/collision/meshes/mesh_shapes.h"
 
 namespace spoonbill {
 namespace {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/collision/surface_contact.h"
-#include "engine/collision/surface_levels.h"
-#include "engine/collision/triangle.h"
+#include "engine/collision/levels/surface_levels.h"
+#include "engine/collision/meshes/triangle.h"
+#include "engine/collision/solids/surface_contact.h"
 
 namespace spoonbill {
 

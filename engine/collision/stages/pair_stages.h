@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "engine/collision/proximity/surface_proximity.h"
 #include "engine/collision/stages/contact_stages.h"
-#include "engine/collision/surface_pair_collider.h"
-#include "engine/collision/surface_proximity.h"
+#include "engine/collision/surfaces/surface_pair_collider.h"
 #include "engine/result.h"
 
 namespace spoonbill {

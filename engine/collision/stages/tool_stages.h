@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "engine/collision/solids/surface_collider.h"
 #include "engine/collision/stages/contact_stages.h"
-#include "engine/collision/surface_collider.h"
 #include "engine/result.h"
 
 namespace spoonbill {

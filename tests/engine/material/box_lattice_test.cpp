@@ -7,7 +7,7 @@
 
 #include "engine/material/lattice_request.h"
 #include "engine/material/spring_lattice.h"
-#include "tests/engine/collision/mesh_shapes.h"
+#include "tests/engine/collision/meshes/mesh_shapes.h"
 #include "tests/engine/material/block.h"
 
 namespace spoonbill {

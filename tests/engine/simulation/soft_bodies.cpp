@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "engine/collision/surface_pair_collider.h"
+#include "engine/collision/surfaces/surface_pair_collider.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <string>
 
-#include "engine/collision/mesh_distance.h"
+#include "engine/collision/meshes/mesh_distance.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/tube.h"
-#include "tests/engine/collision/mesh_shapes.h"
+#include "tests/engine/collision/meshes/mesh_shapes.h"
 #include "tests/engine/simulation/handle.h"
 #include "tests/engine/simulation/impact.h"
 #include "tests/engine/simulation/soft_bodies.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/engine/collision/sheets.h"
+#include "tests/engine/collision/surfaces/sheets.h"
 
 namespace spoonbill {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "engine/collision/implicit/implicit_shapes.h"
+#include "engine/collision/solids/implicit/implicit_shapes.h"
 #include "tests/engine/bspline/random_surface.h"
 
 namespace spoonbill {

@@ -1,0 +1,291 @@
+#include "engine/collision/levels/patch_kernels.h"
+
+namespace spoonbill::SPOONBILL_KERNELS {
+
+namespace {
+
+// What single precision may add to an extent: of a slab's size and of its place.
+constexpr double size_rounding = 1e-6;
+constexpr double place_rounding = 2.5e-7;
+// And of the way between two centres, and of its square.
+constexpr float way_rounding = 1e-6F;
+constexpr float less = 1.0F - 1e-5F;
+constexpr float more = 1.0F + 1e-5F;
+
+// Lanes that no compiler takes apart again; they need not begin on a whole vector.
+typedef double Lanes __attribute__((vector_size(slab_lanes * sizeof(double)), aligned(sizeof(double))));
+
+// Four neighbouring sums, each of weights[k] * values[k][j].
+template <int bandwidth>
+inline __attribute__((always_inline)) void sum_lanes(const double* weights, long weight_stride,
+                                                     const double* values, long value_stride, double* sums) {
+  Lanes sum = {0.0, 0.0, 0.0, 0.0};
+#pragma GCC unroll 10
+  for (int k = 0; k < bandwidth; ++k) {
+    sum += weights[k * weight_stride] * *reinterpret_cast<const Lanes*>(values + k * value_stride);
+  }
+  *reinterpret_cast<Lanes*>(sums) = sum;
+}
+
+template <int bandwidth_u, int bandwidth_v>
+void sample_tile_of(const TileBand& u, const TileBand& v, const PlanarPoints& net, long net_columns,
+                    double* lines, const PlanarOutput& samples, long columns) {
+  const double* const controls[3] = {net.x, net.y, net.z};
+  double* const out[3] = {samples.x, samples.y, samples.z};
+  const long padded = v.padded, line_size = 3 * padded;
+  for (int k = 0; k < bandwidth_u; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double* const row = controls[axis] + u.controls[k] * net_columns;
+      double picked[bandwidth_v];
+      for (int m = 0; m < bandwidth_v; ++m) picked[m] = row[v.controls[m]];
+      double* const line = lines + k * line_size + axis * padded;
+      for (long j = 0; j < padded; j += slab_lanes) {
+        sum_lanes<bandwidth_v>(picked, 1, v.values + j, padded, line + j);
+      }
+    }
+  }
+  for (int row = 0; row < u.samples; ++row) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double* const from = lines + axis * padded;
+      double* const to = out[axis] + row * columns;
+      long j = 0;
+      for (; j + slab_lanes <= v.samples; j += slab_lanes) {
+        sum_lanes<bandwidth_u>(u.values + row, u.padded, from + j, line_size, to + j);
+      }
+      double rest[slab_lanes];
+      sum_lanes<bandwidth_u>(u.values + row, u.padded, from + j, line_size, rest);
+      for (long k = j; k < v.samples; ++k) to[k] = rest[k - j];
+    }
+  }
+}
+
+using SampleTile = void (*)(const TileBand&, const TileBand&, const PlanarPoints&, long, double*,
+                            const PlanarOutput&, long);
+
+template <int bandwidth_u>
+constexpr SampleTile tiles_by_bandwidth[] = {nullptr,
+                                             nullptr,
+                                             sample_tile_of<bandwidth_u, 2>,
+                                             sample_tile_of<bandwidth_u, 3>,
+                                             sample_tile_of<bandwidth_u, 4>,
+                                             sample_tile_of<bandwidth_u, 5>,
+                                             sample_tile_of<bandwidth_u, 6>,
+                                             sample_tile_of<bandwidth_u, 7>,
+                                             sample_tile_of<bandwidth_u, 8>,
+                                             sample_tile_of<bandwidth_u, 9>,
+                                             sample_tile_of<bandwidth_u, 10>};
+
+constexpr const SampleTile* tiles_by_bandwidths[] = {nullptr,
+                                                     nullptr,
+                                                     tiles_by_bandwidth<2>,
+                                                     tiles_by_bandwidth<3>,
+                                                     tiles_by_bandwidth<4>,
+                                                     tiles_by_bandwidth<5>,
+                                                     tiles_by_bandwidth<6>,
+                                                     tiles_by_bandwidth<7>,
+                                                     tiles_by_bandwidth<8>,
+                                                     tiles_by_bandwidth<9>,
+                                                     tiles_by_bandwidth<10>};
+
+void sample_tile(const TileBand& u, const TileBand& v, const PlanarPoints& net, long net_columns,
+                 double* lines, const PlanarOutput& samples, long columns) {
+  tiles_by_bandwidths[u.bandwidth][v.bandwidth](u, v, net, net_columns, lines, samples, columns);
+}
+
+inline __attribute__((always_inline)) double magnitude(double number) {
+  return __builtin_fabs(number);
+}
+
+void take_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
+  constexpr int low_low[slab_lanes] = {0, 1, 3, 4};
+  const double* const values[3] = {samples.x, samples.y, samples.z};
+  double centre[3][slab_lanes], u[3][slab_lanes], v[3][slab_lanes], twist[3][slab_lanes];
+  for (int axis = 0; axis < 3; ++axis) {
+    double p00[slab_lanes], p01[slab_lanes], p10[slab_lanes], p11[slab_lanes];
+    for (int k = 0; k < slab_lanes; ++k) {
+      const double* const corner = values[axis] + low_low[k];
+      p00[k] = corner[0];
+      p01[k] = corner[1];
+      p10[k] = corner[3];
+      p11[k] = corner[4];
+    }
+    for (int k = 0; k < slab_lanes; ++k) {
+      const double low = p00[k] + p01[k], high = p10[k] + p11[k];
+      const double left = p00[k] + p10[k], right = p01[k] + p11[k];
+      centre[axis][k] = 0.25 * (low + high);
+      u[axis][k] = 0.25 * (high - low);
+      v[axis][k] = 0.25 * (right - left);
+      twist[axis][k] = 0.25 * ((p00[k] - p01[k]) - (p10[k] - p11[k]));
+      group.centre[axis][k] = static_cast<float>(centre[axis][k]);
+      group.along_u[axis][k] = static_cast<float>(u[axis][k]);
+      group.along_v[axis][k] = static_cast<float>(v[axis][k]);
+    }
+  }
+  // Unrolled too early, the lanes would not become vectors.
+#pragma GCC unroll 1
+  for (int k = 0; k < slab_lanes; ++k) {
+    const double x = u[1][k] * v[2][k] - u[2][k] * v[1][k];
+    const double y = u[2][k] * v[0][k] - u[0][k] * v[2][k];
+    const double z = u[0][k] * v[1][k] - u[1][k] * v[0][k];
+    const double squared = x * x + y * y + z * z;
+    const bool flat = squared > 0.0;
+    const double scale = (flat ? 1.0 : 0.0) / __builtin_sqrt(flat ? squared : 1.0);
+    const double nx = x * scale, ny = y * scale, nz = z * scale;
+    group.normal[0][k] = static_cast<float>(nx);
+    group.normal[1][k] = static_cast<float>(ny);
+    group.normal[2][k] = static_cast<float>(nz);
+    const double twisted =
+        __builtin_sqrt(twist[0][k] * twist[0][k] + twist[1][k] * twist[1][k] + twist[2][k] * twist[2][k]);
+    const double size = magnitude(u[0][k]) + magnitude(u[1][k]) + magnitude(u[2][k]) + magnitude(v[0][k]) +
+                        magnitude(v[1][k]) + magnitude(v[2][k]) + twisted + bulge;
+    const double place = magnitude(centre[0][k]) + magnitude(centre[1][k]) + magnitude(centre[2][k]);
+    const double off = bulge + size_rounding * size + place_rounding * place;
+    // A normal of long, narrow cells is not quite across their sides.
+    group.thickness[k] =
+        static_cast<float>(magnitude(nx * u[0][k] + ny * u[1][k] + nz * u[2][k]) +
+                           magnitude(nx * v[0][k] + ny * v[1][k] + nz * v[2][k]) +
+                           magnitude(nx * twist[0][k] + ny * twist[1][k] + nz * twist[2][k]) + off);
+    group.slack[k] = static_cast<float>(twisted + off);
+  }
+}
+
+// One or two slabs of the first, against each of the second's four.
+#ifdef __AVX__
+constexpr int slabs_at_once = 2;
+#else
+constexpr int slabs_at_once = 1;
+#endif
+constexpr int lanes_at_once = slabs_at_once * slab_lanes;
+typedef float Many __attribute__((vector_size(lanes_at_once * sizeof(float))));
+typedef int ManyBits __attribute__((vector_size(lanes_at_once * sizeof(int))));
+typedef float Four __attribute__((vector_size(slab_lanes * sizeof(float)), aligned(sizeof(float))));
+
+struct ManyVectors {
+  Many x, y, z;
+};
+
+template <int a = 0>
+struct AllFour {
+  inline __attribute__((always_inline)) void operator()(const float* lanes, Many& out) const {
+    const Four four = *reinterpret_cast<const Four*>(lanes);
+    if constexpr (slabs_at_once == 1) {
+      out = __builtin_shufflevector(four, four, a, a + 1, a + 2, a + 3);
+    } else {
+      out = __builtin_shufflevector(four, four, a, a + 1, a + 2, a + 3, a, a + 1, a + 2, a + 3);
+    }
+  }
+};
+template <int first>
+struct FourOfEach {
+  inline __attribute__((always_inline)) void operator()(const float* lanes, Many& out) const {
+    const Four four = *reinterpret_cast<const Four*>(lanes);
+    if constexpr (slabs_at_once == 1) {
+      out = __builtin_shufflevector(four, four, first, first, first, first);
+    } else {
+      constexpr int next = first + 1;
+      out = __builtin_shufflevector(four, four, first, first, first, first, next, next, next, next);
+    }
+  }
+};
+
+template <class Spread>
+inline __attribute__((always_inline)) void spread(const Spread& by, const float (&lanes)[3][slab_lanes],
+                                                  ManyVectors& out) {
+  by(lanes[0], out.x);
+  by(lanes[1], out.y);
+  by(lanes[2], out.z);
+}
+
+inline __attribute__((always_inline)) void take_magnitude(const Many& number, Many& out) {
+  out = reinterpret_cast<Many>(reinterpret_cast<ManyBits>(number) & 0x7fffffff);
+}
+
+inline __attribute__((always_inline)) void magnitude_of_product(const ManyVectors& a, const ManyVectors& b,
+                                                                Many& out) {
+  take_magnitude(a.x * b.x + a.y * b.y + a.z * b.z, out);
+}
+
+struct ManySlabs {
+  ManyVectors centre, u, v, normal;
+  Many thickness, slack;
+};
+
+template <class Spread>
+inline __attribute__((always_inline)) void take_many(const Spread& by, const SlabGroup& group,
+                                                     ManySlabs& slabs) {
+  spread(by, group.centre, slabs.centre);
+  spread(by, group.along_u, slabs.u);
+  spread(by, group.along_v, slabs.v);
+  spread(by, group.normal, slabs.normal);
+  by(group.thickness, slabs.thickness);
+  by(group.slack, slabs.slack);
+}
+
+// Minus one in the lanes that are apart.
+inline __attribute__((always_inline)) void take_apart(const ManySlabs& a, const ManySlabs& b, float reach,
+                                                      ManyBits& apart) {
+  const ManyVectors way = {b.centre.x - a.centre.x, b.centre.y - a.centre.y, b.centre.z - a.centre.z};
+  Many x, y, z;
+  take_magnitude(way.x, x);
+  take_magnitude(way.y, y);
+  take_magnitude(way.z, z);
+  const Many further = way_rounding * (x + y + z) + reach;
+  Many across_a, u_a, v_a, across_b, u_b, v_b;
+  magnitude_of_product(a.normal, way, across_a);
+  magnitude_of_product(a.normal, b.u, u_a);
+  magnitude_of_product(a.normal, b.v, v_a);
+  magnitude_of_product(b.normal, way, across_b);
+  magnitude_of_product(b.normal, a.u, u_b);
+  magnitude_of_product(b.normal, a.v, v_b);
+  apart = across_a > a.thickness + b.slack + u_a + v_a + further;
+  apart |= across_b > b.thickness + a.slack + u_b + v_b + further;
+  // squared > along + slack * length, without the root of squared.
+  Many au, av, bu, bv;
+  magnitude_of_product(a.u, way, au);
+  magnitude_of_product(a.v, way, av);
+  magnitude_of_product(b.u, way, bu);
+  magnitude_of_product(b.v, way, bv);
+  const Many squared = way.x * way.x + way.y * way.y + way.z * way.z;
+  const Many beyond = less * squared - (au + av + bu + bv), slack = more * (a.slack + b.slack + reach);
+  apart |= (beyond > 0.0F) & (beyond * beyond > slack * slack * squared);
+}
+
+// One bit a lane.
+inline __attribute__((always_inline)) unsigned bits_of(const ManyBits& lanes) {
+#ifdef __AVX__
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Many>(lanes)));
+#else
+  unsigned bits = 0;
+  for (int k = 0; k < lanes_at_once; ++k) bits |= static_cast<unsigned>(-lanes[k]) << k;
+  return bits;
+#endif
+}
+
+// From slab `first` of the first on; returns the bits of lanes that are not apart.
+template <int first>
+inline __attribute__((always_inline)) unsigned meeting_from(const SlabGroup& a, const ManySlabs& b,
+                                                            float reach) {
+  ManySlabs slabs;
+  ManyBits apart;
+  take_many(FourOfEach<first>{}, a, slabs);
+  take_apart(slabs, b, reach, apart);
+  constexpr unsigned all = (1U << lanes_at_once) - 1U;
+  return (~bits_of(apart) & all) << (slab_lanes * first);
+}
+
+unsigned meeting(const SlabGroup& a, int lanes, const SlabGroup& b, float reach) {
+  ManySlabs second;
+  take_many(AllFour<>{}, b, second);
+  unsigned bits = meeting_from<0>(a, second, reach);
+  if (lanes == 1) return bits & 15U;
+  if constexpr (slabs_at_once == 1) {
+    bits |= meeting_from<1>(a, second, reach) | meeting_from<3>(a, second, reach);
+  }
+  return bits | meeting_from<2>(a, second, reach);
+}
+
+}  // namespace
+
+const PatchKernels patch_kernels{sample_tile, take_slabs, meeting};
+
+}  // namespace spoonbill::SPOONBILL_KERNELS

@@ -1,0 +1,149 @@
+#include "engine/collision/meshes/deforming_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/collision/meshes/mesh_edges.h"
+#include "engine/collision/meshes/nearest_on_triangle.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr std::uint32_t leaf_size = 4;
+// Nearer than this the way to the surface has no direction worth the name.
+constexpr double on_surface_m = 1e-12;
+
+Box box_about(const std::vector<Vector3>& vertices, const TriangleCorners& corners) {
+  const Vector3 &a = vertices[corners[0]], &b = vertices[corners[1]], &c = vertices[corners[2]];
+  return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+}
+
+std::vector<Box> boxes_of(const TriangleMesh& mesh) {
+  std::vector<Box> boxes;
+  boxes.reserve(mesh.triangles.size());
+  for (const TriangleCorners& corners : mesh.triangles) boxes.push_back(box_about(mesh.vertices_m, corners));
+  return boxes;
+}
+
+double squared_distance(const Box& box, const Vector3& point) {
+  return (box.low - point).cwiseMax(point - box.high).cwiseMax(0.0).squaredNorm();
+}
+
+// Within 2e-8 of the arc tangent of 0 to 1 (Abramowitz and Stegun 1964, 4.4.49): the library's differs in its
+// last bits from processor to processor, and these reach the simulation's state.
+double arc_tangent(double x) {
+  constexpr double term[] = {-0.3333314528, 0.1999355085, -0.1420889944, 0.1065626393,
+                             -0.0752896400, 0.0429096138, -0.0161657367, 0.0028662257};
+  const double square = x * x;
+  double sum = 0.0;
+  for (int t = 7; t >= 0; --t) sum = (sum + term[t]) * square;
+  return x * (1.0 + sum);
+}
+
+// 0 to pi; of unit vectors, as that of half of it: |a - b| over |a + b| is its tangent.
+double angle_between(const Vector3& a, const Vector3& b) {
+  constexpr double quarter_turn = 1.57079632679489662;
+  const double across = (a - b).norm(), along = (a + b).norm();
+  if (across <= along) return along > 0.0 ? 2.0 * arc_tangent(across / along) : 0.0;
+  return 2.0 * (quarter_turn - arc_tangent(along / across));
+}
+
+std::array<double, 3> shares_of(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& point) {
+  const Vector3 normal = (b - a).cross(c - a);
+  const double square = normal.squaredNorm();
+  if (!(square > 0.0)) return {1.0, 0.0, 0.0};
+  const double of_a = std::clamp(normal.dot((b - point).cross(c - point)) / square, 0.0, 1.0);
+  const double of_b = std::clamp(normal.dot((c - point).cross(a - point)) / square, 0.0, 1.0 - of_a);
+  return {of_a, of_b, 1.0 - of_a - of_b};
+}
+
+}  // namespace
+
+struct DeformingMesh::Nearest {
+  double squared;
+  std::uint32_t triangle = 0;
+  NearestOnTriangle on{};
+};
+
+DeformingMesh::DeformingMesh(const TriangleMesh& mesh)
+    : vertices_m_(mesh.vertices_m), tree_(boxes_of(mesh), leaf_size) {
+  triangles_.reserve(mesh.triangles.size());
+  for (const std::uint32_t index : tree_.order()) triangles_.push_back(mesh.triangles[index]);
+  const MeshEdges edges(triangles_, vertices_m_.size());
+  across_.resize(3 * triangles_.size());
+  for (MeshSide side = 0; side < across_.size(); ++side) across_[side] = edges.across(side) / 3;
+  first_corner_.assign(vertices_m_.size() + 1, 0);
+  for (const TriangleCorners& corners : triangles_) {
+    for (const std::uint32_t vertex : corners) ++first_corner_[vertex + 1];
+  }
+  for (std::size_t v = 1; v < first_corner_.size(); ++v) first_corner_[v] += first_corner_[v - 1];
+  corners_.resize(3 * triangles_.size());
+  std::vector<std::uint32_t> next(first_corner_.begin(), first_corner_.end() - 1);
+  for (std::uint32_t corner = 0; corner < corners_.size(); ++corner) {
+    corners_[next[triangles_[corner / 3][corner % 3]]++] = corner;
+  }
+}
+
+void DeformingMesh::settle() {
+  tree_.refit([&](std::uint32_t place) { return box_about(vertices_m_, triangles_[place]); });
+}
+
+Vector3 DeformingMesh::face_normal(std::uint32_t triangle) const {
+  const auto& [a, b, c] = triangles_[triangle];
+  return (vertices_m_[b] - vertices_m_[a]).cross(vertices_m_[c] - vertices_m_[a]).normalized();
+}
+
+Vector3 DeformingMesh::vertex_normal(std::uint32_t vertex) const {
+  Vector3 sum = Vector3::Zero();
+  for (std::uint32_t c = first_corner_[vertex]; c < first_corner_[vertex + 1]; ++c) {
+    const std::uint32_t triangle = corners_[c] / 3, k = corners_[c] % 3;
+    const Vector3& corner = vertices_m_[vertex];
+    const Vector3 to_next = (vertices_m_[triangles_[triangle][(k + 1) % 3]] - corner).normalized();
+    const Vector3 to_last = (vertices_m_[triangles_[triangle][(k + 2) % 3]] - corner).normalized();
+    sum += angle_between(to_next, to_last) * face_normal(triangle);
+  }
+  return sum;
+}
+
+Vector3 DeformingMesh::normal_at(const Nearest& nearest) const {
+  using On = NearestOnTriangle::On;
+  if (nearest.on.on == On::corner) return vertex_normal(triangles_[nearest.triangle][nearest.on.which]);
+  Vector3 face = face_normal(nearest.triangle);
+  if (nearest.on.on == On::face) return face;
+  return face + face_normal(across_[3 * nearest.triangle + nearest.on.which]);
+}
+
+std::optional<NearestOnMesh> DeformingMesh::nearest(const Vector3& point_m, double reach_m) const {
+  Nearest best{reach_m * reach_m};
+  bool found = false;
+  const std::vector<BoxTree::Node>& nodes = tree_.nodes();
+  tree_.search(
+      [&](std::uint32_t index) { return squared_distance(nodes[index].box, point_m) < best.squared; },
+      [&](std::uint32_t left, std::uint32_t right) {
+        return squared_distance(nodes[right].box, point_m) < squared_distance(nodes[left].box, point_m);
+      },
+      [&](std::uint32_t first, std::uint32_t count) {
+        for (std::uint32_t t = first; t < first + count; ++t) {
+          const auto& [a, b, c] = triangles_[t];
+          const auto on = nearest_on_triangle(vertices_m_[a], vertices_m_[b], vertices_m_[c], point_m);
+          const double squared = (on.point - point_m).squaredNorm();
+          if (!(squared < best.squared)) continue;
+          best = {squared, t, on};
+          found = true;
+        }
+      });
+  if (!found) return std::nullopt;
+  const TriangleCorners& corners = triangles_[best.triangle];
+  NearestOnMesh result;
+  result.on = {corners, shares_of(vertices_m_[corners[0]], vertices_m_[corners[1]], vertices_m_[corners[2]],
+                                  best.on.point)};
+  const Vector3 normal = normal_at(best), way = point_m - best.on.point;
+  const double distance = std::sqrt(best.squared), side = way.dot(normal) < 0.0 ? -1.0 : 1.0;
+  result.gap_m = side * distance;
+  const bool has_way = distance > on_surface_m && best.on.on != NearestOnTriangle::On::face;
+  result.normal = has_way ? Vector3(side / distance * way) : Vector3(normal.normalized());
+  return result;
+}
+
+}  // namespace spoonbill

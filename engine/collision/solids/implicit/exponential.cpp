@@ -1,0 +1,75 @@
+#include "engine/collision/solids/implicit/exponential.h"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+namespace spoonbill {
+namespace {
+
+// The first with zeros at its end, so that a multiple of it is exact; both together are log(2).
+constexpr double log_2_high = 0x1.62e42feep-1, log_2_low = 0x1.a39ef35793c76p-33;
+
+constexpr int parts = 64;  // of an octave
+
+// 2^(k / parts), by the Taylor series.
+constexpr std::array<double, parts> make_roots_of_two() {
+  std::array<double, parts> values{};
+  for (int k = 0; k < parts; ++k) {
+    const long double x = 0.693147180559945309417232121458L * k / parts;
+    long double sum = 1.0L;
+    for (int term = 30; term >= 1; --term) sum = 1.0L + sum * x / term;
+    values[k] = static_cast<double>(sum);
+  }
+  return values;
+}
+constexpr std::array<double, parts> roots_of_two = make_roots_of_two();
+
+// Added and taken away again, rounds a number below 2^51 to a whole one.
+constexpr double to_whole = 0x1.8p52;
+
+// 1 / 3, 1 / 5 and so on.
+constexpr std::array<double, 10> make_inverse_odds() {
+  std::array<double, 10> values{};
+  for (int k = 0; k < 10; ++k) values[k] = 1.0 / (2 * k + 3);
+  return values;
+}
+constexpr std::array<double, 10> inverse_odds = make_inverse_odds();
+
+double power_of_two(int power) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(power + 1023) << 52);
+}
+
+}  // namespace
+
+// The Taylor series within half a part of an octave, whose sixth term is below rounding.
+double stable_exp(double x) {
+  if (!(x > -700.0)) return 0.0;
+  const double whole = (x * (parts * 1.4426950408889634) + to_whole) - to_whole;
+  const double rest = (x - whole * (log_2_high / parts)) - whole * (log_2_low / parts);
+  const double square = rest * rest;
+  const double beyond =
+      rest + square * (0.5 + rest * (1.0 / 6.0) + square * (1.0 / 24.0 + rest * (1.0 / 120.0)));
+  const int number = static_cast<int>(whole), part = number & (parts - 1);
+  const double root = roots_of_two[part];
+  // Neither factor is out of range where the product is not.
+  const int power = (number - part) / parts, half = power / 2;
+  return (root + root * beyond) * power_of_two(half) * power_of_two(power - half);
+}
+
+// log(m) = 2 artanh((m - 1) / (m + 1)), m within sqrt(2) of 1.
+double stable_log(double x) {
+  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x), mantissa_bits = (std::uint64_t{1} << 52) - 1;
+  int twos = static_cast<int>(bits >> 52) - 1023;
+  double mantissa = std::bit_cast<double>((bits & mantissa_bits) | std::bit_cast<std::uint64_t>(1.0));
+  if (mantissa > 1.4142135623730951) {
+    mantissa *= 0.5;
+    ++twos;
+  }
+  const double s = (mantissa - 1.0) / (mantissa + 1.0), square = s * s;
+  double sum = 0.0;
+  for (int k = 9; k >= 0; --k) sum = (sum + inverse_odds[k]) * square;
+  return twos * log_2_high + (2.0 * s * (1.0 + sum) + twos * log_2_low);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,263 @@
+#include "engine/collision/surfaces/pair_polish.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace spoonbill {
+namespace {
+
+using Vector2 = Eigen::Vector2d;
+using Matrix2 = Eigen::Matrix2d;
+
+constexpr int most_steps = 40;
+constexpr int most_tries = 12;
+constexpr double least_damping = 1e-9;
+// Below this, in metres, a step gains nothing but rounding.
+constexpr double least_gain_m = 1e-15;
+// Below this, the quadratic model promises nothing that could be measured.
+constexpr double least_promise_m = 1e-17;
+
+// Whether a step would leave an open domain that the parameter is at the end of.
+bool leaves(const KnotVector& knots, double parameter, double step) {
+  if (knots.is_periodic()) return false;
+  return (step < 0.0 && parameter <= knots.domain_start()) || (step > 0.0 && parameter >= knots.domain_end());
+}
+
+// Puts the solution of h x = g into g, by Cholesky's factors in the lower half of h; false where h is not
+// positive definite.
+template <int size>
+bool solve_positive(Eigen::Matrix<double, size, size>& h, Eigen::Matrix<double, size, 1>& g) {
+  for (int j = 0; j < size; ++j) {
+    for (int k = 0; k < j; ++k) h(j, j) -= h(j, k) * h(j, k);
+    if (!(h(j, j) > 0.0)) return false;
+    h(j, j) = std::sqrt(h(j, j));
+    const double scale = 1.0 / h(j, j);
+    for (int i = j + 1; i < size; ++i) {
+      for (int k = 0; k < j; ++k) h(i, j) -= h(i, k) * h(j, k);
+      h(i, j) *= scale;
+    }
+    for (int k = 0; k < j; ++k) g[j] -= h(j, k) * g[k];
+    g[j] *= scale;
+  }
+  for (int j = size - 1; j >= 0; --j) {
+    for (int k = j + 1; k < size; ++k) g[j] -= h(k, j) * g[k];
+    g[j] /= h(j, j);
+  }
+  return true;
+}
+
+// A minimisation in `size` parameters whose lengths on the surface differ: steps are taken in metres.
+template <int size>
+struct Problem {
+  Eigen::Matrix<double, size, 1> gradient;  // by the parameters
+  Eigen::Matrix<double, size, size> curvature;
+  Eigen::Matrix<double, size, 1> speed;  // metres a unit of each parameter
+  std::array<const KnotVector*, size> knots;
+  Eigen::Matrix<double, size, 1> parameters;
+  double least_promise = 0.0;  // in the unit of what is minimised
+
+  // The step that leads to the least value of the quadratic model, `damping` in the unit of the curvature.
+  Eigen::Matrix<double, size, 1> step(double damping) const {
+    auto g = gradient;
+    auto h = curvature;
+    const double floor = std::max(1e-12 * speed.maxCoeff(), 1e-300);
+    const Eigen::Matrix<double, size, 1> scale = speed.cwiseMax(floor).cwiseInverse();
+    g = scale.cwiseProduct(g);
+    h = scale.asDiagonal() * h * scale.asDiagonal();
+    for (int k = 0; k < size; ++k) {
+      if (!leaves(*knots[k], parameters[k], -g[k])) continue;
+      h.row(k).setZero();
+      h.col(k).setZero();
+      h(k, k) = 1.0;
+      g[k] = 0.0;
+    }
+    h.diagonal().array() += damping;
+    if (!solve_positive(h, g)) return Eigen::Matrix<double, size, 1>::Constant(NAN);
+    return -scale.cwiseProduct(g);
+  }
+};
+
+// One accepted step of a Levenberg-Marquardt method, by `offer(parameters)`, which says whether the value
+// fell; false where none is found.
+template <int size, class Offer>
+bool descend(const Problem<size>& problem, double& damping, const Offer& offer) {
+  for (int tries = 0; tries < most_tries; ++tries) {
+    const auto step = problem.step(damping);
+    if (step.allFinite()) {
+      if (!(-0.5 * problem.gradient.dot(step) > problem.least_promise)) return false;
+      Eigen::Matrix<double, size, 1> next = problem.parameters + step;
+      for (int k = 0; k < size; ++k) next[k] = problem.knots[k]->into_domain(next[k]);
+      if (offer(next)) {
+        damping = std::max(least_damping, 0.1 * damping);
+        return true;
+      }
+    }
+    damping = std::max(10.0 * damping, 1e-4);
+  }
+  return false;
+}
+
+Matrix2 first_form(const SurfacePoint& at) {
+  Matrix2 form;
+  form << at.du.squaredNorm(), at.du.dot(at.dv), at.du.dot(at.dv), at.dv.squaredNorm();
+  return form;
+}
+
+Matrix2 along(const SurfacePoint& at, const Vector3& direction) {
+  Matrix2 form;
+  form << at.duu.dot(direction), at.duv.dot(direction), at.duv.dot(direction), at.dvv.dot(direction);
+  return form;
+}
+
+}  // namespace
+
+SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from) {
+  Problem<4> problem;
+  problem.knots = {&first.u->knots(), &first.v->knots(), &second.u->knots(), &second.v->knots()};
+  problem.parameters = {problem.knots[0]->into_domain(from.u), problem.knots[1]->into_domain(from.v),
+                        problem.knots[2]->into_domain(from.s), problem.knots[3]->into_domain(from.t)};
+  const auto evaluate_at = [&](const Eigen::Vector4d& at, SurfacePoint& a, SurfacePoint& b) {
+    a = evaluate(first, at[0], at[1]);
+    b = evaluate(second, at[2], at[3]);
+    return (a.position_m - b.position_m).norm();
+  };
+  SurfacePoint a, b;
+  double distance = evaluate_at(problem.parameters, a, b);
+  double damping = least_damping;
+  for (int taken = 0; taken < most_steps && distance > least_gain_m; ++taken) {
+    const Vector3 apart = a.position_m - b.position_m;
+    problem.least_promise = least_promise_m * distance;
+    problem.gradient << apart.dot(a.du), apart.dot(a.dv), -apart.dot(b.du), -apart.dot(b.dv);
+    problem.curvature.topLeftCorner<2, 2>() = first_form(a) + along(a, apart);
+    problem.curvature.bottomRightCorner<2, 2>() = first_form(b) - along(b, apart);
+    Matrix2 mixed;
+    mixed << a.du.dot(b.du), a.du.dot(b.dv), a.dv.dot(b.du), a.dv.dot(b.dv);
+    problem.curvature.topRightCorner<2, 2>() = -mixed;
+    problem.curvature.bottomLeftCorner<2, 2>() = -mixed.transpose();
+    problem.speed << a.du.norm(), a.dv.norm(), b.du.norm(), b.dv.norm();
+    const double before = distance;
+    const bool moved = descend(problem, damping, [&](const Eigen::Vector4d& next) {
+      SurfacePoint next_a, next_b;
+      const double next_distance = evaluate_at(next, next_a, next_b);
+      if (!(next_distance < distance)) return false;
+      problem.parameters = next;
+      distance = next_distance;
+      a = next_a;
+      b = next_b;
+      return true;
+    });
+    if (!moved || !(distance < before - least_gain_m)) break;
+  }
+  const Eigen::Vector4d& at = problem.parameters;
+  return {{at[0], at[1], at[2], at[3]}, a.position_m, b.position_m};
+}
+
+NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v) {
+  Problem<2> problem;
+  problem.knots = {&surface.u->knots(), &surface.v->knots()};
+  problem.parameters = {problem.knots[0]->into_domain(u), problem.knots[1]->into_domain(v)};
+  SurfacePoint at = evaluate(surface, problem.parameters[0], problem.parameters[1]);
+  double distance = (at.position_m - point).norm(), damping = least_damping;
+  for (int taken = 0; taken < most_steps && distance > least_gain_m; ++taken) {
+    const Vector3 apart = at.position_m - point;
+    problem.least_promise = least_promise_m * distance;
+    problem.gradient << apart.dot(at.du), apart.dot(at.dv);
+    problem.curvature = first_form(at) + along(at, apart);
+    problem.speed << at.du.norm(), at.dv.norm();
+    const double before = distance;
+    const bool moved = descend(problem, damping, [&](const Vector2& next) {
+      const SurfacePoint there = evaluate(surface, next[0], next[1]);
+      const double next_distance = (there.position_m - point).norm();
+      if (!(next_distance < distance)) return false;
+      problem.parameters = next;
+      distance = next_distance;
+      at = there;
+      return true;
+    });
+    if (!moved || !(distance < before - least_gain_m)) break;
+  }
+  return {problem.parameters[0], problem.parameters[1], at};
+}
+
+namespace {
+
+// A point of the first surface and the second's nearest to it.
+struct Behind {
+  PairParameters at;
+  SurfacePoint a, b;
+  Vector3 normal;
+  double depth;
+};
+
+bool is_end(const KnotVector& knots, double parameter) {
+  return !knots.is_periodic() && (parameter <= knots.domain_start() || parameter >= knots.domain_end());
+}
+
+bool on_edge(const PiecewiseSurface& surface, double u, double v) {
+  return is_end(surface.u->knots(), u) || is_end(surface.v->knots(), v);
+}
+
+// By more than Newton's method may leave.
+bool is_oblique(const Vector3& apart, const Vector3& normal) {
+  return apart.cross(normal).norm() > 1e-6 * apart.norm();
+}
+
+Behind behind_at(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
+                 double outside) {
+  Behind result;
+  result.a = evaluate(first, from.u, from.v);
+  const NearestPoint nearest = nearest_point(second, result.a.position_m, from.s, from.t);
+  result.at = {from.u, from.v, nearest.u, nearest.v};
+  result.b = nearest.at;
+  result.normal = outside * unit_normal(second, nearest.at, nearest.u, nearest.v);
+  const Vector3 apart = result.a.position_m - nearest.at.position_m;
+  // Beyond an edge of the second surface there is no behind.
+  const bool behind = apart.dot(result.normal) < 0.0 &&
+                      !(on_edge(second, nearest.u, nearest.v) && is_oblique(apart, result.normal));
+  result.depth = behind ? apart.norm() : -apart.norm();
+  return result;
+}
+
+Matrix2 distance_curvature(const Behind& at) {
+  const Matrix2 first = first_form(at.b), second = along(at.b, at.normal);
+  Matrix2 moves;  // a column for each of A_u, A_v
+  moves << at.a.du.dot(at.b.du), at.a.dv.dot(at.b.du), at.a.du.dot(at.b.dv), at.a.dv.dot(at.b.dv);
+  const double distance = -at.depth;
+  const Matrix2 follows = (first - distance * second).inverse() * moves;
+  return -moves.transpose() * first.inverse() * second * follows;
+}
+
+}  // namespace
+
+double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
+                    double outside) {
+  return behind_at(first, second, from, outside).depth;
+}
+
+DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from,
+                         double outside, double enough_m) {
+  Behind best = behind_at(first, second, from, outside);
+  Problem<2> problem;
+  problem.knots = {&first.u->knots(), &first.v->knots()};
+  problem.least_promise = least_promise_m;
+  double damping = least_damping;
+  for (int taken = 0; taken < most_steps && !(best.depth > enough_m); ++taken) {
+    problem.parameters = {best.at.u, best.at.v};
+    problem.gradient << best.a.du.dot(best.normal), best.a.dv.dot(best.normal);
+    problem.curvature = along(best.a, best.normal) + distance_curvature(best);
+    problem.speed << best.a.du.norm(), best.a.dv.norm();
+    const double before = best.depth;
+    const bool moved = descend(problem, damping, [&](const Vector2& next) {
+      const Behind there = behind_at(first, second, {next[0], next[1], best.at.s, best.at.t}, outside);
+      if (!(there.depth > best.depth)) return false;
+      best = there;
+      return true;
+    });
+    if (!moved || !(best.depth > before + least_gain_m)) break;
+  }
+  return {{best.at, best.a.position_m, best.b.position_m}, best.normal, best.depth};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,68 @@
+#include "engine/collision/levels/surface_levels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace spoonbill {
+namespace {
+
+// A flat sheet leaves its corners by nothing: its spheres are no larger than its corners need, and must hold
+// them to rounding.
+TEST(SurfaceLevels, SpheresOfFlatCellsEndAtTheirCorners) {
+  const KnotVector knots = KnotVector::clamped_uniform(1, 4).value();
+  ControlNet net(4, 4);
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) net.set_point(i, j, {0.3 * i, 0.1 * i + 0.2 * j, 0.4 * j});
+  }
+  const Surface sheet = make_surface(knots, knots, net).value();
+  const NestedGrid nested = make_nested_grid(sheet.u, sheet.v, 2).value();
+  SurfaceLevels levels(nested);
+  levels.begin(sheet);
+  for (int level = 0; level <= 2; ++level) {
+    const LevelCell cell{levels.step(level), 2 * levels.step(level), level};
+    const CoverSphere& cover = levels.cover(cell);
+    double farthest = 0.0;
+    for (const Vector3& corner : levels.corners(cell)) {
+      farthest = std::max(farthest, (corner - cover.centre).norm());
+    }
+    EXPECT_NEAR(cover.radius, farthest, 1e-15) << level;
+  }
+}
+
+TEST(SurfaceLevels, BoxesOfElementsHoldThem) {
+  const KnotVector u = KnotVector::periodic_uniform(3, 6).value(),
+                   v = KnotVector::clamped_uniform(4, 7).value();
+  ControlNet net(6, 7);
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 7; ++j)
+      net.set_point(i, j, {std::cos(i + 0.3 * j), 0.4 * j, std::sin(1.1 * i - 0.2 * j)});
+  }
+  const Surface surface = make_surface(u, v, net).value();
+  const NestedGrid nested = make_nested_grid(u, v, 1).value();
+  SurfaceLevels levels(nested);
+  levels.begin(surface);
+  const int elements_v = levels.bounds().elements_v();
+  std::vector<Box> boxes(static_cast<std::size_t>(elements_v));
+  std::vector<double> bulges(boxes.size());
+  for (int e = 0; e < levels.bounds().elements_u(); ++e) {
+    levels.element_boxes(e, boxes.data(), bulges.data());
+    for (int f = 0; f < elements_v; ++f) {
+      const Box& box = boxes[static_cast<std::size_t>(f)];
+      for (int k = 0; k < 100; ++k) {
+        const double s =
+            nested.grid.u.parameters[2 * e] +
+            (k / 10) / 9.0 * (nested.grid.u.parameters[2 * e + 2] - nested.grid.u.parameters[2 * e]);
+        const double t =
+            nested.grid.v.parameters[2 * f] +
+            (k % 10) / 9.0 * (nested.grid.v.parameters[2 * f + 2] - nested.grid.v.parameters[2 * f]);
+        const Vector3 point = position(surface, s, t);
+        EXPECT_TRUE(box.holds({point + Vector3::Constant(1e-12), point - Vector3::Constant(1e-12)}));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill

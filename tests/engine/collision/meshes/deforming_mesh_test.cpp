@@ -1,0 +1,131 @@
+#include "engine/collision/meshes/deforming_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "engine/collision/meshes/mesh_parts.h"
+#include "engine/collision/meshes/mesh_refinement.h"
+#include "tests/engine/allocations.h"
+#include "tests/engine/collision/meshes/mesh_shapes.h"
+
+namespace spoonbill {
+namespace {
+
+int points(int few) {
+  return std::getenv("SPOONBILL_FULL") != nullptr ? 50 * few : few;
+}
+
+// Bent, stretched and turned, without passing through itself.
+TriangleMesh bent(TriangleMesh mesh, double much) {
+  for (Vector3& vertex : mesh.vertices_m) {
+    const Vector3 at = vertex;
+    vertex += much * Vector3(0.3 * at.y() * at.y(), 0.2 * std::sin(2.0 * at.x()), 0.25 * at.x() * at.y());
+  }
+  return mesh;
+}
+
+std::vector<TriangleMesh> solids() {
+  return {box_of_triangles({-0.5, -0.7, -0.9}, {0.5, 0.7, 0.9}), ball_mesh(12, 20, 0.9),
+          torus_mesh(24, 12, 0.8, 0.35)};
+}
+
+// Every second one where mistakes of sign hide: near a vertex, an edge or a face.
+Vector3 point_about(Random& random, const TriangleMesh& mesh, int index) {
+  if (index % 2 == 0) return random_point(random, 1.5);
+  const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(
+      random.integer(0, static_cast<int>(mesh.triangles.size()) - 1))];
+  const double share = random.uniform(0.0, 1.0),
+               rest = index % 4 == 1 ? 0.0 : random.uniform(0.0, 1.0 - share);
+  const Vector3 on =
+      share * mesh.vertices_m[a] + rest * mesh.vertices_m[b] + (1.0 - share - rest) * mesh.vertices_m[c];
+  return on + random_point(random, 0.05);
+}
+
+TEST(DeformingMesh, TellsTheNearestPointAndTheSideOfItAsBruteForceDoes) {
+  Random random(5);
+  for (const TriangleMesh& rest : solids()) {
+    DeformingMesh mesh(rest);
+    for (const double much : {0.0, 1.0}) {
+      const TriangleMesh now = bent(rest, much);
+      mesh.moving_vertices_m() = now.vertices_m;
+      mesh.settle();
+      for (int p = 0; p < points(300); ++p) {
+        const Vector3 point = point_about(random, now, p);
+        const double distance = brute_distance(now, point);
+        const auto nearest = mesh.nearest(point, 10.0);
+        ASSERT_TRUE(nearest);
+        EXPECT_NEAR(std::abs(nearest->gap_m), distance, 1e-12);
+        // Three random rays tell the side unless the point is on the surface to rounding.
+        if (distance > 1e-9) {
+          EXPECT_EQ(nearest->gap_m < 0.0, brute_inside(now, point, random)) << distance;
+        }
+        Vector3 on = Vector3::Zero();
+        for (std::size_t c = 0; c < 3; ++c)
+          on += nearest->on.share[c] * now.vertices_m[nearest->on.vertex[c]];
+        EXPECT_NEAR((on + nearest->gap_m * nearest->normal - point).norm(), 0.0, 1e-10);
+        EXPECT_NEAR(nearest->normal.norm(), 1.0, 1e-12);
+        EXPECT_EQ(mesh.nearest(point, 0.5 * distance).has_value(), false);
+      }
+    }
+  }
+}
+
+TEST(DeformingMesh, KnowsTheWayOutWhereAPointLiesOnItsCorner) {
+  const TriangleMesh box = box_of_triangles({-1, -1, -1}, {1, 1, 1});
+  const DeformingMesh mesh(box);
+  const auto corner = mesh.nearest({1, 1, 1}, 1.0);
+  ASSERT_TRUE(corner);
+  EXPECT_EQ(corner->gap_m, 0.0);
+  // By angles, three right ones, and not by how a square is cut in two: along the diagonal.
+  EXPECT_LT((corner->normal - Vector3(1, 1, 1).normalized()).norm(), 1e-7);
+}
+
+TEST(DeformingMesh, AllocatesNothingWhileItMoves) {
+  DeformingMesh mesh(ball_mesh(12, 20, 0.9));
+  const std::size_t before = allocation_count();
+  for (Vector3& vertex : mesh.moving_vertices_m()) vertex.x() += 0.1;
+  mesh.settle();
+  EXPECT_TRUE(mesh.nearest({1.1, 0, 0}, 0.5));
+  EXPECT_EQ(allocation_count(), before);
+}
+
+double volume_of(const TriangleMesh& mesh) {
+  MeshPart all;
+  all.end_triangle = static_cast<std::uint32_t>(mesh.triangles.size());
+  return signed_volume(mesh, all);
+}
+
+TEST(MeshRefinement, KeepsTheShapeAndShortensEveryEdge) {
+  for (const TriangleMesh& mesh : solids()) {
+    for (const double longest : {0.4, 0.11}) {
+      const TriangleMesh fine = refine_edges(mesh, longest, 100000).value();
+      double found = 0.0;
+      for (const auto& [a, b, c] : fine.triangles) {
+        for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) {
+          found = std::max(found, (fine.vertices_m[from] - fine.vertices_m[to]).norm());
+        }
+      }
+      EXPECT_LE(found, longest);
+      EXPECT_GE(found, 0.4 * longest) << "no finer than asked for";
+      const CleanMesh clean = cleaned(fine);
+      EXPECT_EQ(clean.report.open_edges + clean.report.branching_edges, 0u);
+      EXPECT_EQ(clean.report.triangles_turned, 0u);
+      EXPECT_NEAR(volume_of(fine) / volume_of(mesh), 1.0, 1e-12);
+      for (std::size_t v = 0; v < mesh.vertices_m.size(); ++v) {
+        EXPECT_EQ(fine.vertices_m[v], mesh.vertices_m[v]);
+      }
+    }
+  }
+}
+
+TEST(MeshRefinement, RefusesMoreTrianglesThanAllowed) {
+  const auto refused = refine_edges(ball_mesh(12, 20, 0.9), 0.01, 5000);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message, "has more than 5000 triangles where no edge of it is longer than 10 mm");
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,216 @@
+#include "engine/collision/surfaces/surface_self_collider.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <numbers>
+
+#include "tests/engine/allocations.h"
+#include "tests/engine/bspline/tube.h"
+#include "tests/engine/collision/surfaces/crossing_samples.h"
+#include "tests/engine/collision/surfaces/random_pairs.h"
+#include "tests/engine/collision/surfaces/sheets.h"
+
+namespace spoonbill {
+namespace {
+
+struct Answer {
+  SelfResult result;
+  std::vector<PairContact> contacts;
+};
+
+Answer collide(const Surface& surface, bool closed = false, int levels = 2) {
+  const NestedGrid nested = make_nested_grid(surface.u, surface.v, levels).value();
+  SurfaceSelfCollider collider(nested);
+  const SelfResult result = collider.collide(surface, {closed});
+  EXPECT_FALSE(result.overflow);
+  return {result, collider.contacts()};
+}
+
+// A curve of control points in the plane of x and z, drawn out along y from 0 to 1.
+Surface drawn_out(const KnotVector& knots, const std::vector<Vector3>& curve) {
+  const KnotVector along = KnotVector::clamped_uniform(1, 6).value();
+  ControlNet net(knots.control_point_count(), 6);
+  for (int i = 0; i < net.rows; ++i) {
+    for (int j = 0; j < 6; ++j) net.set_point(i, j, curve[i] + Vector3(0, 0.2 * j, 0));
+  }
+  return make_surface(knots, along, net).value();
+}
+
+// x = t^2, z = t^3 - t for t from -1.5 to 1.5: it crosses itself at t = -1 and t = 1, where x = 1, z = 0. Its
+// control points are the polar forms of both.
+Surface looped_sheet() {
+  std::vector<double> t = {-1.5, -1.5, -1.5};
+  for (int k = 0; k <= 10; ++k) t.push_back(-1.5 + 0.3 * k);
+  t.insert(t.end(), 3, 1.5);
+  const KnotVector knots = KnotVector::open(3, t).value();
+  std::vector<Vector3> curve;
+  for (int i = 0; i < knots.control_point_count(); ++i) {
+    const double a = t[i + 1], b = t[i + 2], c = t[i + 3];
+    curve.emplace_back((a * b + b * c + c * a) / 3.0, 0.0, a * b * c - (a + b + c) / 3.0);
+  }
+  return drawn_out(knots, curve);
+}
+
+// A tube along y whose lower wall lies at z = -gap / 2 and whose upper at gap / 2, both flat for x from -3 to
+// 3; below zero they have passed each other. Its ends bulge out, du x dv points outwards.
+Surface pressed_tube(double gap) {
+  const double h = 0.5 * gap;
+  const std::vector<Vector3> upper = {{4, 0, h},  {3, 0, h},  {2, 0, h},  {1, 0, h}, {0, 0, h},
+                                      {-1, 0, h}, {-2, 0, h}, {-3, 0, h}, {-4, 0, h}};
+  std::vector<Vector3> curve = {{6, 0, -2}, {8, 0, 0}, {6, 0, 2}};
+  curve.insert(curve.end(), upper.begin(), upper.end());
+  curve.insert(curve.end(), {{-6, 0, 2}, {-8, 0, 0}, {-6, 0, -2}});
+  for (auto point = upper.rbegin(); point != upper.rend(); ++point) curve.push_back({point->x(), 0, -h});
+  for (Vector3& point : curve) point *= 0.1;
+  return drawn_out(KnotVector::periodic_uniform(2, static_cast<int>(curve.size())).value(), curve);
+}
+
+// The Lissajous curve of 1:2: symmetric, so that it crosses itself in the middle.
+constexpr int eight_points = 24;
+Surface figure_eight() {
+  std::vector<Vector3> curve;
+  for (int k = 0; k < eight_points; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / eight_points;
+    curve.emplace_back(std::sin(angle), 0.0, 0.5 * std::sin(2.0 * angle));
+  }
+  return drawn_out(KnotVector::periodic_uniform(3, eight_points).value(), curve);
+}
+
+TEST(SurfaceSelf, SheetsAreClearOfThemselves) {
+  EXPECT_FALSE(collide(quadric_sheet(1.0, 0.0, 0.0, 6)).result.touching) << "flat";
+  EXPECT_FALSE(collide(quadric_sheet(1.0, 0.8, -0.6, 6)).result.touching) << "a saddle";
+  EXPECT_FALSE(collide(quadric_sheet(1.0, 0.8, 0.6, 3), false, 0).result.touching) << "one element";
+}
+
+TEST(SurfaceSelf, SeamsAndPolesAreNoContact) {
+  for (const int levels : {0, 1, 2, 3}) {
+    EXPECT_FALSE(collide(ellipsoid_tube(12, 12), true, levels).result.touching) << levels;
+    EXPECT_FALSE(collide(transposed(ellipsoid_tube(9, 14)), false, levels).result.touching) << levels;
+  }
+  EXPECT_FALSE(collide(round_tube(0.02, 0.1)).result.touching);
+  EXPECT_FALSE(collide(round_torus(0.05, 0.02), true, 1).result.touching);
+}
+
+// Open knots whose ends lie on each other are a seam as well.
+TEST(SurfaceSelf, ATubeClosedByItsEndsIsNoContact) {
+  const KnotVector knots = KnotVector::clamped_uniform(3, 9).value();
+  std::vector<Vector3> curve;
+  for (int k = 0; k < 9; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / 8;
+    curve.emplace_back(std::cos(angle), 0.0, std::sin(angle));
+  }
+  curve[8] = curve[0];
+  EXPECT_FALSE(collide(drawn_out(knots, curve)).result.touching);
+  curve[0] = {1.6, 0, -0.4};
+  curve[8] = {1.5, 0, 0.2};
+  EXPECT_TRUE(collide(drawn_out(knots, curve)).result.touching) << "one end passed through the other";
+}
+
+TEST(SurfaceSelf, ALoopCrossesWhereTheClosedFormSays) {
+  const Answer answer = collide(looped_sheet());
+  ASSERT_EQ(answer.contacts.size(), 1u);
+  const PairContact& contact = answer.contacts[0];
+  const bool swapped = contact.first.u0 > 0.0;
+  const ParameterRange& low = swapped ? contact.second : contact.first;
+  const ParameterRange& high = swapped ? contact.first : contact.second;
+  // Cells of a quarter of 0.3, which may meet one cell beyond the crossing.
+  constexpr double cell = 0.075;
+  EXPECT_LE(low.u0, -1.0);
+  EXPECT_GE(low.u1, -1.0);
+  EXPECT_LE(low.u1 - low.u0, 3.0 * cell);
+  EXPECT_LE(high.u0, 1.0);
+  EXPECT_GE(high.u1, 1.0);
+  EXPECT_LE(high.u1 - high.u0, 3.0 * cell);
+  EXPECT_EQ(low.v0, 0.0) << "all along";
+  EXPECT_EQ(low.v1, 1.0);
+  EXPECT_GT(contact.depth_m, 0.0);
+}
+
+// The walls are flat where they are deepest, so that the depth is the gap to rounding.
+TEST(SurfaceSelf, APressedTubeIsAsDeepInItselfAsItsWallsHavePassed) {
+  for (const double depth : {0.05, 0.01, 1e-3}) {
+    const Answer answer = collide(pressed_tube(-10.0 * depth), true);
+    ASSERT_EQ(answer.contacts.size(), 2u) << "it crosses itself on the left and on the right";
+    for (const PairContact& contact : answer.contacts) {
+      EXPECT_NEAR(contact.depth_m, depth, 1e-9);
+      EXPECT_NEAR(std::abs(contact.normal.z()), 1.0, 1e-7);
+      EXPECT_NEAR(contact.pair.distance_m(), depth, 1e-9);
+    }
+  }
+}
+
+TEST(SurfaceSelf, ATubeWhoseWallsTouchIsInContactAndOneWithAGapIsNot) {
+  EXPECT_TRUE(collide(pressed_tube(0.0), true).result.touching);
+  EXPECT_FALSE(collide(pressed_tube(5e-5), true).result.touching) << "five micrometres apart";
+}
+
+TEST(SurfaceSelf, AFigureOfEightCrossesInItsMiddle) {
+  const Answer answer = collide(figure_eight());
+  ASSERT_EQ(answer.contacts.size(), 1u);
+  const PairContact& contact = answer.contacts[0];
+  const bool swapped = contact.first.u0 > 0.4;
+  // The middle of a cubic basis function is two knots from its first.
+  const double crossing = 2.0 / eight_points;
+  const ParameterRange& one = swapped ? contact.second : contact.first;
+  const ParameterRange& other = swapped ? contact.first : contact.second;
+  constexpr double cell = 0.25 / eight_points;
+  EXPECT_NEAR(0.5 * (one.u0 + one.u1), crossing, 2.0 * cell);
+  EXPECT_NEAR(0.5 * (other.u0 + other.u1), crossing + 0.5, 2.0 * cell);
+  EXPECT_LE(one.u1 - one.u0, 6.0 * cell);
+}
+
+// The seam lies in the crossing: regions that hang together across it are one.
+TEST(SurfaceSelf, ACrossingInTheSeamIsOneContact) {
+  std::vector<Vector3> curve;
+  for (int k = 0; k < eight_points; ++k) {
+    const double angle = 2.0 * std::numbers::pi * (k + 2) / eight_points;
+    curve.emplace_back(std::sin(angle), 0.0, 0.5 * std::sin(2.0 * angle));
+  }
+  EXPECT_EQ(collide(drawn_out(KnotVector::periodic_uniform(3, eight_points).value(), curve)).contacts.size(),
+            1u);
+}
+
+TEST(SurfaceSelf, AllocatesNothing) {
+  const Surface clear = pressed_tube(0.4), crossing = pressed_tube(-0.4);
+  const NestedGrid nested = make_nested_grid(clear.u, clear.v, 2).value();
+  SurfaceSelfCollider collider(nested);
+  const std::size_t before = allocation_count();
+  EXPECT_FALSE(collider.collide(clear, {true}).touching);
+  EXPECT_TRUE(collider.collide(crossing, {true}).touching);
+  EXPECT_EQ(allocation_count(), before);
+}
+
+int trials(int quick, int full) {
+  return std::getenv("SPOONBILL_FULL") != nullptr ? full : quick;
+}
+
+// Triangles between dense samples that pass through each other, which knows nothing of cones, hulls or
+// levels.
+TEST(SurfaceSelf, NoCrossingOfDenseTrianglesIsMissed) {
+  constexpr int levels = 2;
+  Random random(81);
+  int crossing = 0, clear = 0;
+  std::map<std::string, int> missed, invented;
+  for (int trial = 0; trial < trials(60, 1'000); ++trial) {
+    const RandomPair pair = random_pair(random, 0.0);
+    const Surface& surface = pair.first;
+    const NestedGrid nested = make_nested_grid(surface.u, surface.v, levels).value();
+    SurfaceSelfCollider collider(nested);
+    const bool touching = collider.collide(surface, {}).touching;
+    const bool crosses = samples_cross(surface, nested, 2);
+    ++(crosses ? crossing : clear);
+    if (crosses && !touching) ++missed[pair.kind];
+    if (touching && !crosses) ++invented[pair.kind];
+  }
+  for (const auto& [kind, count] : missed) ADD_FAILURE() << count << " missed, " << kind;
+  for (const auto& [kind, count] : invented) ADD_FAILURE() << count << " invented, " << kind;
+  EXPECT_GT(crossing, trials(60, 1'000) / 10);
+  EXPECT_GT(clear, trials(60, 1'000) / 10);
+}
+
+}  // namespace
+}  // namespace spoonbill
