@@ -6,10 +6,10 @@
 namespace spoonbill {
 namespace {
 
-// The point of a triangle nearest to `point`, as shares of its edges from the first corner (Ericson 2005,
-// 5.1.5).
-std::array<double, 2> nearest_on_triangle(const Vector3& point, const Vector3& corner, const Vector3& edge_a,
-                                          const Vector3& edge_b) {
+// The point of a triangle nearest to `point`, as shares of its edges from the first corner. Unlike
+// nearest_on_triangle.h, of triangles without an area too, which cells have at poles.
+std::array<double, 2> shares_of_nearest(const Vector3& point, const Vector3& corner, const Vector3& edge_a,
+                                        const Vector3& edge_b) {
   const Vector3 apart = point - corner;
   const double aa = edge_a.squaredNorm(), ab = edge_a.dot(edge_b), bb = edge_b.squaredNorm();
   const double pa = apart.dot(edge_a), pb = apart.dot(edge_b);
@@ -33,9 +33,9 @@ std::array<double, 2> nearest_on_triangle(const Vector3& point, const Vector3& c
 }  // namespace
 
 OnCell nearest_on_cell(const Vector3& point, const PatchCorners& at) {
-  const auto [a, b] = nearest_on_triangle(point, at[0], at[2] - at[0], at[1] - at[0]);
+  const auto [a, b] = shares_of_nearest(point, at[0], at[2] - at[0], at[1] - at[0]);
   const OnCell low{a, b, (point - at[0] - a * (at[2] - at[0]) - b * (at[1] - at[0])).norm()};
-  const auto [c, d] = nearest_on_triangle(point, at[3], at[1] - at[3], at[2] - at[3]);
+  const auto [c, d] = shares_of_nearest(point, at[3], at[1] - at[3], at[2] - at[3]);
   const OnCell high{1.0 - c, 1.0 - d, (point - at[3] - c * (at[1] - at[3]) - d * (at[2] - at[3])).norm()};
   return low.distance <= high.distance ? low : high;
 }

@@ -13,38 +13,13 @@ constexpr std::size_t contact_capacity = 64;
 constexpr double nearest_tolerance = 1e-4;
 // Candidates of a region from which Newton's method looks for a touch before all of it is searched.
 constexpr std::size_t region_seeds = 8;
-constexpr std::size_t depth_seeds = 8;
+constexpr std::size_t wall_seeds = 8;
 // Candidates of a region that its middle is taken from.
 constexpr std::size_t middle_pairs = 64;
 // From its middle outwards.
 constexpr std::size_t seed_ways = 2;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-PairParameters centre_of(const SurfaceLevels& first, const SurfaceLevels& second, const CellPair& pair) {
-  const auto middle = [](const SurfaceLevels& levels, const std::vector<double>& parameters, int at,
-                         int level) { return 0.5 * (parameters[at] + parameters[at + levels.step(level)]); };
-  const Grid& a = first.nested().grid;
-  const Grid& b = second.nested().grid;
-  return {middle(first, a.u.parameters, pair.first.i, pair.first.level),
-          middle(first, a.v.parameters, pair.first.j, pair.first.level),
-          middle(second, b.u.parameters, pair.second.i, pair.second.level),
-          middle(second, b.v.parameters, pair.second.j, pair.second.level)};
-}
-
-// Of the finest samples, around cells.
-struct SampleRange {
-  int i0 = std::numeric_limits<int>::max(), i1 = 0, j0 = std::numeric_limits<int>::max(), j1 = 0;
-  void widen(const LevelCell& cell, int step) {
-    i0 = std::min(i0, cell.i);
-    i1 = std::max(i1, cell.i + step);
-    j0 = std::min(j0, cell.j);
-    j1 = std::max(j1, cell.j + step);
-  }
-  ParameterRange of(const Grid& grid) const {
-    return {grid.u.parameters[i0], grid.u.parameters[i1], grid.v.parameters[j0], grid.v.parameters[j1]};
-  }
-};
 
 // How long the control net is along a direction.
 double length_along(const ControlNet& net, const Vector3& direction) {
@@ -57,10 +32,6 @@ double length_along(const ControlNet& net, const Vector3& direction) {
     }
   }
   return most - least;
-}
-
-double sign_of(double number) {
-  return number < 0.0 ? -1.0 : 1.0;
 }
 
 }  // namespace
@@ -100,25 +71,18 @@ PairResult SurfacePairCollider::collide(const Surface& first, const Surface& sec
 void SurfacePairCollider::take_contacts(const PairQuery& query) {
   Pairs& pairs = cells_.within(0.5 * touch_tolerance_m);
   for (const Region& region : regions_.group(pairs)) {
+    const RegionCells cells = cells_of(first_, second_, pairs, region);
+    const auto [first, second] = ranges_of(cells);
     PairContact contact;
-    take_ranges(pairs, region, contact);
+    contact.first = first;
+    contact.second = second;
     const Seed* const last = last_seed(contact);
-    if (!touches(pairs, region, last)) continue;
+    if (!touches(cells, last)) continue;
     contact.pair = search_.best();
-    seeds_.push_back(settle(pairs, region, query, last, contact));
+    seeds_.push_back(settle(cells, query, last, contact));
     take_tangents(first_.pieces(), contact);
     contacts_.push_back(contact);
   }
-}
-
-void SurfacePairCollider::take_ranges(const Pairs& pairs, const Region& region, PairContact& contact) const {
-  SampleRange first, second;
-  for (std::size_t k = region.begin; k < region.end; ++k) {
-    first.widen(pairs[k].first, first_.step(pairs[k].first.level));
-    second.widen(pairs[k].second, second_.step(pairs[k].second.level));
-  }
-  contact.first = first.of(first_.nested().grid);
-  contact.second = second.of(second_.nested().grid);
 }
 
 // Of the last collide(), where it touched within the region; null where it did not. Ranges of regions may
@@ -134,33 +98,31 @@ const SurfacePairCollider::Seed* SurfacePairCollider::last_seed(const PairContac
 
 // First where they last touched and from a few places, which mostly finds a touch at once; then everywhere,
 // to be sure that there is none.
-bool SurfacePairCollider::touches(const Pairs& pairs, const Region& region, const Seed* last) {
+bool SurfacePairCollider::touches(const RegionCells& cells, const Seed* last) {
   search_.forget_best();
   if (last != nullptr) search_.offer(last->touch);
   if (search_.best_distance_m() <= touch_tolerance_m) return true;
-  const std::size_t count = region.end - region.begin, seeds = std::min(count, region_seeds);
+  const std::size_t count = cells.pairs.size(), seeds = cells.at_most(region_seeds);
   for (std::size_t k = 0; k < seeds; ++k) {
     // From the middle outwards, where a region is most likely to be deep.
-    const std::size_t at = region.begin + (count / 2 + k * count / seeds) % count;
-    search_.offer(centre_of(first_, second_, pairs[at]));
+    search_.offer(cells.middle_of(cells.pairs[(count / 2 + k * count / seeds) % count]));
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }
-  for (std::size_t k = region.begin; k < region.end; ++k) {
-    search_.search(pairs[k].first, pairs[k].second, infinity, touch_tolerance_m);
+  for (const CellPair& pair : cells.pairs) {
+    search_.search(pair.first, pair.second, infinity, touch_tolerance_m);
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }
   return false;
 }
 
 // The pair of the contact is a touch of the region. Returns what the next collide() may begin from.
-SurfacePairCollider::Seed SurfacePairCollider::settle(const Pairs& pairs, const Region& region,
-                                                      const PairQuery& query, const Seed* last,
-                                                      PairContact& contact) const {
+SurfacePairCollider::Seed SurfacePairCollider::settle(const RegionCells& cells, const PairQuery& query,
+                                                      const Seed* last, PairContact& contact) const {
   Seed found{contact.pair.at, {}};
   contact.normal = unit_normal(second_.surface(), found.touch.s, found.touch.t);
   // An open surface has no inside: of both its sides, the one with the shorter way out counts, which is
   // looked for first where the middle of the region lies.
-  Seeds seeds = seeds_of(pairs, region, last);
+  Seeds seeds = seeds_of(cells, last);
   const double first_side = query.second_closed || seeds.middle_depth > 0.0 ? 1.0 : -1.0;
   double shortest = infinity;
   for (const double outside : {first_side, -first_side}) {
@@ -175,7 +137,7 @@ SurfacePairCollider::Seed SurfacePairCollider::settle(const Pairs& pairs, const 
       settle_from(way, from, outside, query.first_closed, shortest);
     }
     if (!(way.depth_m > 0.0) && (last == nullptr || was_deep || shortest == infinity)) {
-      from = outer_seed(pairs, region, outside);
+      from = deepest_place(cells, search_.best().at, outside);
       settle_from(way, from, outside, query.first_closed, shortest);
     }
     found.deep[side] = way.depth_m > 0.0;
@@ -185,26 +147,22 @@ SurfacePairCollider::Seed SurfacePairCollider::settle(const Pairs& pairs, const 
     contact = way;
   }
   const bool bodies = query.first_closed && query.second_closed;
-  if (shortest == infinity && bodies) take_inner_touch(pairs, region, contact);
+  if (shortest == infinity && bodies) take_inner_touch(cells, contact);
   return found;
 }
 
-RegionMiddle SurfacePairCollider::middle_of(const Pairs& pairs, const Region& region) const {
+RegionMiddle SurfacePairCollider::middle_of(const RegionCells& cells) const {
   RegionMiddle middle(first_.surface(), second_.surface());
-  const std::size_t stride = (region.end - region.begin + middle_pairs - 1) / middle_pairs;
-  for (std::size_t k = region.begin; k < region.end; k += stride) {
-    middle.add(centre_of(first_, second_, pairs[k]));
-  }
+  const std::size_t count = cells.pairs.size(), stride = (count + middle_pairs - 1) / middle_pairs;
+  for (std::size_t k = 0; k < count; k += stride) middle.add(cells.middle_of(cells.pairs[k]));
   return middle;
 }
 
 // Of the middle of the region and a few places between it and the pairs, which lie where the surfaces cross,
 // and as far beyond: those where the first surface is deepest behind the second and farthest before it. Where
 // it was deepest last is mostly the place; the others then take turns.
-SurfacePairCollider::Seeds SurfacePairCollider::seeds_of(const Pairs& pairs, const Region& region,
-                                                         const Seed* last) const {
-  const RegionMiddle middle = middle_of(pairs, region);
-  const std::size_t count = region.end - region.begin;
+SurfacePairCollider::Seeds SurfacePairCollider::seeds_of(const RegionCells& cells, const Seed* last) const {
+  const RegionMiddle middle = middle_of(cells);
   Seeds seeds;
   const auto offer = [&](const PairParameters& at) {
     const double depth = depth_behind(first_.pieces(), second_.pieces(), at, 1.0);
@@ -221,7 +179,7 @@ SurfacePairCollider::Seeds SurfacePairCollider::seeds_of(const Pairs& pairs, con
     if (last != nullptr && last->deep[side]) offer(last->deepest[side]);
   }
   for (std::size_t k = 0; k < seed_ways; ++k) {
-    const PairParameters way = centre_of(first_, second_, pairs[region.begin + k * count / seed_ways]);
+    const PairParameters way = cells.middle_of(k, seed_ways);
     for (std::size_t beyond = 0; beyond < 2; ++beyond) {
       if (last != nullptr && (2 * k + beyond) != query_ % (2 * seed_ways)) continue;
       offer(middle.towards(way, beyond == 0 ? 0.5 : 2.0));
@@ -230,33 +188,15 @@ SurfacePairCollider::Seeds SurfacePairCollider::seeds_of(const Pairs& pairs, con
   return seeds;
 }
 
-// Of a few of the pairs and the point of touch, the one where the first surface is deepest.
-PairParameters SurfacePairCollider::outer_seed(const Pairs& pairs, const Region& region,
-                                               double outside) const {
-  const std::size_t count = region.end - region.begin, seeds = std::min(count, depth_seeds);
-  PairParameters deepest = search_.best().at;
-  double depth = 0.0;
-  for (std::size_t k = 0; k < seeds; ++k) {
-    const PairParameters at = centre_of(first_, second_, pairs[region.begin + k * count / seeds]);
-    const double here = depth_behind(first_.pieces(), second_.pieces(), at, outside);
-    if (!(here > depth)) continue;
-    depth = here;
-    deepest = at;
-  }
-  return deepest;
-}
-
 // Where bodies touch with their outsides on the same side, one is inside the other there. Of a few such
 // places the one whose common wall gives the shortest way out counts.
-void SurfacePairCollider::take_inner_touch(const Pairs& pairs, const Region& region,
-                                           PairContact& contact) const {
+void SurfacePairCollider::take_inner_touch(const RegionCells& cells, PairContact& contact) const {
   const Surface& first = first_.surface();
   const Surface& second = second_.surface();
-  const std::size_t count = region.end - region.begin, seeds = std::min(count, depth_seeds);
+  const std::size_t seeds = cells.at_most(wall_seeds);
   double shortest = infinity;
   for (std::size_t k = 0; k <= seeds; ++k) {
-    const PairParameters from =
-        k == seeds ? search_.best().at : centre_of(first_, second_, pairs[region.begin + k * count / seeds]);
+    const PairParameters from = k == seeds ? search_.best().at : cells.middle_of(k, seeds);
     const SurfacePair pair = nearest_pair(first_.pieces(), second_.pieces(), from);
     if (pair.distance_m() > touch_tolerance_m) continue;
     const Vector3 normal = unit_normal(second, pair.at.s, pair.at.t);
@@ -280,7 +220,7 @@ void SurfacePairCollider::settle_from(PairContact& contact, PairParameters& from
   if (!(of_first.depth_m > contact.depth_m)) return;
   // The surfaces face each other where they are deep.
   const PairParameters& deep = of_first.pair.at;
-  const double outside_first = -sign_of(of_first.normal.dot(unit_normal(first_.surface(), deep.u, deep.v)));
+  const double outside_first = side_facing(of_first.normal, unit_normal(first_.surface(), deep.u, deep.v));
   if (first_closed && outside_first < 0.0) return;
   const DeepestPair of_second =
       deepest_pair(second, first, {deep.s, deep.t, deep.u, deep.v}, outside_first, shortest);
@@ -332,7 +272,7 @@ void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& resul
   const Box& second = cells_.second_tree().box(cells_.second_tree().root());
   if (reach <= 0.0 || first.gap(second) > reach) return;
   search_.forget_best();
-  search_.offer(centre_of(first_, second_, cells_.likely_near()));
+  search_.offer(RegionCells{&first_, &second_, {}}.middle_of(cells_.likely_near()));
   if (nearest_known_) search_.offer(nearest_);
   // Beside a first guess far too long, nearer points were let go: once more, beside the one found.
   while (search_all(reach) > 2.0 * tolerance()) continue;

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "engine/collision/levels/cell_pairs.h"
-#include "engine/collision/levels/parameter_range.h"
 #include "engine/collision/surfaces/contact_regions.h"
 #include "engine/collision/surfaces/pair_contact.h"
 #include "engine/collision/surfaces/pair_search.h"
 #include "engine/collision/surfaces/region_middle.h"
+#include "engine/collision/surfaces/region_places.h"
 
 namespace spoonbill {
 
@@ -75,15 +75,12 @@ class SurfacePairCollider {
   };
 
   void take_contacts(const PairQuery& query);
-  void take_ranges(const Pairs& pairs, const Region& region, PairContact& contact) const;
   const Seed* last_seed(const PairContact& contact) const;
-  bool touches(const Pairs& pairs, const Region& region, const Seed* last);
-  Seed settle(const Pairs& pairs, const Region& region, const PairQuery& query, const Seed* last,
-              PairContact& contact) const;
-  RegionMiddle middle_of(const Pairs& pairs, const Region& region) const;
-  Seeds seeds_of(const Pairs& pairs, const Region& region, const Seed* last) const;
-  PairParameters outer_seed(const Pairs& pairs, const Region& region, double outside) const;
-  void take_inner_touch(const Pairs& pairs, const Region& region, PairContact& contact) const;
+  bool touches(const RegionCells& cells, const Seed* last);
+  Seed settle(const RegionCells& cells, const PairQuery& query, const Seed* last, PairContact& contact) const;
+  RegionMiddle middle_of(const RegionCells& cells) const;
+  Seeds seeds_of(const RegionCells& cells, const Seed* last) const;
+  void take_inner_touch(const RegionCells& cells, PairContact& contact) const;
   void settle_from(PairContact& contact, PairParameters& from, double outside, bool first_closed,
                    double shortest) const;
   void find_nearest(const PairQuery& query, PairResult& result);

@@ -12,43 +12,18 @@ namespace {
 constexpr std::size_t contact_capacity = 64;
 // Of more, a coarser level tells as much.
 constexpr std::size_t fine_pairs = 1 << 17;
-// Candidates of a region from which Newton's method looks for a touch before all of it is searched, and from
-// which the deepest place is looked for.
+// Candidates of a region from which Newton's method looks for a touch before all of it is searched.
 constexpr std::size_t region_seeds = 8;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double sign_of(double number) {
-  return number < 0.0 ? -1.0 : 1.0;
-}
-
-int cells_of(const GridDirection& direction) {
+int cell_count(const GridDirection& direction) {
   return static_cast<int>(direction.parameters.size()) - 1;
 }
 
 int cell_of(const GridDirection& direction, double parameter) {
   const std::vector<double>& all = direction.parameters;
   const auto next = std::upper_bound(all.begin(), all.end(), parameter) - all.begin();
-  return std::clamp(static_cast<int>(next) - 1, 0, cells_of(direction) - 1);
-}
-
-PairParameters centre_of(const SurfaceLevels& levels, const CellPair& pair) {
-  const Grid& grid = levels.nested().grid;
-  const auto middle = [&](const std::vector<double>& parameters, int at, const LevelCell& cell) {
-    return 0.5 * (parameters[at] + parameters[at + levels.step(cell.level)]);
-  };
-  return {middle(grid.u.parameters, pair.first.i, pair.first),
-          middle(grid.v.parameters, pair.first.j, pair.first),
-          middle(grid.u.parameters, pair.second.i, pair.second),
-          middle(grid.v.parameters, pair.second.j, pair.second)};
-}
-
-void widen(ParameterRange& range, const SurfaceLevels& levels, const LevelCell& cell) {
-  const Grid& grid = levels.nested().grid;
-  const int step = levels.step(cell.level);
-  range.u0 = std::min(range.u0, grid.u.parameters[cell.i]);
-  range.u1 = std::max(range.u1, grid.u.parameters[cell.i + step]);
-  range.v0 = std::min(range.v0, grid.v.parameters[cell.j]);
-  range.v1 = std::max(range.v1, grid.v.parameters[cell.j + step]);
+  return std::clamp(static_cast<int>(next) - 1, 0, cell_count(direction) - 1);
 }
 
 bool are_same(const LevelCell& a, const LevelCell& b) {
@@ -86,8 +61,9 @@ SelfResult SurfaceSelfCollider::collide(const Surface& surface, const SelfQuery&
   while (overflow_ && level > 0) take_pairs(--level);
   const std::vector<Region>& regions = regions_.group(pairs_);
   for (const Region& region : regions) {
-    if (is_mirror_of_earlier(region) || !touches(region)) continue;
-    contacts_.push_back(contact_of(region, query));
+    const RegionCells cells = cells_of(levels_, levels_, pairs_, region);
+    if (is_mirror_of_earlier(region) || !touches(cells)) continue;
+    contacts_.push_back(contact_of(cells, query));
   }
   return {!contacts_.empty(), coarser || search_.overflow()};
 }
@@ -97,7 +73,7 @@ SurfaceSelfCollider::Joints SurfaceSelfCollider::joints_of(bool in_u) {
   const Grid& grid = levels_.nested().grid;
   const GridDirection& direction = in_u ? grid.u : grid.v;
   if (direction.knots.is_periodic()) return {true, false, false};
-  const int last = cells_of(direction), count = in_u ? grid.columns() : grid.rows();
+  const int last = cell_count(direction), count = in_u ? grid.columns() : grid.rows();
   const auto sample = [&](int across, int along) {
     return levels_.sample(in_u ? across * grid.columns() + along : along * grid.columns() + across);
   };
@@ -122,7 +98,7 @@ bool SurfaceSelfCollider::are_joined(const LevelCell& a, const LevelCell& b) con
     return (joints.low_pole && one == 0 && other == 0) ||
            (joints.high_pole && one == cells - step && other == cells - step);
   };
-  const int cells_u = cells_of(grid.u), cells_v = cells_of(grid.v);
+  const int cells_u = cell_count(grid.u), cells_v = cell_count(grid.v);
   return (beside(a.i, b.i, cells_u, u_.seam) && beside(a.j, b.j, cells_v, v_.seam)) ||
          in_one_pole(a.i, b.i, cells_u, u_) || in_one_pole(a.j, b.j, cells_v, v_);
 }
@@ -191,8 +167,8 @@ bool SurfaceSelfCollider::joined_can_meet(const CellPair& pair) {
   const auto& [a, b, region] = pair;
   const Grid& grid = levels_.nested().grid;
   const int step = levels_.step(a.level), in_u = std::abs(a.i - b.i), in_v = std::abs(a.j - b.j);
-  const bool beside_u = in_u <= step || cells_of(grid.u) - in_u <= step;
-  const bool beside_v = in_v <= step || cells_of(grid.v) - in_v <= step;
+  const bool beside_u = in_u <= step || cell_count(grid.u) - in_u <= step;
+  const bool beside_v = in_v <= step || cell_count(grid.v) - in_v <= step;
   // In a pole alone they make no rectangle.
   if (!beside_u || !beside_v) return true;
   if (are_same(a, b)) return !folds_.never_meets_itself(std::array{a});
@@ -231,49 +207,34 @@ bool SurfaceSelfCollider::is_mirror_of_earlier(const Region& region) const {
 
 // First from a few places, which mostly finds a touch at once; then everywhere, to be sure that there is
 // none.
-bool SurfaceSelfCollider::touches(const Region& region) {
+bool SurfaceSelfCollider::touches(const RegionCells& cells) {
   search_.forget_best();
-  const std::size_t count = region.end - region.begin, seeds = std::min(count, region_seeds);
+  const std::size_t seeds = cells.at_most(region_seeds);
   for (std::size_t k = 0; k < seeds; ++k) {
-    search_.offer(centre_of(levels_, pairs_[region.begin + k * count / seeds]));
+    search_.offer(cells.middle_of(k, seeds));
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }
-  for (std::size_t k = region.begin; k < region.end; ++k) {
-    search_.search(pairs_[k].first, pairs_[k].second, infinity, touch_tolerance_m);
+  for (const CellPair& pair : cells.pairs) {
+    search_.search(pair.first, pair.second, infinity, touch_tolerance_m);
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }
   return false;
 }
 
-PairContact SurfaceSelfCollider::contact_of(const Region& region, const SelfQuery& query) const {
+PairContact SurfaceSelfCollider::contact_of(const RegionCells& cells, const SelfQuery& query) const {
   PairContact contact;
-  contact.first = contact.second = {infinity, -infinity, infinity, -infinity};
-  for (std::size_t k = region.begin; k < region.end; ++k) {
-    widen(contact.first, levels_, pairs_[k].first);
-    widen(contact.second, levels_, pairs_[k].second);
-  }
+  const auto [first, second] = ranges_of(cells);
+  contact.first = first;
+  contact.second = second;
   contact.pair = search_.best();
   contact.normal = unit_normal(levels_.surface(), contact.pair.at.s, contact.pair.at.t);
   double shortest = infinity;
-  settle(contact, deepest_seed(region, 1.0), 1.0, query, shortest);
-  if (!query.closed) settle(contact, deepest_seed(region, -1.0), -1.0, query, shortest);
+  settle(contact, deepest_place(cells, search_.best().at, 1.0), 1.0, query, shortest);
+  if (!query.closed) {
+    settle(contact, deepest_place(cells, search_.best().at, -1.0), -1.0, query, shortest);
+  }
   take_tangents(levels_.pieces(), contact);
   return contact;
-}
-
-// Of a few of the pairs and the point of touch, the one where the first part is deepest.
-PairParameters SurfaceSelfCollider::deepest_seed(const Region& region, double outside) const {
-  const std::size_t count = region.end - region.begin, seeds = std::min(count, region_seeds);
-  PairParameters deepest = search_.best().at;
-  double depth = 0.0;
-  for (std::size_t k = 0; k < seeds; ++k) {
-    const PairParameters at = centre_of(levels_, pairs_[region.begin + k * count / seeds]);
-    const double here = depth_behind(levels_.pieces(), levels_.pieces(), at, outside);
-    if (!(here > depth)) continue;
-    depth = here;
-    deepest = at;
-  }
-  return deepest;
 }
 
 // How deep either part is behind the other: the less of both moves them apart. Kept where the way out is
@@ -285,7 +246,7 @@ void SurfaceSelfCollider::settle(PairContact& contact, const PairParameters& fro
   const PairParameters& deep = of_first.pair.at;
   if (!(of_first.depth_m > 0.0) || !not_joined_.counts(deep)) return;
   // The parts face each other where they are deep.
-  const double outside_first = -sign_of(of_first.normal.dot(unit_normal(levels_.surface(), deep.u, deep.v)));
+  const double outside_first = side_facing(of_first.normal, unit_normal(levels_.surface(), deep.u, deep.v));
   if (query.closed && outside_first < 0.0) return;
   const DeepestPair of_second =
       deepest_pair(pieces, pieces, {deep.s, deep.t, deep.u, deep.v}, outside_first, infinity);

@@ -12,6 +12,7 @@
 #include "engine/collision/surfaces/pair_contact.h"
 #include "engine/collision/surfaces/pair_search.h"
 #include "engine/collision/surfaces/patch_folds.h"
+#include "engine/collision/surfaces/region_places.h"
 
 namespace spoonbill {
 
@@ -69,11 +70,10 @@ class SurfaceSelfCollider {
   void emit(const CellPair& pair, int level);
   void split(const CellPair& pair);
   bool is_mirror_of_earlier(const Region& region) const;
-  bool touches(const Region& region);
-  PairContact contact_of(const Region& region, const SelfQuery& query) const;
+  bool touches(const RegionCells& cells);
+  PairContact contact_of(const RegionCells& cells, const SelfQuery& query) const;
   void settle(PairContact& contact, const PairParameters& from, double outside, const SelfQuery& query,
               double& shortest) const;
-  PairParameters deepest_seed(const Region& region, double outside) const;
 
   SurfaceLevels levels_;
   ElementTree tree_;
