@@ -49,10 +49,11 @@ Status run(Lockstep& lockstep, Session& session, Console& console) {
   return lockstep.finish();
 }
 
-Status record_input(const RecordOptions& options, const RecordingHeader& header, LockstepInput input,
-                    Console& console) {
+// `model` names the file of the header's document in messages.
+Status record_input(const RecordOptions& options, const RecordingHeader& header, const std::string& model,
+                    LockstepInput input, Console& console) {
   if (Status checked = check_commands(input.commands); !checked) return checked;
-  auto session = Session::make(header.document, input.source, header.device, options.instruction_set);
+  auto session = Session::make(header.document, model, header.device, options.instruction_set);
   if (!session) return session.error();
   const RecordingPlace place(options.out);
   auto writer = RecordingWriter::create(place.written(), header);
@@ -106,7 +107,7 @@ Status record_live(const RecordOptions& options, const Script& script, const Doc
   settings.draw = options.draw;
   settings.recording = options.out;
   InterruptWatch interrupt;
-  const auto report = perform(script, document, options.source.string(), settings,
+  const auto report = perform(script, document, script.model_file.string(), settings,
                               [&interrupt] { return interrupt.requested(); });
   if (interrupt.requested()) interrupt.answer();
   if (!report) return report.error();
@@ -136,8 +137,8 @@ Status record_script(const RecordOptions& options, Console& console) {
   input.tick_count = script->tick_count();
   input.commands = script->commands;
   input.source = options.source.string();
-  return record_input(options, {device->specification(), std::move(document).value()}, std::move(input),
-                      console);
+  return record_input(options, {device->specification(), std::move(document).value()},
+                      script->model_file.string(), std::move(input), console);
 }
 
 // The readings stay as they were; states and hashes are this version's.
@@ -151,7 +152,7 @@ Status record_again(const RecordOptions& options, Console& console) {
   input.tick_count = recording->readings.size();
   input.commands = recording->commands;
   input.source = options.source.string();
-  return record_input(options, recording->header, std::move(input), console);
+  return record_input(options, recording->header, options.source.string(), std::move(input), console);
 }
 
 Status record(const RecordOptions& options, Console& console) {

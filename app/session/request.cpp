@@ -79,7 +79,11 @@ Result<Request> request_from_json(const TimedCommand& timed) {
     if (!reader.status()) return reader.status().error();
     return plain.request;
   }
-  return Error{timed.origin + ": unknown command " + json_excerpt(timed.command)};
+  reader.refuse("command", "is " + json_excerpt(Json(name)) +
+                               ", must be one of save, screenshot, undo, redo, cancel_stroke, set_camera, "
+                               "set_overlays, " +
+                               simulation_command_names());
+  return reader.status().error();
 }
 
 Json request_to_json(const Request& request) {

@@ -30,11 +30,8 @@ Command read_named(std::string_view name, FieldReader& reader) {
   if (name == "reset_proxy") return ResetProxy{};
   if (name == "lift_tool") return LiftTool{};
   if (name == "keep_shape") return KeepShape{};
-  std::string known;
-  for (const std::string_view other : command_names) {
-    known += (known.empty() ? "" : ", ") + std::string(other);
-  }
-  reader.refuse("command", "is " + json_excerpt(Json(name)) + ", must be one of " + known);
+  reader.refuse("command",
+                "is " + json_excerpt(Json(name)) + ", must be one of " + simulation_command_names());
   return KeepShape{};
 }
 
@@ -79,6 +76,12 @@ bool is_simulation_command(const Json& json) {
   if (name == json.end() || !name->is_string()) return false;
   return std::find(command_names.begin(), command_names.end(), name->get_ref<const std::string&>()) !=
          command_names.end();
+}
+
+std::string simulation_command_names() {
+  std::string names;
+  for (const std::string_view name : command_names) names += (names.empty() ? "" : ", ") + std::string(name);
+  return names;
 }
 
 Result<Command> command_from_json(const Json& json, const std::string& source) {

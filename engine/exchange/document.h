@@ -87,5 +87,7 @@ Json command_to_json(const Command& command);
 
 // Whether "command" names one of the above; recordings also hold commands that belong to the view.
 bool is_simulation_command(const Json& json);
+// All their names, for messages.
+std::string simulation_command_names();
 
 }  // namespace spoonbill

@@ -15,6 +15,9 @@ constexpr int ring_samples = 256;
 constexpr int along_samples = 400;
 // Of the width: flatter bodies have cells that no spring holds open.
 constexpr double least_thickness = 1e-4;
+// Of the radius: how little the points of a ring lie out along their normals where it is pressed flat, by
+// rounding of positions and normals.
+constexpr double flat = 1e-9;
 
 // A monotone table from one quantity to another, looked up linearly.
 struct Table {
@@ -36,15 +39,17 @@ double along(const KnotVector& knots, double share) {
 struct Ring {
   std::vector<Vector3> points;  // ring_samples, the seam not repeated
   Vector3 centre = Vector3::Zero();
+  Vector3 along = Vector3::Zero();  // how the centre moves with v
   double perimeter = 0.0;
 };
 
 Ring sample_ring(const Surface& surface, double v) {
   Ring ring;
   for (int s = 0; s < ring_samples; ++s) {
-    ring.points.push_back(
-        evaluate(surface, along(surface.u, static_cast<double>(s) / ring_samples), v).position_m);
-    ring.centre += ring.points.back() / ring_samples;
+    const SurfacePoint point = evaluate(surface, along(surface.u, static_cast<double>(s) / ring_samples), v);
+    ring.points.push_back(point.position_m);
+    ring.centre += point.position_m / ring_samples;
+    ring.along += point.dv / ring_samples;
   }
   for (int s = 0; s < ring_samples; ++s) {
     ring.perimeter += (ring.points[(s + 1) % ring_samples] - ring.points[s]).norm();
@@ -280,10 +285,14 @@ Status check_closed_tube(const Surface& surface) {
   }
   const double middle = along(surface.v, 0.5);
   const Ring ring = sample_ring(surface, middle);
-  double outward = 0.0;
+  double outward = 0.0, radius = 0.0;
   for (int s = 0; s < ring_samples; s += 8) {
     const double u = along(surface.u, static_cast<double>(s) / ring_samples);
     outward += unit_normal(surface, u, middle).dot(ring.points[s] - ring.centre);
+    radius += (ring.points[s] - ring.centre).norm();
+  }
+  if (!(std::abs(outward) > flat * radius)) {
+    return Error{"surface: flat in the middle, where it encloses no volume; a body must be thick everywhere"};
   }
   if (!(outward > 0.0)) {
     return Error{"surface: normals point inward; reverse the order of the control points in u"};
@@ -299,10 +308,11 @@ Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& r
   const double first_distance = profile.distance[first_rim], last_distance = profile.distance[last_rim];
   const double middle_v = Table{profile.distance, profile.v}.at(0.5 * (first_distance + last_distance));
   const Ring middle = sample_ring(surface, middle_v);
-  const Vector3 axis =
-      (sample_ring(surface, profile.v[last_rim]).centre - sample_ring(surface, profile.v[first_rim]).centre)
-          .normalized();
-  const CrossSection section = principal_axes(middle, axis);
+  // Not from rim to rim: a coil's ends may lie anywhere.
+  if (!(middle.along.norm() > 0.0)) {
+    return Error{"surface: its rings do not move along v in the middle; spread its control points there"};
+  }
+  const CrossSection section = principal_axes(middle, middle.along.normalized());
   if (!(section.thickness >= least_thickness * section.width)) {
     return Error{"surface: " + number_text(section.thickness * 1e3) + " mm thick in the middle where it is " +
                  number_text(section.width * 1e3) +

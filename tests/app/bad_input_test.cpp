@@ -96,7 +96,8 @@ TEST(BadInput, BodiesWithoutThicknessHoldNoLattice) {
   for (const double thickness : {1e-6, 1e-9, 1e-13, 0.0}) {
     const std::string flat = moved_model(
         place, "flat.json", [&](const Vector3& p) { return Vector3(p.x(), thickness * p.y(), p.z()); });
-    expect_refusal({"info", flat}, thickness > 0.0 ? "flat.json: surface: " : "flat.json: ");
+    expect_refusal({"info", flat},
+                   thickness > 0.0 ? "flat.json: surface: " : "flat.json: surface: flat in the");
   }
 }
 
@@ -136,6 +137,21 @@ TEST(BadInput, DamagedScripts) {
     EXPECT_EQ(outcome.code, exit_failed) << damaged;
     EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(place.path("out.jsonl")));
+  }
+}
+
+TEST(BadInput, ScriptsAreToldWhatTheyNameWrongly) {
+  const Workplace place;
+  const std::string script = content_of(place.path("script.json"));
+  const std::string unknown = place.write("unknown.json", replaced(script, "\"undo\"", "\"undoo\"")).string();
+  expect_refusal({"record", unknown, "--out", place.text("out.jsonl")},
+                 "is \"undoo\", must be one of save, screenshot, undo,");
+  moved_model(place, "mirrored.json", [](const Vector3& p) { return Vector3(p.x(), p.y(), -p.z()); });
+  const std::string inside_out =
+      place.write("inside-out.json", replaced(script, "model.json", "mirrored.json")).string();
+  for (const char* const way : {"--json", "--live"}) {
+    expect_refusal({"record", inside_out, way, "--out", place.text("out.jsonl")},
+                   "mirrored.json: surface: normals point inward");
   }
 }
 
