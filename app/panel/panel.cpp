@@ -88,6 +88,12 @@ bool draw_presets(const PanelModel& model, Material& material) {
   return changed;
 }
 
+std::string after_touch_text(const Material& material) {
+  if (material.plastic) return "keeps its bend";
+  if (!(material.relaxing_share > 0.0)) return "springs back";
+  return "creeps, " + rounded(material.relaxation_time_s, 0, " s");
+}
+
 void draw_material(const PanelModel& model, const Theme& theme, Requests& requests) {
   const RowGroup group("Material", theme);
   if (!group) return;
@@ -104,7 +110,7 @@ void draw_material(const PanelModel& model, const Theme& theme, Requests& reques
                         SliderScale::logarithmic, density_text(material.density_kg_per_m3));
   const bool damped = slider_row("Damping", sculpting.damping_per_s, damping_slider_per_s,
                                  SliderScale::linear, rounded(sculpting.damping_per_s, 1, " /s"));
-  fact_row("After touch", material.plastic ? "keeps its bend" : "springs back");
+  fact_row("After touch", after_touch_text(material));
   fact_row("Mass", grams_text(model.mass_kg));
   if (changed) requests.emplace_back(Command(SetMaterial{material}));
   if (damped) requests.emplace_back(Command(SetSculpting{sculpting}));

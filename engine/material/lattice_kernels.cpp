@@ -47,6 +47,21 @@ void clear(float* x, float* y, float* z, int count) {
 // force is k (L - L0) a / L = k s / (L^2 + L0 L) a, in which a small extension keeps all its digits. Its
 // derivative is transverse I + axial a a^T with transverse = k (L - L0) / L and axial = k L0 / L^3; a spring
 // pressed below half its length is taken as at half, where it is not yet too weak to hold its direction.
+enum class Springs { linear, stiffening, softening };
+
+struct Stiffened {
+  float secant, tangent;  // over those of a linear spring
+};
+
+// By b e^2.
+template <Springs springs>
+inline Stiffened stiffened(float by) {
+  if (springs == Springs::stiffening) return {1.0f + min_of(by, 1.0f), by < 1.0f ? 1.0f + 3.0f * by : 2.0f};
+  const float square = 1.0f / (1.0f - by), root = __builtin_sqrtf(square);
+  return {root, root * square};
+}
+
+template <Springs springs>
 inline void linearise_block(const LatticeView& view, const SpringArrays& s, int start, BlockForces& near) {
   const int o = s.offset;
   const float *wx = view.ahead_x + start, *wy = view.ahead_y + start, *wz = view.ahead_z + start;
@@ -63,14 +78,21 @@ inline void linearise_block(const LatticeView& view, const SpringArrays& s, int 
     const float squares = ex * (rx[l] + ax) + ey * (ry[l] + ay) + ez * (rz[l] + az) + q[l];
     const float rest_square = rest[l] * rest[l];
     const float square = max_of(rest_square + squares, 1e-6f * rest_square);
-    const float both = square + rest[l] * __builtin_sqrtf(square);
+    const float length = __builtin_sqrtf(square), both = square + rest[l] * length;
     const float inverse = 1.0f / (square * both);
-    const float scale = k[l] * squares * (square * inverse), softened = max_of(scale, -k[l]);
+    float scale = k[l] * squares * (square * inverse), stiffness = k[l];
+    if (springs != Springs::linear) {
+      const float strain = squares / (rest[l] * (length + rest[l]));
+      const Stiffened by = stiffened<springs>(view.stiffening * strain * strain);
+      scale *= by.secant;
+      stiffness *= by.tangent;
+    }
+    const float softened = max_of(scale, -stiffness);
     const float fx = scale * ax, fy = scale * ay, fz = scale * az;
     tangent[l] = ax;
     tangent[block + l] = ay;
     tangent[2 * block + l] = az;
-    tangent[3 * block + l] = (k[l] - softened) * (both * inverse);
+    tangent[3 * block + l] = (stiffness - softened) * (both * inverse);
     tangent[4 * block + l] = softened;
     near.x[l] += fx;
     near.y[l] += fy;
@@ -130,6 +152,14 @@ inline void over_springs(const LatticeView& view, float* fx, float* fy, float* f
   }
 }
 
+template <Springs springs>
+void linearise_all(const LatticeView& view) {
+  over_springs(view, view.spring_x, view.spring_y, view.spring_z,
+               [&](const SpringArrays& s, int start, BlockForces& near) {
+                 linearise_block<springs>(view, s, start, near);
+               });
+}
+
 void linearise_springs(const LatticeView& view) {
   const int count = view.padded_count;
   set_to(view.reference_x, view.ahead_x, count);
@@ -137,9 +167,13 @@ void linearise_springs(const LatticeView& view) {
   set_to(view.reference_z, view.ahead_z, count);
   clear(view.moved_x, view.moved_y, view.moved_z, count);
   clear(view.spring_x, view.spring_y, view.spring_z, count);
-  over_springs(
-      view, view.spring_x, view.spring_y, view.spring_z,
-      [&](const SpringArrays& s, int start, BlockForces& near) { linearise_block(view, s, start, near); });
+  if (view.stiffening > 0.0f) {
+    linearise_all<Springs::stiffening>(view);
+  } else if (view.stiffening < 0.0f) {
+    linearise_all<Springs::softening>(view);
+  } else {
+    linearise_all<Springs::linear>(view);
+  }
 }
 
 void start_forces(const LatticeView& view) {
@@ -184,13 +218,15 @@ inline void square_block(const LatticeView& view, const SpringArrays& s, int sta
 inline void flow_block(const float* __restrict square, const float* __restrict root,
                        const float* __restrict root_far, const float* __restrict stiffness,
                        const float* __restrict first, float* __restrict rest_length,
-                       float* __restrict square_difference, float yield, float rate_step) {
+                       float* __restrict square_difference, const FlowRule& rule) {
   for (int l = 0; l < block; ++l) {
     const float rest = rest_length[l];
     const float strain =
         __builtin_sqrtf(square[l]) / (rest * max_of(0.5f * (root[l] + root_far[l]), 0.1f)) - 1.0f;
+    const float yielded = rest / first[l] - 1.0f;
+    const float yield = rule.yield + rule.hardening * max_of(yielded, -yielded);
     const float beyond = max_of(strain - yield, 0.0f) + min_of(strain + yield, 0.0f);
-    const float limited = min_of(max_of(beyond * rate_step, -0.1f), 0.1f) * rest;
+    const float limited = min_of(max_of(beyond * rule.rate_step, -0.1f), 0.1f) * rest;
     const float next = min_of(max_of(rest + limited, 0.5f * first[l]), 2.0f * first[l]);
     const float change = stiffness[l] > 0.0f && root[l] > 0.0f && root_far[l] > 0.0f ? next - rest : 0.0f;
     square_difference[l] -= change * (2.0f * rest + change);
@@ -218,33 +254,71 @@ inline bool may_flow(const float* __restrict square, const float* __restrict roo
   return beyond[0] > 0.0f || margin <= 0.0f;
 }
 
-void flow(const LatticeView& view, float yield, float rate_step) {
+void take_dilation_roots(const LatticeView& view, float* __restrict root) {
   average_dilations(view);
-  float* __restrict root = view.fx;
   const float* __restrict dilation = view.node_dilation;
   for (int i = 0; i < view.padded_count; ++i) root[i] = cube_root(dilation[i]);
+}
+
+void flow(const LatticeView& view, const FlowRule& rule) {
+  float* const root = view.fx;
+  take_dilation_roots(view, root);
   alignas(64) float square[block];
   for (const SpringArrays& s : view.springs) {
     for (int start = 0; start < view.padded_count; start += block) {
       if (view.active_block[start / block] == 0) continue;
       const float *near = root + start, *far = near + s.offset, *stiffness = s.stiffness + start;
       square_block(view, s, start, square);
-      if (!may_flow(square, near, far, stiffness, s.rest_length + start, yield)) continue;
+      if (!may_flow(square, near, far, stiffness, s.rest_length + start, rule.yield)) continue;
       flow_block(square, near, far, stiffness, s.first_rest_length + start, s.rest_length + start,
-                 s.square_difference + start, yield, rate_step);
+                 s.square_difference + start, rule);
     }
+  }
+}
+
+inline void creep_block(const float* __restrict square, const float* __restrict root,
+                        const float* __restrict root_far, const float* __restrict stiffness,
+                        const float* __restrict first, float* __restrict crept, float* __restrict rest_length,
+                        float* __restrict square_difference, const CreepRule& rule) {
+  for (int l = 0; l < block; ++l) {
+    const float rest = rest_length[l], own = rest / (1.0f + crept[l]);
+    const float strain =
+        __builtin_sqrtf(square[l]) / (own * max_of(0.5f * (root[l] + root_far[l]), 0.1f)) - 1.0f;
+    const float moved = own * (1.0f + crept[l] + rule.rate_step * (rule.share * strain - crept[l]));
+    const float bounded = min_of(max_of(moved, 0.5f * first[l]), 2.0f * first[l]);
+    const bool creeps = stiffness[l] > 0.0f && root[l] > 0.0f && root_far[l] > 0.0f;
+    const float next = creeps ? bounded : rest, change = next - rest;
+    square_difference[l] -= change * (2.0f * rest + change);
+    rest_length[l] = rest + change;
+    crept[l] = next / own - 1.0f;
+  }
+}
+
+void creep(const LatticeView& view, int direction, const CreepRule& rule) {
+  float* const root = view.fx;
+  take_dilation_roots(view, root);
+  alignas(64) float square[block];
+  const SpringArrays& s = view.springs[direction];
+  for (int start = 0; start < view.padded_count; start += block) {
+    if (view.active_block[start / block] == 0) continue;
+    square_block(view, s, start, square);
+    creep_block(square, root + start, root + start + s.offset, s.stiffness + start,
+                s.first_rest_length + start, s.crept + start, s.rest_length + start,
+                s.square_difference + start, rule);
   }
 }
 
 void row_sums(const LatticeView& view, float* sum) {
   for (int i = 0; i < view.padded_count; ++i) sum[i] = 0.0f;
+  // A stiffening spring's tangent is at most four times its stiffness.
+  const float twice = view.stiffening > 0.0f ? 8.0f : 2.0f;
   for (const SpringArrays& s : view.springs) {
     const float* __restrict k = s.stiffness;
     for (int start = 0; start < view.padded_count; start += block) {
       float* __restrict near = sum + start;
-      for (int l = 0; l < block; ++l) near[l] += 2.0f * k[start + l];
+      for (int l = 0; l < block; ++l) near[l] += twice * k[start + l];
       float* __restrict far = sum + start + s.offset;
-      for (int l = 0; l < block; ++l) far[l] += 2.0f * k[start + l];
+      for (int l = 0; l < block; ++l) far[l] += twice * k[start + l];
     }
   }
   add_volume_row_sums(view, sum);
@@ -291,8 +365,9 @@ float power_step(const LatticeView& view, const float* mass) {
 }  // namespace
 
 const LatticeKernels lattice_kernels = {
-    look_ahead, linearise_springs, start_forces, spring_forces, volume_forces,        kick,
-    drift,      momentum,          flow,         row_sums,      measure_rest_volumes, power_step,
+    look_ahead, linearise_springs, start_forces, spring_forces, volume_forces, kick,
+    drift,      momentum,          flow,         creep,         row_sums,      measure_rest_volumes,
+    power_step,
 };
 
 }  // namespace spoonbill::SPOONBILL_KERNELS

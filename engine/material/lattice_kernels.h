@@ -28,12 +28,29 @@ struct SpringArrays {
   float* rest_length = nullptr;              // m; changed by flow and reforming
   float* square_difference = nullptr;        // |rest vector|^2 - rest_length^2, m^2; exactly 0 until then
   const float* first_rest_length = nullptr;  // as built, m
+  float* crept = nullptr;                    // the strain of the rest length that creep() made
   float* tangent = nullptr;                  // see tangent_runs
+};
+
+// How rest lengths yield: past a strain e of `yield`, more where a spring has yielded already, by `rate_step`
+// of what is beyond it.
+struct FlowRule {
+  float yield = 0.0f;
+  float hardening = 0.0f;  // of the yield strain, by |L0 / first L0 - 1|
+  float rate_step = 0.0f;
+};
+
+// How rest lengths creep: towards `share` of the strain, by `rate_step` of the way.
+struct CreepRule {
+  float share = 0.0f;
+  float rate_step = 0.0f;
 };
 
 // Views of arrays that SpringLattice owns.
 struct LatticeView {
   int padded_count = 0;                               // nodes, a whole number of blocks
+  float stiffening = 0.0f;                            // see linearise_springs()
+  bool volume_gives_way = false;                      // whether any K_v is below zero, see volume_forces()
   float *dx = nullptr, *dy = nullptr, *dz = nullptr;  // displacement from the rest shape, m
   float *vx = nullptr, *vy = nullptr, *vz = nullptr;  // m/s
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
@@ -82,7 +99,10 @@ struct Drifted {
 struct LatticeKernels {
   // Places nodes ahead by the damping time tau.
   void (*look_ahead)(const LatticeView&, float tau_s);
-  // Takes the present as the reference: F = k (L - L0) n of every spring, ahead in time, and its derivative.
+  // Takes the present as the reference: F = k (L - L0) s n of every spring, ahead in time, and its
+  // derivative. With the strain e = L / L0 - 1 and a stiffening b, s = 1 + b e^2 up to 2 where b > 0,
+  // s = (1 - b e^2)^(-1/2) where b < 0, and 1 where it is 0: softening springs pull ever more weakly, and
+  // still the more the longer they are, so that no lattice of them snaps.
   // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, and so a rotation; ahead of a rotating body there
   // is the same body turned further, so that this does not.
   void (*linearise_springs)(const LatticeView&);
@@ -90,7 +110,9 @@ struct LatticeKernels {
   void (*start_forces)(const LatticeView&);
   // Adds what the springs' forces changed by since, to first order.
   void (*spring_forces)(const LatticeView&);
-  // f = -p dV/dx, p = K_v (J - 1), ahead in time, with the exact volume of each trilinear cell.
+  // f = -p dV/dx, p = K_v x, x = J - 1, ahead in time, with the exact volume of each trilinear cell. Below
+  // Poisson's ratios of 1/4 K_v is negative, and this energy unbounded below: there
+  // p = K_v x / (1 + (x / 0.1)^2), which the springs outlast.
   void (*volume_forces)(const LatticeView&);
   // v = (v + h (f/m + g)) * decay.
   void (*kick)(const LatticeView&, float h_s, float decay, float gx, float gy, float gz);
@@ -100,7 +122,11 @@ struct LatticeKernels {
   void (*momentum)(const LatticeView&, const float* mass, float sum[4]);
   // L0 += rate_step * (|e| - yield) sign(e) L0, e = L / (L0 J^(1/3)) - 1, L0 within 1/2 to 2 of its first
   // value; none about a node whose cells are crushed or torn (J outside 0.3 to 3).
-  void (*flow)(const LatticeView&, float yield_strain, float rate_step);
+  void (*flow)(const LatticeView&, const FlowRule&);
+  // The springs of one direction: q += rate_step * (share * e - q) for the part q of the rest length
+  // L0 = L00 (1 + q) that is crept, e = L / (L00 J^(1/3)) - 1, within the same bounds. At a constant strain
+  // the stress falls by `share` of itself, as in a standard linear solid; a share of 1 leaves none.
+  void (*creep)(const LatticeView&, int direction, const CreepRule&);
   // Gershgorin's bound on each node's share of the stiffness: 2 k a spring, K_v/V0 |g_i| sum |g_j| a cell.
   // Never below the largest eigenvalue of its rows; 1.4 to 1.9 times too careful for a whole lattice.
   void (*row_sums)(const LatticeView&, float* sum_n_per_m);

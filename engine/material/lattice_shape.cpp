@@ -31,6 +31,7 @@ bool SpringLattice::set_shape(std::span<const float> shape) {
   for (Floats* a : {&dx_, &dy_, &dz_, &vx_, &vy_, &vz_}) take(*a);
   for (Floats& a : rest_length_) take(a);
   for (Floats& a : square_difference_) take(a);
+  for (Floats& a : crept_) take(a);
   take(rest_volume_sum_);
   return true;
 }

@@ -9,6 +9,8 @@ namespace {
 
 // Of the strain beyond yield that one flow may take away: the rest of it stays for the next.
 constexpr double largest_flow_share = 0.5;
+// Ticks from one creep to the next. What creeps in a tick would be lost in the rounding of a rest length.
+constexpr std::uint64_t creep_pause = 8;
 
 struct Substeps {
   int count;
@@ -209,9 +211,26 @@ void steady_strained_nodes(Relaxation& relaxation, float h) {
 void flow(Relaxation& relaxation, double material_time_s) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const SpringLattice& lattice = relaxation.lattice(at);
-    if (!lattice.plastic()) continue;
-    const double share = std::min(largest_flow_share, 2.0 * lattice.flow_rate_per_s() * material_time_s);
-    lattice.kernels().flow(relaxation.view[at], lattice.yield_strain(), static_cast<float>(share));
+    const Material& material = lattice.material();
+    if (!material.plastic) continue;
+    const double share = std::min(largest_flow_share, 2.0 * material.flow_rate_per_s * material_time_s);
+    lattice.kernels().flow(relaxation.view[at],
+                           {static_cast<float>(material.yield_strain), static_cast<float>(material.hardening),
+                            static_cast<float>(share)});
+  }
+}
+
+// Springs of one direction after the other, each for the time until its next turn.
+void creep(Relaxation& relaxation, std::uint64_t turn, double material_time_s) {
+  const int direction = static_cast<int>(turn % lattice_direction_count);
+  const double time_s = material_time_s * static_cast<double>(creep_pause * lattice_direction_count);
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    const SpringLattice& lattice = relaxation.lattice(at);
+    const Material& material = lattice.material();
+    if (!(material.relaxing_share > 0.0)) continue;
+    const double step = 1.0 / (1.0 + material.relaxation_time_s / time_s);
+    lattice.kernels().creep(relaxation.view[at], direction,
+                            {static_cast<float>(material.relaxing_share), static_cast<float>(step)});
   }
 }
 
@@ -256,6 +275,9 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     carry(relaxation, tools);
   }
   if (flows) flow(relaxation, report.material_time_s);
+  if (settings.tick % creep_pause == 0) {
+    creep(relaxation, settings.tick / creep_pause, report.material_time_s);
+  }
   return report;
 }
 

@@ -14,11 +14,19 @@ Status check_material(const Material& material) {
       {"damping_ratio", material.damping_ratio, damping_ratio_range},
       {"yield_strain", material.yield_strain, yield_strain_range_of(material.plastic)},
       {"flow_rate_per_s", material.flow_rate_per_s, flow_rate_range_per_s},
+      {"hardening", material.hardening, hardening_range},
+      {"stiffening", material.stiffening, stiffening_range},
+      {"relaxing_share", material.relaxing_share, relaxing_share_range},
+      {"relaxation_time_s", material.relaxation_time_s, relaxation_time_range_s},
   };
   for (const auto& check : checks) {
     if (Status status = check_range(check.field, check.value, check.range); !status.ok()) {
       return Error{"material " + material.name + ": " + status.error().message};
     }
+  }
+  if (material.plastic && material.relaxing_share > 0.0) {
+    return Error{"material " + material.name +
+                 ": cannot both flow and creep; set plastic to false or relaxing_share to 0"};
   }
   return {};
 }

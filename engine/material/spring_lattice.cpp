@@ -55,15 +55,13 @@ Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const Materia
   if (const Status status = check_cells(mesh); !status.ok()) return status.error();
   SpringLattice lattice;
   lattice.kernels_ = &kernels_for(set);
+  lattice.material_ = material;
   lattice.lay_out(mesh);
   lattice.assemble(material, youngs_modulus_pa);
   lattice.kernels_->measure_rest_volumes(lattice.view());
   lattice.hold(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
   lattice.measure_fastest_frequency();
   lattice.damping_time_ = static_cast<float>(2.0 * material.damping_ratio / lattice.fastest_frequency_);
-  lattice.plastic_ = material.plastic;
-  lattice.yield_strain_ = static_cast<float>(material.yield_strain);
-  lattice.flow_rate_ = static_cast<float>(material.flow_rate_per_s);
   return lattice;
 }
 
@@ -113,7 +111,7 @@ void SpringLattice::lay_out(const LatticeMesh& mesh) {
   }
   std::fill(inverse_volume_.begin(), inverse_volume_.end(), 1.0f);
   for (int d = 0; d < lattice_direction_count; ++d) {
-    for (Floats* a : {&rest_y_[d], &rest_z_[d], &stiffness_[d], &square_difference_[d]}) {
+    for (Floats* a : {&rest_y_[d], &rest_z_[d], &stiffness_[d], &square_difference_[d], &crept_[d]}) {
       a->assign(size, 0.0f);
     }
     tangent_[d].assign(tangent_runs * static_cast<std::size_t>(padded_count_), 0.0f);
@@ -243,6 +241,8 @@ void SpringLattice::measure_fastest_frequency() {
 LatticeView SpringLattice::view() {
   LatticeView v;
   v.padded_count = padded_count_;
+  v.stiffening = static_cast<float>(material_.stiffening);
+  v.volume_gives_way = material_.poissons_ratio < 0.25;
   v.dx = dx_.data();
   v.dy = dy_.data();
   v.dz = dz_.data();
@@ -277,6 +277,7 @@ LatticeView SpringLattice::view() {
                     rest_length_[d].data(),
                     square_difference_[d].data(),
                     first_rest_length_[d].data(),
+                    crept_[d].data(),
                     tangent_[d].data()};
   }
   for (int c = 1; c < 8; ++c) {

@@ -42,9 +42,8 @@ class SpringLattice {
   void set_fastest_frequency(double omega) { fastest_frequency_ = static_cast<float>(omega); }
   // Voigt damping time of every spring and cell, s.
   float damping_time_s() const { return damping_time_; }
-  bool plastic() const { return plastic_; }
-  float yield_strain() const { return yield_strain_; }
-  float flow_rate_per_s() const { return flow_rate_; }
+  // What flows and creeps, and the stiffening.
+  const Material& material() const { return material_; }
   float cell_size_m() const { return cell_size_; }
 
   // Held nodes keep their displacement exactly. One byte a node, 1 = held.
@@ -80,12 +79,13 @@ class SpringLattice {
   bool has_applied_force() const { return has_applied_force_; }
 
   // Calls visit(const float*, count) on each array of the shape: displacements, velocities, rest lengths and
-  // volumes.
+  // volumes, and what crept.
   template <class Visitor>
   void visit_shape(Visitor&& visit) const {
     for (const auto* a : {&dx_, &dy_, &dz_, &vx_, &vy_, &vz_}) visit(a->data(), a->size());
     for (const auto& a : rest_length_) visit(a.data(), a.size());
     for (const auto& a : square_difference_) visit(a.data(), a.size());
+    for (const auto& a : crept_) visit(a.data(), a.size());
     visit(rest_volume_sum_.data(), rest_volume_sum_.size());
   }
   // The same, and what else the next step depends on.
@@ -123,9 +123,9 @@ class SpringLattice {
   LatticeReport report_;
   const LatticeKernels* kernels_ = nullptr;
   double total_mass_ = 0.0, rest_volume_ = 0.0, youngs_modulus_ = 0.0;
-  float fastest_frequency_ = 0.0f, damping_time_ = 0.0f, yield_strain_ = 0.0f, flow_rate_ = 0.0f;
-  float cell_size_ = 0.0f;
-  bool plastic_ = false, has_applied_force_ = false, has_held_nodes_ = false;
+  Material material_;
+  float fastest_frequency_ = 0.0f, damping_time_ = 0.0f, cell_size_ = 0.0f;
+  bool has_applied_force_ = false, has_held_nodes_ = false;
   int padded_count_ = 0;
   int offset_[lattice_direction_count] = {};
 
@@ -137,7 +137,7 @@ class SpringLattice {
   Floats rest_x_[lattice_direction_count], rest_y_[lattice_direction_count], rest_z_[lattice_direction_count];
   Floats stiffness_[lattice_direction_count], rest_length_[lattice_direction_count];
   Floats square_difference_[lattice_direction_count], first_rest_length_[lattice_direction_count];
-  Floats tangent_[lattice_direction_count];
+  Floats crept_[lattice_direction_count], tangent_[lattice_direction_count];
   Floats bulk_, inverse_volume_, rest_volume_sum_, has_cell_, inverse_cell_count_, node_dilation_;
   Floats row_sum_, stable_inverse_mass_;
   Floats power_x_, power_y_, power_z_, power_noise_;

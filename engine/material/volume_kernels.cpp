@@ -140,18 +140,31 @@ inline float dilation_of(const LatticeView& view, const FaceDiagonals& p, int n)
 
 }  // namespace
 
-void volume_forces(const LatticeView& view) {
+template <bool gives_way>
+void add_volume_forces(const LatticeView& view) {
   BlockCells cells;
   for (int start = 0; start < view.padded_count; start += block) {
     if (view.active_block[start / block] == 0) continue;
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
       const FaceDiagonals p = diagonals_ahead(view, n);
-      cells.set(l,
-                -view.bulk_stiffness[n] * view.inverse_volume[n] * dilation_of(view, p, n) * (1.0f / 12.0f),
+      float dilation = dilation_of(view, p, n);
+      if (gives_way) {
+        const float softening = view.bulk_stiffness[n] < 0.0f ? 100.0f : 0.0f;
+        dilation = dilation / (1.0f + softening * dilation * dilation);
+      }
+      cells.set(l, -view.bulk_stiffness[n] * view.inverse_volume[n] * dilation * (1.0f / 12.0f),
                 volume_gradient(p));
     }
     add_corner_forces(view, start, cells);
+  }
+}
+
+void volume_forces(const LatticeView& view) {
+  if (view.volume_gives_way) {
+    add_volume_forces<true>(view);
+  } else {
+    add_volume_forces<false>(view);
   }
 }
 
@@ -184,7 +197,8 @@ void add_volume_row_sums(const LatticeView& view, float* sum) {
         total += length[c];
       }
       const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
-      const float scale = view.bulk_stiffness[n] * inverse * inverse * total;
+      const float bulk = view.bulk_stiffness[n];
+      const float scale = (bulk < 0.0f ? -bulk : bulk) * inverse * inverse * total;
       for (int c = 0; c < 8; ++c) share[c][l] = scale * length[c];
     }
     for (int c = 0; c < 8; ++c) {

@@ -18,9 +18,14 @@ TEST(Ranges, AcceptTheSample) {
 
 TEST(Ranges, NameFieldValueAndRange) {
   Material material = sample_document().scene.bodies[0].material;
-  material.poissons_ratio = 0.2;
+  material.poissons_ratio = 0.1;
   EXPECT_EQ(check_material(material).error().message,
-            "material modelling-clay: poissons_ratio is 0.2, must be 0.25 to 0.49");
+            "material modelling-clay: poissons_ratio is 0.1, must be 0.2 to 0.49");
+  material.poissons_ratio = 0.3;
+  material.relaxing_share = 0.5;
+  EXPECT_EQ(
+      check_material(material).error().message,
+      "material modelling-clay: cannot both flow and creep; set plastic to false or relaxing_share to 0");
   EXPECT_EQ(check_tool({.radius_m = std::nan("")}).error().message,
             "tool: radius_m is nan, must be 0 to 0.5");
   EXPECT_EQ(check_tool({.iterations = 9}).error().message, "tool: iterations is 9, must be 1 to 8");

@@ -106,8 +106,9 @@ TEST(LatticeForces, RigidRotationProducesNoDamping) {
 // What springs change by from a strained reference is right to first order: half the step, a quarter of the
 // error.
 TEST(LatticeForces, LinearisedSpringsFollowToFirstOrder) {
-  const Material material = elastic_material(5000.0, 0.25, 1000.0);
-  const auto error = [&](double step_m) {
+  const auto error = [&](double step_m, double stiffening) {
+    Material material = elastic_material(5000.0, 0.25, 1000.0);
+    material.stiffening = stiffening;
     SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, material);
     displace_at_random(lattice, 2e-4, 5);
     take_forces(lattice, 0.0f);
@@ -132,18 +133,64 @@ TEST(LatticeForces, LinearisedSpringsFollowToFirstOrder) {
     }
     return sum / magnitude;
   };
-  const double large = error(4e-5), small = error(2e-5);
-  EXPECT_LT(large, 0.02);
-  EXPECT_NEAR(large / small, 4.0, 0.4);  // terms of third order
+  for (const double stiffening : {0.0, 2.0, -20.0}) {
+    const double large = error(4e-5, stiffening), small = error(2e-5, stiffening);
+    EXPECT_LT(large, 0.02) << stiffening;
+    EXPECT_NEAR(large / small, 4.0, 0.4) << stiffening;  // terms of third order
+  }
+}
+
+// Grown evenly, all springs have one strain: forces are those of linear springs times what that strain makes
+// of them.
+TEST(LatticeForces, SpringsStiffenAndSoftenWithTheirStrain) {
+  const auto force_on_corner = [](double stiffening, double strain) {
+    Material material = elastic_material(5000.0, 0.25, 1000.0);
+    material.stiffening = stiffening;
+    SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {3, 3, 3}, material);
+    for (int n = 0; n < 27; ++n) lattice.set_displacement(n, strain * lattice.mesh().nodes[n]);
+    take_forces(lattice, 0.0f);
+    return static_cast<double>(lattice.view().fx[0]);
+  };
+  for (const double strain : {-0.2, -0.05, 0.01, 0.1, 0.3}) {
+    const double linear = force_on_corner(0.0, strain);
+    // Single precision, over strains of a hundredth.
+    EXPECT_NEAR(force_on_corner(8.0, strain) / linear, 1.0 + 8.0 * strain * strain, 1e-4) << strain;
+    EXPECT_NEAR(force_on_corner(-8.0, strain) / linear, 1.0 / std::sqrt(1.0 + 8.0 * strain * strain), 1e-4)
+        << strain;
+  }
+  EXPECT_NEAR(force_on_corner(100.0, 0.3) / force_on_corner(0.0, 0.3), 2.0, 1e-4);
+}
+
+// The pressure of a cell below Poisson's ratio 1/4 draws it further, ever more weakly beyond a tenth.
+TEST(LatticeForces, NegativeVolumeForcesGiveWay) {
+  const auto pressure = [](double poisson, double dilation) {
+    const Material material = elastic_material(5000.0, poisson, 1000.0);
+    SpringLattice lattice = block({5e-3, 5e-3, 5e-3}, {2, 2, 2}, material);
+    const double stretch = std::cbrt(1.0 + dilation) - 1.0;
+    for (int n = 0; n < 8; ++n) lattice.set_displacement(n, stretch * lattice.mesh().nodes[n]);
+    take_forces(lattice, 0.0f);
+    const LatticeView view = lattice.view();
+    lattice.kernels().start_forces(view);
+    const double springs = view.fx[0];
+    lattice.kernels().volume_forces(view);
+    return (view.fx[0] - springs) / bulk_stiffness(5000.0, poisson);
+  };
+  for (const double dilation : {-0.3, -0.02, 0.05, 0.4}) {
+    EXPECT_NEAR(pressure(0.2, dilation) / pressure(0.3, dilation), 1.0 / (1.0 + 100.0 * dilation * dilation),
+                1e-3)
+        << dilation;
+  }
 }
 
 TEST(LatticeForces, EveryInstructionSetGivesTheSameBits) {
-  const Material material = elastic_material(5000.0, 0.45, 1000.0);
+  Material material = elastic_material(5000.0, 0.22, 1000.0);
+  material.stiffening = 5.0;
   SpringLattice reference = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, material, InstructionSet::baseline);
   displace_at_random(reference, 2e-4, 3);
   for (int step = 0; step < 50; ++step) {
     plain_substep(reference, 1e-4f);
-    reference.kernels().flow(reference.view(), 0.005f, 0.05f);
+    reference.kernels().flow(reference.view(), {0.005f, 0.1f, 0.05f});
+    reference.kernels().creep(reference.view(), step % lattice_direction_count, {0.5f, 0.05f});
   }
   for (const InstructionSet set : available_instruction_sets()) {
     SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, material, set);
@@ -152,7 +199,8 @@ TEST(LatticeForces, EveryInstructionSetGivesTheSameBits) {
     displace_at_random(lattice, 2e-4, 3);
     for (int step = 0; step < 50; ++step) {
       plain_substep(lattice, 1e-4f);
-      lattice.kernels().flow(lattice.view(), 0.005f, 0.05f);
+      lattice.kernels().flow(lattice.view(), {0.005f, 0.1f, 0.05f});
+      lattice.kernels().creep(lattice.view(), step % lattice_direction_count, {0.5f, 0.05f});
     }
     EXPECT_EQ(lattice.shape(), reference.shape()) << name_of(set);
   }
