@@ -1,0 +1,109 @@
+// A body whose material is too stiff for springs to be stepped in a tick: corotated hexahedra under an
+// implicit Euler method, stable at any step.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/aligned_vector.h"
+#include "engine/instruction_set.h"
+#include "engine/material/implicit/band_kernels.h"
+#include "engine/material/implicit/cell_kernels.h"
+#include "engine/material/lattice_mesh.h"
+#include "engine/material/material.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+struct ImplicitStep {
+  double step_s = 1e-3;
+  double damping_per_s = 0.0;  // mass-proportional
+  Vector3 gravity_m_per_s2 = Vector3::Zero();
+};
+
+struct ImplicitReport {
+  int iterations = 0;     // of the conjugate gradients
+  double residual = 0.0;  // what they left, of what they began with, in the norm of the factors
+};
+
+// The velocities w at the end of a step h solve
+//
+//   (M (1 + h a) + (h^2 + h t) K) w = M v + h (f - f_el(x)),  x <- x + h w,
+//
+// with the damping a by mass and t by stiffness: one step of Newton's method. K is the plain tangent at x,
+// which is never indefinite, so the matrix is positive definite and conjugate gradients may stop early: what
+// they have by then never stores more energy than standing still would. Their preconditioner is the Cholesky
+// factor of the same matrix as it was a few ticks ago, taken a piece each tick: bodies are long, and their
+// nodes counted along them, so that it is a narrow band.
+//
+// One owner; built outside the tick, allocates nothing afterwards.
+class ImplicitBody {
+ public:
+  // Refused: fewer than 2 nodes a direction, folded cells, a material outside its ranges.
+  static Result<ImplicitBody> make(const LatticeMesh& mesh, const Material& material, InstructionSet set);
+
+  const LatticeMesh& mesh() const { return mesh_; }
+  int node_count() const { return mesh_.node_count(); }
+  double mass_kg(int node) const { return mass_[static_cast<std::size_t>(node)]; }
+  double damping_time_s() const { return damping_time_; }
+
+  // One byte a node, 1 = held. Takes the factor anew.
+  void hold(std::span<const std::uint8_t> held);
+
+  Vector3 displacement(int node) const { return at(moved_, node); }
+  Vector3 velocity(int node) const { return at(velocity_, node); }
+  void set_displacement(int node, const Vector3& d) { put(moved_, node, d); }
+  void set_velocity(int node, const Vector3& v) { put(velocity_, node, v); }
+  // Until changed, N.
+  void set_node_force(int node, const Vector3& force_n) { put(applied_, node, force_n); }
+
+  ImplicitReport step(const ImplicitStep& step);
+
+ private:
+  using Doubles = AlignedVector<double>;
+
+  ImplicitBody() = default;
+  static Vector3 at(const Doubles& of, int node) {
+    const double* const p = of.data() + 3 * static_cast<std::ptrdiff_t>(node);
+    return {p[0], p[1], p[2]};
+  }
+  static void put(Doubles& of, int node, const Vector3& v) {
+    for (int axis = 0; axis < 3; ++axis) of[3 * static_cast<std::size_t>(node) + axis] = v[axis];
+  }
+  void lay_out(const LatticeMesh& mesh);
+  void take_cells(const Material& material);
+  void take_damping(const Material& material);
+  void free_only(Doubles& of) const;
+  double fastest_square();
+
+  // The factor, which is taken while the last one is used.
+  void begin_factor(double inertia, double stiffness);
+  void factor_some(int columns);
+  void add_layer(int k);
+  void add_cell(const CellBatch& batch, int lane);
+  void precondition(const Doubles& from, Doubles& to) const;
+  void apply_matrix(double inertia, double stiffness, const Doubles& field, Doubles& out) const;
+  ImplicitReport solve(double inertia, double stiffness);
+
+  LatticeMesh mesh_;
+  const BandKernels* band_ = nullptr;
+  const CellKernels* cells_ = nullptr;
+  double damping_time_ = 0.0;
+  int size_ = 0;    // coordinates
+  int padded_ = 0;  // in whole blocks, and what the band's kernels read beyond
+  std::vector<CellBatch> batches_;
+  std::vector<int> layer_batches_;  // the first batch of each layer of cells along the body, and the end
+  Doubles mass_, mass3_, free_;     // by node; by coordinate, 0 where held; 1 or 0
+  Doubles moved_, velocity_, applied_;
+  Doubles force_, residual_, direction_, image_, conditioned_;  // working memory
+  BandView taken_;                                              // the factor in use
+  struct Factoring {
+    BandView band;
+    double inertia = 0.0, stiffness = 0.0;
+    int layers = 0, columns = 0;  // done
+  } next_;
+  Doubles columns_[2];
+};
+
+}  // namespace spoonbill
