@@ -15,6 +15,13 @@ std::vector<float> SpringLattice::shape() const {
   return all;
 }
 
+std::vector<Vector3> SpringLattice::positions() const {
+  std::vector<Vector3> all;
+  all.reserve(mesh_.nodes.size());
+  for (int n = 0; n < mesh_.node_count(); ++n) all.push_back(position(n));
+  return all;
+}
+
 std::size_t SpringLattice::shape_size() const {
   std::size_t size = 0;
   visit_shape([&](const float*, std::size_t count) { size += count; });

@@ -109,12 +109,14 @@ struct Relaxation {
   std::array<Drifted, lattice_capacity> drifted{};
 
   std::size_t count() const { return lattices.size(); }
+  bool has_springs(std::size_t at) const { return lattices[at].core == nullptr; }
   SpringLattice& lattice(std::size_t at) const { return *lattices[at].lattice; }
 };
 
 void kick(Relaxation& relaxation, const RelaxSettings& settings, float h) {
   const float decay = 1.0f / (1.0f + h * static_cast<float>(settings.damping_per_s));
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (!relaxation.has_springs(at)) continue;
     const SpringLattice& lattice = relaxation.lattice(at);
     const LatticeView& view = relaxation.view[at];
     const Vector3& g = relaxation.lattices[at].gravity_m_per_s2;
@@ -183,6 +185,7 @@ Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at, std::span<c
 bool drift(Relaxation& relaxation, float h, std::span<const TouchingTool> tools) {
   bool capped = false;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (!relaxation.has_springs(at)) continue;
     relaxation.drifted[at] = drift(relaxation.lattice(at), relaxation.view[at], h, relaxation.cap[at],
                                    frame_velocity(relaxation, at, tools));
     capped |= relaxation.drifted[at].speed_square > 1.0f;
@@ -191,8 +194,9 @@ bool drift(Relaxation& relaxation, float h, std::span<const TouchingTool> tools)
 }
 
 Substeps choose_substeps(const Relaxation& relaxation, double step_s) {
-  Substeps most{0, 0.0, false};
+  Substeps most{1, step_s, false};
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (!relaxation.has_springs(at)) continue;
     const Substeps wanted = choose_substeps(relaxation.lattice(at), step_s);
     most.slowed |= wanted.slowed;
     if (wanted.count > most.count) most = {wanted.count, wanted.h, most.slowed};
@@ -202,6 +206,7 @@ Substeps choose_substeps(const Relaxation& relaxation, double step_s) {
 
 void steady_strained_nodes(Relaxation& relaxation, float h) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (!relaxation.has_springs(at)) continue;
     SpringLattice& lattice = relaxation.lattice(at);
     relaxation.view[at].inverse_mass = lattice.steady_strained_nodes(h, static_cast<float>(stability_share));
     linearise(lattice, relaxation.view[at]);  // velocities changed
@@ -212,7 +217,7 @@ void flow(Relaxation& relaxation, double material_time_s) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const SpringLattice& lattice = relaxation.lattice(at);
     const Material& material = lattice.material();
-    if (!material.plastic) continue;
+    if (!material.plastic || !relaxation.has_springs(at)) continue;
     const double share = std::min(largest_flow_share, 2.0 * material.flow_rate_per_s * material_time_s);
     lattice.kernels().flow(relaxation.view[at],
                            {static_cast<float>(material.yield_strain), static_cast<float>(material.hardening),
@@ -227,10 +232,17 @@ void creep(Relaxation& relaxation, std::uint64_t turn, double material_time_s) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const SpringLattice& lattice = relaxation.lattice(at);
     const Material& material = lattice.material();
-    if (!(material.relaxing_share > 0.0)) continue;
+    if (!(material.relaxing_share > 0.0) || !relaxation.has_springs(at)) continue;
     const double step = 1.0 / (1.0 + material.relaxation_time_s / time_s);
     lattice.kernels().creep(relaxation.view[at], direction,
                             {static_cast<float>(material.relaxing_share), static_cast<float>(step)});
+  }
+}
+
+void step_cores(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings, double time_s) {
+  for (const RelaxedLattice& relaxed : lattices) {
+    if (!relaxed.core) continue;
+    relaxed.core->step({time_s, settings.damping_per_s, relaxed.gravity_m_per_s2}, *relaxed.lattice);
   }
 }
 
@@ -252,6 +264,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   for (std::size_t at = 0; at < lattices.size(); ++at) {
     SpringLattice& lattice = *lattices[at].lattice;
     relaxation.view[at] = lattice.view();
+    if (!relaxation.has_springs(at)) continue;
     linearise(lattice, relaxation.view[at]);
     if (!flows) follow_fastest_frequency(lattice, relaxation.view[at]);
   }
@@ -260,6 +273,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   report.substeps = substeps.count;
   report.nodes_slowed = substeps.slowed;
   report.material_time_s = settings.iterations * substeps.count * substeps.h;
+  step_cores(lattices, settings, report.material_time_s);
   for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, report.material_time_s);
   const float h = static_cast<float>(substeps.h);
   for (std::size_t at = 0; at < lattices.size(); ++at) {
@@ -273,6 +287,9 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     solve_contacts(relaxation, h, static_cast<double>(s) / total, tools, between);
     report.speed_capped |= drift(relaxation, h, tools);
     carry(relaxation, tools);
+  }
+  for (const RelaxedLattice& relaxed : lattices) {
+    if (relaxed.core) relaxed.core->take_contacts(*relaxed.lattice);
   }
   if (flows) flow(relaxation, report.material_time_s);
   if (settings.tick % creep_pause == 0) {

@@ -8,6 +8,7 @@
 
 #include "engine/material/body_contacts.h"
 #include "engine/material/contact_constraints.h"
+#include "engine/material/implicit/implicit_core.h"
 #include "engine/material/spring_lattice.h"
 
 namespace spoonbill {
@@ -60,6 +61,7 @@ struct RelaxSettings {
 struct RelaxedLattice {
   SpringLattice* lattice;
   Vector3 gravity_m_per_s2 = Vector3::Zero();
+  ImplicitCore* core = nullptr;  // where one moves the lattice, its springs rest
 };
 
 struct RelaxReport {
@@ -76,9 +78,9 @@ struct TouchingTool {
   ContactConstraints* contacts;
 };
 
-// Advances at most lattice_capacity lattices, by as many substeps as the one that needs most. The tools act
-// in their order, then the bodies on each other. Denormals must be flushed by the caller for the speed's sake
-// (see DenormalsFlushed).
+// Advances at most lattice_capacity lattices, by as many substeps as the one that needs most; those with a
+// core by one implicit step, before the contacts. The tools act in their order, then the bodies on each
+// other. Denormals must be flushed by the caller for the speed's sake (see DenormalsFlushed).
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
                   std::span<const TouchingTool> tools, BodyContacts* between = nullptr);
 

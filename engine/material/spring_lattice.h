@@ -46,6 +46,11 @@ class SpringLattice {
   const Material& material() const { return material_; }
   float cell_size_m() const { return cell_size_; }
 
+  // From the next hold() on, every node is this light in contacts, 1/kg: of a lattice that something else
+  // moves. 0: each has its own mass.
+  void set_contact_inverse_mass(double inverse_mass_per_kg) {
+    contact_inverse_mass_ = static_cast<float>(inverse_mass_per_kg);
+  }
   // Held nodes keep their displacement exactly. One byte a node, 1 = held.
   void hold(std::span<const std::uint8_t> held);
   bool is_held(int node) const { return inverse_mass_[node] == 0.0f; }
@@ -57,6 +62,7 @@ class SpringLattice {
   const float* displacements(int axis) const { return (axis == 0 ? dx_ : axis == 1 ? dy_ : dz_).data(); }
   Vector3 displacement(int node) const { return {dx_[node], dy_[node], dz_[node]}; }
   Vector3 position(int node) const { return mesh_.nodes[node] + displacement(node); }
+  std::vector<Vector3> positions() const;  // of all nodes
   Vector3 velocity(int node) const { return {vx_[node], vy_[node], vz_[node]}; }
   void set_displacement(int node, const Vector3& d);
   void set_velocity(int node, const Vector3& v);
@@ -125,6 +131,7 @@ class SpringLattice {
   double total_mass_ = 0.0, rest_volume_ = 0.0, youngs_modulus_ = 0.0;
   Material material_;
   float fastest_frequency_ = 0.0f, damping_time_ = 0.0f, cell_size_ = 0.0f;
+  float contact_inverse_mass_ = 0.0f;
   bool has_applied_force_ = false, has_held_nodes_ = false;
   int padded_count_ = 0;
   int offset_[lattice_direction_count] = {};

@@ -16,6 +16,17 @@ Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material&
   return SpringLattice::make(mesh, material, std::min(material.youngs_modulus_pa, unit_limit), set);
 }
 
+Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const std::vector<Vector3>& rest_m,
+                                            InstructionSet set) {
+  const Material& material = lattice.material();
+  const bool elastic = !material.plastic && material.relaxing_share == 0.0 && material.stiffening == 0.0;
+  if (!elastic || lattice.youngs_modulus_pa() >= material.youngs_modulus_pa)
+    return std::optional<ImplicitCore>();
+  Result<ImplicitCore> core = ImplicitCore::make(lattice.mesh(), rest_m, material, set);
+  if (!core.ok()) return core.error();
+  return std::optional<ImplicitCore>(std::move(core).value());
+}
+
 std::vector<std::uint8_t> nodes_behind(const SpringLattice& lattice, const std::vector<FixingPlane>& planes) {
   std::vector<std::uint8_t> held(static_cast<std::size_t>(lattice.mesh().node_count()), 0);
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
@@ -32,13 +43,19 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
   if (!mesh.ok()) return mesh.error();
   Result<SpringLattice> lattice = sculpting_lattice(mesh.value(), body.material, set);
   if (!lattice.ok()) return lattice.error();
-  std::vector<std::uint8_t> held = nodes_behind(lattice.value(), planes);
-  lattice->hold(held);
+  Result<std::optional<ImplicitCore>> core = core_of(lattice.value(), mesh->nodes, set);
+  if (!core.ok()) return core.error();
   Result<BodyMapping> mapping = BodyMapping::make(body.surface, body.surface, lattice.value(), planes, set);
   if (!mapping.ok()) return mapping.error();
-  std::vector<std::uint8_t> touched(held.size(), 0);
-  return BodyState{std::move(lattice).value(), std::move(mapping).value(), Smoothing(mesh.value()),
-                   std::move(held), std::move(touched)};
+  std::vector<std::uint8_t> held = nodes_behind(lattice.value(), planes), touched(held.size(), 0);
+  BodyState state{std::move(lattice).value(),
+                  std::move(mapping).value(),
+                  Smoothing(mesh.value()),
+                  {},
+                  std::move(touched)};
+  state.hold(std::move(held));
+  state.set_core(std::move(core).value());
+  return state;
 }
 
 }  // namespace spoonbill

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "engine/instruction_set.h"
+#include "engine/material/implicit/implicit_core.h"
 #include "engine/material/spring_lattice.h"
 #include "engine/result.h"
 #include "engine/simulation/body_mapping.h"
@@ -21,6 +24,24 @@ struct BodyState {
   std::variant<BodyMapping, MeshMapping> skin;
   Smoothing smoothing;
   std::vector<std::uint8_t> held, touched;  // one byte a node
+  std::optional<ImplicitCore> core = {};    // where the material is too stiff for the lattice's springs
+
+  // One byte a node.
+  void hold(std::vector<std::uint8_t> nodes) {
+    held = std::move(nodes);
+    lattice.hold(held);
+    if (core) core->hold(held);
+  }
+  void set_core(std::optional<ImplicitCore> made) {
+    core = std::move(made);
+    lattice.set_contact_inverse_mass(core ? core->contact_inverse_mass() : 0.0);
+    lattice.hold(held);
+    if (core) core->hold(held);
+  }
+  // The Young's modulus that is stepped.
+  double felt_youngs_modulus_pa() const {
+    return core ? lattice.material().youngs_modulus_pa : lattice.youngs_modulus_pa();
+  }
 
   // What every body has but a tessellated tool that gives way.
   BodyMapping& mapping() { return *std::get_if<BodyMapping>(&skin); }
@@ -41,6 +62,11 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
 // The lattice of a body at the stiffness that sculpting can hold.
 Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material& material,
                                         InstructionSet set);
+
+// What moves a lattice instead of its springs, where they had to be softened to be stepped: of elastic
+// materials alone. Unstrained at `rest_m`. None where the springs do.
+Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const std::vector<Vector3>& rest_m,
+                                            InstructionSet set);
 
 // One byte a node, 1 where a plane holds it.
 std::vector<std::uint8_t> nodes_behind(const SpringLattice& lattice, const std::vector<FixingPlane>& planes);

@@ -95,8 +95,14 @@ Status CommandApplier::operator()(const SetMaterial& command) {
   Result<SpringLattice> lattice = sculpting_lattice(body.lattice.mesh(), command.material, state.set);
   if (!lattice.ok()) return lattice.error();
   lattice->set_shape(body.lattice.shape());
-  lattice->hold(body.held);
+  // Cast in a stiff material, a body keeps the shape that it has; from one stiff material to another, the
+  // shape that it would have unloaded.
+  Result<std::optional<ImplicitCore>> core =
+      core_of(lattice.value(), body.core ? body.core->rest_m() : body.lattice.positions(), state.set);
+  if (!core.ok()) return core.error();
   body.lattice = std::move(lattice).value();
+  body.set_core(std::move(core).value());
+  if (body.core) body.core->take_shape(body.lattice);
   state.scene.bodies[at].material = command.material;
   release();
   return {};
@@ -104,11 +110,12 @@ Status CommandApplier::operator()(const SetMaterial& command) {
 
 Status CommandApplier::operator()(const KeepShape&) {
   std::vector<SpringLattice> lattices;
+  std::vector<std::optional<ImplicitCore>> cores;
   std::vector<BodyMapping> mappings;
   for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
     const BodyState& body = state.bodies[b];
     LatticeMesh mesh = body.lattice.mesh();
-    for (int n = 0; n < mesh.node_count(); ++n) mesh.nodes[n] = body.lattice.position(n);
+    mesh.nodes = body.lattice.positions();
     Result<SpringLattice> lattice = sculpting_lattice(mesh, state.scene.bodies[b].material, state.set);
     if (!lattice.ok()) return lattice.error();
     lattice->hold(body.held);
@@ -116,12 +123,16 @@ Status CommandApplier::operator()(const KeepShape&) {
     Result<BodyMapping> mapping =
         BodyMapping::make(surface, surface, lattice.value(), state.scene.planes, state.set);
     if (!mapping.ok()) return mapping.error();
+    Result<std::optional<ImplicitCore>> core = core_of(lattice.value(), mesh.nodes, state.set);
+    if (!core.ok()) return core.error();
+    cores.push_back(std::move(core).value());
     lattices.push_back(std::move(lattice).value());
     mappings.push_back(std::move(mapping).value());
   }
   for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
     state.bodies[b].smoothing = Smoothing(lattices[b].mesh());
     state.bodies[b].lattice = std::move(lattices[b]);
+    state.bodies[b].set_core(std::move(cores[b]));
   }
   set_mappings(std::move(mappings));
   return {};
@@ -141,8 +152,7 @@ Status CommandApplier::set_planes(std::vector<FixingPlane> planes) {
     mappings.push_back(std::move(mapping).value());
   }
   for (BodyState& body : state.scene_bodies()) {
-    body.held = nodes_behind(body.lattice, planes);
-    body.lattice.hold(body.held);
+    body.hold(nodes_behind(body.lattice, planes));
   }
   state.scene.planes = std::move(planes);
   set_mappings(std::move(mappings));

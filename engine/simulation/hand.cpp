@@ -8,7 +8,7 @@
 namespace spoonbill {
 
 double real_over_felt(const Simulation::State& s, std::size_t body) {
-  return s.material(body).youngs_modulus_pa / s.bodies[body].lattice.youngs_modulus_pa();
+  return s.material(body).youngs_modulus_pa / s.bodies[body].felt_youngs_modulus_pa();
 }
 
 namespace {

@@ -100,6 +100,7 @@ void smooth(Simulation::State& s, const HeldTool& held) {
   const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
   const double least = least_reach_cells * static_cast<double>(body.lattice.cell_size_m());
   body.smoothing.apply(body.lattice, {collision.nearest.point_m, std::max(radius, least)}, s.tick);
+  if (body.core) body.core->take_moved_nodes(body.lattice);
 }
 
 bool is_tool(const Simulation::State& s, std::size_t body) {
@@ -144,7 +145,9 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
   for (std::size_t b = 0; b < s.stepped(); ++b) {
     // What a body sags at rest is its weight over its stiffness: a softer one must weigh less to sag the
     // same.
-    lattices[b] = {&s.bodies[b].lattice, s.scene.sculpting.gravity_m_per_s2 / real_over_felt(s, b)};
+    BodyState& body = s.bodies[b];
+    lattices[b] = {&body.lattice, s.scene.sculpting.gravity_m_per_s2 / real_over_felt(s, b),
+                   body.core ? &*body.core : nullptr};
   }
   const RelaxSettings settings{s.tick, s.scene.tool.iterations, tick_s, s.scene.sculpting.damping_per_s};
   s.relaxed = relax({lattices.data(), s.stepped()}, settings, tools, &s.between);
@@ -243,6 +246,9 @@ std::uint64_t Simulation::state_hash() const {
   for (std::size_t b = 0; b < s.stepped(); ++b) {
     const BodyState& body = s.bodies[b];
     body.lattice.visit_state([&](const float* data, std::size_t count) { hash.add(data, count); });
+    if (body.core) {
+      body.core->visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
+    }
     if (body.mesh()) continue;  // its vertices are where the nodes have them
     const ControlNet& net = body.mapping().current().net;
     for (const std::vector<double>* coordinate : {&net.x, &net.y, &net.z}) {
@@ -277,6 +283,7 @@ Status Simulation::restore(const ShapeState& shape) {
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
     BodyState& body = state_->bodies[b];
     body.lattice.set_shape(shape.lattices[b]);
+    if (body.core) body.core->take_shape(body.lattice);
     body.update_skin();
   }
   state_->tool.contact.release();

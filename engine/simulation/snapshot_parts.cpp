@@ -73,16 +73,16 @@ void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>
   }
 }
 
-void write_material(const Material& material, const Sculpting& sculpting, const SpringLattice& lattice,
+void write_material(const Material& material, const Sculpting& sculpting, const BodyState& body,
                     MaterialSnapshot& out) {
   out.name = material.name;
   out.youngs_modulus_pa = material.youngs_modulus_pa;
-  out.felt_youngs_modulus_pa = lattice.youngs_modulus_pa();
+  out.felt_youngs_modulus_pa = body.felt_youngs_modulus_pa();
   out.poissons_ratio = material.poissons_ratio;
   out.density_kg_per_m3 = material.density_kg_per_m3;
   out.damping_per_s = sculpting.damping_per_s;
   out.plastic = material.plastic;
-  out.mass_kg = lattice.mass_kg();
+  out.mass_kg = body.lattice.mass_kg();
 }
 
 }  // namespace
@@ -100,7 +100,7 @@ void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::ve
     }
     write_lattice(bodies[b].lattice, bodies[b].held, bodies[b].touched, out[b].lattice);
     write_material(b < scene.bodies.size() ? scene.bodies[b].material : scene.tool.body->soft->material,
-                   scene.sculpting, bodies[b].lattice, out[b].material);
+                   scene.sculpting, bodies[b], out[b].material);
   }
 }
 

@@ -17,6 +17,9 @@ class StateHash {
       mix(bits);
     }
   }
+  void add(const double* values, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) add(values[i]);
+  }
   void add(double value) {
     std::uint64_t bits;
     std::memcpy(&bits, &value, sizeof bits);

@@ -58,6 +58,8 @@ struct ModelOf {
   // One that gives way, held by the hand.
   Result<ToolModel> soft_model(Result<BodyState> soft) const {
     if (!soft.ok()) return Error{"tool: " + soft.error().message};
+    // The hand carries the lattice's own nodes.
+    soft->set_core(std::nullopt);
     soft->held = nodes_behind(soft->lattice, {body.soft->grip});
     ToolModel model;
     const LatticeMesh& mesh = soft->lattice.mesh();

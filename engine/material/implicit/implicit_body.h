@@ -8,8 +8,7 @@
 
 #include "engine/aligned_vector.h"
 #include "engine/instruction_set.h"
-#include "engine/material/implicit/band_kernels.h"
-#include "engine/material/implicit/cell_kernels.h"
+#include "engine/material/implicit/rolling_factor.h"
 #include "engine/material/lattice_mesh.h"
 #include "engine/material/material.h"
 #include "engine/result.h"
@@ -25,6 +24,7 @@ struct ImplicitStep {
 struct ImplicitReport {
   int iterations = 0;     // of the conjugate gradients
   double residual = 0.0;  // what they left, of what they began with, in the norm of the factors
+  bool speed_capped = false;
 };
 
 // The velocities w at the end of a step h solve
@@ -37,11 +37,18 @@ struct ImplicitReport {
 // factor of the same matrix as it was a few ticks ago, taken a piece each tick: bodies are long, and their
 // nodes counted along them, so that it is a narrow band.
 //
+// A node may move at most half a cell in a step, beside the body as a whole, or where a node is held: what
+// crushes cells faster cannot be undone.
+//
 // One owner; built outside the tick, allocates nothing afterwards.
 class ImplicitBody {
  public:
   // Refused: fewer than 2 nodes a direction, folded cells, a material outside its ranges.
   static Result<ImplicitBody> make(const LatticeMesh& mesh, const Material& material, InstructionSet set);
+  ImplicitBody(ImplicitBody&&) = default;
+  ImplicitBody& operator=(ImplicitBody&&) = default;
+  ImplicitBody(const ImplicitBody&) = delete;
+  ImplicitBody& operator=(const ImplicitBody&) = delete;
 
   const LatticeMesh& mesh() const { return mesh_; }
   int node_count() const { return mesh_.node_count(); }
@@ -60,10 +67,18 @@ class ImplicitBody {
 
   ImplicitReport step(const ImplicitStep& step);
 
+  // All that the next step depends on.
+  template <class Visitor>
+  void visit_state(Visitor&& visit) const {
+    for (const Doubles* a : {&moved_, &velocity_, &applied_}) visit(a->data(), a->size());
+    factor_.visit_state(visit);
+    for (const CellBatch& batch : block_.batches) visit(&batch.quaternion[0][0], 4 * std::size_t{cell_lanes});
+  }
+
  private:
   using Doubles = AlignedVector<double>;
 
-  ImplicitBody() = default;
+  ImplicitBody(const LatticeMesh& mesh, const BandKernels& band, const CellKernels& cells);
   static Vector3 at(const Doubles& of, int node) {
     const double* const p = of.data() + 3 * static_cast<std::ptrdiff_t>(node);
     return {p[0], p[1], p[2]};
@@ -71,39 +86,34 @@ class ImplicitBody {
   static void put(Doubles& of, int node, const Vector3& v) {
     for (int axis = 0; axis < 3; ++axis) of[3 * static_cast<std::size_t>(node) + axis] = v[axis];
   }
-  void lay_out(const LatticeMesh& mesh);
   void take_cells(const Material& material);
   void take_damping(const Material& material);
   void free_only(Doubles& of) const;
   double fastest_square();
 
-  // The factor, which is taken while the last one is used.
-  void begin_factor(double inertia, double stiffness);
-  void factor_some(int columns);
-  void add_layer(int k);
-  void add_cell(const CellBatch& batch, int lane);
-  void precondition(const Doubles& from, Doubles& to) const;
+  struct RigidMotion {
+    Vector3 middle_m, velocity_m_per_s, spin_rad_per_s;
+  };
+  RigidMotion rigid_motion() const;
+  bool cap_speeds(double cap_m_per_s);
+  Vector3 sum_over_nodes(const Doubles& of) const;
+  void restore_momentum();
   void apply_matrix(double inertia, double stiffness, const Doubles& field, Doubles& out) const;
+  void begin_solve(double inertia, double stiffness, double h);
   ImplicitReport solve(double inertia, double stiffness);
 
   LatticeMesh mesh_;
-  const BandKernels* band_ = nullptr;
-  const CellKernels* cells_ = nullptr;
-  double damping_time_ = 0.0;
-  int size_ = 0;    // coordinates
-  int padded_ = 0;  // in whole blocks, and what the band's kernels read beyond
-  std::vector<CellBatch> batches_;
-  std::vector<int> layer_batches_;  // the first batch of each layer of cells along the body, and the end
-  Doubles mass_, mass3_, free_;     // by node; by coordinate, 0 where held; 1 or 0
+  const BandKernels* band_;
+  const CellKernels* cells_;
+  double damping_time_ = 0.0, cell_size_;
+  int size_;  // coordinates
+  bool has_held_nodes_ = false;
+  Vector3 momentum_ = Vector3::Zero();  // of a free body, at the end of the step
+  RollingFactor factor_;
+  CellBlock block_;
+  Doubles mass_, mass3_, free_;  // by node; by coordinate, 0 where held; 1 or 0
   Doubles moved_, velocity_, applied_;
   Doubles force_, residual_, direction_, image_, conditioned_;  // working memory
-  BandView taken_;                                              // the factor in use
-  struct Factoring {
-    BandView band;
-    double inertia = 0.0, stiffness = 0.0;
-    int layers = 0, columns = 0;  // done
-  } next_;
-  Doubles columns_[2];
 };
 
 }  // namespace spoonbill

@@ -1,0 +1,179 @@
+#include "engine/material/implicit/implicit_core.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/material/lattice_request.h"
+
+namespace spoonbill {
+namespace {
+
+// A free rod is four times as light at its end as it is, and a point of it spreads over some four nodes.
+constexpr double contact_lightness = 8.0;
+
+// Where a node of one grid lies in another over the same block, along one axis.
+struct GridPlace {
+  int first;
+  double share;  // of the way to the next
+};
+
+GridPlace place_in(int at, int count, int other_count) {
+  const double where = static_cast<double>(at) * (other_count - 1) / (count - 1);
+  const int first = std::min(static_cast<int>(where), other_count - 2);
+  return {first, where - first};
+}
+
+// The mean extents of a block.
+Vector3 extents(const LatticeMesh& mesh, const std::vector<Vector3>& nodes) {
+  Vector3 size = Vector3::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    double sum = 0.0;
+    int lines = 0;
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      std::array<int, 3> next = mesh.place(n);
+      if (next[static_cast<std::size_t>(axis)] == 0) ++lines;
+      if (++next[static_cast<std::size_t>(axis)] == mesh.count[static_cast<std::size_t>(axis)]) continue;
+      const int beyond = mesh.index(next[0], next[1], next[2]);
+      sum += (nodes[static_cast<std::size_t>(beyond)] - nodes[static_cast<std::size_t>(n)]).norm();
+    }
+    size[axis] = sum / lines;
+  }
+  return size;
+}
+
+// A node of one block as a weighted sum of another's, trilinear in the grid.
+GridPoint weighted(const LatticeMesh& of, int node, const LatticeMesh& by) {
+  const std::array<int, 3> at = of.place(node);
+  std::array<GridPlace, 3> places{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    places[axis] = place_in(at[axis], of.count[axis], by.count[axis]);
+  }
+  GridPoint result;
+  for (int c = 0; c < 8; ++c) {
+    const std::array<int, 3> high = {c >> 2 & 1, c >> 1 & 1, c & 1};
+    std::array<int, 3> corner{};
+    double weight = 1.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      corner[axis] = places[axis].first + high[axis];
+      weight *= high[axis] ? places[axis].share : 1.0 - places[axis].share;
+    }
+    result.node[static_cast<std::size_t>(c)] = by.index(corner[0], corner[1], corner[2]);
+    result.weight[static_cast<std::size_t>(c)] = weight;
+  }
+  return result;
+}
+
+Result<LatticeMesh> coarser(const LatticeMesh& mesh, const std::vector<Vector3>& nodes) {
+  const Result<std::array<int, 3>> counts =
+      lattice_counts({implicit_node_budget, std::nullopt}, extents(mesh, nodes));
+  if (!counts.ok()) return counts.error();
+  LatticeMesh coarse;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    coarse.count[axis] = std::min(counts.value()[axis], mesh.count[axis]);
+  }
+  coarse.nodes.assign(static_cast<std::size_t>(coarse.node_count()), Vector3::Zero());
+  for (int n = 0; n < coarse.node_count(); ++n) {
+    const GridPoint at = weighted(coarse, n, mesh);
+    for (std::size_t c = 0; c < 8; ++c) {
+      coarse.nodes[static_cast<std::size_t>(n)] += at.weight[c] * nodes[static_cast<std::size_t>(at.node[c])];
+    }
+  }
+  return coarse;
+}
+
+}  // namespace
+
+Result<ImplicitCore> ImplicitCore::make(const LatticeMesh& mesh, const std::vector<Vector3>& rest_m,
+                                        const Material& material, InstructionSet set) {
+  const Result<LatticeMesh> coarse = coarser(mesh, rest_m);
+  if (!coarse.ok()) return coarse.error();
+  Result<ImplicitBody> body = ImplicitBody::make(coarse.value(), material, set);
+  if (!body.ok()) return body.error();
+  ImplicitCore core(std::move(body).value());
+  core.rest_m_ = rest_m;
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    core.followers_.push_back(weighted(mesh, n, coarse.value()));
+  }
+  double mass_kg = 0.0;
+  for (int n = 0; n < coarse->node_count(); ++n) {
+    const GridPoint at = weighted(coarse.value(), n, mesh);
+    const auto most = std::max_element(at.weight.begin(), at.weight.end()) - at.weight.begin();
+    core.nearest_.push_back(at.node[static_cast<std::size_t>(most)]);
+    mass_kg += core.body_.mass_kg(n);
+  }
+  core.velocity_.assign(rest_m.size(), {});
+  core.impulse_.assign(3 * static_cast<std::size_t>(coarse->node_count()), 0.0);
+  core.contact_inverse_mass_ = contact_lightness / mass_kg;
+  return core;
+}
+
+void ImplicitCore::hold(std::span<const std::uint8_t> held) {
+  std::vector<std::uint8_t> of_block;
+  of_block.reserve(nearest_.size());
+  for (const int node : nearest_) of_block.push_back(held[static_cast<std::size_t>(node)]);
+  body_.hold(of_block);
+}
+
+void ImplicitCore::take_shape(const SpringLattice& lattice) {
+  for (int n = 0; n < body_.node_count(); ++n) {
+    const GridPoint at = weighted(body_.mesh(), n, lattice.mesh());
+    Vector3 position = Vector3::Zero(), velocity = Vector3::Zero();
+    for (std::size_t c = 0; c < 8; ++c) {
+      position += at.weight[c] * lattice.position(at.node[c]);
+      velocity += at.weight[c] * lattice.velocity(at.node[c]);
+    }
+    body_.set_displacement(n, position - body_.mesh().nodes[static_cast<std::size_t>(n)]);
+    body_.set_velocity(n, velocity);
+  }
+  std::fill(impulse_.begin(), impulse_.end(), 0.0);
+}
+
+void ImplicitCore::take_moved_nodes(const SpringLattice& lattice) {
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const auto at = static_cast<std::size_t>(n);
+    if (lattice.is_held(n)) continue;
+    rest_m_[at] =
+        lattice.position(n) - sum_over(followers_[at], [&](int node) { return body_.displacement(node); });
+  }
+}
+
+ImplicitReport ImplicitCore::step(const ImplicitStep& step, SpringLattice& lattice) {
+  for (int n = 0; n < body_.node_count(); ++n) {
+    const double* const impulse = impulse_.data() + 3 * static_cast<std::ptrdiff_t>(n);
+    body_.set_node_force(n, Vector3(impulse[0], impulse[1], impulse[2]) / step.step_s);
+  }
+  const ImplicitReport report = body_.step(step);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const auto at = static_cast<std::size_t>(n);
+    if (lattice.is_held(n)) continue;
+    const GridPoint& follower = followers_[at];
+    const Vector3 moved = sum_over(follower, [&](int node) { return body_.displacement(node); });
+    const Vector3 velocity = sum_over(follower, [&](int node) { return body_.velocity(node); });
+    lattice.set_displacement(n, rest_m_[at] - lattice.mesh().nodes[at] + moved);
+    lattice.set_velocity(n, velocity);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      velocity_[at][axis] = static_cast<float>(velocity[static_cast<Eigen::Index>(axis)]);
+    }
+  }
+  return report;
+}
+
+void ImplicitCore::take_contacts(const SpringLattice& lattice) {
+  std::fill(impulse_.begin(), impulse_.end(), 0.0);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    if (lattice.is_held(n)) continue;
+    const auto at = static_cast<std::size_t>(n);
+    const Vector3 left(velocity_[at][0], velocity_[at][1], velocity_[at][2]);
+    const Vector3 impulse = (lattice.velocity(n) - left) / contact_inverse_mass_;
+    if (impulse.isZero(0.0)) continue;
+    for (std::size_t c = 0; c < 8; ++c) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        impulse_[3 * static_cast<std::size_t>(followers_[at].node[c]) + axis] +=
+            followers_[at].weight[c] * impulse[static_cast<Eigen::Index>(axis)];
+      }
+    }
+  }
+}
+
+}  // namespace spoonbill

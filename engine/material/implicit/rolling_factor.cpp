@@ -1,0 +1,126 @@
+#include "engine/material/implicit/rolling_factor.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace spoonbill {
+namespace {
+
+// In how many ticks a new factor is taken.
+constexpr int ticks_a_factor = 4;
+// Of the first entry of the diagonal.
+constexpr double least_pivot = 1e-14;
+
+}  // namespace
+
+RollingFactor::RollingFactor(const LatticeMesh& mesh, const BandKernels& kernels)
+    : kernels_(&kernels), slice_columns_(3 * mesh.count[0] * mesh.count[1]) {
+  const int size = 3 * mesh.node_count(), half_band = 3 * (mesh.index(1, 1, 1) + 1) - 1;
+  const int stride = (half_band + band_block) / band_block * band_block + band_block;
+  for (Doubles& columns : columns_) {
+    columns.assign(static_cast<std::size_t>(size + 1) * static_cast<std::size_t>(stride), 0.0);
+  }
+  used_ = {size, half_band, stride, columns_[0].data()};
+  next_.band = {size, half_band, stride, columns_[1].data()};
+}
+
+int RollingFactor::padded_size() const {
+  return (used_.size + band_block - 1) / band_block * band_block + used_.stride;
+}
+
+void RollingFactor::begin(double inertia, double stiffness) {
+  next_.inertia = inertia;
+  next_.stiffness = stiffness;
+  next_.layers = next_.columns = 0;
+}
+
+// The columns of the nodes at one k, with their masses alone.
+void RollingFactor::clear_slice(const MatrixParts& parts, int k) {
+  const int columns = slice_columns_;
+  double* column = next_.band.columns + static_cast<std::ptrdiff_t>(k) * columns * next_.band.stride;
+  std::fill_n(column, static_cast<std::ptrdiff_t>(columns) * next_.band.stride, 0.0);
+  for (int n = k * columns; n < (k + 1) * columns; ++n, column += next_.band.stride) {
+    *column = next_.inertia * parts.mass[n / 3];
+  }
+}
+
+// The stiffness of one cell, turned, into the band.
+void RollingFactor::add_cell(const MatrixParts& parts, const CellBatch& b, int lane) {
+  Eigen::Matrix3d rotation;
+  for (int e = 0; e < 9; ++e) rotation(e / 3, e % 3) = b.turn[e][lane] + (e % 4 == 0 ? 1.0 : 0.0);
+  const auto entry = [&](int row, int column) {
+    const int low = std::min(row, column), high = std::max(row, column);
+    return static_cast<double>(b.stiffness[high * (high + 1) / 2 + low][lane]);
+  };
+  for (int a = 0; a < 8; ++a) {
+    for (int c = 0; c < 8; ++c) {
+      const int row_node = b.node[a][lane], column_node = b.node[c][lane];
+      if (row_node < column_node) continue;
+      Eigen::Matrix3d here;
+      for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) here(row, column) = entry(3 * a + row, 3 * c + column);
+      }
+      Eigen::Matrix3d turned = rotation * here * rotation.transpose();
+      turned.diagonal().array() += b.held[lane] * (a == c ? 0.875 : -0.125);
+      for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) {
+          const int at_row = 3 * row_node + row, at_column = 3 * column_node + column;
+          if (at_row < at_column) continue;
+          const double free = parts.free[at_row] * parts.free[at_column];
+          next_.band
+              .columns[static_cast<std::ptrdiff_t>(at_column) * next_.band.stride + (at_row - at_column)] +=
+              free * next_.stiffness * turned(row, column);
+        }
+      }
+    }
+  }
+}
+
+void RollingFactor::add_layer(const MatrixParts& parts, int k) {
+  if (k == 0) clear_slice(parts, 0);
+  clear_slice(parts, k + 1);
+  const CellBlock& cells = *parts.cells;
+  const auto at = static_cast<std::size_t>(k);
+  for (int batch = cells.layers[at]; batch < cells.layers[at + 1]; ++batch) {
+    const int here = std::min(cell_lanes, cells.layer_cells - (batch - cells.layers[at]) * cell_lanes);
+    for (int lane = 0; lane < here; ++lane) {
+      add_cell(parts, cells.batches[static_cast<std::size_t>(batch)], lane);
+    }
+  }
+}
+
+// A column needs the cells on both sides of its nodes.
+void RollingFactor::take_columns(const MatrixParts& parts, int count) {
+  const int to = std::min(next_.band.size, next_.columns + count);
+  const int all_layers = static_cast<int>(parts.cells->layers.size()) - 1;
+  const int layers = std::min(all_layers, (to - 1) / slice_columns_ + 1);
+  for (; next_.layers < layers; ++next_.layers) add_layer(parts, next_.layers);
+  const double first = parts.cells->batches[0].stiffness[0][0];
+  kernels_->factor(next_.band, next_.columns, to,
+                   least_pivot * (next_.inertia * parts.mass[0] + next_.stiffness * first));
+  next_.columns = to;
+  if (to == next_.band.size) std::swap(used_, next_.band);
+}
+
+void RollingFactor::take_piece(const MatrixParts& parts) {
+  const int size = next_.band.size;
+  if (next_.stiffness == 0.0) {
+    begin(parts.inertia, parts.stiffness);
+    take_columns(parts, size);
+  }
+  const bool changed = next_.inertia != parts.inertia || next_.stiffness != parts.stiffness;
+  if (next_.columns == size || changed) begin(parts.inertia, parts.stiffness);
+  take_columns(parts, (size + ticks_a_factor - 1) / ticks_a_factor);
+}
+
+void RollingFactor::solve(const double* from, const double* free, double* to) const {
+  std::copy_n(from, used_.size, to);
+  kernels_->forward(used_, 0, to);
+  std::fill_n(to + used_.size, padded_size() - used_.size, 0.0);
+  kernels_->backward(used_, to);
+  for (int n = 0; n < used_.size; ++n) to[n] *= free[n];
+}
+
+}  // namespace spoonbill
