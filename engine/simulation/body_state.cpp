@@ -20,8 +20,7 @@ Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const 
                                             InstructionSet set) {
   const Material& material = lattice.material();
   const bool elastic = !material.plastic && material.relaxing_share == 0.0 && material.stiffening == 0.0;
-  if (!elastic || lattice.youngs_modulus_pa() >= material.youngs_modulus_pa)
-    return std::optional<ImplicitCore>();
+  if (!elastic || material.youngs_modulus_pa < stiff_youngs_modulus_pa) return std::optional<ImplicitCore>();
   Result<ImplicitCore> core = ImplicitCore::make(lattice.mesh(), rest_m, material, set);
   if (!core.ok()) return core.error();
   return std::optional<ImplicitCore>(std::move(core).value());

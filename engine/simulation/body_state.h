@@ -63,8 +63,12 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
 Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material& material,
                                         InstructionSet set);
 
-// What moves a lattice instead of its springs, where they had to be softened to be stepped: of elastic
-// materials alone. Unstrained at `rest_m`. None where the springs do.
+// Elastic bodies are stepped with their true stiffness from here on: the few newtons of a hand dent them by
+// less than a third of a millimetre, and what they do is bend. Softer ones are dented, which takes the finer
+// lattice and its springs.
+inline constexpr double stiff_youngs_modulus_pa = 1e6;
+
+// What moves a lattice instead of its springs. Unstrained at `rest_m`. None where the springs do.
 Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const std::vector<Vector3>& rest_m,
                                             InstructionSet set);
 

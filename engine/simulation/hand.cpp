@@ -20,6 +20,14 @@ double softest_ratio(const Simulation::State& s) {
   return ratio;
 }
 
+// A stiff body does not yield to a hand that nothing moves: the tool is then held by a spring all the same.
+double coupling_of(const Simulation::State& s, double wanted_n_per_m) {
+  constexpr double hold_n_per_m = 1000.0;
+  const auto is_stiff = [](const BodyState& body) { return body.core.has_value(); };
+  if (wanted_n_per_m > 0.0) return wanted_n_per_m;
+  return std::any_of(s.bodies.begin(), s.bodies.end(), is_stiff) ? hold_n_per_m : 0.0;
+}
+
 ToolMotion motion_of(const Simulation::State& s, const Pose& from, const Pose& to, double coupling_n_per_m) {
   const Tool& tool = s.scene.tool;
   ToolMotion motion;
@@ -27,7 +35,7 @@ ToolMotion motion_of(const Simulation::State& s, const Pose& from, const Pose& t
   motion.end_m = to.position_m;
   motion.orientation = to.orientation;
   motion.radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
-  motion.coupling_n_per_m = coupling_n_per_m / softest_ratio(s);
+  motion.coupling_n_per_m = coupling_of(s, coupling_n_per_m) / softest_ratio(s);
   motion.body_yields = tool.action != ToolAction::smooth;
   return motion;
 }

@@ -1,0 +1,138 @@
+// Bodies of stiff elastic materials: stepped with their true stiffness.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/material/static_solver.h"
+#include "engine/simulation/body_state.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double coupling_n_per_m = 700.0, plane_x_m = 0.01, press_x_m = 0.052;
+
+Material stiff_material(double youngs_modulus_pa) {
+  Material material;
+  material.name = "stiff";
+  material.source = "test";
+  material.youngs_modulus_pa = youngs_modulus_pa;
+  material.poissons_ratio = 0.35;
+  material.density_kg_per_m3 = 1020.0;
+  material.damping_ratio = 0.05;
+  return material;
+}
+
+// Held behind x = 10 mm.
+Scene held_handle(double youngs_modulus_pa) {
+  Scene scene = small_handle();
+  scene.bodies[0].material = stiff_material(youngs_modulus_pa);
+  scene.planes.push_back({Vector3(plane_x_m, 0, 0), Vector3::UnitX()});
+  scene.tool.iterations = 1;
+  scene.sculpting.damping_per_s = 40.0;
+  return scene;
+}
+
+ToolInput hand_at(double y_m) {
+  ToolInput input = above(press_x_m, y_m);
+  input.coupling_n_per_m = coupling_n_per_m;
+  return input;
+}
+
+double top_y_m(const Simulation& simulation) {
+  return evaluate(simulation.surface(), 0.75, press_x_m).position_m.y();
+}
+
+// Where a force at the pressed place rests the body, by the static solver on the same block of cells.
+double sinking_at_rest_m(const Scene& scene, double force_n) {
+  const BodyState body = make_body_state(scene.bodies[0], scene.planes, InstructionSet::baseline).value();
+  const LatticeMesh& mesh = body.core->mesh();
+  std::vector<HeldAxis> held;
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    if (mesh.nodes[static_cast<std::size_t>(n)].x() <= plane_x_m) hold_node(n, Vector3::Zero(), held);
+  }
+  // Shared by the slices on both sides.
+  StaticLoads loads;
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    const double apart = std::abs(mesh.nodes[static_cast<std::size_t>(n)].x() - press_x_m);
+    const double pitch = 0.06 / (mesh.count[2] - 1);
+    if (apart < pitch) loads.forces.push_back({n, {0.0, -(1.0 - apart / pitch), 0.0}});
+  }
+  double sum = 0.0;
+  for (const NodeForce& force : loads.forces) sum -= force.force_n.y();
+  for (NodeForce& force : loads.forces) force.force_n *= force_n / sum;
+  const StaticBody at_rest = StaticBody::make(mesh, scene.bodies[0].material, CellKind::hexahedra).value();
+  const StaticResult result = rest_under_load(at_rest, loads, held).value();
+  double sinking = 0.0;
+  for (const NodeForce& force : loads.forces) {
+    sinking += force.force_n.y() / force_n * result.displacement_m[static_cast<std::size_t>(force.node)].y();
+  }
+  return sinking;
+}
+
+TEST(StiffBodies, BendUnderTheHandAsTheStaticSolverSays) {
+  for (const double youngs : {2e9, 5e7}) {
+    const Scene scene = held_handle(youngs);
+    Simulation simulation = simulate(scene);
+    const double before = top_y_m(simulation);
+    Reaction reaction;
+    // Down into the handle by 2 mm beyond the touch, and wait.
+    for (int tick = 0; tick < 600; ++tick) {
+      reaction = simulation.advance(hand_at(0.0085 - 2e-3 * std::min(1.0, tick / 300.0)));
+    }
+    EXPECT_TRUE(reaction.touching);
+    EXPECT_GT(reaction.force_n.y(), 0.1);
+    // The coupling spring is as long as what the body left of the way.
+    EXPECT_NEAR(reaction.force_n.y(), coupling_n_per_m * (reaction.proxy.position_m.y() - 0.0065),
+                0.05 * reaction.force_n.y());
+    const double sinking = before - top_y_m(simulation);
+    // The lattice's slices at the plane and the press lie between those of the block.
+    EXPECT_NEAR(sinking / sinking_at_rest_m(scene, reaction.force_n.y()), 1.0, 0.15) << youngs;
+    for (int tick = 0; tick < 600; ++tick) reaction = simulation.advance(hand_at(0.02));
+    EXPECT_NEAR(top_y_m(simulation), before, 1e-6) << youngs;
+  }
+}
+
+// Clay that was bent and is cast in steel stays bent.
+TEST(StiffBodies, KeepTheShapeInWhichTheyAreCast) {
+  Scene scene = small_handle();
+  scene.planes.push_back({Vector3(plane_x_m, 0, 0), Vector3::UnitX()});
+  Simulation simulation = simulate(scene);
+  for (int tick = 0; tick < 600; ++tick) simulation.advance(above(press_x_m, 0.009 - 1e-5 * tick));
+  for (int tick = 0; tick < 300; ++tick) simulation.advance(above(press_x_m, 0.03));
+  const double bent = top_y_m(simulation);
+  EXPECT_LT(bent, 0.0022);
+  ASSERT_TRUE(simulation.apply(SetMaterial{stiff_material(193e9)}).ok());
+  for (int tick = 0; tick < 300; ++tick) simulation.advance(above(press_x_m, 0.03));
+  EXPECT_NEAR(top_y_m(simulation), bent, 1e-7);
+  const ShapeState cast = simulation.shape();
+  // Pressed, and the press undone.
+  for (int tick = 0; tick < 200; ++tick) simulation.advance(hand_at(0.0085 - 1e-5 * tick));
+  ASSERT_TRUE(simulation.restore(cast).ok());
+  for (int tick = 0; tick < 100; ++tick) simulation.advance(hand_at(0.03));
+  EXPECT_NEAR(top_y_m(simulation), bent, 1e-7);
+}
+
+// Even a hand that is said to be rigid, and 5 m/s fast.
+TEST(StiffBodies, NoHandBlowsThemUp) {
+  for (const double youngs : {2e6, 2e9, 193e9}) {
+    Scene scene = held_handle(youngs);
+    scene.planes.clear();
+    Simulation simulation = simulate(scene);
+    for (int tick = 0; tick < 1000; ++tick) {
+      const double y = 0.02 * std::cos(0.25 * tick);
+      simulation.advance(above(0.03 + 0.02 * std::sin(0.01 * tick), y));
+    }
+    const LatticeMesh& mesh = simulation.lattice().mesh();
+    Vector3 middle = Vector3::Zero();
+    for (int n = 0; n < mesh.node_count(); ++n)
+      middle += simulation.lattice().position(n) / mesh.node_count();
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      ASSERT_TRUE(simulation.lattice().position(n).allFinite()) << youngs;
+      EXPECT_LT((simulation.lattice().position(n) - middle).norm(), 0.05) << youngs;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill
