@@ -239,10 +239,11 @@ void creep(Relaxation& relaxation, std::uint64_t turn, double material_time_s) {
   }
 }
 
-void step_cores(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings, double time_s) {
+void begin_core_steps(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
+                      double time_s) {
   for (const RelaxedLattice& relaxed : lattices) {
     if (!relaxed.core) continue;
-    relaxed.core->step({time_s, settings.damping_per_s, relaxed.gravity_m_per_s2}, *relaxed.lattice);
+    relaxed.core->begin_step({time_s, settings.damping_per_s, relaxed.gravity_m_per_s2}, *relaxed.lattice);
   }
 }
 
@@ -273,7 +274,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   report.substeps = substeps.count;
   report.nodes_slowed = substeps.slowed;
   report.material_time_s = settings.iterations * substeps.count * substeps.h;
-  step_cores(lattices, settings, report.material_time_s);
+  begin_core_steps(lattices, settings, report.material_time_s);
   for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, report.material_time_s);
   const float h = static_cast<float>(substeps.h);
   for (std::size_t at = 0; at < lattices.size(); ++at) {
@@ -289,7 +290,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     carry(relaxation, tools);
   }
   for (const RelaxedLattice& relaxed : lattices) {
-    if (relaxed.core) relaxed.core->take_contacts(*relaxed.lattice);
+    if (relaxed.core) relaxed.core->end_step(*relaxed.lattice);
   }
   if (flows) flow(relaxation, report.material_time_s);
   if (settings.tick % creep_pause == 0) {

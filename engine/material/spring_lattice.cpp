@@ -313,12 +313,22 @@ double SpringLattice::volume_m3() const {
   return volume;
 }
 
+float SpringLattice::free_inverse_mass(int node) const {
+  return contact_inverse_mass_ > 0.0f ? contact_inverse_mass_ : 1.0f / node_mass_[node];
+}
+
+void SpringLattice::set_contact_inverse_mass(double inverse_mass_per_kg) {
+  contact_inverse_mass_ = static_cast<float>(inverse_mass_per_kg);
+  for (int n = 0; n < mesh_.node_count(); ++n) {
+    if (inverse_mass_[n] > 0.0f) inverse_mass_[n] = free_inverse_mass(n);
+  }
+}
+
 void SpringLattice::hold(std::span<const std::uint8_t> held) {
   has_held_nodes_ = std::find(held.begin(), held.end(), std::uint8_t{1}) != held.end();
   for (int n = 0; n < mesh_.node_count(); ++n) {
     const bool free = held[static_cast<std::size_t>(n)] == 0;
-    const float inverse = contact_inverse_mass_ > 0.0f ? contact_inverse_mass_ : 1.0f / node_mass_[n];
-    inverse_mass_[n] = free ? inverse : 0.0f;
+    inverse_mass_[n] = free ? free_inverse_mass(n) : 0.0f;
     free_mass_[n] = free ? node_mass_[n] : 0.0f;
     free_node_[n] = free ? 1.0f : 0.0f;
     if (!free) set_velocity(n, Vector3::Zero());

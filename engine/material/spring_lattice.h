@@ -46,11 +46,9 @@ class SpringLattice {
   const Material& material() const { return material_; }
   float cell_size_m() const { return cell_size_; }
 
-  // From the next hold() on, every node is this light in contacts, 1/kg: of a lattice that something else
-  // moves. 0: each has its own mass.
-  void set_contact_inverse_mass(double inverse_mass_per_kg) {
-    contact_inverse_mass_ = static_cast<float>(inverse_mass_per_kg);
-  }
+  // Every free node is this light in contacts, 1/kg: of a lattice that something else moves. 0: each has its
+  // own mass.
+  void set_contact_inverse_mass(double inverse_mass_per_kg);
   // Held nodes keep their displacement exactly. One byte a node, 1 = held.
   void hold(std::span<const std::uint8_t> held);
   bool is_held(int node) const { return inverse_mass_[node] == 0.0f; }
@@ -118,6 +116,7 @@ class SpringLattice {
   void store_springs(int direction, const Assembly& sum);
   void measure_fastest_frequency();
   void find_active_blocks();
+  float free_inverse_mass(int node) const;
   // The springs and cells around a node, and what they become where it moves.
   struct Reforming;
   bool reform_springs(int node, const Vector3& move, Reforming& next) const;

@@ -270,11 +270,6 @@ inline void strain_of(CellBatch& b, const Field& moved, Field& strain) {
   for (int a = 0; a < cell_axes; ++a) {
     for (int l = 0; l < lanes; ++l) b.back[a][l] = b.rest[a][l] + strain[a][l];
   }
-  for (int l = 0; l < lanes; ++l) {
-    double square = 0.0;
-    for (int a = 0; a < cell_axes; ++a) square += strain[a][l] * strain[a][l];
-    b.held[l] = b.stress_stiffness[l] * b.inverse_size[l] * __builtin_sqrt(square);
-  }
 }
 
 void take_forces(CellBatch* batches, int count, const double* moved, double* force) {
@@ -298,9 +293,6 @@ void apply(const CellBatch* batches, int count, double scale, const double* fiel
     turn_back(b, at);
     follow(b, at);
     stiffness_times(b, at, plain);
-    for (int a = 0; a < cell_axes; ++a) {
-      for (int l = 0; l < lanes; ++l) plain[a][l] += b.held[l] * at[a][l];
-    }
     follow_transposed(b, plain);
     scatter(b, plain, scale, out);
   }

@@ -15,15 +15,12 @@ struct CellBatch {
   float stiffness[cell_stiffness_size][cell_lanes];  // N/m
   double rest[cell_axes][cell_lanes];                // from the middle, m
   double gradient[cell_axes][cell_lanes];            // of the shape functions there, 1/m
-  double stress_stiffness[cell_lanes];               // N/m for a strain of 1, see tangent_scale
-  double inverse_size[cell_lanes];                   // 1/m
 
   // As the cells are now: set by take_forces().
   double quaternion[4][cell_lanes];    // w, x, y, z
   double turn[9][cell_lanes];          // R - 1, row by row
   double turning[9][cell_lanes];       // (tr S - S)^-1
   double back[cell_axes][cell_lanes];  // R^T (X + d)
-  double held[cell_lanes];             // what stress may add to the stiffness, N/m
 };
 
 struct CellKernels {
@@ -31,8 +28,7 @@ struct CellKernels {
   // need to be held so. The turn follows by a few steps of Newton's method from the last one.
   void (*take_forces)(CellBatch* batches, int count, const double* moved, double* force);
   // Adds `scale` times the forces that hold the cells where they move by `field`, of the plain tangent
-  // R P^T K P R^T. What tension adds is bounded by a stiffness against any strain, in proportion to the
-  // strain there is: without it, a drawn body would swing faster than the tangent knows.
+  // R P^T K P R^T.
   void (*apply)(const CellBatch* batches, int count, double scale, const double* field, double* out);
 };
 

@@ -35,8 +35,7 @@ int rounded_up(int count, int block) {
   return (count + block - 1) / block * block;
 }
 
-void take_cell(CellBatch& batch, int lane, const CellCorners& corners, const CellMatrix& stiffness,
-               double youngs_modulus_pa) {
+void take_cell(CellBatch& batch, int lane, const CellCorners& corners, const CellMatrix& stiffness) {
   Vector3 middle = Vector3::Zero();
   for (const Vector3& corner : corners) middle += corner / 8.0;
   const CellGradients gradients = middle_gradients(corners);
@@ -52,9 +51,6 @@ void take_cell(CellBatch& batch, int lane, const CellCorners& corners, const Cel
       batch.stiffness[entry][lane] = static_cast<float>(stiffness(row, column));
     }
   }
-  const double size = std::cbrt(cell_volume(corners));
-  batch.stress_stiffness[lane] = youngs_modulus_pa * size;
-  batch.inverse_size[lane] = 1.0 / size;
 }
 
 }  // namespace
@@ -106,8 +102,7 @@ void ImplicitBody::take_cells(const Material& material) {
         }
         CellBatch& batch = block_.batches.back();
         take_cell(batch, lane, corners,
-                  share * hexahedron_stiffness(corners, material.youngs_modulus_pa, material.poissons_ratio),
-                  share * material.youngs_modulus_pa);
+                  share * hexahedron_stiffness(corners, material.youngs_modulus_pa, material.poissons_ratio));
         for (int c = 0; c < 8; ++c) {
           const int node = mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1));
           mass_[static_cast<std::size_t>(node)] +=
@@ -294,7 +289,7 @@ void ImplicitBody::restore_momentum() {
   for (int n = 0; n < node_count(); ++n) set_velocity(n, velocity(n) + more);
 }
 
-ImplicitReport ImplicitBody::step(const ImplicitStep& step) {
+ImplicitReport ImplicitBody::solve_velocities(const ImplicitStep& step) {
   const double h = step.step_s, inertia = 1.0 + h * step.damping_per_s, stiffness = h * (h + damping_time_);
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {
     force_[n] = applied_[n] + mass3_[n] * step.gravity_m_per_s2[static_cast<Eigen::Index>(n % 3)];
@@ -304,10 +299,22 @@ ImplicitReport ImplicitBody::step(const ImplicitStep& step) {
   factor_.take_piece({&block_, mass_.data(), free_.data(), inertia, stiffness});
   begin_solve(inertia, stiffness, h);
   ImplicitReport report = solve(inertia, stiffness);
-  report.speed_capped = cap_speeds(speed_cap_cells * cell_size_ / h);
   if (!has_held_nodes_) restore_momentum();
-  for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) moved_[n] += h * velocity_[n];
   return report;
+}
+
+double ImplicitBody::push(const std::vector<double>& impulses) {
+  std::copy(impulses.begin(), impulses.end(), image_.begin());
+  free_only(image_);
+  factor_.solve(image_.data(), free_.data(), conditioned_.data());
+  for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) velocity_[n] += conditioned_[n];
+  return band_->dot(image_.data(), conditioned_.data(), rounded_up(size_, band_block));
+}
+
+bool ImplicitBody::move(double step_s) {
+  const bool capped = cap_speeds(speed_cap_cells * cell_size_ / step_s);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) moved_[n] += step_s * velocity_[n];
+  return capped;
 }
 
 }  // namespace spoonbill

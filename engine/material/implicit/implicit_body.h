@@ -24,7 +24,6 @@ struct ImplicitStep {
 struct ImplicitReport {
   int iterations = 0;     // of the conjugate gradients
   double residual = 0.0;  // what they left, of what they began with, in the norm of the factors
-  bool speed_capped = false;
 };
 
 // The velocities w at the end of a step h solve
@@ -65,7 +64,18 @@ class ImplicitBody {
   // Until changed, N.
   void set_node_force(int node, const Vector3& force_n) { put(applied_, node, force_n); }
 
-  ImplicitReport step(const ImplicitStep& step);
+  // A step in its parts: the velocities at its end; what contacts push, by coordinate, N s, as far as the
+  // whole body answers at once, with the work that they do on what they change, J; and the move, which says
+  // whether a node met the speed cap.
+  ImplicitReport solve_velocities(const ImplicitStep& step);
+  double push(const std::vector<double>& impulses);
+  bool move(double step_s);
+  // All of it without contacts.
+  ImplicitReport step(const ImplicitStep& step) {
+    const ImplicitReport report = solve_velocities(step);
+    move(step.step_s);
+    return report;
+  }
 
   // All that the next step depends on.
   template <class Visitor>

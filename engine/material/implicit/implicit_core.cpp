@@ -9,8 +9,8 @@
 namespace spoonbill {
 namespace {
 
-// A free rod is four times as light at its end as it is, and a point of it spreads over some four nodes.
-constexpr double contact_lightness = 8.0;
+// Of the whole body's: before the first contact, and the most.
+constexpr double first_lightness = 8.0, largest_lightness = 1e5;
 
 // Where a node of one grid lies in another over the same block, along one axis.
 struct GridPlace {
@@ -104,7 +104,8 @@ Result<ImplicitCore> ImplicitCore::make(const LatticeMesh& mesh, const std::vect
   }
   core.velocity_.assign(rest_m.size(), {});
   core.impulse_.assign(3 * static_cast<std::size_t>(coarse->node_count()), 0.0);
-  core.contact_inverse_mass_ = contact_lightness / mass_kg;
+  core.least_inverse_mass_ = 1.0 / mass_kg;
+  core.contact_inverse_mass_ = first_lightness / mass_kg;
   return core;
 }
 
@@ -126,7 +127,6 @@ void ImplicitCore::take_shape(const SpringLattice& lattice) {
     body_.set_displacement(n, position - body_.mesh().nodes[static_cast<std::size_t>(n)]);
     body_.set_velocity(n, velocity);
   }
-  std::fill(impulse_.begin(), impulse_.end(), 0.0);
 }
 
 void ImplicitCore::take_moved_nodes(const SpringLattice& lattice) {
@@ -138,41 +138,65 @@ void ImplicitCore::take_moved_nodes(const SpringLattice& lattice) {
   }
 }
 
-ImplicitReport ImplicitCore::step(const ImplicitStep& step, SpringLattice& lattice) {
-  for (int n = 0; n < body_.node_count(); ++n) {
-    const double* const impulse = impulse_.data() + 3 * static_cast<std::ptrdiff_t>(n);
-    body_.set_node_force(n, Vector3(impulse[0], impulse[1], impulse[2]) / step.step_s);
-  }
-  const ImplicitReport report = body_.step(step);
-  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    const auto at = static_cast<std::size_t>(n);
-    if (lattice.is_held(n)) continue;
-    const GridPoint& follower = followers_[at];
-    const Vector3 moved = sum_over(follower, [&](int node) { return body_.displacement(node); });
-    const Vector3 velocity = sum_over(follower, [&](int node) { return body_.velocity(node); });
-    lattice.set_displacement(n, rest_m_[at] - lattice.mesh().nodes[at] + moved);
-    lattice.set_velocity(n, velocity);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      velocity_[at][axis] = static_cast<float>(velocity[static_cast<Eigen::Index>(axis)]);
-    }
-  }
+ImplicitReport ImplicitCore::begin_step(const ImplicitStep& step, SpringLattice& lattice) {
+  step_s_ = step.step_s;
+  const ImplicitReport report = body_.solve_velocities(step);
+  write_velocities(lattice);
   return report;
 }
 
-void ImplicitCore::take_contacts(const SpringLattice& lattice) {
-  std::fill(impulse_.begin(), impulse_.end(), 0.0);
+void ImplicitCore::write_velocities(SpringLattice& lattice) {
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
     if (lattice.is_held(n)) continue;
     const auto at = static_cast<std::size_t>(n);
-    const Vector3 left(velocity_[at][0], velocity_[at][1], velocity_[at][2]);
-    const Vector3 impulse = (lattice.velocity(n) - left) / contact_inverse_mass_;
+    lattice.set_velocity(n, sum_over(followers_[at], [&](int node) { return body_.velocity(node); }));
+    const Vector3 rounded = lattice.velocity(n);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      velocity_[at][axis] = static_cast<float>(rounded[static_cast<Eigen::Index>(axis)]);
+    }
+  }
+}
+
+// Returns the sum of the squares of what each node got.
+double ImplicitCore::take_impulses(const SpringLattice& lattice) {
+  std::fill(impulse_.begin(), impulse_.end(), 0.0);
+  double squares = 0.0;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    if (lattice.is_held(n)) continue;
+    const auto at = static_cast<std::size_t>(n);
+    const Vector3 before(velocity_[at][0], velocity_[at][1], velocity_[at][2]);
+    const Vector3 impulse = (lattice.velocity(n) - before) / contact_inverse_mass_;
     if (impulse.isZero(0.0)) continue;
+    squares += impulse.squaredNorm();
     for (std::size_t c = 0; c < 8; ++c) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         impulse_[3 * static_cast<std::size_t>(followers_[at].node[c]) + axis] +=
             followers_[at].weight[c] * impulse[static_cast<Eigen::Index>(axis)];
       }
     }
+  }
+  return squares;
+}
+
+// The mass is moved half the way, so that two bodies that learn from each other settle.
+void ImplicitCore::take_lightness(double answered, SpringLattice& lattice) {
+  if (!std::isfinite(answered)) return;
+  const double wanted = std::clamp(answered, least_inverse_mass_, largest_lightness * least_inverse_mass_);
+  contact_inverse_mass_ = std::sqrt(contact_inverse_mass_ * wanted);
+  lattice.set_contact_inverse_mass(contact_inverse_mass_);
+}
+
+void ImplicitCore::end_step(SpringLattice& lattice) {
+  // The contacts gave each node its impulse over its mass; the block gives all of them together what it does.
+  const double squares = take_impulses(lattice);
+  if (squares > 0.0) take_lightness(body_.push(impulse_) / squares, lattice);
+  body_.move(step_s_);
+  write_velocities(lattice);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    if (lattice.is_held(n)) continue;
+    const auto at = static_cast<std::size_t>(n);
+    const Vector3 moved = sum_over(followers_[at], [&](int node) { return body_.displacement(node); });
+    lattice.set_displacement(n, rest_m_[at] - lattice.mesh().nodes[at] + moved);
   }
 }
 

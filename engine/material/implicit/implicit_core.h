@@ -22,9 +22,9 @@ struct GridPoint {
   std::array<double, 8> weight{};
 };
 
-// Contacts push the lattice's nodes as if they were a light, free body's; what they pushed acts on the block
-// in the next tick. So a tool meets the body where it was a tick ago, and no contact enters the block's
-// equations. One owner, the body; built outside the tick, allocates nothing afterwards.
+// Contacts push the lattice's nodes as if each were free, and as light as makes all of them together answer
+// as the block did when it was last pushed; the block then answers as a whole. One owner, the body; built
+// outside the tick, allocates nothing afterwards.
 class ImplicitCore {
  public:
   // Unstrained where the lattice's nodes are at `rest_m`.
@@ -38,26 +38,29 @@ class ImplicitCore {
 
   // One byte a node of the lattice, 1 = held.
   void hold(std::span<const std::uint8_t> held);
-  // Takes displacements and velocities from the lattice; the impulses of contacts are forgotten.
+  // Takes displacements and velocities from the lattice.
   void take_shape(const SpringLattice& lattice);
 
   // Nodes that something else has moved for good keep their new places beside the block.
   void take_moved_nodes(const SpringLattice& lattice);
 
-  // Steps the block and takes the lattice along.
-  ImplicitReport step(const ImplicitStep& step, SpringLattice& lattice);
-  // What contacts have changed of the lattice's velocities since acts in the next step.
-  void take_contacts(const SpringLattice& lattice);
+  // The lattice's velocities at the end of a step without contacts; contacts then change them.
+  ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice);
+  // Gives the block what contacts changed, and takes the lattice along.
+  void end_step(SpringLattice& lattice);
 
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     body_.visit_state(visit);
-    visit(impulse_.data(), impulse_.size());
+    visit(&contact_inverse_mass_, 1);
     for (const Vector3& rest : rest_m_) visit(rest.data(), 3);
   }
 
  private:
   explicit ImplicitCore(ImplicitBody body) : body_(std::move(body)) {}
+  void write_velocities(SpringLattice& lattice);
+  double take_impulses(const SpringLattice& lattice);
+  void take_lightness(double answered, SpringLattice& lattice);
   template <class Of>
   Vector3 sum_over(const GridPoint& follower, const Of& of) const {
     Vector3 sum = Vector3::Zero();
@@ -69,9 +72,10 @@ class ImplicitCore {
   std::vector<Vector3> rest_m_;       // of the lattice's nodes
   std::vector<GridPoint> followers_;  // by node of the lattice
   std::vector<int> nearest_;          // by node of the block: the lattice's node nearest to it in the grid
-  std::vector<std::array<float, 3>> velocity_;  // of the lattice's nodes, as the step left them
-  std::vector<double> impulse_;                 // by coordinate of the block, N s
-  double contact_inverse_mass_ = 0.0;
+  std::vector<std::array<float, 3>> velocity_;  // of the lattice's nodes, before contacts
+  std::vector<double> impulse_;                 // by coordinate of the block, N s: working memory
+  double step_s_ = 0.0;
+  double contact_inverse_mass_ = 0.0, least_inverse_mass_ = 0.0;
 };
 
 }  // namespace spoonbill

@@ -63,7 +63,6 @@ void RollingFactor::add_cell(const MatrixParts& parts, const CellBatch& b, int l
         for (int column = 0; column < 3; ++column) here(row, column) = entry(3 * a + row, 3 * c + column);
       }
       Eigen::Matrix3d turned = rotation * here * rotation.transpose();
-      turned.diagonal().array() += b.held[lane] * (a == c ? 0.875 : -0.125);
       for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) {
           const int at_row = 3 * row_node + row, at_column = 3 * column_node + column;
