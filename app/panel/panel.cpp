@@ -104,6 +104,8 @@ void draw_material(const PanelModel& model, const Theme& theme, Requests& reques
                         modulus_text(material.youngs_modulus_pa));
   fact_row("Felt E", modulus_text(model.felt_youngs_modulus_pa) + "  (" +
                          percent_text(model.felt_youngs_modulus_pa / material.youngs_modulus_pa) + " of E)");
+  fact_row("Solver", model.implicit_nodes > 0 ? "implicit, " + std::to_string(model.implicit_nodes) + " nodes"
+                                              : "springs, explicit");
   changed |= slider_row("Poisson", material.poissons_ratio, poissons_ratio_range, SliderScale::linear,
                         rounded(material.poissons_ratio, 2, ""));
   changed |= slider_row("Density", material.density_kg_per_m3, density_slider_kg_per_m3,

@@ -23,6 +23,7 @@ struct PanelModel {
   std::vector<Material> presets;  // to choose from
 
   double felt_youngs_modulus_pa = 0.0;
+  int implicit_nodes = 0;  // 0: springs, stepped explicitly
   double mass_kg = 0.0;
   int plane_count = 0;
   int fixed_node_count = 0;

@@ -15,6 +15,7 @@ PanelModel panel_of(const SessionFacts& facts, const Snapshot& snapshot, const V
   model.sculpting = facts.sculpting;
   model.material = facts.material;
   model.felt_youngs_modulus_pa = snapshot.bodies.front().material.felt_youngs_modulus_pa;
+  model.implicit_nodes = snapshot.bodies.front().material.implicit_nodes;
   model.plane_count = static_cast<int>(snapshot.planes.size());
   for (const BodySnapshot& body : snapshot.bodies) {
     const auto& fixed = body.lattice.fixed;

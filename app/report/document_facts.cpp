@@ -83,6 +83,11 @@ void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot) {
             snapshot.bodies[0].material.mass_kg);
   facts.add("Felt E", modulus_text(snapshot.bodies[0].material.felt_youngs_modulus_pa),
             "felt_youngs_modulus_pa", snapshot.bodies[0].material.felt_youngs_modulus_pa);
+  const int implicit = snapshot.bodies[0].material.implicit_nodes;
+  facts.add(
+      "Solver",
+      implicit > 0 ? "implicit, " + std::to_string(implicit) + " nodes of hexahedra" : "explicit springs",
+      "solver", {{"kind", implicit > 0 ? "implicit" : "explicit"}, {"implicit_nodes", implicit}});
 }
 
 }  // namespace spoonbill

@@ -11,7 +11,7 @@
 //      "material": {"name": "clay", "source": "...", "youngs_modulus_pa": 2e5, "poissons_ratio": 0.45,
 //        "density_kg_per_m3": 1700, "damping_ratio": 0.1, "plastic": true, "yield_strain": 0.02,
 //        "flow_rate_per_s": 40,
-//        "hardening": 0.1, "stiffening": 2,                          may be left out: 0
+//        "hardening": 0.1, "stiffening": 2, "friction": 0.3,         may be left out: 0
 //        "relaxing_share": 0.5, "relaxation_time_s": 30},            may be left out: does not creep
 //      "lattice": {"node_budget": 2000}},                        or {"nodes": [4, 8, 60]}
 //    "other_bodies": [{"name": ...}, ...],                       each as "body"; may be left out

@@ -83,6 +83,7 @@ Material read_material_fields(FieldReader& reader) {
   material.flow_rate_per_s = reader.number("flow_rate_per_s", flow_rate_range_per_s);
   if (reader.has("hardening")) material.hardening = reader.number("hardening", hardening_range);
   if (reader.has("stiffening")) material.stiffening = reader.number("stiffening", stiffening_range);
+  if (reader.has("friction")) material.friction = reader.number("friction", friction_range);
   if (reader.has("relaxing_share")) {
     material.relaxing_share = reader.number("relaxing_share", relaxing_share_range);
     material.relaxation_time_s = reader.number("relaxation_time_s", relaxation_time_range_s);
@@ -102,6 +103,7 @@ void add_material_fields(const Material& material, Json& json) {
   json["flow_rate_per_s"] = number_to_json(material.flow_rate_per_s);
   if (material.hardening != 0.0) json["hardening"] = number_to_json(material.hardening);
   if (material.stiffening != 0.0) json["stiffening"] = number_to_json(material.stiffening);
+  if (material.friction != 0.0) json["friction"] = number_to_json(material.friction);
   if (material.relaxing_share == 0.0) return;
   json["relaxing_share"] = number_to_json(material.relaxing_share);
   json["relaxation_time_s"] = number_to_json(material.relaxation_time_s);

@@ -40,6 +40,10 @@ double compliance_between(const BodyPoint& first, const BodyPoint& second) {
   return sum;
 }
 
+double friction_between(const BodyPoint& first, const BodyPoint& second) {
+  return std::min(first.lattice->material().friction, second.lattice->material().friction);
+}
+
 }  // namespace
 
 BodyContacts::BodyContacts(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {}
@@ -51,14 +55,15 @@ void BodyContacts::clear() {
 bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m) {
   if (count_ == static_cast<int>(constraints_.size())) return false;
   const double moved = normal.dot(displacement_now(first) - displacement_now(second));
-  constraints_[count_++] = {first.body,    second.body, first.point,
-                            second.point,  normal,      compliance_between(first, second),
-                            gap_m - moved, false};
+  constraints_[count_++] = {first.body,    second.body,
+                            first.point,   second.point,
+                            normal,        compliance_between(first, second),
+                            gap_m - moved, friction_between(first, second),
+                            false};
   return true;
 }
 
-void BodyContacts::begin(double friction) {
-  friction_ = friction;
+void BodyContacts::begin() {
   for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
 }
 
@@ -79,7 +84,7 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
       constraint.first.velocity_m_per_s(first) - constraint.second.velocity_m_per_s(second);
   const ContactPush push{constraint.base_m + constraint.normal.dot(apart), constraint.normal, relative,
                          1.0 / constraint.compliance};
-  const auto impulse = push.impulse(h, pace, cap, friction_);
+  const auto impulse = push.impulse(h, pace, cap, constraint.friction);
   if (!impulse) return;
   constraint.first.push(first, *impulse);
   constraint.second.push(second, -*impulse);

@@ -28,8 +28,8 @@ class BodyContacts {
   // when full.
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m);
 
-  // Begins a tick. `friction` is Coulomb's coefficient.
-  void begin(double friction);
+  // Begins a tick.
+  void begin();
 
   // After the kick and before the drift of a substep of h_s.
   void solve(std::span<const LatticeView> lattices, float h_s,
@@ -49,13 +49,13 @@ class BodyContacts {
     Vector3 normal = Vector3::UnitY();
     double compliance = 0.0;  // what an impulse between them gives them of velocity, 1/kg
     double base_m = 0.0;      // the gap less the part that the displacements have in it
+    double friction = 0.0;    // of the smoother one
     bool acted = false;
   };
   void solve(std::span<const LatticeView> lattices, Constraint& constraint, double h, double cap);
 
   std::vector<Constraint> constraints_;
   int count_ = 0;
-  double friction_ = 0.0;
 };
 
 }  // namespace spoonbill

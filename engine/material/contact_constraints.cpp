@@ -37,8 +37,15 @@ bool ContactConstraints::add_grip(int body, const SpringLattice& lattice, const 
 bool ContactConstraints::add(Kind kind, int body, const SpringLattice& lattice, const EmbeddedPoint& point,
                              const Vector3& direction, double offset_m) {
   if (count_ == static_cast<int>(constraints_.size())) return false;
-  constraints_[count_++] = {
-      kind, body, point, point.rest_m(lattice), direction, offset_m, point.compliance(lattice), false};
+  constraints_[count_++] = {kind,
+                            body,
+                            point,
+                            point.rest_m(lattice),
+                            direction,
+                            offset_m,
+                            point.compliance(lattice),
+                            lattice.material().friction,
+                            false};
   return true;
 }
 
@@ -55,13 +62,15 @@ void ContactConstraints::begin(const ToolMotion& motion, double material_time_s)
 
 void ContactConstraints::solve(std::span<const LatticeView> lattices, ToolState& tool, float h,
                                double fraction, std::span<const float> caps) {
+  const double damped = 1.0 + static_cast<double>(h) * coupling_frequency;
+  answered_compliance_ = tool_compliance_ / (damped * damped);
   follow_hand(tool, h, fraction);
   if (motion_.carried.body >= 0) {
     tool_impulse_[motion_.carried.body] += static_cast<double>(h) * carried_force_;
   }
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
-    if (compliance_of(constraint) + tool_compliance_ == 0.0) continue;
+    if (compliance_of(constraint) + answered_compliance_ == 0.0) continue;
     const LatticeView& lattice = lattices[constraint.body];
     const double cap = caps[constraint.body];
     if (constraint.kind == Kind::grip) {
@@ -95,7 +104,7 @@ void ContactConstraints::follow_hand(ToolState& tool, double h, double fraction)
 void ContactConstraints::exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                   const Vector3& impulse) {
   if (motion_.body_yields) constraint.point.push(lattice, impulse);
-  tool.velocity_m_per_s -= tool_compliance_ * impulse;
+  tool.velocity_m_per_s -= answered_compliance_ * impulse;
   tool_impulse_[constraint.body] -= impulse;
   constraint.acted = true;
   acted_ = true;
@@ -116,8 +125,8 @@ void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& cons
     gap = distance - motion_.radius_m;
   }
   const ContactPush push{gap, normal, constraint.point.velocity_m_per_s(lattice) - tool.velocity_m_per_s,
-                         1.0 / (compliance_of(constraint) + tool_compliance_)};
-  if (const auto impulse = push.impulse(h, pace, cap, motion_.friction)) {
+                         1.0 / (compliance_of(constraint) + answered_compliance_)};
+  if (const auto impulse = push.impulse(h, pace, cap, constraint.friction)) {
     exchange(lattice, constraint, tool, *impulse);
   }
 }
@@ -131,7 +140,7 @@ void ContactConstraints::solve_grip(const LatticeView& lattice, Constraint& cons
   if (speed > cap) wanted *= cap / speed;
   const Vector3 velocity = constraint.point.velocity_m_per_s(lattice);
   exchange(lattice, constraint, tool,
-           (tool.velocity_m_per_s + wanted - velocity) / (compliance_of(constraint) + tool_compliance_));
+           (tool.velocity_m_per_s + wanted - velocity) / (compliance_of(constraint) + answered_compliance_));
 }
 
 void ContactConstraints::mark_touched(int body, std::uint8_t* touched) const {

@@ -34,7 +34,6 @@ struct ToolMotion {
   Vector3 end_m = Vector3::Zero();
   Quaternion orientation = Quaternion::Identity();
   double radius_m = 0.0;
-  double friction = 0.0;  // Coulomb's coefficient between tool and body
   // The spring by which the hand holds the tool, critically damped; 0 = held rigidly.
   double coupling_n_per_m = 0.0;
   bool body_yields = true;  // false: the tool meets the body as it would a wall
@@ -89,6 +88,7 @@ class ContactConstraints {
     Vector3 direction = Vector3::Zero();  // plane push: the normal; grip: the offset in the tool's frame
     double offset_m = 0.0;                // plane push
     double compliance = 0.0;              // 1/kg of the point; 0 when every node is held
+    double friction = 0.0;                // of the body's surface; the tool is as rough
     bool acted = false;
   };
   bool add(Kind kind, int body, const SpringLattice& lattice, const EmbeddedPoint& point,
@@ -105,6 +105,8 @@ class ContactConstraints {
   Vector3 hand_velocity_ = Vector3::Zero();  // m/s of material time
   Vector3 carried_force_ = Vector3::Zero();
   double tool_compliance_ = 0.0;  // 1/kg; 0 where the hand holds it rigidly
+  // What an impulse gives the tool by the end of the substep, when its spring and damper have answered too.
+  double answered_compliance_ = 0.0;
   std::array<Vector3, lattice_capacity> tool_impulse_;
   bool acted_ = false;
 };

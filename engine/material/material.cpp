@@ -1,5 +1,7 @@
 #include "engine/material/material.h"
 
+#include "engine/number_text.h"
+
 namespace spoonbill {
 
 Status check_material(const Material& material) {
@@ -18,6 +20,7 @@ Status check_material(const Material& material) {
       {"stiffening", material.stiffening, stiffening_range},
       {"relaxing_share", material.relaxing_share, relaxing_share_range},
       {"relaxation_time_s", material.relaxation_time_s, relaxation_time_range_s},
+      {"friction", material.friction, friction_range},
   };
   for (const auto& check : checks) {
     if (Status status = check_range(check.field, check.value, check.range); !status.ok()) {
@@ -28,7 +31,16 @@ Status check_material(const Material& material) {
     return Error{"material " + material.name +
                  ": cannot both flow and creep; set plastic to false or relaxing_share to 0"};
   }
+  if (!is_plainly_elastic(material) && material.poissons_ratio < least_spring_poissons_ratio) {
+    return Error{"material " + material.name + ": poissons_ratio is " + number_text(material.poissons_ratio) +
+                 ", must be " + number_text(least_spring_poissons_ratio) +
+                 " or more for a material that is plastic, creeps or stiffens"};
+  }
   return {};
+}
+
+bool is_plainly_elastic(const Material& material) {
+  return !material.plastic && material.relaxing_share == 0.0 && material.stiffening == 0.0;
 }
 
 }  // namespace spoonbill

@@ -26,12 +26,15 @@ struct Material {
   // Of a material that creeps: at a constant strain this share of the stress goes, with this time constant.
   double relaxing_share = 0.0;
   double relaxation_time_s = 1.0;
+  double friction = 0.0;  // Coulomb's coefficient of its surface
 };
 
 // From the softest gel to beyond diamond, from an aerogel to beyond osmium: every solver stays finite inside.
 inline constexpr Range<double> youngs_modulus_range_pa{1.0, 1e12};
-// Below 0.2, a volume force that makes springs so is unstable under contact.
-inline constexpr Range<double> poissons_ratio_range{0.2, 0.49};
+inline constexpr Range<double> poissons_ratio_range{0.0, 0.49};
+// Of what flows, creeps or stiffens, which springs do. Below, a volume force that makes springs so is
+// unstable under contact.
+inline constexpr double least_spring_poissons_ratio = 0.2;
 inline constexpr Range<double> density_range_kg_per_m3{1.0, 30000.0};
 inline constexpr Range<double> damping_ratio_range{0.0, 2.0};
 inline constexpr Range<double> yield_strain_range{1e-4, 0.5};         // of plastic materials
@@ -42,10 +45,14 @@ inline constexpr Range<double> hardening_range{0.0, 1.0};
 inline constexpr Range<double> stiffening_range{-1000.0, 1000.0};
 inline constexpr Range<double> relaxing_share_range{0.0, 1.0};
 inline constexpr Range<double> relaxation_time_range_s{0.1, 1e6};
+inline constexpr Range<double> friction_range{0.0, 5.0};
 
 inline constexpr Range<double> yield_strain_range_of(bool plastic) {
   return plastic ? yield_strain_range : elastic_yield_strain_range;
 }
+
+// Whether it is elastic and nothing else, as hexahedra are: those serve any Poisson's ratio.
+bool is_plainly_elastic(const Material& material);
 
 // The ranges within which every solver stays finite; the message names the field, the value and the range.
 Status check_material(const Material& material);

@@ -134,8 +134,10 @@ void SpringLattice::assemble(const Material& material, double youngs_modulus_pa)
   report_ = {};
   report_.worst_jacobian = 1.0;
   const auto nodes = static_cast<std::size_t>(mesh_.node_count());
-  Assembly sum{shear_modulus(youngs_modulus_pa, material.poissons_ratio),
-               bulk_stiffness(youngs_modulus_pa, material.poissons_ratio),
+  // Below, a core moves the lattice, and its springs rest.
+  const double poissons_ratio = std::max(material.poissons_ratio, least_spring_poissons_ratio);
+  Assembly sum{shear_modulus(youngs_modulus_pa, poissons_ratio),
+               bulk_stiffness(youngs_modulus_pa, poissons_ratio),
                material.density_kg_per_m3,
                std::vector<double>(nodes, 0.0),
                std::vector<double>(nodes, 0.0),

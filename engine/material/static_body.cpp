@@ -23,6 +23,10 @@ void hold_node(int node, const Vector3& displacement_m, std::vector<HeldAxis>& h
 
 Result<StaticBody> StaticBody::make(const LatticeMesh& mesh, const Material& material, CellKind kind) {
   if (const Status status = check_material(material); !status.ok()) return status.error();
+  if (kind == CellKind::springs && material.poissons_ratio < 0.25) {
+    return Error{"material " + material.name + ": poissons_ratio is " + number_text(material.poissons_ratio) +
+                 ", must be 0.25 or more for springs at rest; use hexahedra"};
+  }
   if (const Status status = check_cells(mesh); !status.ok()) return status.error();
   StaticBody body;
   body.mesh_ = mesh;

@@ -19,8 +19,9 @@ Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material&
 Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const std::vector<Vector3>& rest_m,
                                             InstructionSet set) {
   const Material& material = lattice.material();
-  const bool elastic = !material.plastic && material.relaxing_share == 0.0 && material.stiffening == 0.0;
-  if (!elastic || material.youngs_modulus_pa < stiff_youngs_modulus_pa) return std::optional<ImplicitCore>();
+  const bool for_springs = material.youngs_modulus_pa < stiff_youngs_modulus_pa &&
+                           material.poissons_ratio >= least_spring_poissons_ratio;
+  if (!is_plainly_elastic(material) || for_springs) return std::optional<ImplicitCore>();
   Result<ImplicitCore> core = ImplicitCore::make(lattice.mesh(), rest_m, material, set);
   if (!core.ok()) return core.error();
   return std::optional<ImplicitCore>(std::move(core).value());

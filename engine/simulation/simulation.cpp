@@ -137,7 +137,7 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
   for (std::size_t b = 0; b < s.stepped(); ++b) {
     s.pairs_overflow |= !s.self[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, s.between);
   }
-  s.between.begin(0.0);
+  s.between.begin();
 }
 
 void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {

@@ -82,7 +82,8 @@ struct ContactSnapshot {
 struct MaterialSnapshot {
   std::string name;
   double youngs_modulus_pa = 0.0;       // of the material
-  double felt_youngs_modulus_pa = 0.0;  // what the sculpting lattice holds at 1 kHz
+  double felt_youngs_modulus_pa = 0.0;  // what is stepped at 1 kHz
+  int implicit_nodes = 0;               // of the block that steps it implicitly; 0: springs do, explicitly
   double poissons_ratio = 0.0;
   double density_kg_per_m3 = 0.0;
   double damping_per_s = 0.0;  // mass-proportional

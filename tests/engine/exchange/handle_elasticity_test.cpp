@@ -1,5 +1,5 @@
-// A virtual tension test of the handle that comes with the program: what its lattice makes of a material where
-// the body is a bar.
+// A virtual tension test of the handle that comes with the program: what its lattice makes of a material
+// where the body is a bar.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -82,7 +82,8 @@ Measured tension_test(const LatticeMesh& mesh, const StaticBody& body) {
 }
 
 TEST(HandleElasticity, IsTheMaterialsAtThreeResolutions) {
-  const auto document = read_document(std::filesystem::path(SPOONBILL_ASSETS) / "models" / "spoon-handle.json");
+  const auto document =
+      read_document(std::filesystem::path(SPOONBILL_ASSETS) / "models" / "spoon-handle.json");
   ASSERT_TRUE(document.ok());
   const Body& handle = document->scene.bodies[0];
   for (const int budget : {500, 2000, 8000}) {

@@ -18,9 +18,14 @@ TEST(Ranges, AcceptTheSample) {
 
 TEST(Ranges, NameFieldValueAndRange) {
   Material material = sample_document().scene.bodies[0].material;
-  material.poissons_ratio = 0.1;
+  material.poissons_ratio = 0.5;
   EXPECT_EQ(check_material(material).error().message,
-            "material modelling-clay: poissons_ratio is 0.1, must be 0.2 to 0.49");
+            "material modelling-clay: poissons_ratio is 0.5, must be 0 to 0.49");
+  material.poissons_ratio = 0.1;
+  EXPECT_EQ(
+      check_material(material).error().message,
+      "material modelling-clay: poissons_ratio is 0.1, must be 0.2 or more for a material that is plastic, "
+      "creeps or stiffens");
   material.poissons_ratio = 0.3;
   material.relaxing_share = 0.5;
   EXPECT_EQ(

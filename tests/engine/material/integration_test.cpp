@@ -209,14 +209,14 @@ TEST(Integration, BlockSlidesDownAnIncline) {
     const double tilt = 0.35, g = 9.81;
     Material material = elastic_material(2e4, 0.3, 1000.0);
     material.damping_ratio = 0.1;
+    material.friction = friction;
     SpringLattice lattice = block({0.02, 0.01, 0.02}, {5, 3, 5}, material);
     ContactConstraints contacts(25);
     support_from_below(lattice, contacts);
     ToolState tool;
     RelaxSettings settings;
     const Vector3 gravity_m_per_s2{g * std::sin(tilt), -g * std::cos(tilt), 0.0};
-    ToolMotion ground;
-    ground.friction = friction;
+    const ToolMotion ground;
     const auto speed = [&] {
       double sum = 0.0, mass = 0.0;
       for (int n = 0; n < lattice.mesh().node_count(); ++n) {

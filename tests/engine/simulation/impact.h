@@ -28,7 +28,7 @@ class Impact {
     contacts_.clear();
     EXPECT_TRUE(pair_.find({0, &bodies_[0]}, {1, &bodies_[1]}));
     EXPECT_TRUE(pair_.add_contacts({0, &bodies_[0]}, {1, &bodies_[1]}, contacts_));
-    contacts_.begin(0.0);
+    contacts_.begin();
     relax(std::array{RelaxedLattice{&bodies_[0].lattice}, RelaxedLattice{&bodies_[1].lattice}}, {tick_++}, {},
           &contacts_);
     for (BodyState& body : bodies_) body.update_skin();

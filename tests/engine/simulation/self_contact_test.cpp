@@ -92,7 +92,7 @@ class Folding {
     const DenormalsFlushed flushed;
     contacts_.clear();
     EXPECT_TRUE(!meets_itself_ || self_.add_contacts({0, &body_}, contacts_));
-    contacts_.begin(0.0);
+    contacts_.begin();
     relax(std::array{RelaxedLattice{&body_.lattice}}, {tick_++, 1, 1e-3, damping_per_s_}, {}, &contacts_);
     body_.mapping().update(body_.lattice);
     return contacts_.acted(0);
