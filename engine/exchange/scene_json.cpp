@@ -39,16 +39,30 @@ void add_symmetry(const Symmetry& symmetry, Json& json) {
   json["normal"] = vector_to_json(symmetry.normal);
 }
 
-LatticeRequest read_lattice_request(FieldReader& reader) {
-  LatticeRequest lattice;
-  if (reader.has("nodes") == reader.has("node_budget")) {
-    reader.refuse("must have either nodes or node_budget");
-    return lattice;
-  }
-  if (reader.has("node_budget")) {
-    lattice.node_budget = reader.integer("node_budget", node_budget_range);
-    return lattice;
-  }
+namespace {
+
+FeatureMapSettings read_feature_map(FieldReader reader) {
+  FeatureMapSettings settings;
+  settings.draws_per_node = reader.integer("draws_per_node", draws_per_node_range);
+  settings.first_rate = reader.number("first_rate", map_rate_range);
+  settings.last_rate = reader.number("last_rate", map_rate_range);
+  settings.first_neighbourhood = reader.number("first_neighbourhood", map_neighbourhood_range);
+  settings.last_neighbourhood = reader.number("last_neighbourhood", map_neighbourhood_range);
+  settings.seed = static_cast<std::uint32_t>(reader.integer("seed", map_seed_range));
+  reader.finish();
+  return settings;
+}
+
+Json feature_map_to_json(const FeatureMapSettings& settings) {
+  return {{"draws_per_node", settings.draws_per_node},
+          {"first_rate", number_to_json(settings.first_rate)},
+          {"last_rate", number_to_json(settings.last_rate)},
+          {"first_neighbourhood", number_to_json(settings.first_neighbourhood)},
+          {"last_neighbourhood", number_to_json(settings.last_neighbourhood)},
+          {"seed", settings.seed}};
+}
+
+void read_counts(FieldReader& reader, LatticeRequest& lattice) {
   const Range<double> range{static_cast<double>(node_count_range.low),
                             static_cast<double>(node_count_range.high)};
   const Vector3 nodes = reader.vector("nodes", range);
@@ -59,6 +73,22 @@ LatticeRequest read_lattice_request(FieldReader& reader) {
   if (nodes.prod() > node_budget_range.high) {
     reader.refuse("nodes", "must make at most " + std::to_string(node_budget_range.high) + " nodes together");
   }
+}
+
+}  // namespace
+
+LatticeRequest read_lattice_request(FieldReader& reader) {
+  LatticeRequest lattice;
+  if (reader.has("nodes") == reader.has("node_budget")) {
+    reader.refuse("must have either nodes or node_budget");
+    return lattice;
+  }
+  if (reader.has("feature_map")) lattice.feature_map = read_feature_map(reader.inner("feature_map"));
+  if (reader.has("node_budget")) {
+    lattice.node_budget = reader.integer("node_budget", node_budget_range);
+  } else {
+    read_counts(reader, lattice);
+  }
   return lattice;
 }
 
@@ -68,6 +98,7 @@ void add_lattice_request(const LatticeRequest& lattice, Json& json) {
   } else {
     json["node_budget"] = lattice.node_budget;
   }
+  if (lattice.feature_map) json["feature_map"] = feature_map_to_json(*lattice.feature_map);
 }
 
 Material read_material_fields(FieldReader& reader) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "engine/material/feature_map.h"
 #include "engine/pose.h"
 #include "engine/result.h"
 
@@ -15,6 +16,9 @@ namespace spoonbill {
 struct LatticeRequest {
   int node_budget = 2000;
   std::optional<std::array<int, 3>> counts;  // each at least 2
+  // Of bodies that are tubes: how the nodes inside are spread once the transfinite ones are there; not at all
+  // without it.
+  std::optional<FeatureMapSettings> feature_map = {};
 };
 
 // For a body of these extents, each above zero. Refused: counts below 2.

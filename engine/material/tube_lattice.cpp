@@ -335,6 +335,7 @@ Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& r
   fill_cap(surface, ring, mesh, 0, surface.v.domain_start(), profile.v[first_rim]);
   fill_cap(surface, ring, mesh, last, surface.v.domain_end(), profile.v[last_rim]);
   if (const Status status = check_cells(mesh); !status.ok()) return status.error();
+  if (request.feature_map) order_by_feature_map(mesh, *request.feature_map);
   return mesh;
 }
 

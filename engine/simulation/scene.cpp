@@ -10,6 +10,11 @@ Status check_symmetry(const Symmetry& symmetry) {
 }
 
 Status check_lattice_request(const LatticeRequest& lattice) {
+  if (lattice.feature_map) {
+    if (Status status = check_feature_map(*lattice.feature_map); !status.ok()) {
+      return Error{"lattice: " + status.error().message};
+    }
+  }
   if (!lattice.counts) return check_range("lattice: node_budget", lattice.node_budget, node_budget_range);
   int product = 1;
   for (std::size_t direction = 0; direction < 3; ++direction) {

@@ -95,6 +95,7 @@ Document deformed_document(unsigned seed) {
   plane.normal = Vector3(length_m(), length_m(), length_m()).normalized();
   document.scene.tool.radius_m = std::abs(length_m()) / 8.0;
   document.scene.bodies[0].lattice.counts = {4, 8, 60};
+  document.scene.bodies[0].lattice.feature_map = FeatureMapSettings{7, 0.25, 0.0625, 3.0, 0.75, 12};
   return document;
 }
 
@@ -110,6 +111,7 @@ bool same_bits(const Document& a, const Document& b) {
          body.surface.u == other.surface.u && body.surface.v == other.surface.v &&
          body.material.name == other.material.name && body.material.source == other.material.source &&
          body.material.plastic == other.material.plastic && body.lattice.counts == other.lattice.counts &&
+         body.lattice.feature_map == other.lattice.feature_map &&
          body.lattice.node_budget == other.lattice.node_budget && tool.kind == other_tool.kind &&
          tool.action == other_tool.action && tool.iterations == other_tool.iterations;
 }
