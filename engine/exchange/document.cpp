@@ -33,8 +33,9 @@ std::optional<Body> read_body(FieldReader reader) {
 std::optional<std::vector<Body>> read_bodies(FieldReader& reader) {
   std::vector<Body> bodies;
   const auto take = [&](std::optional<Body> body) {
-    if (body) bodies.push_back(*std::move(body));
-    return body.has_value();
+    if (!body) return false;
+    bodies.push_back(*std::move(body));
+    return true;
   };
   if (!take(read_body(reader.inner("body")))) return std::nullopt;
   if (!reader.has("other_bodies")) {

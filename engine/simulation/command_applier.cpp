@@ -17,6 +17,7 @@ std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies) {
 
 std::vector<BodySelfContact> make_self(const std::vector<BodyState>& bodies) {
   std::vector<BodySelfContact> self;
+  self.reserve(bodies.size());
   for (const BodyState& body : bodies) self.emplace_back(body);
   return self;
 }

@@ -30,8 +30,9 @@ Vector3 position_of(const SpringLattice& lattice, const EmbeddedPoint& point) {
 }
 
 ToolShape shape_of(const Tool& tool, const ToolModel& model, const ToolHold& hold) {
-  if (tool.kind == ToolKind::solid && model.distance)
+  if (tool.kind == ToolKind::solid && model.distance) {
     return ToolShape::solid(*model.distance, hold.pose.position_m, hold.turn);
+  }
   const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
   return ToolShape::sphere(hold.pose.position_m, radius);
 }

@@ -141,7 +141,8 @@ TEST(LiveSession, SavesWhatTheShapeIsNow) {
   ASSERT_TRUE(saved) << saved.error().message;
   double lowest = 1.0, lowest_before = 1.0;
   for (const double y : saved->scene.bodies[0].surface.net.y) lowest = std::min(lowest, y);
-  for (const double y : small_handle().bodies[0].surface.net.y) lowest_before = std::min(lowest_before, y);
+  const Scene before = small_handle();
+  for (const double y : before.bodies[0].surface.net.y) lowest_before = std::min(lowest_before, y);
   EXPECT_LT(lowest, lowest_before - 1e-4);
   EXPECT_EQ(saved->scene.planes.size(), 1U);
 }

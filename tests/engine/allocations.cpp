@@ -17,7 +17,8 @@ std::size_t allocation_count() {
 
 }  // namespace spoonbill
 
-// The forms for arrays, for sizes and without exceptions all come down to these four.
+// The forms for arrays and for sizes come down to these; so do those without exceptions in most programs, but
+// the address sanitizer brings its own.
 void* operator new(std::size_t size) {
   ++count;
   if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
@@ -29,6 +30,17 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
   const std::size_t unit = static_cast<std::size_t>(alignment);
   if (void* memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) return memory;
   throw std::bad_alloc();
+}
+
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  ++count;
+  return std::malloc(size > 0 ? size : 1);
+}
+
+void* operator new(std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  ++count;
+  const std::size_t unit = static_cast<std::size_t>(alignment);
+  return std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
 }
 
 void operator delete(void* memory) noexcept {

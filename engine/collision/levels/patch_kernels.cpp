@@ -164,11 +164,13 @@ struct ManyVectors {
   Many x, y, z;
 };
 
+// What is written to has any type, so that only the branch for it has to make sense.
 template <int a = 0>
 struct AllFour {
-  inline __attribute__((always_inline)) void operator()(const float* lanes, Many& out) const {
+  template <class Out>
+  inline __attribute__((always_inline)) void operator()(const float* lanes, Out& out) const {
     const Four four = *reinterpret_cast<const Four*>(lanes);
-    if constexpr (slabs_at_once == 1) {
+    if constexpr (sizeof(Out) == sizeof(Four)) {
       out = __builtin_shufflevector(four, four, a, a + 1, a + 2, a + 3);
     } else {
       out = __builtin_shufflevector(four, four, a, a + 1, a + 2, a + 3, a, a + 1, a + 2, a + 3);
@@ -177,9 +179,10 @@ struct AllFour {
 };
 template <int first>
 struct FourOfEach {
-  inline __attribute__((always_inline)) void operator()(const float* lanes, Many& out) const {
+  template <class Out>
+  inline __attribute__((always_inline)) void operator()(const float* lanes, Out& out) const {
     const Four four = *reinterpret_cast<const Four*>(lanes);
-    if constexpr (slabs_at_once == 1) {
+    if constexpr (sizeof(Out) == sizeof(Four)) {
       out = __builtin_shufflevector(four, four, first, first, first, first);
     } else {
       constexpr int next = first + 1;
