@@ -88,6 +88,15 @@ bool draw_presets(const PanelModel& model, Material& material) {
   return changed;
 }
 
+// And what steps it: springs, which may hold a part of the stiffness, or an implicit method, which holds all
+// of it.
+std::string felt_text(const PanelModel& model) {
+  const std::string felt = modulus_text(model.felt_youngs_modulus_pa);
+  if (model.implicit_nodes > 0) return felt + "  (implicit)";
+  return felt + "  (" + percent_text(model.felt_youngs_modulus_pa / model.material.youngs_modulus_pa) +
+         " of E)";
+}
+
 std::string after_touch_text(const Material& material) {
   if (material.plastic) return "keeps its bend";
   if (!(material.relaxing_share > 0.0)) return "springs back";
@@ -102,10 +111,7 @@ void draw_material(const PanelModel& model, const Theme& theme, Requests& reques
   bool changed = draw_presets(model, material);
   changed |= slider_row("E", material.youngs_modulus_pa, modulus_slider_pa, SliderScale::logarithmic,
                         modulus_text(material.youngs_modulus_pa));
-  fact_row("Felt E", modulus_text(model.felt_youngs_modulus_pa) + "  (" +
-                         percent_text(model.felt_youngs_modulus_pa / material.youngs_modulus_pa) + " of E)");
-  fact_row("Solver", model.implicit_nodes > 0 ? "implicit, " + std::to_string(model.implicit_nodes) + " nodes"
-                                              : "springs, explicit");
+  fact_row("Felt E", felt_text(model));
   changed |= slider_row("Poisson", material.poissons_ratio, poissons_ratio_range, SliderScale::linear,
                         rounded(material.poissons_ratio, 2, ""));
   changed |= slider_row("Density", material.density_kg_per_m3, density_slider_kg_per_m3,

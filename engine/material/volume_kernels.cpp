@@ -138,8 +138,6 @@ inline float dilation_of(const LatticeView& view, const FaceDiagonals& p, int n)
   return (volume_sum(p) - view.rest_volume_sum[n]) * (1.0f / 12.0f) * view.inverse_volume[n];
 }
 
-}  // namespace
-
 template <bool gives_way>
 void add_volume_forces(const LatticeView& view) {
   BlockCells cells;
@@ -159,6 +157,8 @@ void add_volume_forces(const LatticeView& view) {
     add_corner_forces(view, start, cells);
   }
 }
+
+}  // namespace
 
 void volume_forces(const LatticeView& view) {
   if (view.volume_gives_way) {

@@ -82,9 +82,9 @@ TEST(SoftPress, AMeshGivesWayTooAndComesBack) {
     last = hangs_m(reading.pose().position_m.y());
     shortest = std::min(shortest, last);
   }
-  EXPECT_GT(strongest, 0.1);
-  EXPECT_LT(lowest_top, first_top - 1e-3) << "the cushion has a dent";
-  EXPECT_LT(shortest, last - 0.5e-3) << "and so has the egg";
+  EXPECT_GT(strongest, 0.05);
+  EXPECT_NEAR(lowest_top, first_top, 0.1e-3) << "the cushion of silicone hardly yields";
+  EXPECT_LT(shortest, last - 0.5e-3) << "the egg of gelatin does";
   EXPECT_NEAR(last, 0.025, 0.2e-3) << "which is as it was made";
 }
 

@@ -88,12 +88,13 @@ TEST(Document, NamesUnknownAndMissingFields) {
       "sculpting, view");
 }
 
-// Takes away each field in turn, at every depth: none may be accepted, each is named.
+// Takes away each field in turn, at every depth: none that is needed may be accepted, each is named.
 TEST(Document, NamesEveryMissingField) {
   const Json flat = document_to_json(sample_document()).flatten();
   for (const auto& item : flat.items()) {
     const Json::json_pointer pointer(item.key());
     const std::string field = pointer.back();
+    if (field == "hardening" || field == "stiffening" || field == "friction") continue;  // 0 without
     if (item.key().starts_with("/view") || field.find_first_not_of("0123456789") == std::string::npos)
       continue;
     const std::string message = refusal([&](Json& j) { j[pointer.parent_pointer()].erase(field); });
