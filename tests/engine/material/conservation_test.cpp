@@ -55,7 +55,8 @@ Energies energies_of(const SpringLattice& lattice, const StaticBody& springs, do
   return energies;
 }
 
-// Shaken: every node at up to 2 mm/s, the body at 10.
+// Shaken: every node at up to 2 mm/s. It stays near: displacements have seven digits, and a body that has
+// flown thousands of its strains away gains by their rounding, 5 % of its flight's energy in as many ticks.
 SpringLattice shaken_block(double damping_ratio) {
   Material material = elastic_material(5000.0, 0.35, 1000.0);
   material.damping_ratio = damping_ratio;
@@ -63,7 +64,7 @@ SpringLattice shaken_block(double damping_ratio) {
   Random random(23);
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
     lattice.set_velocity(n,
-                         2e-3 * Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(4, 6)));
+                         2e-3 * Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
   }
   return lattice;
 }
