@@ -86,7 +86,7 @@ TEST(HandleElasticity, IsTheMaterialsAtThreeResolutions) {
       read_document(std::filesystem::path(SPOONBILL_ASSETS) / "models" / "spoon-handle.json");
   ASSERT_TRUE(document.ok());
   const Body& handle = document->scene.bodies[0];
-  for (const int budget : {1000, 2000, 8000}) {
+  for (const int budget : {2000, 4000, 8000}) {
     const Result<LatticeMesh> whole = tube_lattice(handle.surface, {budget, {}});
     ASSERT_TRUE(whole.ok());
     const LatticeMesh mesh = middle_half(whole.value());
