@@ -13,10 +13,9 @@
 //        "flow_rate_per_s": 40,
 //        "hardening": 0.1, "stiffening": 2, "friction": 0.3,         may be left out: 0
 //        "relaxing_share": 0.5, "relaxation_time_s": 30},            may be left out: does not creep
-//      "lattice": {"node_budget": 2000}},                        or {"nodes": [4, 8, 60]}; with it, if
-//      wanted,
+//      "lattice": {"node_budget": 2000,                          or "nodes": [4, 8, 60]
 //        "feature_map": {"draws_per_node": 500, "first_rate": 0.1, "last_rate": 0.01,
-//          "first_neighbourhood": 2, "last_neighbourhood": 1, "seed": 1}
+//          "first_neighbourhood": 2, "last_neighbourhood": 1, "seed": 1}}},    may be left out
 //    "other_bodies": [{"name": ...}, ...],                       each as "body"; may be left out
 //    "fixing_planes": [{"point_mm": [20, 0, 0], "normal": [1, 0, 0]}],    may be left out
 //    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6,
