@@ -77,8 +77,8 @@ class Equilibrium {
     for (int halving = 0; halving <= halvings; ++halving, share *= 0.5) {
       Coordinates next = at;
       system_->move(step, share, next);
-      if (!(potential(next, loads) <= before + rounding * std::abs(before) - enough_fall * share * fall))
-        continue;
+      const double enough = before + rounding * std::abs(before) - enough_fall * share * fall;
+      if (!(potential(next, loads) <= enough)) continue;
       at = next;
       return true;
     }
