@@ -9,6 +9,9 @@
 namespace spoonbill {
 namespace {
 
+// A solution takes two products for each entry of the band, and a tick some five solutions.
+constexpr double largest_band = 1.3e5;
+constexpr int least_budget = 30;
 // Of the whole body's: before the first contact, and the most.
 constexpr double first_lightness = 8.0, largest_lightness = 1e5;
 
@@ -64,14 +67,28 @@ GridPoint weighted(const LatticeMesh& of, int node, const LatticeMesh& by) {
   return result;
 }
 
+// Entries of the band: what a solution multiplies.
+double band_size(const std::array<int, 3>& count) {
+  const int slice = count[0] * count[1];
+  return 9.0 * slice * count[2] * (slice + count[1] + 2);
+}
+
+// As many as fit the budget and the band, and no more than the lattice has.
+Result<std::array<int, 3>> coarse_counts(const LatticeMesh& mesh, const Vector3& size_m) {
+  for (int budget = implicit_node_budget;; budget = budget * 4 / 5) {
+    Result<std::array<int, 3>> counts = lattice_counts({budget, std::nullopt}, size_m);
+    if (!counts.ok()) return counts;
+    std::array<int, 3> count = counts.value();
+    for (std::size_t axis = 0; axis < 3; ++axis) count[axis] = std::min(count[axis], mesh.count[axis]);
+    if (band_size(count) <= largest_band || budget < least_budget) return count;
+  }
+}
+
 Result<LatticeMesh> coarser(const LatticeMesh& mesh, const std::vector<Vector3>& nodes) {
-  const Result<std::array<int, 3>> counts =
-      lattice_counts({implicit_node_budget, std::nullopt}, extents(mesh, nodes));
+  const Result<std::array<int, 3>> counts = coarse_counts(mesh, extents(mesh, nodes));
   if (!counts.ok()) return counts.error();
   LatticeMesh coarse;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    coarse.count[axis] = std::min(counts.value()[axis], mesh.count[axis]);
-  }
+  coarse.count = counts.value();
   coarse.nodes.assign(static_cast<std::size_t>(coarse.node_count()), Vector3::Zero());
   for (int n = 0; n < coarse.node_count(); ++n) {
     const GridPoint at = weighted(coarse, n, mesh);

@@ -13,7 +13,8 @@
 
 namespace spoonbill {
 
-// Nodes of the block: what a tick can hold. Hexahedra need few of them, since each can bend.
+// Nodes of the block: what a tick can hold of a long body, whose band is narrow; fat ones get fewer.
+// Hexahedra need few of them, since each can bend.
 inline constexpr int implicit_node_budget = 500;
 
 // A node of one grid as a weighted sum of another's.

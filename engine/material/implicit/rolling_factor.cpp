@@ -2,14 +2,16 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
 namespace spoonbill {
 namespace {
 
-// In how many ticks a new factor is taken.
-constexpr int ticks_a_factor = 4;
+// Products that a piece may take: a tenth or two of a millisecond. A long body's factor takes some four of
+// them.
+constexpr double products_a_piece = 8e5;
 // Of the first entry of the diagonal.
 constexpr double least_pivot = 1e-14;
 
@@ -111,7 +113,8 @@ void RollingFactor::take_piece(const MatrixParts& parts) {
   }
   const bool changed = next_.inertia != parts.inertia || next_.stiffness != parts.stiffness;
   if (next_.columns == size || changed) begin(parts.inertia, parts.stiffness);
-  take_columns(parts, (size + ticks_a_factor - 1) / ticks_a_factor);
+  const double products_a_column = 0.5 * next_.band.half_band * next_.band.half_band;
+  take_columns(parts, static_cast<int>(std::ceil(products_a_piece / products_a_column)));
 }
 
 void RollingFactor::solve(const double* from, const double* free, double* to) const {
