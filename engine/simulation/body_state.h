@@ -25,6 +25,7 @@ struct BodyState {
   Smoothing smoothing;
   std::vector<std::uint8_t> held, touched;  // one byte a node
   std::optional<ImplicitCore> core = {};    // where the material is too stiff for the lattice's springs
+  bool core_rests = false;
 
   // One byte a node.
   void hold(std::vector<std::uint8_t> nodes) {
@@ -34,13 +35,22 @@ struct BodyState {
   }
   void set_core(std::optional<ImplicitCore> made) {
     core = std::move(made);
-    lattice.set_contact_inverse_mass(core ? core->contact_inverse_mass() : 0.0);
-    lattice.hold(held);
     if (core) core->hold(held);
+    rest_core(core_rests);
   }
+  // While a tool grips, the springs step the body: grips hold both ways, and those of a tool much heavier
+  // than a stiff body would shake it.
+  void rest_core(bool rests) {
+    core_rests = rests;
+    lattice.set_contact_inverse_mass(mover() ? core->contact_inverse_mass() : 0.0);
+    lattice.hold(held);
+    if (mover()) core->take_shape(lattice);
+  }
+  ImplicitCore* mover() { return core && !core_rests ? &*core : nullptr; }
+  const ImplicitCore* mover() const { return core && !core_rests ? &*core : nullptr; }
   // The Young's modulus that is stepped.
   double felt_youngs_modulus_pa() const {
-    return core ? lattice.material().youngs_modulus_pa : lattice.youngs_modulus_pa();
+    return mover() ? lattice.material().youngs_modulus_pa : lattice.youngs_modulus_pa();
   }
 
   // What every body has but a tessellated tool that gives way.

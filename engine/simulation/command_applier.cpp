@@ -54,6 +54,10 @@ Status CommandApplier::operator()(const SetTool& command) {
     take_model(std::move(model).value());
   }
   state.scene.tool = tool;
+  const bool grips = tool.action == ToolAction::pull;
+  for (BodyState& body : state.scene_bodies()) {
+    if (body.core_rests != grips) body.rest_core(grips);
+  }
   if (state.tool_is_soft()) state.tool.placed = false;
   release();
   return {};
@@ -103,7 +107,6 @@ Status CommandApplier::operator()(const SetMaterial& command) {
   if (!core.ok()) return core.error();
   body.lattice = std::move(lattice).value();
   body.set_core(std::move(core).value());
-  if (body.core) body.core->take_shape(body.lattice);
   state.scene.bodies[at].material = command.material;
   release();
   return {};

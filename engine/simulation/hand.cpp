@@ -23,7 +23,7 @@ double softest_ratio(const Simulation::State& s) {
 // A stiff body does not yield to a hand that nothing moves: the tool is then held by a spring all the same.
 double coupling_of(const Simulation::State& s, double wanted_n_per_m) {
   constexpr double hold_n_per_m = 1000.0;
-  const auto is_stiff = [](const BodyState& body) { return body.core.has_value(); };
+  const auto is_stiff = [](const BodyState& body) { return body.mover() != nullptr; };
   if (wanted_n_per_m > 0.0) return wanted_n_per_m;
   return std::any_of(s.bodies.begin(), s.bodies.end(), is_stiff) ? hold_n_per_m : 0.0;
 }

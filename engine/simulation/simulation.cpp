@@ -50,6 +50,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
   for (const Body& body : scene.bodies) {
     Result<BodyState> state = make_body_state(body, scene.planes, set);
     if (!state.ok()) return about(body, scene, state.error());
+    state->rest_core(scene.tool.action == ToolAction::pull);
     bodies.push_back(std::move(state).value());
   }
   Result<ToolModel> model = make_tool_model(scene.tool, set);
@@ -100,7 +101,7 @@ void smooth(Simulation::State& s, const HeldTool& held) {
   const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
   const double least = least_reach_cells * static_cast<double>(body.lattice.cell_size_m());
   body.smoothing.apply(body.lattice, {collision.nearest.point_m, std::max(radius, least)}, s.tick);
-  if (body.core) body.core->take_moved_nodes(body.lattice);
+  if (body.mover()) body.mover()->take_moved_nodes(body.lattice);
 }
 
 bool is_tool(const Simulation::State& s, std::size_t body) {
@@ -146,8 +147,7 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
     // What a body sags at rest is its weight over its stiffness: a softer one must weigh less to sag the
     // same.
     BodyState& body = s.bodies[b];
-    lattices[b] = {&body.lattice, s.scene.sculpting.gravity_m_per_s2 / real_over_felt(s, b),
-                   body.core ? &*body.core : nullptr};
+    lattices[b] = {&body.lattice, s.scene.sculpting.gravity_m_per_s2 / real_over_felt(s, b), body.mover()};
   }
   const RelaxSettings settings{s.tick, s.scene.tool.iterations, tick_s, s.scene.sculpting.damping_per_s};
   s.relaxed = relax({lattices.data(), s.stepped()}, settings, tools, &s.between);
@@ -283,7 +283,7 @@ Status Simulation::restore(const ShapeState& shape) {
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
     BodyState& body = state_->bodies[b];
     body.lattice.set_shape(shape.lattices[b]);
-    if (body.core) body.core->take_shape(body.lattice);
+    if (body.mover()) body.mover()->take_shape(body.lattice);
     body.update_skin();
   }
   state_->tool.contact.release();

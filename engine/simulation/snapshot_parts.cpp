@@ -78,7 +78,7 @@ void write_material(const Material& material, const Sculpting& sculpting, const 
   out.name = material.name;
   out.youngs_modulus_pa = material.youngs_modulus_pa;
   out.felt_youngs_modulus_pa = body.felt_youngs_modulus_pa();
-  out.implicit_nodes = body.core ? body.core->mesh().node_count() : 0;
+  out.implicit_nodes = body.mover() ? body.mover()->mesh().node_count() : 0;
   out.poissons_ratio = material.poissons_ratio;
   out.density_kg_per_m3 = material.density_kg_per_m3;
   out.damping_per_s = sculpting.damping_per_s;
