@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/material/body_contacts.h"
-#include "engine/material/contact_constraints.h"
+#include "engine/material/contact/body_contacts.h"
+#include "engine/material/contact/contact_constraints.h"
 #include "engine/material/implicit/implicit_core.h"
-#include "engine/material/spring_lattice.h"
+#include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
 

@@ -10,8 +10,8 @@
 #include "engine/bspline/surface.h"
 #include "engine/collision/solids/surface_collider.h"
 #include "engine/instruction_set.h"
-#include "engine/material/contact_constraints.h"
-#include "engine/material/spring_lattice.h"
+#include "engine/material/contact/contact_constraints.h"
+#include "engine/material/springs/spring_lattice.h"
 #include "engine/result.h"
 #include "engine/simulation/scene.h"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/material/lattice/tube_lattice.h"
 #include "engine/material/lattice_solver.h"
-#include "engine/material/tube_lattice.h"
 
 namespace spoonbill {
 

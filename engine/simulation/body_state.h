@@ -9,7 +9,7 @@
 
 #include "engine/instruction_set.h"
 #include "engine/material/implicit/implicit_core.h"
-#include "engine/material/spring_lattice.h"
+#include "engine/material/springs/spring_lattice.h"
 #include "engine/result.h"
 #include "engine/simulation/body_mapping.h"
 #include "engine/simulation/mesh_mapping.h"

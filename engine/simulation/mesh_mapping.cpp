@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/material/box_lattice.h"
+#include "engine/material/lattice/box_lattice.h"
 
 namespace spoonbill {
 namespace {

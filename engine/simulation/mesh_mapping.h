@@ -8,8 +8,8 @@
 #include "engine/aligned_vector.h"
 #include "engine/collision/meshes/deforming_mesh.h"
 #include "engine/collision/meshes/triangle_mesh.h"
-#include "engine/material/embedded_point.h"
-#include "engine/material/spring_lattice.h"
+#include "engine/material/lattice/embedded_point.h"
+#include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/bspline/surface.h"
+#include "engine/material/lattice/tube_lattice.h"
 #include "engine/material/material.h"
-#include "engine/material/tube_lattice.h"
 #include "engine/range.h"
 #include "engine/result.h"
 #include "engine/simulation/checks.h"

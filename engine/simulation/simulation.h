@@ -7,7 +7,7 @@
 
 #include "engine/bspline/surface.h"
 #include "engine/instruction_set.h"
-#include "engine/material/spring_lattice.h"
+#include "engine/material/springs/spring_lattice.h"
 #include "engine/result.h"
 #include "engine/simulation/command.h"
 #include "engine/simulation/scene.h"

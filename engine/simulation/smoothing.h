@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/material/spring_lattice.h"
+#include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/bspline/knot_vector.h"
-#include "engine/material/embedded_point.h"
+#include "engine/material/lattice/embedded_point.h"
 #include "engine/pose.h"
 
 namespace spoonbill {

@@ -5,7 +5,7 @@
 #include "engine/collision/meshes/mesh_parts.h"
 #include "engine/collision/meshes/mesh_refinement.h"
 #include "engine/collision/meshes/shell_distance.h"
-#include "engine/material/box_lattice.h"
+#include "engine/material/lattice/box_lattice.h"
 
 namespace spoonbill {
 namespace {

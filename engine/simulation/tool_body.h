@@ -9,8 +9,8 @@
 #include "engine/bspline/surface.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/collision/solids/implicit/implicit_shapes.h"
+#include "engine/material/lattice/tube_lattice.h"
 #include "engine/material/material.h"
-#include "engine/material/tube_lattice.h"
 #include "engine/simulation/fixing_plane.h"
 
 namespace spoonbill {

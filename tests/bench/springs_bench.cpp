@@ -5,7 +5,7 @@
 
 #include "engine/denormals.h"
 #include "engine/material/lattice_solver.h"
-#include "engine/material/spring_lattice.h"
+#include "engine/material/springs/spring_lattice.h"
 #include "tests/bench/bullet_blocks.h"
 
 namespace spoonbill {

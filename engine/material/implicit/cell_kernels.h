@@ -1,6 +1,6 @@
 // The cells of an implicit body, eight side by side, in the loops of a tick: corotated hexahedra, as
-// engine/material/corotated_cell.h derives them. Compiled once for each instruction set, with the same bits.
-// Uses no standard library, as engine/bspline/evaluate_kernels.h explains.
+// engine/material/cells/corotated_cell.h derives them. Compiled once for each instruction set, with the same
+// bits. Uses no standard library, as engine/bspline/evaluate_kernels.h explains.
 #pragma once
 
 namespace spoonbill {

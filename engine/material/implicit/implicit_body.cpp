@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/material/hexahedron.h"
+#include "engine/material/cells/hexahedron.h"
 
 namespace spoonbill {
 namespace {

@@ -9,7 +9,7 @@
 #include "engine/aligned_vector.h"
 #include "engine/instruction_set.h"
 #include "engine/material/implicit/rolling_factor.h"
-#include "engine/material/lattice_mesh.h"
+#include "engine/material/lattice/lattice_mesh.h"
 #include "engine/material/material.h"
 #include "engine/result.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/material/lattice_request.h"
+#include "engine/material/lattice/lattice_request.h"
 
 namespace spoonbill {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/material/implicit/implicit_body.h"
-#include "engine/material/spring_lattice.h"
+#include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
 

@@ -6,7 +6,7 @@
 #include "engine/aligned_vector.h"
 #include "engine/material/implicit/band_kernels.h"
 #include "engine/material/implicit/cell_kernels.h"
-#include "engine/material/lattice_mesh.h"
+#include "engine/material/lattice/lattice_mesh.h"
 
 namespace spoonbill {
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "engine/exchange/document.h"
-#include "engine/material/static_solver.h"
-#include "engine/material/tube_lattice.h"
+#include "engine/material/lattice/tube_lattice.h"
+#include "engine/material/statics/static_solver.h"
 
 namespace spoonbill {
 namespace {

@@ -1,7 +1,7 @@
 // Blocks of material for the lattice's tests.
 #pragma once
 
-#include "engine/material/spring_lattice.h"
+#include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/material/static_solver.h"
+#include "engine/material/statics/static_solver.h"
 #include "engine/simulation/body_state.h"
 #include "tests/engine/simulation/handle.h"
 

@@ -1,0 +1,112 @@
+#include "engine/material/cells/hexahedron.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+
+namespace spoonbill {
+namespace {
+
+constexpr int inner_count = 9;  // three displacements for each of three quadratic modes
+using InnerMatrix = Eigen::Matrix<double, inner_count, inner_count>;
+using MixedMatrix = Eigen::Matrix<double, 24, inner_count>;
+using Elasticity = Eigen::Matrix<double, 6, 6>;
+using StrainRows = Eigen::Matrix<double, 6, 3>;
+
+// Natural coordinates of a corner, each -1 or 1 along i, j, k.
+Vector3 natural(int corner) {
+  return {corner >> 2 & 1 ? 1.0 : -1.0, corner >> 1 & 1 ? 1.0 : -1.0, corner & 1 ? 1.0 : -1.0};
+}
+
+// Of the shape functions by the natural coordinates.
+CellGradients natural_gradients(const Vector3& at) {
+  CellGradients gradients;
+  for (int c = 0; c < 8; ++c) {
+    const Vector3 corner = natural(c), factor = Vector3::Ones() + corner.cwiseProduct(at);
+    gradients.row(c) << corner.x() * factor.y() * factor.z(), factor.x() * corner.y() * factor.z(),
+        factor.x() * factor.y() * corner.z();
+  }
+  return gradients / 8.0;
+}
+
+// Rows: natural coordinates; columns: x, y, z.
+Eigen::Matrix3d jacobian(const CellCorners& corners, const CellGradients& gradients) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (int c = 0; c < 8; ++c) {
+    sum += gradients.row(c).transpose() * corners[static_cast<std::size_t>(c)].transpose();
+  }
+  return sum;
+}
+
+// Engineering strains xx, yy, zz, xy, yz, zx of a displacement whose shape has this gradient.
+StrainRows strain_rows(const Vector3& g) {
+  StrainRows rows;
+  rows << g.x(), 0, 0, 0, g.y(), 0, 0, 0, g.z(), g.y(), g.x(), 0, 0, g.z(), g.y(), g.z(), 0, g.x();
+  return rows;
+}
+
+Elasticity isotropic(double youngs_modulus_pa, double poissons_ratio) {
+  const double shear = youngs_modulus_pa / (2.0 * (1.0 + poissons_ratio));
+  const double lambda = 2.0 * shear * poissons_ratio / (1.0 - 2.0 * poissons_ratio);
+  Elasticity d = Elasticity::Zero();
+  d.topLeftCorner<3, 3>().setConstant(lambda);
+  d.diagonal().head<3>().array() += 2.0 * shear;
+  d.diagonal().tail<3>().setConstant(shear);
+  return d;
+}
+
+struct MiddleJacobian {
+  Eigen::Matrix3d inverse;
+  double determinant;
+};
+
+// The gradients of 1 - r^2, 1 - s^2 and 1 - t^2, of mean zero over the cell.
+std::array<Vector3, 3> inner_gradients(const Vector3& at, const MiddleJacobian& middle, double determinant) {
+  std::array<Vector3, 3> gradients;
+  for (int mode = 0; mode < 3; ++mode) {
+    Vector3 natural_gradient = Vector3::Zero();
+    natural_gradient[mode] = -2.0 * at[mode];
+    gradients[static_cast<std::size_t>(mode)] =
+        middle.determinant / determinant * (middle.inverse * natural_gradient);
+  }
+  return gradients;
+}
+
+}  // namespace
+
+CellGradients middle_gradients(const CellCorners& corners) {
+  const CellGradients natural = natural_gradients(Vector3::Zero());
+  return natural * jacobian(corners, natural).inverse().transpose();
+}
+
+CellMatrix hexahedron_stiffness(const CellCorners& corners, double youngs_modulus_pa, double poissons_ratio) {
+  const Elasticity elasticity = isotropic(youngs_modulus_pa, poissons_ratio);
+  const Eigen::Matrix3d middle = jacobian(corners, natural_gradients(Vector3::Zero()));
+  const MiddleJacobian at_middle{middle.inverse(), middle.determinant()};
+  CellMatrix outer = CellMatrix::Zero();
+  MixedMatrix mixed = MixedMatrix::Zero();
+  InnerMatrix inner = InnerMatrix::Zero();
+  for (int point = 0; point < 8; ++point) {
+    const Vector3 at = natural(point) / std::sqrt(3.0);
+    const CellGradients natural = natural_gradients(at);
+    const Eigen::Matrix3d here = jacobian(corners, natural);
+    const double determinant = here.determinant();
+    const CellGradients gradients = natural * here.inverse().transpose();
+    const std::array<Vector3, 3> of_inner = inner_gradients(at, at_middle, determinant);
+    Eigen::Matrix<double, 6, 24> strain;
+    for (int c = 0; c < 8; ++c) strain.middleCols<3>(3 * c) = strain_rows(gradients.row(c).transpose());
+    Eigen::Matrix<double, 6, inner_count> inner_strain;
+    for (int m = 0; m < 3; ++m) {
+      inner_strain.middleCols<3>(3 * m) = strain_rows(of_inner[static_cast<std::size_t>(m)]);
+    }
+    const Eigen::Matrix<double, 6, inner_count> inner_stress = determinant * elasticity * inner_strain;
+    outer += determinant * strain.transpose() * elasticity * strain;
+    mixed += strain.transpose() * inner_stress;
+    inner += inner_strain.transpose() * inner_stress;
+  }
+  const CellMatrix stiffness = outer - mixed * inner.ldlt().solve(mixed.transpose());
+  return 0.5 * (stiffness + stiffness.transpose());
+}
+
+}  // namespace spoonbill

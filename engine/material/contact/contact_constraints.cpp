@@ -1,0 +1,152 @@
+#include "engine/material/contact/contact_constraints.h"
+
+#include "engine/material/contact/contact_push.h"
+
+namespace spoonbill {
+namespace {
+
+// A correction below 1, so that neighbouring points that push the same node do not overshoot together.
+constexpr ContactPace pace{1.0, 0.3};
+
+// How fast a tool on its coupling spring follows the hand, rad/s of material time: its mass follows from
+// that, a few nodes' worth in clay, so that neither drags the other about.
+constexpr double coupling_frequency = 60.0;
+
+}  // namespace
+
+ContactConstraints::ContactConstraints(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {}
+
+void ContactConstraints::clear() {
+  count_ = 0;
+}
+
+bool ContactConstraints::add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point) {
+  return add(Kind::sphere_push, body, lattice, point, Vector3::Zero(), 0.0);
+}
+
+bool ContactConstraints::add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
+                                        const Vector3& normal, double offset_m) {
+  return add(Kind::plane_push, body, lattice, point, normal, offset_m);
+}
+
+bool ContactConstraints::add_grip(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
+                                  const Vector3& offset_m) {
+  return add(Kind::grip, body, lattice, point, offset_m, 0.0);
+}
+
+bool ContactConstraints::add(Kind kind, int body, const SpringLattice& lattice, const EmbeddedPoint& point,
+                             const Vector3& direction, double offset_m) {
+  if (count_ == static_cast<int>(constraints_.size())) return false;
+  constraints_[count_++] = {kind,
+                            body,
+                            point,
+                            point.rest_m(lattice),
+                            direction,
+                            offset_m,
+                            point.compliance(lattice),
+                            lattice.material().friction,
+                            false};
+  return true;
+}
+
+void ContactConstraints::begin(const ToolMotion& motion, double material_time_s) {
+  motion_ = motion;
+  hand_velocity_ = (motion.end_m - motion.start_m) / material_time_s;
+  carried_force_.setZero();
+  const bool coupled = motion.coupling_n_per_m > 0.0;
+  tool_compliance_ = coupled ? coupling_frequency * coupling_frequency / motion.coupling_n_per_m : 0.0;
+  tool_impulse_.fill(Vector3::Zero());
+  acted_ = false;
+  for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
+}
+
+void ContactConstraints::solve(std::span<const LatticeView> lattices, ToolState& tool, float h,
+                               double fraction, std::span<const float> caps) {
+  const double damped = 1.0 + static_cast<double>(h) * coupling_frequency;
+  answered_compliance_ = tool_compliance_ / (damped * damped);
+  follow_hand(tool, h, fraction);
+  if (motion_.carried.body >= 0) {
+    tool_impulse_[motion_.carried.body] += static_cast<double>(h) * carried_force_;
+  }
+  for (int c = 0; c < count_; ++c) {
+    Constraint& constraint = constraints_[c];
+    if (compliance_of(constraint) + answered_compliance_ == 0.0) continue;
+    const LatticeView& lattice = lattices[constraint.body];
+    const double cap = caps[constraint.body];
+    if (constraint.kind == Kind::grip) {
+      solve_grip(lattice, constraint, tool, h, cap);
+    } else {
+      solve_push(lattice, constraint, tool, h, cap);
+    }
+  }
+  tool.position_m += static_cast<double>(h) * tool.velocity_m_per_s;
+}
+
+double ContactConstraints::compliance_of(const Constraint& constraint) const {
+  return motion_.body_yields ? constraint.compliance : 0.0;
+}
+
+// The coupling spring and its critical damper, implicit in the tool's velocity: x'' = w^2 (hand - x) + 2 w
+// (hand' - x').
+void ContactConstraints::follow_hand(ToolState& tool, double h, double fraction) const {
+  const Vector3 hand = motion_.start_m + fraction * (motion_.end_m - motion_.start_m);
+  if (tool_compliance_ == 0.0) {
+    tool.position_m = hand;
+    tool.velocity_m_per_s = hand_velocity_;
+    return;
+  }
+  const double w = coupling_frequency;
+  const Vector3 stretch = hand + h * hand_velocity_ - tool.position_m;
+  tool.velocity_m_per_s = (tool.velocity_m_per_s + h * w * w * stretch + 2.0 * h * w * hand_velocity_) /
+                          (1.0 + 2.0 * h * w + h * h * w * w);
+}
+
+void ContactConstraints::exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
+                                  const Vector3& impulse) {
+  if (motion_.body_yields) constraint.point.push(lattice, impulse);
+  tool.velocity_m_per_s -= answered_compliance_ * impulse;
+  tool_impulse_[constraint.body] -= impulse;
+  constraint.acted = true;
+  acted_ = true;
+}
+
+void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
+                                    double h, double cap) {
+  const Vector3 position = constraint.rest_m + constraint.point.displacement_m(lattice);
+  const Vector3 from_centre = position - tool.position_m;
+  Vector3 normal = constraint.direction;
+  double gap = 0.0;
+  if (constraint.kind == Kind::plane_push) {
+    gap = from_centre.dot(normal) - constraint.offset_m;
+  } else {
+    const double distance = from_centre.norm();
+    if (!(distance > 0.0)) return;
+    normal = from_centre / distance;
+    gap = distance - motion_.radius_m;
+  }
+  const ContactPush push{gap, normal, constraint.point.velocity_m_per_s(lattice) - tool.velocity_m_per_s,
+                         1.0 / (compliance_of(constraint) + answered_compliance_)};
+  if (const auto impulse = push.impulse(h, pace, cap, constraint.friction)) {
+    exchange(lattice, constraint, tool, *impulse);
+  }
+}
+
+void ContactConstraints::solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
+                                    double h, double cap) {
+  const Vector3 position = constraint.rest_m + constraint.point.displacement_m(lattice);
+  const Vector3 miss = tool.position_m + motion_.orientation * constraint.direction - position;
+  Vector3 wanted = miss * (pace.correction / h);
+  const double speed = wanted.norm();
+  if (speed > cap) wanted *= cap / speed;
+  const Vector3 velocity = constraint.point.velocity_m_per_s(lattice);
+  exchange(lattice, constraint, tool,
+           (tool.velocity_m_per_s + wanted - velocity) / (compliance_of(constraint) + answered_compliance_));
+}
+
+void ContactConstraints::mark_touched(int body, std::uint8_t* touched) const {
+  for (int c = 0; c < count_; ++c) {
+    if (constraints_[c].acted && constraints_[c].body == body) constraints_[c].point.mark(touched);
+  }
+}
+
+}  // namespace spoonbill

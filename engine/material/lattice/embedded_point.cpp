@@ -1,0 +1,80 @@
+#include "engine/material/lattice/embedded_point.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr float least_weight_that_matters = 0.05f;
+
+Vector3 embedded_sum(const EmbeddedPoint& point, const float* x, const float* y, const float* z) {
+  Vector3 sum = Vector3::Zero();
+  for (int i = 0; i < point.count; ++i) {
+    const int n = point.node[i];
+    sum += static_cast<double>(point.weight[i]) * Vector3(x[n], y[n], z[n]);
+  }
+  return sum;
+}
+
+}  // namespace
+
+bool EmbeddedPoint::add(const EmbeddedPoint& other, float share) {
+  for (int i = 0; i < other.count; ++i) {
+    int at = 0;
+    while (at < count && node[at] != other.node[i]) ++at;
+    if (at == capacity) return false;
+    if (at == count) {
+      node[at] = other.node[i];
+      weight[at] = 0.0f;
+      ++count;
+    }
+    weight[at] += share * other.weight[i];
+  }
+  return true;
+}
+
+double EmbeddedPoint::share_of(int node_index) const {
+  for (int i = 0; i < count; ++i) {
+    if (node[i] == node_index) return weight[i];
+  }
+  return 0.0;
+}
+
+Vector3 EmbeddedPoint::rest_m(const SpringLattice& lattice) const {
+  Vector3 sum = Vector3::Zero();
+  for (int i = 0; i < count; ++i) sum += static_cast<double>(weight[i]) * lattice.mesh().nodes[node[i]];
+  return sum;
+}
+
+double EmbeddedPoint::compliance(const SpringLattice& lattice) const {
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const double share = weight[i];
+    sum += share * share * lattice.inverse_mass(node[i]);
+  }
+  return sum;
+}
+
+Vector3 EmbeddedPoint::displacement_m(const LatticeView& lattice) const {
+  return embedded_sum(*this, lattice.dx, lattice.dy, lattice.dz);
+}
+
+Vector3 EmbeddedPoint::velocity_m_per_s(const LatticeView& lattice) const {
+  return embedded_sum(*this, lattice.vx, lattice.vy, lattice.vz);
+}
+
+void EmbeddedPoint::push(const LatticeView& lattice, const Vector3& impulse) const {
+  for (int i = 0; i < count; ++i) {
+    const int n = node[i];
+    const double share = static_cast<double>(weight[i]) * static_cast<double>(lattice.inverse_mass[n]);
+    lattice.vx[n] += static_cast<float>(share * impulse.x());
+    lattice.vy[n] += static_cast<float>(share * impulse.y());
+    lattice.vz[n] += static_cast<float>(share * impulse.z());
+  }
+}
+
+void EmbeddedPoint::mark(std::uint8_t* touched) const {
+  for (int i = 0; i < count; ++i) {
+    if (weight[i] > least_weight_that_matters) touched[node[i]] = 1;
+  }
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,228 @@
+#include "engine/material/lattice/feature_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "engine/collision/solids/implicit/exponential.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr int draws_between_looks = 4096;
+// Of the neighbourhood: beyond, a node follows by less than a ninetieth.
+constexpr double reach_of_neighbourhood = 3.0;
+// Halvings of a node's move before none of it is taken, and how often each is tried.
+constexpr int halvings = 4, passes = 3;
+
+// Calls visit(first corner's node, cell).
+template <class Visit>
+void visit_cells(const LatticeMesh& mesh, const Visit& visit) {
+  for (int k = 0; k + 1 < mesh.count[2]; ++k) {
+    for (int i = 0; i + 1 < mesh.count[0]; ++i) {
+      for (int j = 0; j + 1 < mesh.count[1]; ++j) visit(mesh.index(i, j, k), mesh.cell(i, j, k));
+    }
+  }
+}
+
+// Points spread evenly through a body.
+class Draws {
+ public:
+  Draws(const LatticeMesh& mesh, std::uint32_t seed) : random_(seed) {
+    visit_cells(mesh, [this](int first, const CellCorners& cell) {
+      cells_.push_back({first, cell});
+      volumes_.push_back((volumes_.empty() ? 0.0 : volumes_.back()) + cell_volume(cell));
+    });
+  }
+
+  struct Draw {
+    Vector3 point;
+    int near;  // a node of the cell at the start that it lies in
+  };
+  Draw next() {
+    const double where = uniform() * volumes_.back();
+    const auto cell = std::upper_bound(volumes_.begin(), volumes_.end(), where) - volumes_.begin();
+    const auto at = std::min(static_cast<std::size_t>(cell), cells_.size() - 1);
+    const double a = uniform(), b = uniform(), c = uniform();
+    return {trilinear(cells_[at].corners, a, b, c), cells_[at].first};
+  }
+
+ private:
+  // By its bits: what a library makes of a distribution differs between libraries.
+  double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+
+  std::mt19937_64 random_;
+  struct Cell {
+    int first;
+    CellCorners corners;
+  };
+  std::vector<Cell> cells_;
+  std::vector<double> volumes_;  // summed up
+};
+
+class FeatureMap {
+ public:
+  explicit FeatureMap(const LatticeMesh& mesh) : mesh_(mesh) {
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      const auto [i, j, k] = mesh.place(n);
+      if (mesh.place_of(i, j, k) == NodePlace::in_body) inside_.push_back(n);
+    }
+  }
+
+  std::size_t inside_count() const { return inside_.size(); }
+  const LatticeMesh& mesh() const { return mesh_; }
+
+  void learn(const Draws::Draw& draw, double rate, double neighbourhood) {
+    const Vector3& point = draw.point;
+    const std::array<int, 3> winner = nearest(point, mesh_.place(draw.near));
+    const int reach = static_cast<int>(reach_of_neighbourhood * neighbourhood);
+    std::array<int, 3> low{}, high{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::max(0, winner[axis] - reach);
+      high[axis] = std::min(mesh_.count[axis] - 1, winner[axis] + reach);
+    }
+    for (int k = low[2]; k <= high[2]; ++k) {
+      for (int i = low[0]; i <= high[0]; ++i) {
+        for (int j = low[1]; j <= high[1]; ++j) {
+          if (mesh_.place_of(i, j, k) != NodePlace::in_body) continue;
+          const double square =
+              std::pow(i - winner[0], 2) + std::pow(j - winner[1], 2) + std::pow(k - winner[2], 2);
+          Vector3& node = mesh_.nodes[static_cast<std::size_t>(mesh_.index(i, j, k))];
+          node += rate * stable_exp(-0.5 * square / (neighbourhood * neighbourhood)) * (point - node);
+        }
+      }
+    }
+  }
+
+ private:
+  // From neighbour to neighbour, which finds the nearest of all where the grid lies in order.
+  std::array<int, 3> nearest(const Vector3& point, std::array<int, 3> at) const {
+    const auto square_to = [&](const std::array<int, 3>& node) {
+      return (mesh_.nodes[static_cast<std::size_t>(mesh_.index(node[0], node[1], node[2]))] - point)
+          .squaredNorm();
+    };
+    double least = square_to(at);
+    for (bool nearer = true; nearer;) {
+      nearer = false;
+      const std::array<int, 3> from = at;
+      for (int step = 0; step < 27; ++step) {
+        const std::array<int, 3> next = {from[0] + step / 9 - 1, from[1] + step / 3 % 3 - 1,
+                                         from[2] + step % 3 - 1};
+        bool inside = true;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          inside = inside && next[axis] >= 0 && next[axis] < mesh_.count[axis];
+        }
+        if (!inside) continue;
+        const double square = square_to(next);
+        if (!(square < least)) continue;
+        least = square;
+        at = next;
+        nearer = true;
+      }
+    }
+    return at;
+  }
+
+  LatticeMesh mesh_;
+  std::vector<int> inside_;
+};
+
+// Of the cells around a node.
+double worst_around(const LatticeMesh& mesh, const std::array<int, 3>& at) {
+  double worst = 1.0;
+  for (int c = 0; c < 8; ++c) {
+    const CellCorners cell = mesh.cell(at[0] - (c >> 2 & 1), at[1] - (c >> 1 & 1), at[2] - (c & 1));
+    worst = std::min(worst, cell_volume(cell) > 0.0 ? smallest_jacobian_ratio(cell) : -1.0);
+  }
+  return worst;
+}
+
+// Node by node, as far towards `wanted` as leaves every cell around it at least as good as `worst`; some may
+// go further once their neighbours have. Returns the share of the moves that was taken.
+double take_moves(const std::vector<Vector3>& wanted, double worst, LatticeMesh& mesh) {
+  double asked = 0.0, left = 0.0;
+  for (std::size_t n = 0; n < wanted.size(); ++n) asked += (wanted[n] - mesh.nodes[n]).norm();
+  for (int pass = 0; pass < passes; ++pass) {
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      Vector3& node = mesh.nodes[static_cast<std::size_t>(n)];
+      const Vector3 before = node, move = wanted[static_cast<std::size_t>(n)] - before;
+      if (move.isZero(0.0)) continue;
+      double share = 1.0;
+      for (int halving = 0; halving <= halvings; ++halving, share *= 0.5) {
+        node = before + share * move;
+        if (worst_around(mesh, mesh.place(n)) >= worst) break;
+        node = before;
+      }
+    }
+  }
+  for (std::size_t n = 0; n < wanted.size(); ++n) left += (wanted[n] - mesh.nodes[n]).norm();
+  return asked > 0.0 ? 1.0 - left / asked : 0.0;
+}
+
+// Geometrically.
+double between(double first, double last, double way) {
+  return first * stable_exp(way * stable_log(last / first));
+}
+
+}  // namespace
+
+Status check_feature_map(const FeatureMapSettings& settings) {
+  if (Status status =
+          check_range("feature_map: draws_per_node", settings.draws_per_node, draws_per_node_range);
+      !status.ok()) {
+    return status;
+  }
+  const struct {
+    const char* field;
+    double value;
+    Range<double> range;
+  } checks[] = {{"feature_map: first_rate", settings.first_rate, map_rate_range},
+                {"feature_map: last_rate", settings.last_rate, map_rate_range},
+                {"feature_map: first_neighbourhood", settings.first_neighbourhood, map_neighbourhood_range},
+                {"feature_map: last_neighbourhood", settings.last_neighbourhood, map_neighbourhood_range}};
+  for (const auto& check : checks) {
+    if (Status status = check_range(check.field, check.value, check.range); !status.ok()) return status;
+  }
+  return {};
+}
+
+CellQuality quality_of(const LatticeMesh& mesh) {
+  CellQuality quality{1.0, 0.0};
+  std::vector<double> volumes;
+  double sum = 0.0, squares = 0.0;
+  visit_cells(mesh, [&](int, const CellCorners& cell) {
+    const double volume = cell_volume(cell);
+    quality.worst_jacobian =
+        std::min(quality.worst_jacobian, volume > 0.0 ? smallest_jacobian_ratio(cell) : -1.0);
+    volumes.push_back(volume);
+    sum += volume;
+  });
+  const double mean = sum / static_cast<double>(volumes.size());
+  for (const double volume : volumes) squares += (volume - mean) * (volume - mean);
+  quality.volume_spread = std::sqrt(squares / static_cast<double>(volumes.size())) / mean;
+  return quality;
+}
+
+FeatureMapReport order_by_feature_map(LatticeMesh& mesh, const FeatureMapSettings& settings,
+                                      const std::function<bool(double)>& progress) {
+  FeatureMapReport report;
+  report.before = report.after = quality_of(mesh);
+  FeatureMap map(mesh);
+  Draws draws(mesh, settings.seed);
+  const auto count =
+      static_cast<std::int64_t>(settings.draws_per_node) * static_cast<std::int64_t>(map.inside_count());
+  for (std::int64_t draw = 0; draw < count; ++draw) {
+    const double way = static_cast<double>(draw) / static_cast<double>(count);
+    if (progress && draw % draws_between_looks == 0 && !progress(way)) return report;
+    map.learn(draws.next(), between(settings.first_rate, settings.last_rate, way),
+              between(settings.first_neighbourhood, settings.last_neighbourhood, way));
+  }
+  report.share = take_moves(map.mesh().nodes, report.before.worst_jacobian, mesh);
+  report.after = quality_of(mesh);
+  if (progress) progress(1.0);
+  return report;
+}
+
+}  // namespace spoonbill

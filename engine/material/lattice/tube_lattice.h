@@ -1,0 +1,21 @@
+// Fills a closed tube with lattice nodes: shell nodes on the surface, interior by transfinite interpolation.
+#pragma once
+
+#include "engine/bspline/surface.h"
+#include "engine/material/lattice/lattice_mesh.h"
+#include "engine/material/lattice/lattice_request.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+// Whether the surface is a closed tube: periodic in u, a single point (a pole) at both ends of v, normals
+// outward. The message says which of these fails.
+Status check_closed_tube(const Surface& surface);
+
+// The lattice of a closed tube-like or box-like body. Slices lie at constant v, evenly along the body; the
+// nodes of a ring are spaced by arc length, since spacing by angle gives slender cells and twice the
+// substeps; the two end slices lie on the caps. Refused: a surface that is no closed tube, counts below 2,
+// folded cells.
+Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& request);
+
+}  // namespace spoonbill

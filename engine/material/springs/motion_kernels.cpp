@@ -1,0 +1,128 @@
+#include "engine/material/springs/motion_kernels.h"
+
+namespace spoonbill::SPOONBILL_KERNELS {
+namespace {
+
+constexpr int block = lattice_block;
+
+inline float max_of(float a, float b) {
+  return a > b ? a : b;
+}
+
+inline void kick_block(float* __restrict v, const float* __restrict f, const float* __restrict inverse_mass,
+                       const float* __restrict free, float h, float decay, float g) {
+  for (int l = 0; l < block; ++l) v[l] = (v[l] + h * (f[l] * inverse_mass[l] + g)) * decay * free[l];
+}
+
+}  // namespace
+
+void look_ahead(const LatticeView& view, float tau) {
+  for (int i = 0; i < view.padded_count; ++i) view.ahead_x[i] = view.dx[i] + tau * view.vx[i];
+  for (int i = 0; i < view.padded_count; ++i) view.ahead_y[i] = view.dy[i] + tau * view.vy[i];
+  for (int i = 0; i < view.padded_count; ++i) view.ahead_z[i] = view.dz[i] + tau * view.vz[i];
+}
+
+void kick(const LatticeView& view, float h, float decay, float gx, float gy, float gz) {
+  for (int i = 0; i < view.padded_count; i += block) {
+    if (view.free_block[i / block] == 0) continue;
+    const float *inverse_mass = view.inverse_mass + i, *free = view.free_node + i;
+    kick_block(view.vx + i, view.fx + i, inverse_mass, free, h, decay, gx);
+    kick_block(view.vy + i, view.fy + i, inverse_mass, free, h, decay, gy);
+    kick_block(view.vz + i, view.fz + i, inverse_mass, free, h, decay, gz);
+  }
+}
+
+namespace {
+
+// Moves a block along one axis, places it ahead and adds the squares of what moved since the reference.
+inline void drift_along(float* __restrict d, const float* __restrict v, const float* __restrict reference,
+                        float* __restrict ahead, float* __restrict moved, float* __restrict squares, float h,
+                        float tau) {
+  for (int l = 0; l < block; ++l) {
+    d[l] += h * v[l];
+    ahead[l] = d[l] + tau * v[l];
+    moved[l] = ahead[l] - reference[l];
+    squares[l] += moved[l] * moved[l];
+  }
+}
+
+// Squared ratios of speed to cap of a block.
+inline void speed_ratios(const float* __restrict vx, const float* __restrict vy, const float* __restrict vz,
+                         const float* __restrict free, float* __restrict ratio, const Drift& drift,
+                         float inverse_square) {
+  for (int l = 0; l < block; ++l) {
+    const float rx = vx[l] - drift.mean_x, ry = vy[l] - drift.mean_y, rz = vz[l] - drift.mean_z;
+    ratio[l] = (rx * rx + ry * ry + rz * rz) * inverse_square * free[l];
+  }
+}
+
+// Below the cap a velocity keeps its bits.
+inline void cap_speeds(float* __restrict v, const float* __restrict ratio, float mean) {
+  for (int l = 0; l < block; ++l) {
+    const float keep = 1.0f / __builtin_sqrtf(max_of(ratio[l], 1.0f));
+    v[l] = ratio[l] > 1.0f ? mean + (v[l] - mean) * keep : v[l];
+  }
+}
+
+inline float largest_of(const float* values) {
+  alignas(64) float lanes[16] = {};
+  for (int i = 0; i < block; i += 16) {
+    for (int l = 0; l < 16; ++l) lanes[l] = max_of(lanes[l], values[i + l]);
+  }
+  float largest = 0.0f;
+  for (const float lane : lanes) largest = max_of(largest, lane);
+  return largest;
+}
+
+}  // namespace
+
+Drifted drift(const LatticeView& view, const Drift& drift) {
+  alignas(64) float ratio[block], squares[block];
+  const float inverse_square = 1.0f / (drift.cap_m_per_s * drift.cap_m_per_s);
+  Drifted drifted;
+  for (int i = 0; i < view.padded_count; i += block) {
+    if (view.free_block[i / block] == 0) continue;
+    speed_ratios(view.vx + i, view.vy + i, view.vz + i, view.free_node + i, ratio, drift, inverse_square);
+    const float fastest = largest_of(ratio);
+    if (fastest > 1.0f) {
+      cap_speeds(view.vx + i, ratio, drift.mean_x);
+      cap_speeds(view.vy + i, ratio, drift.mean_y);
+      cap_speeds(view.vz + i, ratio, drift.mean_z);
+    }
+    for (int l = 0; l < block; ++l) squares[l] = 0.0f;
+    drift_along(view.dx + i, view.vx + i, view.reference_x + i, view.ahead_x + i, view.moved_x + i, squares,
+                drift.h_s, drift.tau_s);
+    drift_along(view.dy + i, view.vy + i, view.reference_y + i, view.ahead_y + i, view.moved_y + i, squares,
+                drift.h_s, drift.tau_s);
+    drift_along(view.dz + i, view.vz + i, view.reference_z + i, view.ahead_z + i, view.moved_z + i, squares,
+                drift.h_s, drift.tau_s);
+    drifted.speed_square = max_of(drifted.speed_square, fastest);
+    drifted.moved_square = max_of(drifted.moved_square, largest_of(squares));
+  }
+  return drifted;
+}
+
+void momentum(const LatticeView& view, const float* mass, float sum[4]) {
+  float x[16] = {}, y[16] = {}, z[16] = {}, m[16] = {};
+  for (int start = 0; start < view.padded_count; start += 16) {
+    for (int l = 0; l < 16; ++l) {
+      const int i = start + l;
+      x[l] += mass[i] * view.vx[i];
+      y[l] += mass[i] * view.vy[i];
+      z[l] += mass[i] * view.vz[i];
+      m[l] += mass[i];
+    }
+  }
+  for (int l = 1; l < 16; ++l) {
+    x[0] += x[l];
+    y[0] += y[l];
+    z[0] += z[l];
+    m[0] += m[l];
+  }
+  sum[0] = x[0];
+  sum[1] = y[0];
+  sum[2] = z[0];
+  sum[3] = m[0];
+}
+
+}  // namespace spoonbill::SPOONBILL_KERNELS

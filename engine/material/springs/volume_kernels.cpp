@@ -1,0 +1,232 @@
+#include "engine/material/springs/volume_kernels.h"
+
+namespace spoonbill::SPOONBILL_KERNELS {
+namespace {
+
+constexpr int block = lattice_block;
+
+struct Vector {
+  float x, y, z;
+};
+inline Vector operator+(Vector a, Vector b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vector operator-(Vector a, Vector b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vector cross(Vector a, Vector b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline Vector operator*(float scale, Vector a) {
+  return {scale * a.x, scale * a.y, scale * a.z};
+}
+inline float dot(Vector a, Vector b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+// What a trilinear cell's volume depends on: a diagonal of each of its faces (corner bits: 1 = k, 2 = j, 4 =
+// i). With these, 12 V = (a + b).(c x d) + (c + e).(f x b) + (f + d).(a x e), the mean of the two
+// triangulations of each face (Grandy, "Efficient computation of volume of hexahedral cells", UCRL-ID-128886,
+// 1997).
+struct FaceDiagonals {
+  Vector a;  // from corner 4 to 7
+  Vector b;  // 0 to 3
+  Vector c;  // 2 to 7
+  Vector d;  // 0 to 6
+  Vector e;  // 0 to 5
+  Vector f;  // 1 to 7
+};
+
+inline Vector difference(const float* x, const float* y, const float* z, int from, int to) {
+  return {x[to] - x[from], y[to] - y[from], z[to] - z[from]};
+}
+
+// Of a field on the nodes, for the cell at node n.
+inline FaceDiagonals diagonals_of(const LatticeView& view, const float* x, const float* y, const float* z,
+                                  int n) {
+  const int* o = view.corner_offset;
+  return {difference(x, y, z, n + o[4], n + o[7]), difference(x, y, z, n, n + o[3]),
+          difference(x, y, z, n + o[2], n + o[7]), difference(x, y, z, n, n + o[6]),
+          difference(x, y, z, n, n + o[5]),        difference(x, y, z, n + o[1], n + o[7])};
+}
+
+inline Vector rest_vector(const SpringArrays& s, int n) {
+  return {s.rest_x[n], s.rest_y[n], s.rest_z[n]};
+}
+
+// Of the shape at given displacements: face diagonals are springs.
+inline FaceDiagonals diagonals_at(const LatticeView& view, const float* dx, const float* dy, const float* dz,
+                                  int n) {
+  const SpringArrays& jk = view.springs[view.corner_direction[3]];
+  const SpringArrays& ik = view.springs[view.corner_direction[5]];
+  const SpringArrays& ij = view.springs[view.corner_direction[6]];
+  const int* o = view.corner_offset;
+  const FaceDiagonals moved = diagonals_of(view, dx, dy, dz, n);
+  return {rest_vector(jk, n + o[4]) + moved.a, rest_vector(jk, n) + moved.b,
+          rest_vector(ik, n + o[2]) + moved.c, rest_vector(ij, n) + moved.d,
+          rest_vector(ik, n) + moved.e,        rest_vector(ij, n + o[1]) + moved.f};
+}
+
+inline FaceDiagonals present_diagonals(const LatticeView& view, int n) {
+  return diagonals_at(view, view.dx, view.dy, view.dz, n);
+}
+
+inline FaceDiagonals diagonals_ahead(const LatticeView& view, int n) {
+  return diagonals_at(view, view.ahead_x, view.ahead_y, view.ahead_z, n);
+}
+
+// 12 V.
+inline float volume_sum(const FaceDiagonals& p) {
+  return dot(p.a + p.b, cross(p.c, p.d)) + dot(p.c + p.e, cross(p.f, p.b)) + dot(p.f + p.d, cross(p.a, p.e));
+}
+
+// Its gradient by the diagonals.
+inline FaceDiagonals volume_gradient(const FaceDiagonals& p) {
+  const Vector ab = p.a + p.b, ce = p.c + p.e, fd = p.f + p.d;
+  const Vector cd = cross(p.c, p.d), fb = cross(p.f, p.b), ae = cross(p.a, p.e);
+  return {cd + cross(p.e, fd), cd + cross(ce, p.f), cross(p.d, ab) + fb,
+          cross(ab, p.c) + ae, fb + cross(fd, p.a), cross(p.b, ce) + ae};
+}
+
+// How 12 V changes along a field on the nodes, to first order.
+inline float volume_rate(const LatticeView& view, const FaceDiagonals& gradient, const float* x,
+                         const float* y, const float* z, int n) {
+  const FaceDiagonals v = diagonals_of(view, x, y, z, n);
+  return dot(v.a, gradient.a) + dot(v.b, gradient.b) + dot(v.c, gradient.c) + dot(v.d, gradient.d) +
+         dot(v.e, gradient.e) + dot(v.f, gradient.f);
+}
+
+// Corner-major results of one block of cells, scattered afterwards.
+struct BlockCells {
+  alignas(64) float x[8][block], y[8][block], z[8][block];
+
+  // `scale` times the gradient by each corner.
+  void set(int l, float scale, const FaceDiagonals& gradient) {
+    const FaceDiagonals g = {scale * gradient.a, scale * gradient.b, scale * gradient.c,
+                             scale * gradient.d, scale * gradient.e, scale * gradient.f};
+    set(0, l, Vector{0.0f, 0.0f, 0.0f} - (g.b + g.d + g.e));
+    set(1, l, Vector{0.0f, 0.0f, 0.0f} - g.f);
+    set(2, l, Vector{0.0f, 0.0f, 0.0f} - g.c);
+    set(3, l, g.b);
+    set(4, l, Vector{0.0f, 0.0f, 0.0f} - g.a);
+    set(5, l, g.e);
+    set(6, l, g.d);
+    set(7, l, g.a + g.c + g.f);
+  }
+
+ private:
+  void set(int c, int l, const Vector& v) {
+    x[c][l] = v.x;
+    y[c][l] = v.y;
+    z[c][l] = v.z;
+  }
+};
+
+inline void add_corner_forces(const LatticeView& view, int start, const BlockCells& cells) {
+  for (int c = 0; c < 8; ++c) {
+    float* __restrict fx = view.fx + start + view.corner_offset[c];
+    float* __restrict fy = view.fy + start + view.corner_offset[c];
+    float* __restrict fz = view.fz + start + view.corner_offset[c];
+    for (int l = 0; l < block; ++l) fx[l] += cells.x[c][l];
+    for (int l = 0; l < block; ++l) fy[l] += cells.y[c][l];
+    for (int l = 0; l < block; ++l) fz[l] += cells.z[c][l];
+  }
+}
+
+// J - 1.
+inline float dilation_of(const LatticeView& view, const FaceDiagonals& p, int n) {
+  return (volume_sum(p) - view.rest_volume_sum[n]) * (1.0f / 12.0f) * view.inverse_volume[n];
+}
+
+template <bool gives_way>
+void add_volume_forces(const LatticeView& view) {
+  BlockCells cells;
+  for (int start = 0; start < view.padded_count; start += block) {
+    if (view.active_block[start / block] == 0) continue;
+    for (int l = 0; l < block; ++l) {
+      const int n = start + l;
+      const FaceDiagonals p = diagonals_ahead(view, n);
+      float dilation = dilation_of(view, p, n);
+      if (gives_way) {
+        const float softening = view.bulk_stiffness[n] < 0.0f ? 100.0f : 0.0f;
+        dilation = dilation / (1.0f + softening * dilation * dilation);
+      }
+      cells.set(l, -view.bulk_stiffness[n] * view.inverse_volume[n] * dilation * (1.0f / 12.0f),
+                volume_gradient(p));
+    }
+    add_corner_forces(view, start, cells);
+  }
+}
+
+}  // namespace
+
+void volume_forces(const LatticeView& view) {
+  if (view.volume_gives_way) {
+    add_volume_forces<true>(view);
+  } else {
+    add_volume_forces<false>(view);
+  }
+}
+
+void average_dilations(const LatticeView& view) {
+  alignas(64) float dilation[block];
+  for (int i = 0; i < view.padded_count; ++i) view.node_dilation[i] = 0.0f;
+  for (int start = 0; start < view.padded_count; start += block) {
+    for (int l = 0; l < block; ++l) {
+      const int n = start + l;
+      dilation[l] = (1.0f + dilation_of(view, present_diagonals(view, n), n)) * view.has_cell[n];
+    }
+    for (int c = 0; c < 8; ++c) {
+      float* __restrict j = view.node_dilation + start + view.corner_offset[c];
+      for (int l = 0; l < block; ++l) j[l] += dilation[l];
+    }
+  }
+  for (int i = 0; i < view.padded_count; ++i) view.node_dilation[i] *= view.inverse_cell_count[i];
+}
+
+void add_volume_row_sums(const LatticeView& view, float* sum) {
+  alignas(64) float share[8][block];
+  for (int start = 0; start < view.padded_count; start += block) {
+    for (int l = 0; l < block; ++l) {
+      const int n = start + l;
+      const FaceDiagonals g = volume_gradient(present_diagonals(view, n));
+      const Vector by_corner[8] = {g.b + g.d + g.e, g.f, g.c, g.b, g.a, g.e, g.d, g.a + g.c + g.f};
+      float length[8], total = 0.0f;
+      for (int c = 0; c < 8; ++c) {
+        length[c] = __builtin_sqrtf(dot(by_corner[c], by_corner[c]));
+        total += length[c];
+      }
+      const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
+      const float bulk = view.bulk_stiffness[n];
+      const float scale = (bulk < 0.0f ? -bulk : bulk) * inverse * inverse * total;
+      for (int c = 0; c < 8; ++c) share[c][l] = scale * length[c];
+    }
+    for (int c = 0; c < 8; ++c) {
+      float* __restrict to = sum + start + view.corner_offset[c];
+      for (int l = 0; l < block; ++l) to[l] += share[c][l];
+    }
+  }
+}
+
+void take_volume_stiffness(const LatticeView& view) {
+  BlockCells cells;
+  for (int start = 0; start < view.padded_count; start += block) {
+    if (view.active_block[start / block] == 0) continue;
+    for (int l = 0; l < block; ++l) {
+      const int n = start + l;
+      const FaceDiagonals gradient = volume_gradient(diagonals_ahead(view, n));
+      const float rate = volume_rate(view, gradient, view.power_x, view.power_y, view.power_z, n);
+      const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
+      cells.set(l, -view.bulk_stiffness[n] * inverse * inverse * rate, gradient);
+    }
+    add_corner_forces(view, start, cells);
+  }
+}
+
+void measure_rest_volumes(const LatticeView& view) {
+  for (int n = 0; n < view.padded_count; ++n) {
+    view.rest_volume_sum[n] = volume_sum(present_diagonals(view, n));
+  }
+}
+
+}  // namespace spoonbill::SPOONBILL_KERNELS

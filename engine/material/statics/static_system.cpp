@@ -1,0 +1,145 @@
+#include "engine/material/statics/static_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spoonbill {
+namespace {
+
+constexpr int cell_axes = 24, cell_places = 300;
+
+Eigen::Index coordinate(const std::array<int, 8>& nodes, int cell_axis) {
+  return 3 * static_cast<Eigen::Index>(nodes[static_cast<std::size_t>(cell_axis / 3)]) + cell_axis % 3;
+}
+
+Vector3 at_node(const Eigen::VectorXd& all, int node) {
+  return all.segment<3>(3 * static_cast<Eigen::Index>(node));
+}
+
+// A quarter of the pressure on the face's vector area for each corner, area = 1/2 of the diagonals' product.
+void add_pressure(const PressedFace& face, const LatticeMesh& mesh, const Eigen::VectorXd& at,
+                  Eigen::VectorXd& forces) {
+  const auto corner = [&](std::size_t c) -> Vector3 {
+    return mesh.nodes[static_cast<std::size_t>(face.nodes[c])] + at_node(at, face.nodes[c]);
+  };
+  const Vector3 area = 0.5 * (corner(2) - corner(0)).cross(corner(3) - corner(1));
+  for (const int node : face.nodes) {
+    forces.segment<3>(3 * static_cast<Eigen::Index>(node)) -= 0.25 * face.pressure_pa * area;
+  }
+}
+
+}  // namespace
+
+StaticSystem::StaticSystem(const StaticBody& body, const std::vector<HeldAxis>& held)
+    : body_(&body), held_(&held), free_(3 * static_cast<std::size_t>(body.mesh().node_count()), 0) {
+  for (const HeldAxis& axis : held) free_[static_cast<std::size_t>(3 * axis.node + axis.axis)] = -1;
+  for (Eigen::Index& place : free_) {
+    if (place == 0) place = free_count_++;
+  }
+  lay_out();
+}
+
+void StaticSystem::lay_out() {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(body_->cell_count() * cell_places);
+  const auto visit = [&](const auto& take) {
+    for (std::size_t cell = 0; cell < body_->cell_count(); ++cell) {
+      const std::array<int, 8>& nodes = body_->nodes_of(cell);
+      for (int row = 0; row < cell_axes; ++row) {
+        for (int column = 0; column <= row; ++column) {
+          const Eigen::Index a = free_[static_cast<std::size_t>(coordinate(nodes, row))];
+          const Eigen::Index b = free_[static_cast<std::size_t>(coordinate(nodes, column))];
+          take(std::max(a, b), std::min(a, b));
+        }
+      }
+    }
+  };
+  visit([&](Eigen::Index row, Eigen::Index column) {
+    if (column >= 0) entries.emplace_back(row, column, 1.0);
+  });
+  stiffness_.resize(free_count_, free_count_);
+  stiffness_.setFromTriplets(entries.begin(), entries.end());
+  stiffness_.makeCompressed();
+  places_.reserve(entries.size());
+  const auto *begin = stiffness_.innerIndexPtr(), *start = stiffness_.outerIndexPtr();
+  visit([&](Eigen::Index row, Eigen::Index column) {
+    if (column < 0) {
+      places_.push_back(-1);
+      return;
+    }
+    const auto* const found =
+        std::lower_bound(begin + start[column], begin + start[column + 1], static_cast<int>(row));
+    places_.push_back(found - begin);
+  });
+}
+
+void StaticSystem::hold(double share, Coordinates& at) const {
+  for (const HeldAxis& axis : *held_) {
+    at[3 * static_cast<Eigen::Index>(axis.node) + axis.axis] = share * axis.displacement_m;
+  }
+}
+
+void StaticSystem::move(const Coordinates& free_step, double share, Coordinates& at) const {
+  for (std::size_t c = 0; c < free_.size(); ++c) {
+    if (free_[c] >= 0) at[static_cast<Eigen::Index>(c)] += share * free_step[free_[c]];
+  }
+}
+
+CellMoves StaticSystem::moves_of(std::size_t cell, const Coordinates& at) const {
+  CellMoves moves;
+  for (std::size_t c = 0; c < 8; ++c) moves[c] = at_node(at, body_->nodes_of(cell)[c]);
+  return moves;
+}
+
+double StaticSystem::energy_j(const Coordinates& at) const {
+  double sum = 0.0;
+  for (std::size_t cell = 0; cell < body_->cell_count(); ++cell) {
+    sum += body_->energy_j(cell, moves_of(cell, at));
+  }
+  return sum;
+}
+
+StaticSystem::Forces StaticSystem::respond(const Coordinates& at, Tangent tangent) {
+  Forces forces{Coordinates::Zero(at.size())};
+  std::fill_n(stiffness_.valuePtr(), stiffness_.nonZeros(), 0.0);
+  for (std::size_t cell = 0; cell < body_->cell_count(); ++cell) {
+    const CellResponse response = body_->respond(cell, moves_of(cell, at), tangent);
+    const std::array<int, 8>& nodes = body_->nodes_of(cell);
+    for (int a = 0; a < cell_axes; ++a) forces.held_so[coordinate(nodes, a)] += response.force_n[a];
+    forces.size += response.force_n.squaredNorm();
+    add(cell, response.tangent);
+  }
+  forces.size = std::sqrt(forces.size);
+  return forces;
+}
+
+void StaticSystem::add(std::size_t cell, const CellMatrix& tangent) {
+  const Eigen::Index* place = places_.data() + cell * cell_places;
+  for (int row = 0; row < cell_axes; ++row) {
+    for (int column = 0; column <= row; ++column, ++place) {
+      if (*place >= 0) stiffness_.valuePtr()[*place] += tangent(row, column);
+    }
+  }
+}
+
+StaticSystem::Coordinates StaticSystem::loads(const StaticLoads& loads, const Coordinates& at) const {
+  Coordinates forces(at.size());
+  for (int n = 0; n < body_->mesh().node_count(); ++n) {
+    forces.segment<3>(3 * static_cast<Eigen::Index>(n)) = body_->mass_kg(n) * loads.gravity_m_per_s2;
+  }
+  for (const NodeForce& force : loads.forces) {
+    forces.segment<3>(3 * static_cast<Eigen::Index>(force.node)) += force.force_n;
+  }
+  for (const PressedFace& face : loads.pressures) add_pressure(face, body_->mesh(), at, forces);
+  return forces;
+}
+
+StaticSystem::Coordinates StaticSystem::free_of(const Coordinates& all) const {
+  Coordinates result(free_count_);
+  for (std::size_t c = 0; c < free_.size(); ++c) {
+    if (free_[c] >= 0) result[free_[c]] = all[static_cast<Eigen::Index>(c)];
+  }
+  return result;
+}
+
+}  // namespace spoonbill

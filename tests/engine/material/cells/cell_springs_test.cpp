@@ -1,0 +1,82 @@
+#include "engine/material/cells/cell_springs.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+namespace spoonbill {
+namespace {
+
+CellCorners brick(double a, double b, double c) {
+  return box_mesh({a, b, c}, {2, 2, 2}).cell(0, 0, 0);
+}
+
+// The uniaxial patch test: E and nu of the homogenised cell, along every axis.
+TEST(CellSprings, CubesGiveTheMaterialExactly) {
+  for (const double nu : {0.25, 0.35, 0.45, 0.49}) {
+    const CellCorners corners = brick(2e-3, 2e-3, 2e-3);
+    const CellSprings springs = cell_springs(corners, shear_modulus(5000.0, nu));
+    const AchievedElasticity achieved = achieved_elasticity(corners, springs, bulk_stiffness(5000.0, nu));
+    for (int axis = 0; axis < 3; ++axis) {
+      // 1e-6: what the case asks for; the solve is in double.
+      EXPECT_NEAR(achieved.youngs_modulus_pa[axis] / 5000.0, 1.0, 1e-6) << "nu " << nu;
+      EXPECT_NEAR(achieved.poissons_ratio[axis], nu, 1e-6);
+    }
+  }
+}
+
+TEST(CellSprings, BricksGiveTheMaterialExactly) {
+  for (const CellCorners& corners :
+       {brick(1.2e-3, 1e-3, 1e-3), brick(1e-3, 1.2e-3, 1.1e-3), brick(1.5e-3, 1.5e-3, 1e-3)}) {
+    const CellSprings springs = cell_springs(corners, shear_modulus(1e5, 0.45));
+    const AchievedElasticity achieved = achieved_elasticity(corners, springs, bulk_stiffness(1e5, 0.45));
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(achieved.youngs_modulus_pa[axis] / 1e5, 1.0, 1e-6);
+      EXPECT_NEAR(achieved.poissons_ratio[axis], 0.45, 1e-6);
+    }
+  }
+}
+
+// Closed form of a cubic lattice of spacing a: C11 = (k1 + 2 k2 + 4 k3 / 3) / a and C12 = C44 = (k2 + 4 k3 /
+// 3) / a, with a cell's share of a quarter, a half and the whole of k1, k2, k3; isotropic when k1 = k2 + 8 k3
+// / 3.
+TEST(CellSprings, CubeStiffnessesMeetTheClosedForm) {
+  const double a = 2e-3, mu = 700.0;
+  const CellSprings springs = cell_springs(brick(a, a, a), mu);
+  const double k1 = 4.0 * springs.stiffness_n_per_m[0], k2 = 2.0 * springs.stiffness_n_per_m[12],
+               k3 = springs.stiffness_n_per_m[24];
+  EXPECT_NEAR((k2 + 4.0 * k3 / 3.0) / a, mu, 1e-9 * mu);
+  EXPECT_NEAR((k1 + 2.0 * k2 + 4.0 * k3 / 3.0) / a, 3.0 * mu, 1e-9 * mu);
+  EXPECT_NEAR(k1, k2 + 8.0 * k3 / 3.0, 1e-9 * k1);
+}
+
+TEST(CellSprings, SlenderCellsKeepPositiveSpringsAndReportTheirMisfit) {
+  const CellSprings slender = cell_springs(brick(4e-3, 1e-3, 1e-3), 700.0);
+  for (const double k : slender.stiffness_n_per_m) EXPECT_GT(k, 0.0);
+  EXPECT_GT(slender.misfit, 0.05);
+  EXPECT_LT(cell_springs(brick(1e-3, 1e-3, 1e-3), 700.0).misfit, 1e-9);
+}
+
+// The stiffness matrix of one cell, springs and volume force, has the six rigid motions as its only zero
+// modes.
+TEST(CellSprings, OnlyRigidMotionsCostNoEnergy) {
+  for (const CellCorners& corners :
+       {brick(1e-3, 1e-3, 1e-3), brick(1.7e-3, 1e-3, 1e-3), brick(1.5e-3, 1.5e-3, 1e-3)}) {
+    const CellSprings springs = cell_springs(corners, 700.0);
+    Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(24, 24);
+    for (int s = 0; s < cell_spring_count; ++s) {
+      const auto [a, b] = cell_spring_corners[s];
+      const Vector3 n = (corners[b] - corners[a]).normalized();
+      Eigen::VectorXd row = Eigen::VectorXd::Zero(24);
+      row.segment<3>(3 * a) = -n;
+      row.segment<3>(3 * b) = n;
+      stiffness += springs.stiffness_n_per_m[s] * row * row.transpose();
+    }
+    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(stiffness).eigenvalues();
+    EXPECT_LT(values[5], 1e-9 * values[23]);
+    EXPECT_GT(values[6], 1e-3 * values[23]);
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,163 @@
+// Cells as hexahedra: what they must get right alone, before they are a body.
+#include "engine/material/cells/hexahedron.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "engine/material/cells/corotated_cell.h"
+#include "engine/material/cells/spring_cell.h"
+#include "tests/engine/bspline/random_surface.h"
+
+namespace spoonbill {
+namespace {
+
+Vector3 random_vector(Random& random, double size) {
+  return size * Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+}
+
+// No edge of it has the length or the direction of another.
+CellCorners distorted_cell(std::uint64_t seed) {
+  Random random(seed);
+  CellCorners corners = box_mesh({1.2, 1.0, 0.8}, {2, 2, 2}).cell(0, 0, 0);
+  for (Vector3& corner : corners) corner += random_vector(random, 0.12);
+  return corners;
+}
+
+// Of a strain, by corner.
+CellVector moved_by(const Eigen::Matrix3d& gradient, const CellCorners& corners) {
+  CellVector moves;
+  for (int c = 0; c < 8; ++c) moves.segment<3>(3 * c) = gradient * corners[static_cast<std::size_t>(c)];
+  return moves;
+}
+
+TEST(Hexahedron, OnlyRigidMotionsCostNoEnergy) {
+  for (const double poisson : {-0.5, 0.0, 0.25, 0.45, 0.49, 0.4999}) {
+    const CellMatrix stiffness = hexahedron_stiffness(distorted_cell(3), 1.0, poisson);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(stiffness);
+    // Rounding of a matrix with entries of about 1 / (1 - 2 nu).
+    EXPECT_LT(std::abs(modes.eigenvalues()[5]), 1e-14 / (1.0 - 2.0 * poisson)) << poisson;
+    EXPECT_GT(modes.eigenvalues()[6], 1e-2) << poisson;
+  }
+}
+
+// Whatever its shape, a cell under a uniform strain stores the energy of the material: V/2 s:e.
+TEST(Hexahedron, UniformStrainsCostWhatTheMaterialAsks) {
+  Random random(17);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const double youngs = 3.0, poisson = random.uniform(-0.3, 0.49);
+    const CellCorners corners = distorted_cell(seed);
+    Eigen::Matrix3d gradient;
+    for (int column = 0; column < 3; ++column) gradient.col(column) = random_vector(random, 1.0);
+    const Eigen::Matrix3d strain = 0.5 * (gradient + gradient.transpose());
+    const double shear = youngs / (2.0 * (1.0 + poisson));
+    const double lambda = 2.0 * shear * poisson / (1.0 - 2.0 * poisson);
+    const double energy = cell_volume(corners) *
+                          (shear * strain.squaredNorm() + 0.5 * lambda * strain.trace() * strain.trace());
+    const CellVector moves = moved_by(gradient, corners);
+    const CellVector force = hexahedron_stiffness(corners, youngs, poisson) * moves;
+    EXPECT_NEAR(0.5 * moves.dot(force), energy, 1e-12 * energy) << seed;
+  }
+}
+
+// Bent alone: the moments on its ends do the work of E I / 2 k^2 L, which a trilinear cell without its inner
+// displacements overestimates by E / (2 (1 + nu)) (L/h)^2 / E: by more than a hundred times here.
+TEST(Hexahedron, BendsAsABeam) {
+  const double length = 20.0, wide = 1.0, high = 1.0, curvature = 1e-3;
+  const CellCorners corners = box_mesh({length, wide, high}, {2, 2, 2}).cell(0, 0, 0);
+  CellVector moves = CellVector::Zero();
+  for (int c = 0; c < 8; ++c) {
+    const Vector3 at = corners[static_cast<std::size_t>(c)] - 0.5 * Vector3(length, wide, high);
+    moves[3 * c] = -curvature * at.x() * at.z();
+  }
+  // Poisson's ratio 0: nothing swells across.
+  const CellMatrix stiffness = hexahedron_stiffness(corners, 7.0, 0.0);
+  const double energy = 0.5 * 7.0 * wide * std::pow(high, 3) / 12.0 * curvature * curvature * length;
+  EXPECT_NEAR(0.5 * moves.dot(stiffness * moves), energy, 1e-9 * energy);
+}
+
+// Turned by a whole radian and strained by some percent.
+CellMoves turned_and_strained(const CellCorners& corners, std::uint64_t seed) {
+  Random random(seed);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Vector3(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+  CellMoves moves;
+  for (std::size_t c = 0; c < 8; ++c) {
+    moves[c] = turn * (corners[c] + random_vector(random, 0.03)) + Vector3(5.0, -7.0, 2.0) - corners[c];
+  }
+  return moves;
+}
+
+// By central differences of the energy, and of the force. `tangent_tolerance` is of the whole tangent.
+template <class Cell>
+void expect_derivatives(const Cell& cell, const CellMoves& moves, double tangent_tolerance) {
+  const CellResponse response = cell.respond(moves, Tangent::stressed);
+  constexpr double step = 1e-5;
+  for (int a = 0; a < 24; ++a) {
+    CellMoves up = moves, down = moves;
+    up[static_cast<std::size_t>(a / 3)][a % 3] += step;
+    down[static_cast<std::size_t>(a / 3)][a % 3] -= step;
+    // What a step of 1e-5 leaves of third derivatives, and rounding over it.
+    EXPECT_NEAR((cell.energy_j(up) - cell.energy_j(down)) / (2.0 * step), response.force_n[a],
+                1e-8 * response.force_n.norm() + 1e-10);
+    const CellVector change =
+        (cell.respond(up, Tangent::plain).force_n - cell.respond(down, Tangent::plain).force_n) /
+        (2.0 * step);
+    EXPECT_LT((change - response.tangent.col(a)).norm(), tangent_tolerance * response.tangent.norm());
+  }
+  EXPECT_LT((response.tangent - response.tangent.transpose()).norm(), 1e-12 * response.tangent.norm());
+}
+
+TEST(CorotatedCell, ForceIsTheGradientOfItsEnergyAndTheTangentItsChange) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const CellCorners corners = distorted_cell(seed);
+    const CorotatedCell cell(corners, hexahedron_stiffness(corners, 1.0, 0.3));
+    // How the stretch changes the turning is left out: a product of two small strains.
+    expect_derivatives(cell, turned_and_strained(corners, seed), 1e-3);
+  }
+}
+
+TEST(SpringCell, ForceIsTheGradientOfItsEnergyAndTheTangentItsChange) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const CellCorners corners = distorted_cell(seed);
+    const SpringCell cell(corners, cell_springs(corners, 0.4), 2.0, 1.0);
+    expect_derivatives(cell, turned_and_strained(corners, seed), 1e-8);
+  }
+}
+
+// The force of a cell that is turned and not strained is nothing, at any angle; and it never turns the cell.
+TEST(CorotatedCell, FeelsNoTurn) {
+  const CellCorners corners = distorted_cell(9);
+  const CorotatedCell cell(corners, hexahedron_stiffness(corners, 1.0, 0.3));
+  for (const double angle : {1e-9, 1e-4, 0.5, 1.6, 3.1}) {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Vector3(2.0, -1.0, 1.0).normalized()).matrix();
+    CellMoves moves;
+    for (std::size_t c = 0; c < 8; ++c) moves[c] = turn * corners[c] - corners[c];
+    // Rounding of the moves, whose size is the turn's.
+    EXPECT_LT(cell.respond(moves, Tangent::plain).force_n.norm(), 1e-15 * std::max(1.0, angle)) << angle;
+    const CellMoves strained = turned_and_strained(corners, 4);
+    const CellVector force = cell.respond(strained, Tangent::plain).force_n;
+    Vector3 sum = Vector3::Zero(), moment = Vector3::Zero();
+    for (std::size_t c = 0; c < 8; ++c) {
+      const Vector3 of_corner = force.segment<3>(3 * static_cast<Eigen::Index>(c));
+      sum += of_corner;
+      moment += (corners[c] + strained[c]).cross(of_corner);
+    }
+    EXPECT_LT(sum.norm(), 1e-13);
+    EXPECT_LT(moment.norm(), 1e-13);
+  }
+}
+
+// A steel cell that has turned by a millionth: the digits that make up its forces are not lost.
+TEST(CorotatedCell, KeepsTheDigitsOfSmallTurns) {
+  const Vector3 axis(3e-7, -5e-7, 8e-7);
+  Eigen::Matrix3d change;
+  change << 0.0, -axis.z(), axis.y(), axis.z(), 0.0, -axis.x(), -axis.y(), axis.x(), 0.0;
+  const Eigen::Matrix3d turn = nearest_turn(change);
+  // sin(a) = a up to a^3 / 6; the next term is 1e-12 of it.
+  EXPECT_LT((0.5 * (turn - turn.transpose()) - change).norm(), 1e-12 * change.norm());
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,211 @@
+// Stiff bodies under the implicit method, against the static solver and closed forms.
+#include "engine/material/implicit/implicit_body.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <cstdlib>
+
+#include "engine/material/statics/static_solver.h"
+#include "tests/engine/allocations.h"
+#include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/material/block.h"
+
+namespace spoonbill {
+namespace {
+
+ImplicitBody body_of(const LatticeMesh& mesh, const Material& material,
+                     InstructionSet set = InstructionSet::baseline) {
+  Result<ImplicitBody> body = ImplicitBody::make(mesh, material, set);
+  EXPECT_TRUE(body.ok()) << body.error().message;
+  return std::move(body).value();
+}
+
+Material damped(Material material, double ratio) {
+  material.damping_ratio = ratio;
+  return material;
+}
+
+// A beam along z, held at its low end, with a force towards -y on its high one.
+struct Cantilever {
+  LatticeMesh mesh = box_mesh({0.012, 0.005, 0.1}, {5, 3, 41});
+  std::vector<std::uint8_t> held;
+  std::vector<HeldAxis> held_axes;
+  StaticLoads loads;
+
+  explicit Cantilever(double force_n) : held(static_cast<std::size_t>(mesh.node_count()), 0) {
+    for (int i = 0; i < 5; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        held[static_cast<std::size_t>(mesh.index(i, j, 0))] = 1;
+        hold_node(mesh.index(i, j, 0), Vector3::Zero(), held_axes);
+        loads.forces.push_back({mesh.index(i, j, 40), Vector3(0.0, -force_n / 15.0, 0.0)});
+      }
+    }
+  }
+  int tip() const { return mesh.index(2, 1, 40); }
+};
+
+// Steel, a hard plastic and a rubber, bent by a hundredth and by a third of their length.
+TEST(ImplicitBody, SettlesToTheStaticAnswer) {
+  const double second_moment = 0.012 * std::pow(0.005, 3) / 12.0;
+  for (const double youngs : {193e9, 5e6}) {
+    for (const double load : {0.03, 1.0}) {
+      const Cantilever beam(load * youngs * second_moment / 0.01);
+      const Material material = damped(elastic_material(youngs, 0.3, 1000.0), 0.05);
+      const StaticBody at_rest = StaticBody::make(beam.mesh, material, CellKind::hexahedra).value();
+      const double expected = rest_under_load(at_rest, beam.loads, beam.held_axes)
+                                  .value()
+                                  .displacement_m[static_cast<std::size_t>(beam.tip())]
+                                  .y();
+      ImplicitBody body = body_of(beam.mesh, material);
+      body.hold(beam.held);
+      for (const NodeForce& force : beam.loads.forces) body.set_node_force(force.node, force.force_n);
+      ImplicitStep step;
+      step.damping_per_s = 20.0;
+      for (int tick = 0; tick < 1000; ++tick) body.step(step);
+      // What 20 per second of damping leave of the lowest mode in a second.
+      EXPECT_NEAR(body.displacement(beam.tip()).y() / expected, 1.0, 1e-3) << youngs << " Pa, load " << load;
+    }
+  }
+}
+
+// -g h^2 n (n + 1) / 2, whatever the stiffness.
+TEST(ImplicitBody, FallsFreely) {
+  ImplicitBody body = body_of(box_mesh({0.02, 0.03, 0.02}, {3, 4, 3}), elastic_material(1e9, 0.3, 1000.0));
+  ImplicitStep step;
+  step.gravity_m_per_s2 = {0.0, -9.81, 0.0};
+  for (int tick = 0; tick < 1000; ++tick) body.step(step);
+  for (int n = 0; n < body.node_count(); ++n) {
+    EXPECT_NEAR(body.displacement(n).y(), -4.909905, 1e-9);
+    EXPECT_NEAR(body.displacement(n).x(), 0.0, 1e-9);
+  }
+}
+
+// A mode of a cell whose base is held loses 1 / (1 + w^2 h^2) of its energy in each step of implicit Euler.
+TEST(ImplicitBody, DampsAModeAsImplicitEulerDoes) {
+  const LatticeMesh mesh = box_mesh({0.01, 0.01, 0.01}, {2, 2, 2});
+  const Material material = elastic_material(1e5, 0.3, 1000.0);
+  ImplicitBody body = body_of(mesh, material);
+  // Corners 1, 3, 5 and 7 are those of the far layer.
+  const CellMatrix stiffness = hexahedron_stiffness(mesh.cell(0, 0, 0), 1e5, 0.3);
+  Eigen::MatrixXd free(12, 12);
+  for (int row = 0; row < 12; ++row) {
+    for (int column = 0; column < 12; ++column) {
+      free(row, column) =
+          stiffness(3 * (2 * (row / 3) + 1) + row % 3, 3 * (2 * (column / 3) + 1) + column % 3);
+    }
+  }
+  const double mass = 1000.0 * 1e-6 / 8.0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(free);
+  const double omega = std::sqrt(modes.eigenvalues()[0] / mass);
+  std::vector<std::uint8_t> held(8, 0);
+  std::array<int, 4> far{};
+  for (int c = 0; c < 8; ++c) {
+    const int node = mesh.index(c >> 2 & 1, c >> 1 & 1, c & 1);
+    if ((c & 1) == 0) {
+      held[static_cast<std::size_t>(node)] = 1;
+    } else {
+      far[static_cast<std::size_t>(c / 2)] = node;
+    }
+  }
+  body.hold(held);
+  // So small that the mode does not turn.
+  constexpr double amplitude_m = 1e-9;
+  for (int c = 0; c < 4; ++c) {
+    const Eigen::Vector3d shape = modes.eigenvectors().col(0).segment<3>(3 * c);
+    body.set_displacement(far[static_cast<std::size_t>(c)], amplitude_m * shape);
+  }
+  ImplicitStep step;
+  step.step_s = 0.1 / omega;
+  const auto energy = [&] {
+    double sum = 0.0;
+    for (const int node : far) {
+      sum += omega * omega * body.displacement(node).squaredNorm() + body.velocity(node).squaredNorm();
+    }
+    return sum;
+  };
+  const double before = energy();
+  for (int k = 0; k < 100; ++k) body.step(step);
+  // (1 + 0.01)^-100.
+  EXPECT_NEAR(energy() / before, 0.369711, 1e-4);
+}
+
+TEST(ImplicitBody, KeepsItsMomentum) {
+  ImplicitBody body = body_of(box_mesh({0.02, 0.01, 0.06}, {4, 3, 11}), elastic_material(1e8, 0.3, 1000.0));
+  Random random(3);
+  Vector3 before = Vector3::Zero();
+  double size = 0.0;
+  for (int n = 0; n < body.node_count(); ++n) {
+    const Vector3 v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 2));
+    body.set_velocity(n, v);
+    before += body.mass_kg(n) * v;
+    size += body.mass_kg(n) * v.norm();
+  }
+  for (int tick = 0; tick < 500; ++tick) body.step({});
+  Vector3 after = Vector3::Zero();
+  for (int n = 0; n < body.node_count(); ++n) after += body.mass_kg(n) * body.velocity(n);
+  EXPECT_LT((after - before).norm(), 1e-5 * size);
+}
+
+// Nodes thrown about at up to 20 m/s, at any stiffness that needs the method and any damping: what comes of
+// it is finite, and a body again within a second.
+TEST(ImplicitBody, NothingBlowsItUp) {
+  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 100 : 8;
+  Random random(11);
+  for (int trial = 0; trial < trials; ++trial) {
+    const Material material =
+        damped(elastic_material(std::pow(10.0, random.uniform(5.0, 12.0)), random.uniform(0.2, 0.49),
+                                std::pow(10.0, random.uniform(1.0, 4.0))),
+               random.uniform(0.0, 2.0));
+    ImplicitBody body = body_of(box_mesh({0.012, 0.008, 0.05}, {4, 3, 14}), material);
+    const double speed = std::pow(10.0, random.uniform(-1.0, 1.3));
+    for (int tick = 0; tick < 1500; ++tick) {
+      if (tick % 100 == 0 && tick < 500) {
+        for (int n = 0; n < body.node_count(); ++n) {
+          body.set_velocity(
+              n, speed * Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+        }
+      }
+      body.step({});
+    }
+    LatticeMesh shape = body.mesh();
+    Vector3 middle = Vector3::Zero();
+    for (int n = 0; n < body.node_count(); ++n) {
+      ASSERT_TRUE(body.displacement(n).allFinite()) << trial;
+      shape.nodes[static_cast<std::size_t>(n)] += body.displacement(n);
+      middle += shape.nodes[static_cast<std::size_t>(n)] / body.node_count();
+    }
+    EXPECT_TRUE(check_cells(shape).ok()) << trial << ": " << check_cells(shape).error().message;
+    for (const Vector3& node : shape.nodes) EXPECT_LT((node - middle).norm(), 0.06) << trial;
+  }
+}
+
+TEST(ImplicitBody, EveryInstructionSetGivesTheSameBits) {
+  const Cantilever beam(0.5);
+  const Material material = damped(elastic_material(2e9, 0.35, 1000.0), 0.1);
+  const auto shape_after = [&](InstructionSet set) {
+    ImplicitBody body = body_of(beam.mesh, material, set);
+    body.hold(beam.held);
+    for (const NodeForce& force : beam.loads.forces) body.set_node_force(force.node, force.force_n);
+    for (int tick = 0; tick < 30; ++tick) body.step({});
+    std::vector<double> state;
+    body.visit_state(
+        [&](const double* data, std::size_t count) { state.insert(state.end(), data, data + count); });
+    return state;
+  };
+  const std::vector<double> expected = shape_after(InstructionSet::baseline);
+  for (const InstructionSet set : available_instruction_sets()) {
+    EXPECT_EQ(shape_after(set), expected) << name_of(set);
+  }
+}
+
+TEST(ImplicitBody, StepsAllocateNothing) {
+  ImplicitBody body = body_of(box_mesh({0.02, 0.01, 0.06}, {4, 3, 11}), elastic_material(1e8, 0.3, 1000.0));
+  const std::size_t before = allocation_count();
+  for (int tick = 0; tick < 20; ++tick) body.step({});
+  EXPECT_EQ(allocation_count(), before);
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,210 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/material/cells/cell_springs.h"
+#include "engine/material/lattice_solver.h"
+#include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/material/block.h"
+
+namespace spoonbill {
+namespace {
+
+void displace_at_random(SpringLattice& lattice, double amplitude_m, std::uint64_t seed) {
+  Random random(seed);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    lattice.set_displacement(
+        n, amplitude_m * Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+  }
+}
+
+double volume_energy(const SpringLattice& lattice, double bulk_pa) {
+  CellCorners corners;
+  for (int c = 0; c < 8; ++c) corners[c] = lattice.position(c);
+  const double rest = lattice.rest_volume_m3();
+  const double strain = cell_volume(corners) / rest - 1.0;
+  return 0.5 * bulk_pa * strain * strain * rest;
+}
+
+TEST(LatticeForces, VolumeForceIsTheGradientOfItsEnergy) {
+  const double bulk = bulk_stiffness(5000.0, 0.45);
+  SpringLattice lattice = block({1e-3, 1.1e-3, 0.9e-3}, {2, 2, 2}, elastic_material(5000.0, 0.45, 1000.0));
+  displace_at_random(lattice, 1e-4, 7);
+  const LatticeView view = lattice.view();
+  lattice.kernels().look_ahead(view, 0.0f);
+  lattice.kernels().start_forces(view);  // nothing: springs were linearised at rest
+  lattice.kernels().volume_forces(view);
+  const float* force[3] = {view.fx, view.fy, view.fz};
+  double largest = 0.0;
+  for (int n = 0; n < 8; ++n) largest = std::max(largest, static_cast<double>(std::abs(view.fx[n])));
+  for (int n = 0; n < 8; ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3 at = lattice.displacement(n);
+      Vector3 step = Vector3::Zero();
+      step[axis] = 1e-7;
+      SpringLattice moved = lattice;
+      moved.set_displacement(n, at + step);
+      const double up = volume_energy(moved, bulk);
+      moved.set_displacement(n, at - step);
+      const double gradient = (up - volume_energy(moved, bulk)) / 2e-7;
+      // 1e-3: single precision of the displaced nodes over the difference step.
+      EXPECT_NEAR(force[axis][n], -gradient, 1e-3 * largest);
+    }
+  }
+}
+
+TEST(LatticeForces, ForcesOfAFreeBodySumToNothing) {
+  SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.49, 1000.0));
+  displace_at_random(lattice, 2e-4, 11);
+  const LatticeView view = lattice.view();
+  take_forces(lattice, 0.0f);
+  double sum = 0.0, magnitude = 0.0;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    sum += view.fx[n];
+    magnitude += std::abs(view.fx[n]);
+  }
+  EXPECT_LT(std::abs(sum), 1e-5 * magnitude);  // rounding of single precision sums
+}
+
+TEST(LatticeForces, RestShapeFeelsExactlyNothing) {
+  SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.25, 1000.0));
+  const LatticeView view = lattice.view();
+  take_forces(lattice, 1e-4f);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    EXPECT_EQ(view.fx[n], 0.0f);
+    EXPECT_EQ(view.fy[n], 0.0f);
+    EXPECT_EQ(view.fz[n], 0.0f);
+  }
+}
+
+// A damper on the whole velocity of a spring's ends would brake a rigid rotation; ours takes no power from
+// it.
+TEST(LatticeForces, RigidRotationProducesNoDamping) {
+  SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.45, 1000.0));
+  const Vector3 spin(3.0, -2.0, 5.0);
+  const Eigen::AngleAxisd turned(0.8, Vector3(1, 2, 3).normalized());
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const Vector3 position = turned * lattice.mesh().nodes[n];
+    lattice.set_displacement(n, position - lattice.mesh().nodes[n]);
+    lattice.set_velocity(n, spin.cross(position));
+  }
+  const float tau = 1e-3f;
+  take_forces(lattice, tau);
+  const LatticeView view = lattice.view();
+  double power = 0.0, whole_damper = 0.0;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    power += lattice.velocity(n).dot(Vector3(view.fx[n], view.fy[n], view.fz[n]));
+    for (const SpringArrays& s : view.springs) {
+      if (s.stiffness[n] == 0.0f) continue;
+      const Vector3 apart = lattice.velocity(n + s.offset) - lattice.velocity(n);
+      whole_damper += static_cast<double>(s.stiffness[n] * tau) * apart.squaredNorm();
+    }
+  }
+  EXPECT_LT(std::abs(power), 1e-3 * whole_damper);  // single precision of positions; (tau w)^2 / 2 is 2e-5
+}
+
+// What springs change by from a strained reference is right to first order: half the step, a quarter of the
+// error.
+TEST(LatticeForces, LinearisedSpringsFollowToFirstOrder) {
+  const auto error = [&](double step_m, double stiffening) {
+    Material material = elastic_material(5000.0, 0.25, 1000.0);
+    material.stiffening = stiffening;
+    SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, material);
+    displace_at_random(lattice, 2e-4, 5);
+    take_forces(lattice, 0.0f);
+    Random random(6);
+    for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+      const Vector3 step(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      lattice.set_displacement(n, lattice.displacement(n) + step_m * step);
+    }
+    const LatticeView view = lattice.view();
+    Drift still;
+    still.cap_m_per_s = 1.0f;
+    lattice.kernels().drift(view, still);
+    lattice.kernels().start_forces(view);
+    lattice.kernels().spring_forces(view);
+    const std::vector<float> linear(view.fx, view.fx + lattice.mesh().node_count());
+    lattice.kernels().linearise_springs(view);
+    lattice.kernels().start_forces(view);
+    double sum = 0.0, magnitude = 0.0;
+    for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+      sum += std::abs(static_cast<double>(linear[static_cast<std::size_t>(n)]) - view.fx[n]);
+      magnitude += std::abs(view.fx[n]);
+    }
+    return sum / magnitude;
+  };
+  for (const double stiffening : {0.0, 2.0, -20.0}) {
+    const double large = error(4e-5, stiffening), small = error(2e-5, stiffening);
+    EXPECT_LT(large, 0.02) << stiffening;
+    EXPECT_NEAR(large / small, 4.0, 0.4) << stiffening;  // terms of third order
+  }
+}
+
+// Grown evenly, all springs have one strain: forces are those of linear springs times what that strain makes
+// of them.
+TEST(LatticeForces, SpringsStiffenAndSoftenWithTheirStrain) {
+  const auto force_on_corner = [](double stiffening, double strain) {
+    Material material = elastic_material(5000.0, 0.25, 1000.0);
+    material.stiffening = stiffening;
+    SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {3, 3, 3}, material);
+    for (int n = 0; n < 27; ++n) lattice.set_displacement(n, strain * lattice.mesh().nodes[n]);
+    take_forces(lattice, 0.0f);
+    return static_cast<double>(lattice.view().fx[0]);
+  };
+  for (const double strain : {-0.2, -0.05, 0.01, 0.1, 0.3}) {
+    const double linear = force_on_corner(0.0, strain);
+    // Single precision, over strains of a hundredth.
+    EXPECT_NEAR(force_on_corner(8.0, strain) / linear, 1.0 + 8.0 * strain * strain, 1e-4) << strain;
+    EXPECT_NEAR(force_on_corner(-8.0, strain) / linear, 1.0 / std::sqrt(1.0 + 8.0 * strain * strain), 1e-4)
+        << strain;
+  }
+  EXPECT_NEAR(force_on_corner(100.0, 0.3) / force_on_corner(0.0, 0.3), 2.0, 1e-4);
+}
+
+// The pressure of a cell below Poisson's ratio 1/4 draws it further, ever more weakly beyond a tenth.
+TEST(LatticeForces, NegativeVolumeForcesGiveWay) {
+  const auto pressure = [](double poisson, double dilation) {
+    const Material material = elastic_material(5000.0, poisson, 1000.0);
+    SpringLattice lattice = block({5e-3, 5e-3, 5e-3}, {2, 2, 2}, material);
+    const double stretch = std::cbrt(1.0 + dilation) - 1.0;
+    for (int n = 0; n < 8; ++n) lattice.set_displacement(n, stretch * lattice.mesh().nodes[n]);
+    take_forces(lattice, 0.0f);
+    const LatticeView view = lattice.view();
+    lattice.kernels().start_forces(view);
+    const double springs = view.fx[0];
+    lattice.kernels().volume_forces(view);
+    return (view.fx[0] - springs) / bulk_stiffness(5000.0, poisson);
+  };
+  for (const double dilation : {-0.3, -0.02, 0.05, 0.4}) {
+    EXPECT_NEAR(pressure(0.2, dilation) / pressure(0.3, dilation), 1.0 / (1.0 + 100.0 * dilation * dilation),
+                1e-3)
+        << dilation;
+  }
+}
+
+TEST(LatticeForces, EveryInstructionSetGivesTheSameBits) {
+  Material material = elastic_material(5000.0, 0.22, 1000.0);
+  material.stiffening = 5.0;
+  SpringLattice reference = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, material, InstructionSet::baseline);
+  displace_at_random(reference, 2e-4, 3);
+  for (int step = 0; step < 50; ++step) {
+    plain_substep(reference, 1e-4f);
+    reference.kernels().flow(reference.view(), {0.005f, 0.1f, 0.05f});
+    reference.kernels().creep(reference.view(), step % lattice_direction_count, {0.5f, 0.05f});
+  }
+  for (const InstructionSet set : available_instruction_sets()) {
+    SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, material, set);
+    EXPECT_EQ(lattice.fastest_frequency(),
+              block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, material).fastest_frequency());
+    displace_at_random(lattice, 2e-4, 3);
+    for (int step = 0; step < 50; ++step) {
+      plain_substep(lattice, 1e-4f);
+      lattice.kernels().flow(lattice.view(), {0.005f, 0.1f, 0.05f});
+      lattice.kernels().creep(lattice.view(), step % lattice_direction_count, {0.5f, 0.05f});
+    }
+    EXPECT_EQ(lattice.shape(), reference.shape()) << name_of(set);
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill
