@@ -79,9 +79,8 @@ struct TouchingTool {
 };
 
 // Advances at most lattice_capacity lattices, by as many substeps as the one that needs most; those with a
-// core by one implicit step, around the contacts. those with a core by one implicit step, before the
-// contacts. The tools act in their order, then the bodies on each other. Denormals must be flushed by the
-// caller for the speed's sake (see DenormalsFlushed).
+// core by one implicit step, around the contacts. The tools act in their order, then the bodies on each
+// other. Denormals must be flushed by the caller for the speed's sake (see DenormalsFlushed).
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
                   std::span<const TouchingTool> tools, BodyContacts* between = nullptr);
 

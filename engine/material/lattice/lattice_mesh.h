@@ -20,6 +20,8 @@ struct LatticeMesh {
   // How much of each cell there is, in the order of its first corners; empty: all of every one.
   std::vector<double> cell_shares;
   std::vector<NodePlace> places;  // of each node; empty: the block is the body
+  std::vector<double>
+      turns;  // of each node of a tube: where around it, 0 to 1 in the sense of u; 0 on its axis
 
   int index(int i, int j, int k) const { return (k * count[0] + i) * count[1] + j; }
   // The inverse: i, j, k.

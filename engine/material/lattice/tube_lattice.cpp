@@ -212,6 +212,24 @@ double ring_parameter_at(const Surface& surface, const RingParameters& ring, dou
   return a + share * (b - a);
 }
 
+// The parameter u of the ring's point towards which a node of a slice lies from the middle, any in the
+// middle, and how far out it lies, 0 to 1.
+struct Outward {
+  double u = 0.0;
+  double radius = 0.0;
+};
+
+Outward outward_of(const Surface& surface, const RingParameters& ring, const LatticeMesh& mesh, int i,
+                   int j) {
+  const int ni = mesh.count[0], nj = mesh.count[1];
+  const double s = 2.0 * i / (ni - 1) - 1.0, t = 2.0 * j / (nj - 1) - 1.0;
+  const double radius = std::max(std::abs(s), std::abs(t));
+  if (!(radius > 0.0)) return {ring.u[0], 0.0};
+  const double on_s = std::abs(s) == radius ? std::copysign(1.0, s) : s / radius;
+  const double on_t = std::abs(t) == radius ? std::copysign(1.0, t) : t / radius;
+  return {ring_parameter_at(surface, ring, ring_position(on_s, on_t, ni, nj)), radius};
+}
+
 // Transfinite (Coons) interpolation of a slice from its ring.
 void fill_slice(LatticeMesh& mesh, int k) {
   const int ni = mesh.count[0], nj = mesh.count[1];
@@ -224,6 +242,19 @@ void fill_slice(LatticeMesh& mesh, int k) {
                               a * ((1 - b) * at(ni - 1, 0) + b * at(ni - 1, nj - 1));
       mesh.nodes[mesh.index(i, j, k)] = sides - corners;
     }
+  }
+}
+
+// Where around the tube a node of any slice lies.
+void place_turns(const Surface& surface, const RingParameters& ring, LatticeMesh& mesh) {
+  mesh.turns.assign(mesh.nodes.size(), 0.0);
+  const double start = surface.u.domain_start(), period = surface.u.domain_end() - start;
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    const std::array<int, 3> at = mesh.place(n);
+    const Outward out = outward_of(surface, ring, mesh, at[0], at[1]);
+    if (!(out.radius > 0.0)) continue;
+    const double turns = (out.u - start) / period;
+    mesh.turns[static_cast<std::size_t>(n)] = turns - std::floor(turns);
   }
 }
 
@@ -244,15 +275,9 @@ void fill_cap(const Surface& surface, const RingParameters& ring, LatticeMesh& m
   }
   for (int i = 0; i < ni; ++i) {
     for (int j = 0; j < nj; ++j) {
-      const double s = 2.0 * i / (ni - 1) - 1.0, t = 2.0 * j / (nj - 1) - 1.0;
-      const double radius = std::max(std::abs(s), std::abs(t));
-      double u = ring.u[0];
-      if (radius > 0.0) {
-        const double on_s = std::abs(s) == radius ? std::copysign(1.0, s) : s / radius;
-        const double on_t = std::abs(t) == radius ? std::copysign(1.0, t) : t / radius;
-        u = ring_parameter_at(surface, ring, ring_position(on_s, on_t, ni, nj));
-      }
-      mesh.nodes[mesh.index(i, j, k)] = evaluate(surface, u, length_to_v.at(radius * length)).position_m;
+      const Outward out = outward_of(surface, ring, mesh, i, j);
+      mesh.nodes[mesh.index(i, j, k)] =
+          evaluate(surface, out.u, length_to_v.at(out.radius * length)).position_m;
     }
   }
 }
@@ -335,6 +360,7 @@ Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& r
   fill_cap(surface, ring, mesh, 0, surface.v.domain_start(), profile.v[first_rim]);
   fill_cap(surface, ring, mesh, last, surface.v.domain_end(), profile.v[last_rim]);
   if (const Status status = check_cells(mesh); !status.ok()) return status.error();
+  place_turns(surface, ring, mesh);
   if (request.feature_map) order_by_feature_map(mesh, *request.feature_map);
   return mesh;
 }

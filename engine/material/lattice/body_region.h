@@ -1,0 +1,37 @@
+// A part of a body in the body's own coordinates, so that it stays where it is however the body is bent: what
+// has a material or a friction of its own, is loaded, or is held.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "engine/material/lattice/lattice_mesh.h"
+#include "engine/range.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+// Plain data. All of the body as it is made.
+struct BodyRegion {
+  Range<double> along{0.0, 1.0};   // of the body's length, from the first pole
+  Range<double> around{0.0, 1.0};  // of a turn in the sense of u; low above high: across the seam
+  Range<double> depth_m{0.0, std::numeric_limits<double>::infinity()};  // below the surface, at rest
+};
+
+// Where a point of a body is, in the same terms.
+struct BodyPlace {
+  double along = 0.0;
+  double around = 0.0;  // 0 on the axis, which has none
+  double depth_m = 0.0;
+};
+
+bool contains(const BodyRegion& region, const BodyPlace& place);
+
+// One of each node, at rest. The depth is the distance to the faces of the block's hull. Of a block that is
+// no tube, shares count along the block, and around is 0.
+std::vector<BodyPlace> node_places(const LatticeMesh& mesh);
+
+// The shares within 0 to 1 and in order, the depths at least 0 and in order; the message names the field.
+Status check_region(const BodyRegion& region);
+
+}  // namespace spoonbill
