@@ -223,7 +223,9 @@ void Editor::lay_out_panel(const LiveFrame& frame) {
   model.rate_is_nominal = false;
   model.safety_text = safety_text(frame.safety_flags);
   model.drawing_text = budget_.text();
-  for (Request& request : draw_panel(model, window_.theme(), shown_.panel_px)) {
+  PanelAnswer answer = draw_panel(model, window_.theme(), shown_.panel_px);
+  if (!answer.refusal.empty()) messages_.add_problem(std::move(answer.refusal));
+  for (Request& request : answer.requests) {
     if (const auto* change = std::get_if<ChangeView>(&request)) {
       if (Status seen = apply_view_command(change->command, "panel", view_); !seen) continue;
     }

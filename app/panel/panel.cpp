@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "app/panel/rows.h"
 #include "app/report/quantity_text.h"
@@ -13,14 +14,28 @@
 namespace spoonbill {
 namespace {
 
-using Requests = std::vector<Request>;
+constexpr std::array<QuantityUnit, 3> length_units = {{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}}};
+constexpr std::array<QuantityUnit, 4> modulus_units = {
+    {{"Pa", 1.0}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}}};
+constexpr std::array<QuantityUnit, 4> density_units = {
+    {{"g/cm\u00b3", 1e3}, {"g/cm3", 1e3}, {"kg/m\u00b3", 1.0}, {"kg/m3", 1.0}}};
+constexpr std::array<QuantityUnit, 1> no_unit = {{{"", 1.0}}};
+constexpr std::array<QuantityUnit, 1> per_second = {{{"/s", 1.0}}};
+constexpr std::array<QuantityUnit, 2> times = {{{"\u00d7", 1.0}, {"x", 1.0}}};
 
-// Narrower than what files may hold: what a hand can tell apart.
-constexpr Range<double> radius_slider_m{0.001, 0.05};
-constexpr Range<double> modulus_slider_pa{1e3, 1e12};
-constexpr Range<double> density_slider_kg_per_m3{50.0, 20000.0};
-constexpr Range<double> damping_slider_per_s{0.0, 100.0};
-constexpr Range<double> force_scale_slider{0.01, 100.0};
+// The sliders are narrower than what files may hold: what a hand can tell apart.
+constexpr Quantity radius{
+    "Radius", {0.001, 0.05}, tool_radius_range_m, SliderScale::logarithmic, length_units};
+constexpr Quantity modulus{
+    "E", {1e3, 1e12}, youngs_modulus_range_pa, SliderScale::logarithmic, modulus_units};
+constexpr Quantity poissons_ratio{"Poisson", poissons_ratio_range, poissons_ratio_range, SliderScale::linear,
+                                  no_unit};
+constexpr Quantity density{
+    "Density", {50.0, 20000.0}, density_range_kg_per_m3, SliderScale::logarithmic, density_units};
+constexpr Quantity damping{
+    "Damping", {0.0, 100.0}, sculpting_damping_range_per_s, SliderScale::linear, per_second};
+constexpr Quantity force_scale{
+    "Force scale", {0.01, 100.0}, force_scale_range, SliderScale::logarithmic, times};
 
 std::string rounded(double number, int decimals, const char* unit) {
   std::array<char, 48> text{};
@@ -28,7 +43,7 @@ std::string rounded(double number, int decimals, const char* unit) {
   return text.data();
 }
 
-void draw_title(const PanelModel& model, const Theme& theme, Requests& requests) {
+void draw_title(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
   ImGui::PushFont(theme.fonts.heading);
   ImGui::TextUnformatted(model.title.c_str());
   ImGui::PopFont();
@@ -40,15 +55,15 @@ void draw_title(const PanelModel& model, const Theme& theme, Requests& requests)
   };
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - width("Undo") - style.ItemSpacing.x - width("Redo"));
   ImGui::BeginDisabled(!model.can_undo);
-  if (ImGui::Button("Undo")) requests.emplace_back(UndoStroke{});
+  if (ImGui::Button("Undo")) answer.requests.emplace_back(UndoStroke{});
   ImGui::EndDisabled();
   ImGui::SameLine();
   ImGui::BeginDisabled(!model.can_redo);
-  if (ImGui::Button("Redo")) requests.emplace_back(RedoStroke{});
+  if (ImGui::Button("Redo")) answer.requests.emplace_back(RedoStroke{});
   ImGui::EndDisabled();
 }
 
-void draw_tool(const PanelModel& model, const Theme& theme, Requests& requests) {
+void draw_tool(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
   const RowGroup group("Tool", theme);
   if (!group) return;
   Tool tool = model.tool;
@@ -61,12 +76,12 @@ void draw_tool(const PanelModel& model, const Theme& theme, Requests& requests) 
   tool.action = static_cast<ToolAction>(action);
   const bool is_sphere = tool.kind == ToolKind::sphere;
   ImGui::BeginDisabled(!is_sphere);
-  changed |= slider_row("Radius", tool.radius_m, radius_slider_m, SliderScale::logarithmic,
-                        is_sphere ? millimetres_text(tool.radius_m) : "-");
+  changed |=
+      quantity_row(radius, tool.radius_m, is_sphere ? millimetres_text(tool.radius_m) : "-", answer.refusal);
   ImGui::EndDisabled();
   changed |= slider_row("Iterations", tool.iterations, tool_iterations_range,
                         std::to_string(tool.iterations) + " a tick");
-  if (changed) requests.emplace_back(Command(SetTool{tool}));
+  if (changed) answer.requests.emplace_back(Command(SetTool{tool}));
 }
 
 bool draw_presets(const PanelModel& model, Material& material) {
@@ -103,25 +118,34 @@ std::string after_touch_text(const Material& material) {
   return "creeps, " + rounded(material.relaxation_time_s, 0, " s");
 }
 
-void draw_material(const PanelModel& model, const Theme& theme, Requests& requests) {
+// A material whose values do not go together is refused here, where the person is.
+void ask_for(Material material, PanelAnswer& answer) {
+  if (Status possible = check_material(material); !possible.ok()) {
+    answer.refusal = possible.error().message;
+    return;
+  }
+  answer.requests.emplace_back(Command(SetMaterial{std::move(material)}));
+}
+
+void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
   const RowGroup group("Material", theme);
   if (!group) return;
   Material material = model.material;
   Sculpting sculpting = model.sculpting;
   bool changed = draw_presets(model, material);
-  changed |= slider_row("E", material.youngs_modulus_pa, modulus_slider_pa, SliderScale::logarithmic,
-                        modulus_text(material.youngs_modulus_pa));
+  changed |= quantity_row(modulus, material.youngs_modulus_pa, modulus_text(material.youngs_modulus_pa),
+                          answer.refusal);
   fact_row("Felt E", felt_text(model));
-  changed |= slider_row("Poisson", material.poissons_ratio, poissons_ratio_range, SliderScale::linear,
-                        rounded(material.poissons_ratio, 2, ""));
-  changed |= slider_row("Density", material.density_kg_per_m3, density_slider_kg_per_m3,
-                        SliderScale::logarithmic, density_text(material.density_kg_per_m3));
-  const bool damped = slider_row("Damping", sculpting.damping_per_s, damping_slider_per_s,
-                                 SliderScale::linear, rounded(sculpting.damping_per_s, 1, " /s"));
+  changed |= quantity_row(poissons_ratio, material.poissons_ratio, rounded(material.poissons_ratio, 2, ""),
+                          answer.refusal);
+  changed |= quantity_row(density, material.density_kg_per_m3, density_text(material.density_kg_per_m3),
+                          answer.refusal);
+  const bool damped = quantity_row(damping, sculpting.damping_per_s,
+                                   rounded(sculpting.damping_per_s, 1, " /s"), answer.refusal);
   fact_row("After touch", after_touch_text(material));
   fact_row("Mass", grams_text(model.mass_kg));
-  if (changed) requests.emplace_back(Command(SetMaterial{material}));
-  if (damped) requests.emplace_back(Command(SetSculpting{sculpting}));
+  if (changed) ask_for(std::move(material), answer);
+  if (damped) answer.requests.emplace_back(Command(SetSculpting{sculpting}));
 }
 
 void draw_fixtures(const PanelModel& model, const Theme& theme) {
@@ -144,7 +168,7 @@ bool draw_stage(Overlays& overlays) {
   return true;
 }
 
-void draw_view(const PanelModel& model, const Theme& theme, Requests& requests) {
+void draw_view(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
   const RowGroup group("View", theme);
   if (!group) return;
   Overlays overlays = model.overlays;
@@ -163,10 +187,10 @@ void draw_view(const PanelModel& model, const Theme& theme, Requests& requests) 
   pair("Force", overlays.force, "Fixing planes", overlays.fixing_planes);
   pair("See through", see_through, "Legend", overlays.legend);
   changed |= draw_stage(overlays);
-  if (changed) requests.emplace_back(ChangeView{overlays_command(overlays, see_through)});
+  if (changed) answer.requests.emplace_back(ChangeView{overlays_command(overlays, see_through)});
 }
 
-void draw_device(const PanelModel& model, const Theme& theme, Requests& requests) {
+void draw_device(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
   {
     const RowGroup group("Device", theme);
     if (!group) return;
@@ -174,9 +198,9 @@ void draw_device(const PanelModel& model, const Theme& theme, Requests& requests
     fact_row("Name", model.device);
     gauge_row("Force", model.force_limit_n > 0.0 ? model.force_n / model.force_limit_n : 0.0,
               rounded(model.force_n, 2, "") + " of " + newtons_text(model.force_limit_n));
-    if (slider_row("Force scale", sculpting.force_scale, force_scale_slider, SliderScale::logarithmic,
-                   rounded(sculpting.force_scale, 2, " \u00d7"))) {
-      requests.emplace_back(Command(SetSculpting{sculpting}));
+    if (quantity_row(force_scale, sculpting.force_scale, rounded(sculpting.force_scale, 2, " \u00d7"),
+                     answer.refusal)) {
+      answer.requests.emplace_back(Command(SetSculpting{sculpting}));
     }
     fact_row("Rate", rounded(model.rate_hz, 0, model.rate_is_nominal ? " Hz (nominal)" : " Hz") + ", " +
                          std::to_string(model.substeps) + (model.substeps == 1 ? " substep" : " substeps"));
@@ -209,23 +233,23 @@ Rectangle picture_panel_rectangle(int width_px, int height_px) {
   return panel_rectangle(width_px, height_px, panel_scale(height_px));
 }
 
-std::vector<Request> draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px) {
-  Requests requests;
+PanelAnswer draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px) {
+  PanelAnswer answer;
   ImGui::SetNextWindowPos(ImVec2(static_cast<float>(place_px.x), static_cast<float>(place_px.y)));
   ImGui::SetNextWindowSize(ImVec2(static_cast<float>(place_px.width), static_cast<float>(place_px.height)));
   ImGui::PushFont(theme.fonts.body);
   ImGui::Begin("Panel", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
-  draw_title(model, theme, requests);
-  draw_tool(model, theme, requests);
-  draw_material(model, theme, requests);
+  draw_title(model, theme, answer);
+  draw_tool(model, theme, answer);
+  draw_material(model, theme, answer);
   draw_fixtures(model, theme);
-  draw_view(model, theme, requests);
-  draw_device(model, theme, requests);
+  draw_view(model, theme, answer);
+  draw_device(model, theme, answer);
   ImGui::End();
   ImGui::PopFont();
-  return requests;
+  return answer;
 }
 
 }  // namespace spoonbill

@@ -1,6 +1,7 @@
 // The panel: tool, material, fixtures, view and device, in the order of work.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "app/panel/panel_model.h"
@@ -20,8 +21,13 @@ Rectangle picture_panel_rectangle(int width_px, int height_px);
 // The interface's scale for a frame of that height: 1 at 720 pixels, in steps of a half.
 double panel_scale(int height_px);
 
-// Lays the panel out, between InterfaceContext::begin_frame() and end_frame(), and returns what the person
-// asked for in this frame.
-std::vector<Request> draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px);
+// What the person asked for in a frame, and why what they typed was refused; empty where it was not.
+struct PanelAnswer {
+  std::vector<Request> requests;
+  std::string refusal;
+};
+
+// Lays the panel out, between InterfaceContext::begin_frame() and end_frame().
+PanelAnswer draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px);
 
 }  // namespace spoonbill

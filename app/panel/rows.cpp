@@ -1,6 +1,7 @@
 #include "app/panel/rows.h"
 
 #include <algorithm>
+#include <array>
 
 namespace spoonbill {
 namespace {
@@ -26,6 +27,40 @@ std::string as_format(const std::string& text) {
   return format;
 }
 
+// What a quantity's row is: a slider, or a field to type in, which gets the keyboard a frame after it opens.
+enum Entry : int { entry_closed, entry_opens, entry_open };
+
+// Ctrl and a click turn the slider into a field, and do not move it.
+bool slide(const Quantity& quantity, const std::string& name, double& value, const std::string& text,
+           int& entry) {
+  const ImGuiSliderFlags flags =
+      ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat | ImGuiSliderFlags_NoInput |
+      (quantity.scale == SliderScale::logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+  double moved = value;
+  const bool changed = ImGui::SliderScalar(name.c_str(), ImGuiDataType_Double, &moved, &quantity.slider.low,
+                                           &quantity.slider.high, as_format(text).c_str(), flags);
+  if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && ImGui::GetIO().KeyCtrl) {
+    entry = entry_opens;
+    return false;
+  }
+  if (changed) value = moved;
+  return changed;
+}
+
+// Whether what now stands in the field was confirmed.
+bool type_in(const std::string& name, std::array<char, 64>& text, int& entry) {
+  if (entry == entry_opens) ImGui::SetKeyboardFocusHere();
+  const bool confirmed =
+      ImGui::InputText((name + "typed").c_str(), text.data(), text.size(),
+                       ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue);
+  if (ImGui::IsItemActive()) {
+    entry = entry_open;
+  } else if (entry == entry_open) {
+    entry = entry_closed;
+  }
+  return confirmed;
+}
+
 }  // namespace
 
 RowGroup::RowGroup(const char* heading, const Theme& theme) {
@@ -44,13 +79,21 @@ RowGroup::~RowGroup() {
   if (open_) ImGui::EndTable();
 }
 
-bool slider_row(const char* label, double& value, Range<double> range, SliderScale scale,
-                const std::string& text) {
-  begin_row(label);
-  const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat |
-                                 (scale == SliderScale::logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
-  return ImGui::SliderScalar(hidden_name(label).c_str(), ImGuiDataType_Double, &value, &range.low,
-                             &range.high, as_format(text).c_str(), flags);
+bool quantity_row(const Quantity& quantity, double& value, const std::string& text, std::string& refusal) {
+  begin_row(quantity.label);
+  const std::string name = hidden_name(quantity.label);
+  int* entry = ImGui::GetStateStorage()->GetIntRef(ImGui::GetID(name.c_str()), entry_closed);
+  if (*entry == entry_closed) return slide(quantity, name, value, text, *entry);
+  std::array<char, 64> typed{};
+  text.copy(typed.data(), typed.size() - 1);
+  if (!type_in(name, typed, *entry)) return false;
+  const Result<double> read = read_quantity(quantity, typed.data(), text);
+  if (!read.ok()) {
+    refusal = read.error().message;
+    return false;
+  }
+  value = read.value();
+  return true;
 }
 
 bool slider_row(const char* label, int& value, Range<int> range, const std::string& text) {

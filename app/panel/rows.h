@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/panel/quantity.h"
 #include "app/panel/theme.h"
 #include "engine/range.h"
 
@@ -26,11 +27,9 @@ class RowGroup {
   bool open_;
 };
 
-enum class SliderScale { linear, logarithmic };
-
-// `text` is what the slider shows for the value it has now.
-bool slider_row(const char* label, double& value, Range<double> range, SliderScale scale,
-                const std::string& text);
+// `text` is what the slider shows for the value it has now. With Ctrl and a click a value can be typed, as
+// read_quantity() takes it; where that refuses, the value stays and `refusal` says why.
+bool quantity_row(const Quantity& quantity, double& value, const std::string& text, std::string& refusal);
 bool slider_row(const char* label, int& value, Range<int> range, const std::string& text);
 
 // One of a few choices side by side.

@@ -225,10 +225,11 @@ void flow(Relaxation& relaxation, double material_time_s) {
   }
 }
 
-// Springs of one direction after the other, each for the time until its next turn.
-void creep(Relaxation& relaxation, std::uint64_t turn, double material_time_s) {
+// Springs of one direction after the other, each for the time until its next turn. By the hand's time: a
+// material creeps while somebody waits, however many relaxation steps the tool takes in a tick.
+void creep(Relaxation& relaxation, std::uint64_t turn, double tick_time_s) {
   const int direction = static_cast<int>(turn % lattice_direction_count);
-  const double time_s = material_time_s * static_cast<double>(creep_pause * lattice_direction_count);
+  const double time_s = tick_time_s * static_cast<double>(creep_pause * lattice_direction_count);
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const SpringLattice& lattice = relaxation.lattice(at);
     const Material& material = lattice.material();
@@ -294,7 +295,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   }
   if (flows) flow(relaxation, report.material_time_s);
   if (settings.tick % creep_pause == 0) {
-    creep(relaxation, settings.tick / creep_pause, report.material_time_s);
+    creep(relaxation, settings.tick / creep_pause, settings.step_s);
   }
   return report;
 }

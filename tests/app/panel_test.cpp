@@ -49,11 +49,13 @@ class Frame {
     context_.fonts().GetTexDataAsAlpha8(&pixels, &width, &height);
   }
 
-  std::vector<Request> draw(const PanelModel& model) {
+  std::vector<Request> draw(const PanelModel& model) { return draw_answer(model).requests; }
+
+  PanelAnswer draw_answer(const PanelModel& model) {
     context_.begin_frame(width_px_, height_px_);
-    auto requests = draw_panel(model, context_.theme(), picture_panel_rectangle(width_px_, height_px_));
+    auto answer = draw_panel(model, context_.theme(), picture_panel_rectangle(width_px_, height_px_));
     context_.end_frame();
-    return requests;
+    return answer;
   }
 
   void press_at(float x, float y) {
@@ -135,6 +137,64 @@ TEST(Panel, OffersASolidWhereTheToolHasABody) {
   ASSERT_NE(set, nullptr);
   EXPECT_EQ(set->tool.kind, ToolKind::solid);
   EXPECT_EQ(set->tool.body, model.tool.body);
+}
+
+// What the panel answers to a text typed, with Ctrl and a click, over the slider at this height.
+PanelAnswer type_over_slider(float y, const char* text) {
+  Frame frame(1280, 720);
+  const PanelModel model = full_model();
+  ImGuiIO& io = ImGui::GetIO();
+  constexpr int enter = 7;
+  io.KeyMap[ImGuiKey_Enter] = enter;
+  frame.draw(model);
+  frame.draw(model);
+  io.MousePos = ImVec2(200.0F, y);
+  frame.draw(model);
+  io.KeyCtrl = true;
+  frame.press_at(200.0F, y);
+  EXPECT_TRUE(frame.draw(model).empty()) << "the slider stays";
+  io.KeyCtrl = false;
+  frame.release();
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(frame.draw(model).empty());
+  io.AddInputCharactersUTF8(text);
+  EXPECT_TRUE(frame.draw(model).empty());
+  io.KeysDown[enter] = true;
+  PanelAnswer answer = frame.draw_answer(model);
+  io.KeysDown[enter] = false;
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(frame.draw(model).empty()) << "the field closes";
+  return answer;
+}
+
+constexpr float modulus_y = 209.0F, poisson_y = 249.0F, density_y = 269.0F;
+
+TEST(Panel, TakesATypedMaterialWithItsUnit) {
+  const auto material = [](const PanelAnswer& answer) {
+    EXPECT_EQ(answer.refusal, "");
+    EXPECT_EQ(answer.requests.size(), 1U);
+    if (answer.requests.size() != 1U) return Material{};
+    return std::get<SetMaterial>(std::get<Command>(answer.requests[0])).material;
+  };
+  EXPECT_DOUBLE_EQ(material(type_over_slider(modulus_y, "1.5 MPa")).youngs_modulus_pa, 1.5e6);
+  EXPECT_DOUBLE_EQ(material(type_over_slider(modulus_y, "300")).youngs_modulus_pa, 3e5) << "kPa, as shown";
+  EXPECT_DOUBLE_EQ(material(type_over_slider(poisson_y, "0.3")).poissons_ratio, 0.3);
+  EXPECT_DOUBLE_EQ(material(type_over_slider(density_y, "900 kg/m3")).density_kg_per_m3, 900.0);
+}
+
+TEST(Panel, RefusesWrongMaterialsWithTheRange) {
+  const auto refusal = [](float y, const char* text) {
+    const PanelAnswer answer = type_over_slider(y, text);
+    EXPECT_TRUE(answer.requests.empty()) << text;
+    return answer.refusal;
+  };
+  EXPECT_EQ(refusal(modulus_y, "-5 kPa"), "E is -5 kPa, must be 0.001 kPa to 1e+09 kPa");
+  EXPECT_EQ(refusal(modulus_y, "nan"), "E is nan kPa, must be 0.001 kPa to 1e+09 kPa");
+  EXPECT_EQ(refusal(modulus_y, "5 psi"), "E: unit psi not known; known: Pa, kPa, MPa, GPa");
+  EXPECT_EQ(refusal(poisson_y, "0.5"), "Poisson is 0.5, must be 0 to 0.49");
+  EXPECT_EQ(refusal(density_y, "0"), "Density is 0 g/cm\u00b3, must be 0.001 g/cm\u00b3 to 30 g/cm\u00b3");
+  EXPECT_EQ(refusal(density_y, "wet"), "Density: \"wet\" is no number");
+  EXPECT_EQ(refusal(poisson_y, "0.1"),
+            "material modelling-clay: poissons_ratio is 0.1, must be 0.2 or more for a material that is "
+            "plastic, creeps or stiffens");
 }
 
 // Opens the list of stages, which stands over the last rows, and clicks what is second in it.

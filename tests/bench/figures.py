@@ -36,6 +36,8 @@ PAIRS = {
     "refit_vs_dense": ("refit_ours/200/8", "refit_dense/200/8"),
     "springs12_vs_bullet": ("springs_ours/12", "springs_position_based/12"),
     "springs24_vs_bullet": ("springs_ours/24", "springs_explicit/24"),
+    "step12_vs_bullet": ("springs_full/12", "springs_position_based/12"),
+    "step24_vs_bullet": ("springs_full/24", "springs_explicit/24"),
     ("sphere_vs_fcl", VERTICES): ("sphere_ours/from_vertices", *SPHERE_PEERS),
     ("sphere_vs_fcl", CONTROLS): ("sphere_ours/from_controls", *SPHERE_PEERS),
     ("surfaces_vs_fcl", VERTICES): ("surfaces_ours/from_vertices", *SURFACES_PEERS),
@@ -46,7 +48,7 @@ PAIRS = {
 }
 
 HANDLE = "assets/recordings/spoon-handle-bend.recording.jsonl"
-TICK_CASES = {"handle": HANDLE, "block 12x12x12": "block:12:6"}
+TICK_CASES = {"handle": HANDLE, "stiff handle": "stiff:" + HANDLE, "block 12x12x12": "block:12:6"}
 LATTICE_COUNTS = (8, 12, 16, 20, 24, 28, 30, 32, 34)
 
 LOOP = ("ticks of the 1 kHz loop late by 1 ms or more, the tick of the block in it; peer: cyclictest -m -p80, "
@@ -60,6 +62,13 @@ SPHERE = "a sheet of 200 x 200 cells deforms, then all contacts with a sphere; "
 SURFACES = "a sheet of 200 x 200 cells deforms, then all contacts with another; " + FCL
 GIVEN = "both are given the vertices, ours the control points too, which tell how far the surface leaves them"
 
+SPRINGS12 = "one step, 12^3 nodes, 18,788 springs; "
+SPRINGS24 = "one step, 24^3 nodes, 164,588 springs; "
+OURS = "ours f32, the mean of a tick's six, for which springs are linearised once; "
+PARTS = "with volume force, damping and plastic flow; "
+POSITIONS = "Bullet: soft body, position based, one iteration, f32, Debian's build"
+EXPLICIT = "Bullet: deformable body, explicit, f32, Debian's build"
+
 FIGURES = (
     Figure("eval_vs_sisl", "us", "ratio", "at least", 20, GRID + "ours f32, SISL s1506 f64"),
     Figure("eval_vs_occt", "us", "ratio", "at least", 40, GRID + "ours f32, OCCT GeomAdaptor_Surface::D1 f64"),
@@ -71,13 +80,10 @@ FIGURES = (
     Figure("refit_vs_dense", "us", "ratio", "at least", 1 / 1.2,
            "200 x 200 samples to 8 x 8 control points, three coordinates, both f32; Eigen: the dense product with "
            "the same pseudo-inverse, same flags and instruction set"),
-    Figure("springs12_vs_bullet", "us", "ratio", "at least", 10,
-           "one step, 12^3 nodes, 18,788 springs; ours f32 with volume forces, the mean of a tick's six, for which springs "
-           "are linearised once; Bullet: soft body, position based, "
-           "one iteration, f32, Debian's build"),
-    Figure("springs24_vs_bullet", "us", "ratio", "at least", 20,
-           "one step, 24^3 nodes, 164,588 springs; ours f32 as above; Bullet: deformable body, explicit, "
-           "f32, Debian's build"),
+    Figure("springs12_vs_bullet", "us", "ratio", "at least", 10, SPRINGS12 + OURS + "springs alone; " + POSITIONS),
+    Figure("springs24_vs_bullet", "us", "ratio", "at least", 20, SPRINGS24 + OURS + "springs alone; " + EXPLICIT),
+    Figure("step12_vs_bullet", "us", "ratio", "at least", 6, SPRINGS12 + OURS + PARTS + POSITIONS),
+    Figure("step24_vs_bullet", "us", "ratio", "at least", 15, SPRINGS24 + OURS + PARTS + EXPLICIT),
     Figure("sphere_vs_fcl", "us", "ratio", "at least", 100, SPHERE + GIVEN, VERTICES),
     Figure("sphere_vs_fcl", "us", "ratio", "at least", None, SPHERE + "ours from its control points", CONTROLS),
     Figure("surfaces_vs_fcl", "us", "ratio", "at least", 40, SURFACES + GIVEN, VERTICES),
@@ -91,6 +97,8 @@ FIGURES = (
            "handle"),
     Figure("tick_p99_us", "us", "ours", "at most", 250,
            "the whole tick while touching, 6 relaxation steps, p99 as above", "block 12x12x12"),
+    Figure("stiff_tick_p99_us", "us", "ours", "at most", 1000,
+           "the whole tick while touching, of ABS stepped implicitly, p99 as above", "stiff handle"),
     Figure("frames_per_second", "1/s", "ours", "at least", 30,
            "`spoonbill replay` of the bundled recording to PNG, 1280x720, antialiasing, shadow and panel"),
     Figure("png_ms", "ms", "ours", "at most", 8, "one frame of 1280x720 to PNG; peer: stb_image_write"),
@@ -116,6 +124,6 @@ GROWTH = {
              for name in ("ours", "ours_double", "eigen", "sisl", "occt_cached")},
     "net": {name: {n: f"evaluate_{name}/200/{n}" for n in (8, 16, 32, 64)}
             for name in ("ours", "ours_double", "eigen", "sisl", "occt_cached")},
-    "lattice": {name: {n: f"springs_{name}/{n}" for n in (6, 8, 12, 16, 24, 32)}
-                for name in ("ours", "position_based", "explicit")},
+    "lattice": {name: {n: f"springs_{name}/{n}" for n in (8, 12, 16, 24, 32) + more}
+                for name, more in (("ours", (48, 64)), ("full", (48, 64)), ("position_based", ()), ("explicit", ()))},
 }

@@ -43,6 +43,16 @@ Material clay() {
   return clay;
 }
 
+Material abs() {
+  Material abs;
+  abs.name = abs.source = "benchmark";
+  abs.youngs_modulus_pa = 2e9;
+  abs.poissons_ratio = 0.39;
+  abs.density_kg_per_m3 = 1040.0;
+  abs.damping_ratio = 0.05;
+  return abs;
+}
+
 // Down by `depth_m` in a second, a moment there, up again.
 std::vector<DeviceReading> readings_of_press(double surface_m, double radius_m, double depth_m) {
   std::vector<DeviceReading> readings;
@@ -61,6 +71,14 @@ Result<Press> recorded_press(const std::filesystem::path& file) {
   if (!recording) return recording.error();
   return Press{recording->header.document.scene, recording->header.device, recording->readings,
                recording->commands};
+}
+
+Result<Press> stiff_press(const std::filesystem::path& recording) {
+  auto press = recorded_press(recording);
+  if (press.ok()) {
+    for (Body& body : press->scene.bodies) body.material = abs();
+  }
+  return press;
 }
 
 Press block_press(int count, int iterations) {

@@ -20,6 +20,9 @@ struct Press {
 // A recording, as its own ticks had it.
 Result<Press> recorded_press(const std::filesystem::path& recording);
 
+// The same, its bodies of a plastic that only an implicit method steps.
+Result<Press> stiff_press(const std::filesystem::path& recording);
+
 // A block of clay with 60 mm edges and count^3 nodes, held at one end, pressed by a sphere from above over a
 // second and let go, with that many relaxation steps a tick.
 Press block_press(int count, int iterations);

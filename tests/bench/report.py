@@ -58,7 +58,8 @@ class Measurements:
         return times
 
     def ticks(self, case, rounds=5):
-        case = str(ROOT / case) if case.endswith(".jsonl") else case
+        kind, colon, file = case.rpartition(":")
+        case = kind + colon + str(ROOT / file) if file.endswith(".jsonl") else case
         return json.loads(output_of([self.build / "tests/bench/tick_bench", rounds, case]))[case]
 
     def replay(self):
@@ -237,7 +238,7 @@ def measured_lattice(measure, _figure):
 def measured(measure, figure):
     if pair_of(figure):
         return measured_pair(measure, figure)
-    return {"tick_p99_us": measured_tick, "frames_per_second": measured_frames,
+    return {"tick_p99_us": measured_tick, "stiff_tick_p99_us": measured_tick, "frames_per_second": measured_frames,
             "lattice_at_1khz": measured_lattice, "loop_missed_per_1000": measured_missed,
             "live_missed_per_1000": measured_live_missed, "live_p99_us": measured_live_lateness,
             "live_memory_growth": measured_live_memory,

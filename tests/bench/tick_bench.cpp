@@ -1,7 +1,7 @@
 // tick_bench ROUNDS CASE...: plays presses and prints, as JSON, how long each whole tick with contact took,
-// as the median of the rounds. A case is the file of a recording, or block:COUNT:ITERATIONS. Every tick is
-// timed on the steady clock and on the thread's own, which does not run while another program has the
-// processor.
+// as the median of the rounds. A case is the file of a recording, stiff:FILE, or block:COUNT:ITERATIONS.
+// Every tick is timed on the steady clock and on the thread's own, which does not run while another program
+// has the processor.
 #include <time.h>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <iostream>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/denormals.h"
@@ -72,6 +73,8 @@ Result<Press> press_of(const std::string& name) {
   int count = 0, iterations = 0;
   if (std::sscanf(name.c_str(), "block:%d:%d", &count, &iterations) == 2)
     return block_press(count, iterations);
+  constexpr std::string_view stiff = "stiff:";
+  if (name.starts_with(stiff)) return stiff_press(name.substr(stiff.size()));
   return recorded_press(name);
 }
 
