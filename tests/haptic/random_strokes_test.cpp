@@ -1,0 +1,231 @@
+// Strokes at random, with any material and any setting of the panel, by a hand of up to 5 m/s: the body stays
+// finite and about its place, no cell stays inverted, and the device is never asked for more than it can.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "engine/exchange/document.h"
+#include "engine/simulation/simulation.h"
+#include "haptic/safety.h"
+#include "haptic/tick.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
+  double between(const Range<double>& range) { return between(range.low, range.high); }
+  // Evenly over the orders of magnitude.
+  double scaled(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
+  bool once_in(std::uint64_t count) { return engine_() % count == 0; }
+  std::uint64_t bits() { return engine_(); }
+  Vector3 in_box(const Vector3& half) {
+    return {between(-half.x(), half.x()), between(-half.y(), half.y()), between(-half.z(), half.z())};
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+std::vector<Material> bundled_materials() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(SPOONBILL_ASSETS) / "materials")) {
+    files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<Material> materials;
+  for (const auto& file : files) materials.push_back(read_material(file).value());
+  return materials;
+}
+
+// Anything that a file may hold.
+Material any_material(Random& random) {
+  Material material;
+  material.name = material.source = "random";
+  material.youngs_modulus_pa = random.scaled(youngs_modulus_range_pa.low, youngs_modulus_range_pa.high);
+  material.density_kg_per_m3 = random.scaled(density_range_kg_per_m3.low, density_range_kg_per_m3.high);
+  material.damping_ratio = random.between(damping_ratio_range);
+  switch (random.bits() % 4) {
+    case 0:
+      material.plastic = true;
+      material.yield_strain = random.scaled(yield_strain_range.low, yield_strain_range.high);
+      material.flow_rate_per_s = random.between(flow_rate_range_per_s);
+      material.hardening = random.between(hardening_range);
+      break;
+    case 1:
+      material.relaxing_share = random.between(relaxing_share_range);
+      material.relaxation_time_s = random.scaled(relaxation_time_range_s.low, relaxation_time_range_s.high);
+      break;
+    case 2:
+      material.stiffening = random.between(stiffening_range);
+      break;
+    default:
+      break;
+  }
+  material.friction = random.between(0.0, 1.0);
+  const double least = is_plainly_elastic(material) ? poissons_ratio_range.low : least_spring_poissons_ratio;
+  material.poissons_ratio = random.between(least, poissons_ratio_range.high);
+  return material;
+}
+
+Scene random_scene(Random& random, const std::vector<Material>& bundled) {
+  Scene scene = small_handle();
+  scene.bodies[0].material =
+      random.once_in(2) ? bundled[random.bits() % bundled.size()] : any_material(random);
+  if (!random.once_in(4)) {
+    scene.planes.push_back({Vector3(random.between(0.005, 0.04), 0, 0), Vector3::UnitX()});
+  }
+  scene.tool.kind = random.once_in(3) ? ToolKind::point : ToolKind::sphere;
+  scene.tool.action = static_cast<ToolAction>(random.bits() % 3);
+  scene.tool.radius_m = random.scaled(0.001, 0.05);
+  scene.tool.iterations = static_cast<int>(1 + random.bits() % 8);
+  scene.sculpting.damping_per_s = random.once_in(4) ? 0.0 : random.between(0.0, 100.0);
+  scene.sculpting.force_scale = random.scaled(0.01, 100.0);
+  return scene;
+}
+
+constexpr double fastest_m_per_s = 5.0;
+constexpr int stroke_ticks = 2000, rest_ticks = 1000;
+// The hand roams within this of the body's middle; a body that follows it is not further away.
+const Vector3 roam_m(0.06, 0.03, 0.03);
+const Vector3 middle_m(0.03, 0.0, 0.0);
+constexpr double bounds_m = 0.5;
+
+class Hand {
+ public:
+  explicit Hand(Random& random) : random_(random) {}
+
+  DeviceReading next() {
+    if ((target_ - place_).norm() < 1e-9 || random_.once_in(400)) {
+      target_ = middle_m + random_.in_box(roam_m);
+      speed_m_per_s_ = random_.scaled(0.02, fastest_m_per_s);
+      if (random_.once_in(3)) buttons_ = random_.once_in(2) ? button_main : 0u;
+    }
+    const Vector3 way = target_ - place_;
+    place_ += way * std::min(1.0, speed_m_per_s_ * tick_s / std::max(way.norm(), 1e-12));
+    return DeviceReading::from({place_, Quaternion::Identity()}, buttons_);
+  }
+
+  static DeviceReading far_away() {
+    return DeviceReading::from({Vector3(0.0, 0.3, 0.0), Quaternion::Identity()}, 0u);
+  }
+
+ private:
+  Random& random_;
+  Vector3 place_ = Vector3(0.03, 0.08, 0.0), target_ = place_;
+  double speed_m_per_s_ = 0.1;
+  unsigned buttons_ = 0;
+};
+
+std::string in_words(const Scene& scene) {
+  const Material& material = scene.bodies[0].material;
+  std::string words = material.name;
+  for (const auto& [name, value] : {std::pair{"E", material.youngs_modulus_pa},
+                                    {"nu", material.poissons_ratio},
+                                    {"rho", material.density_kg_per_m3},
+                                    {"z", material.damping_ratio},
+                                    {"plastic", material.plastic ? 1.0 : 0.0},
+                                    {"yield", material.yield_strain},
+                                    {"flow", material.flow_rate_per_s},
+                                    {"hardening", material.hardening},
+                                    {"stiffening", material.stiffening},
+                                    {"relaxing", material.relaxing_share},
+                                    {"planes", static_cast<double>(scene.planes.size())},
+                                    {"kind", static_cast<double>(scene.tool.kind)},
+                                    {"action", static_cast<double>(scene.tool.action)},
+                                    {"radius", scene.tool.radius_m},
+                                    {"iterations", static_cast<double>(scene.tool.iterations)},
+                                    {"damping", scene.sculpting.damping_per_s},
+                                    {"scale", scene.sculpting.force_scale}}) {
+    words += std::string(", ") + name + " " + std::to_string(value);
+  }
+  return words;
+}
+
+// Whether every node is finite and near.
+bool is_in_bounds(const SpringLattice& lattice) {
+  for (const Vector3& node : lattice.positions()) {
+    if (!((node - middle_m).norm() < bounds_m)) return false;
+  }
+  return true;
+}
+
+int inverted_cells(const SpringLattice& lattice) {
+  LatticeMesh mesh = lattice.mesh();
+  mesh.nodes = lattice.positions();
+  int count = 0;
+  for (int k = 0; k + 1 < mesh.count[2]; ++k) {
+    for (int i = 0; i + 1 < mesh.count[0]; ++i) {
+      for (int j = 0; j + 1 < mesh.count[1]; ++j) count += !(cell_volume(mesh.cell(i, j, k)) > 0.0);
+    }
+  }
+  return count;
+}
+
+struct Watched {
+  bool in_bounds = true;
+  double strongest_n = 0.0, limit_n = 0.0;
+  int inverted = 0;
+  int touches = 0;
+};
+
+// A stroke, then a second of rest.
+Watched stroke(Random& random, Simulation& simulation) {
+  Watched watched;
+  const DeviceSpecification device;
+  watched.limit_n = device.maximum_force_n;
+  CouplingState coupling;
+  SafetyState safety;
+  Hand hand(random);
+  for (int t = 0; t < stroke_ticks + rest_ticks; ++t) {
+    const DeviceReading reading = t < stroke_ticks ? hand.next() : Hand::far_away();
+    const TickResult result = tick(simulation, coupling, device, reading);
+    SafetyInput input;
+    input.wanted_n = result.force_n;
+    input.position_m = reading.pose().position_m;
+    const SafeForce safe = make_safe(safety, device, input);
+    watched.strongest_n = std::max({watched.strongest_n, result.force_n.norm(), safe.force_n.norm()});
+    watched.touches += result.touching;
+    if (t % 100 == 99) watched.in_bounds = watched.in_bounds && is_in_bounds(simulation.lattice());
+  }
+  watched.inverted = inverted_cells(simulation.lattice());
+  return watched;
+}
+
+TEST(RandomStrokes, NeverLeaveTheBodyBroken) {
+  // Three seconds each: a minute, or ten.
+  const int strokes = std::getenv("SPOONBILL_FULL") != nullptr ? 200 : 20;
+  const std::vector<Material> bundled = bundled_materials();
+  ASSERT_GE(bundled.size(), 12U);
+  Random random(21);
+  int touched = 0;
+  for (int s = 0; s < strokes; ++s) {
+    const Scene scene = random_scene(random, bundled);
+    SCOPED_TRACE(std::to_string(s) + ": " + in_words(scene));
+    auto made = Simulation::make(scene, best_instruction_set());
+    ASSERT_TRUE(made.ok()) << made.error().message;
+    const Watched watched = stroke(random, made.value());
+    EXPECT_TRUE(watched.in_bounds);
+    EXPECT_EQ(watched.inverted, 0);
+    // Relative, for the rounding of a norm.
+    EXPECT_LE(watched.strongest_n, watched.limit_n * (1.0 + 1e-12));
+    touched += watched.touches > 0;
+  }
+  EXPECT_GT(touched, strokes / 2);
+}
+
+}  // namespace
+}  // namespace spoonbill
