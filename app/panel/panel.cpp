@@ -148,12 +148,22 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
   if (damped) answer.requests.emplace_back(Command(SetSculpting{sculpting}));
 }
 
-void draw_fixtures(const PanelModel& model, const Theme& theme) {
+// What the control net cannot follow of the lattice.
+std::string behind_text(double residual_m) {
+  return rounded(1e3 * residual_m, 3, " mm behind");
+}
+
+void draw_fixtures(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
   const RowGroup group("Fixtures", theme);
   if (!group) return;
   fact_row("Fixed nodes", std::to_string(model.fixed_node_count) + " of " + std::to_string(model.node_count) +
                               ", " + std::to_string(model.plane_count) +
                               (model.plane_count == 1 ? " plane" : " planes"));
+  ImGui::BeginDisabled(!(model.residual_m > 0.0));
+  if (deed_row("Surface", behind_text(model.residual_m), "Add knots")) {
+    answer.requests.emplace_back(Command(RefineKnots{}));
+  }
+  ImGui::EndDisabled();
 }
 
 bool draw_stage(Overlays& overlays) {
@@ -244,7 +254,7 @@ PanelAnswer draw_panel(const PanelModel& model, const Theme& theme, const Rectan
   draw_title(model, theme, answer);
   draw_tool(model, theme, answer);
   draw_material(model, theme, answer);
-  draw_fixtures(model, theme);
+  draw_fixtures(model, theme, answer);
   draw_view(model, theme, answer);
   draw_device(model, theme, answer);
   ImGui::End();

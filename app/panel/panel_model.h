@@ -29,6 +29,8 @@ struct PanelModel {
   int fixed_node_count = 0;
   int node_count = 0;
 
+  double residual_m = 0.0;  // how far the surface stays behind its lattice
+
   Overlays overlays;
   bool see_through_body = false;
 

@@ -124,6 +124,13 @@ void fact_row(const char* label, const std::string& text) {
   ImGui::TextUnformatted(text.c_str());
 }
 
+bool deed_row(const char* label, const std::string& text, const char* button) {
+  fact_row(label, text);
+  const float width = ImGui::CalcTextSize(button).x + 2.0F * ImGui::GetStyle().FramePadding.x;
+  ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
+  return ImGui::Button(button);
+}
+
 void gauge_row(const char* label, double share, const std::string& text) {
   begin_row(label);
   const auto filled = static_cast<float>(std::clamp(share, 0.0, 1.0));

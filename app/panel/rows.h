@@ -40,6 +40,9 @@ bool list_row(const char* label, int& chosen, const std::vector<const char*>& na
 
 void fact_row(const char* label, const std::string& text);
 
+// A fact and what can be done about it: whether the button was pressed.
+bool deed_row(const char* label, const std::string& text, const char* button);
+
 // A bar that fills from 0 to 1.
 void gauge_row(const char* label, double share, const std::string& text);
 

@@ -16,6 +16,9 @@ PanelModel panel_of(const SessionFacts& facts, const Snapshot& snapshot, const V
   model.material = facts.material;
   model.felt_youngs_modulus_pa = snapshot.bodies.front().material.felt_youngs_modulus_pa;
   model.implicit_nodes = snapshot.bodies.front().material.implicit_nodes;
+  for (const BodySnapshot& body : snapshot.bodies) {
+    model.residual_m = std::max(model.residual_m, body.residual.largest_m);
+  }
   model.plane_count = static_cast<int>(snapshot.planes.size());
   for (const BodySnapshot& body : snapshot.bodies) {
     const auto& fixed = body.lattice.fixed;

@@ -8,7 +8,7 @@ namespace {
 
 bool changes_what_a_shape_means(const Command& command) {
   return std::holds_alternative<PlacePlane>(command) || std::holds_alternative<RemovePlanes>(command) ||
-         std::holds_alternative<KeepShape>(command);
+         std::holds_alternative<KeepShape>(command) || std::holds_alternative<RefineKnots>(command);
 }
 
 // A recording cannot fill the memory with documents that nobody takes.

@@ -10,13 +10,17 @@ namespace spoonbill {
 
 namespace {
 
-constexpr std::array<std::string_view, 9> command_names = {"place_plane",  "remove_planes", "set_tool",
-                                                           "set_material", "set_sculpting", "set_symmetry",
-                                                           "reset_proxy",  "lift_tool",     "keep_shape"};
+constexpr std::array<std::string_view, 10> command_names = {
+    "place_plane",  "remove_planes", "set_tool",  "set_material", "set_sculpting",
+    "set_symmetry", "reset_proxy",   "lift_tool", "keep_shape",   "refine_knots"};
+
+int read_body(FieldReader& reader) {
+  return reader.has("body") ? reader.integer("body", {0, body_count_range.high - 1}) : 0;
+}
 
 SetMaterial read_set_material(FieldReader& reader) {
   SetMaterial command{read_material_fields(reader)};
-  if (reader.has("body")) command.body = reader.integer("body", {0, body_count_range.high - 1});
+  command.body = read_body(reader);
   return command;
 }
 
@@ -30,6 +34,7 @@ Command read_named(std::string_view name, FieldReader& reader) {
   if (name == "reset_proxy") return ResetProxy{};
   if (name == "lift_tool") return LiftTool{};
   if (name == "keep_shape") return KeepShape{};
+  if (name == "refine_knots") return RefineKnots{read_body(reader)};
   reader.refuse("command",
                 "is " + json_excerpt(Json(name)) + ", must be one of " + simulation_command_names());
   return KeepShape{};
@@ -66,6 +71,11 @@ struct FieldsOf {
   Json operator()(const ResetProxy&) const { return {{"command", "reset_proxy"}}; }
   Json operator()(const LiftTool&) const { return {{"command", "lift_tool"}}; }
   Json operator()(const KeepShape&) const { return {{"command", "keep_shape"}}; }
+  Json operator()(const RefineKnots& command) const {
+    Json json{{"command", "refine_knots"}};
+    if (command.body != 0) json["body"] = command.body;
+    return json;
+  }
 };
 
 }  // namespace

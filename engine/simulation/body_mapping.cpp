@@ -73,6 +73,19 @@ Result<Surface> with_edge_knot(const Surface& surface, double& v) {
   return insert_knot(surface, Direction::v, v, std::max(1, surface.v.degree() - 1));
 }
 
+// The middle of the element that holds the parameter, of two the one before it.
+double middle_of_element(const KnotVector& knots, double parameter) {
+  const std::vector<double> breaks = knots.breakpoints();
+  auto next = std::lower_bound(breaks.begin() + 1, breaks.end() - 1, parameter);
+  return 0.5 * (*(next - 1) + *next);
+}
+
+Result<Surface> with_element_halved(const Surface& surface, double u, double v) {
+  const Result<Surface> finer = insert_knot(surface, Direction::u, middle_of_element(surface.u, u), 1);
+  if (!finer.ok()) return finer.error();
+  return insert_knot(finer.value(), Direction::v, middle_of_element(surface.v, v), 1);
+}
+
 // Columns whose basis function reaches into the fixed stretch.
 std::vector<std::uint8_t> columns_to_hold(const KnotVector& v, const FixedStretch& fixed) {
   const std::vector<double>& knots = v.extended_knots();
@@ -131,7 +144,7 @@ EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
 Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& current,
                                       const SpringLattice& lattice, const std::vector<FixingPlane>& planes,
                                       InstructionSet set) {
-  BodyMapping mapping(rest, current);
+  BodyMapping mapping(rest, current, set);
   FixedStretch fixed = fixed_stretch(current, planes);
   for (double* edge : {&fixed.low_end, &fixed.high_start}) {
     Result<Surface> finer_rest = with_edge_knot(mapping.rest_, *edge);
@@ -150,6 +163,9 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
   Result<DisplacementRefit> refit = DisplacementRefit::make(mapping.nested_->grid, constraints, set);
   if (!refit.ok()) return refit.error();
   mapping.refit_.push_back(std::move(refit).value());
+  mapping.evaluator_.emplace_back(mapping.nested_->grid, set);
+  mapping.followed_.resize(static_cast<std::size_t>(mapping.nested_->grid.rows()) *
+                           static_cast<std::size_t>(mapping.nested_->grid.columns()));
   mapping.embed(lattice);
   return mapping;
 }
@@ -230,6 +246,36 @@ void BodyMapping::update(const SpringLattice& lattice) {
       (*net[axis])[p] = (*base[axis])[p] + static_cast<double>(control_[axis][p]);
     }
   }
+}
+
+void BodyMapping::measure_residual() {
+  const Grid& grid = nested_->grid;
+  const auto columns = static_cast<std::size_t>(grid.columns());
+  const auto stride = static_cast<std::size_t>(refit_.front().sample_stride());
+  evaluator_.front().points(control_[0].data(), control_[1].data(), control_[2].data(), followed_);
+  double largest = 0.0, sum = 0.0;
+  std::size_t worst = 0;
+  for (std::size_t s = 0; s < embedding_.size(); ++s) {
+    const std::size_t from = s / columns * stride + s % columns;
+    const Vector3 left(static_cast<double>(sample_[0][from] - followed_.x[s]),
+                       static_cast<double>(sample_[1][from] - followed_.y[s]),
+                       static_cast<double>(sample_[2][from] - followed_.z[s]));
+    sum += left.squaredNorm();
+    if (left.squaredNorm() <= largest) continue;
+    largest = left.squaredNorm();
+    worst = s;
+  }
+  residual_ = {std::sqrt(largest), std::sqrt(sum / static_cast<double>(embedding_.size())),
+               grid.u.parameters[worst / columns], grid.v.parameters[worst % columns]};
+}
+
+Result<BodyMapping> BodyMapping::refined_at(double u, double v, const SpringLattice& lattice,
+                                            const std::vector<FixingPlane>& planes) const {
+  const Result<Surface> finer_rest = with_element_halved(rest_, u, v);
+  if (!finer_rest.ok()) return finer_rest.error();
+  const Result<Surface> finer = with_element_halved(current_, u, v);
+  if (!finer.ok()) return finer.error();
+  return make(finer_rest.value(), finer.value(), lattice, planes, set_);
 }
 
 EmbeddedPoint BodyMapping::at(double u, double v) const {

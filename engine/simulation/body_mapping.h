@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/aligned_vector.h"
+#include "engine/bspline/evaluate.h"
 #include "engine/bspline/refit.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/solids/surface_collider.h"
@@ -17,7 +18,15 @@
 
 namespace spoonbill {
 
-// One owner, the simulation; update() allocates nothing.
+// How far the surface stays behind what it should follow: the displacement of the samples that the control
+// net cannot take, in metres, and where the largest of it is.
+struct MappingResidual {
+  double largest_m = 0.0;
+  double root_mean_square_m = 0.0;
+  double u = 0.0, v = 0.0;
+};
+
+// One owner, the simulation; update() and measure_residual() allocate nothing.
 class BodyMapping {
  public:
   // `rest` is the surface that the lattice's rest shape was filled from, `current` the surface as it is now,
@@ -34,6 +43,15 @@ class BodyMapping {
   // Moves current() by what the nodes moved since make().
   void update(const SpringLattice& lattice);
 
+  // Of the displacements since make(), as last measured.
+  const MappingResidual& residual() const { return residual_; }
+  void measure_residual();
+
+  // The same with a knot in the middle of the elements, one in each direction, that hold this place: more
+  // control points there, and the same shape to rounding. Refused at the most control points.
+  Result<BodyMapping> refined_at(double u, double v, const SpringLattice& lattice,
+                                 const std::vector<FixingPlane>& planes) const;
+
   // The embedding of a grid sample, and of any point by blending the samples around it.
   const EmbeddedPoint& sample(int index) const { return embedding_[index]; }
   EmbeddedPoint at(double u, double v) const;
@@ -42,8 +60,8 @@ class BodyMapping {
   const std::vector<std::uint8_t>& held_columns() const { return held_columns_; }
 
  private:
-  BodyMapping(Surface rest, Surface current)
-      : rest_(std::move(rest)), base_(current), current_(std::move(current)) {}
+  BodyMapping(Surface rest, Surface current, InstructionSet set)
+      : set_(set), rest_(std::move(rest)), base_(current), current_(std::move(current)) {}
   void embed(const SpringLattice& lattice);
   // The embedding of one sample without gaps, as the tick reads it: a place that is not used has weight 0.
   struct CellWeights {
@@ -53,6 +71,7 @@ class BodyMapping {
   // What each sample moved since make().
   void sample_displacements(const SpringLattice& lattice);
 
+  InstructionSet set_;
   Surface rest_, base_, current_;
   // By pointer, because the collider keeps the grid's address when the mapping moves.
   std::shared_ptr<NestedGrid> nested_;
@@ -63,7 +82,10 @@ class BodyMapping {
   AlignedVector<float> sample_[3];         // as the refit takes them
   std::vector<float> control_[3];
   std::vector<std::uint8_t> held_columns_;
-  std::vector<DisplacementRefit> refit_;  // one, once made
+  std::vector<DisplacementRefit> refit_;         // one, once made
+  std::vector<GridEvaluator<float>> evaluator_;  // the same
+  GridSamples<float> followed_;                  // what the surface moved at the samples
+  MappingResidual residual_;
 };
 
 }  // namespace spoonbill

@@ -33,8 +33,13 @@ struct ResetProxy {};
 struct LiftTool {};
 // Makes the current shape the rest shape.
 struct KeepShape {};
+// Gives the body's surface another knot in each direction where it follows its lattice worst: the same shape,
+// and room for the next strokes.
+struct RefineKnots {
+  int body = 0;  // in the scene
+};
 
 using Command = std::variant<PlacePlane, RemovePlanes, SetTool, SetMaterial, SetSculpting, SetSymmetry,
-                             ResetProxy, LiftTool, KeepShape>;
+                             ResetProxy, LiftTool, KeepShape, RefineKnots>;
 
 }  // namespace spoonbill

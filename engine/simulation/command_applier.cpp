@@ -91,10 +91,7 @@ Status CommandApplier::operator()(const SetSculpting& command) {
 }
 
 Status CommandApplier::operator()(const SetMaterial& command) {
-  const int count = static_cast<int>(state.scene.bodies.size());
-  if (command.body < 0 || command.body >= count) {
-    return Error{"body: is " + std::to_string(command.body) + ", must be 0 to " + std::to_string(count - 1)};
-  }
+  if (Status status = check_body(command.body); !status.ok()) return status;
   const std::size_t at = static_cast<std::size_t>(command.body);
   BodyState& body = state.bodies[at];
   Result<SpringLattice> lattice = sculpting_lattice(body.lattice.mesh(), command.material, state.set);
@@ -140,6 +137,36 @@ Status CommandApplier::operator()(const KeepShape&) {
   }
   set_mappings(std::move(mappings));
   return {};
+}
+
+Status CommandApplier::operator()(const RefineKnots& command) {
+  if (Status status = check_body(command.body); !status.ok()) return status;
+  const std::size_t at = static_cast<std::size_t>(command.body);
+  BodyMapping& mapping = state.bodies[at].mapping();
+  mapping.measure_residual();
+  const MappingResidual& residual = mapping.residual();
+  if (!(residual.largest_m > 0.0)) {
+    return Error{"refine_knots: nothing moved since the knots were last changed; shape the body first"};
+  }
+  Result<BodyMapping> finer =
+      mapping.refined_at(residual.u, residual.v, state.bodies[at].lattice, state.scene.planes);
+  if (!finer.ok()) return finer.error();
+  for (const KnotVector* knots : {&finer->rest().u, &finer->rest().v}) {
+    if (Status status = check_range("refine_knots: control points in one direction",
+                                    knots->control_point_count(), control_point_count_range);
+        !status.ok()) {
+      return status;
+    }
+  }
+  mapping = std::move(finer).value();
+  state.scene.bodies[at].surface = mapping.current();
+  release();
+  make_contacts();
+  return {};
+}
+
+Status CommandApplier::check_body(int body) const {
+  return check_range("body", body, {0, static_cast<int>(state.scene.bodies.size()) - 1});
 }
 
 void CommandApplier::release() {

@@ -20,9 +20,11 @@ struct CommandApplier {
   Status operator()(const SetSculpting& command);
   Status operator()(const SetMaterial& command);
   Status operator()(const KeepShape& command);
+  Status operator()(const RefineKnots& command);
 
  private:
   void release();
+  Status check_body(int body) const;
   void take_model(ToolModel model);
   void make_contacts();
   Status set_planes(std::vector<FixingPlane> planes);

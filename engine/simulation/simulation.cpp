@@ -177,6 +177,17 @@ void mark_touched(Simulation::State& s) {
 
 }  // namespace
 
+namespace {
+
+// The panel shows it; one body a turn, a few times a second.
+void measure_residuals(Simulation::State& s) {
+  constexpr std::uint64_t pause = 128;
+  if (s.tick % pause != 0) return;
+  s.bodies[s.tick / pause % s.scene.bodies.size()].mapping().measure_residual();
+}
+
+}  // namespace
+
 Reaction Simulation::advance(const ToolInput& input) {
   const DenormalsFlushed flushed;
   State& s = *state_;
@@ -194,6 +205,7 @@ Reaction Simulation::advance(const ToolInput& input) {
     if (both) smooth(s, s.mirrored);
   }
   for (std::size_t b = 0; b < s.stepped(); ++b) s.bodies[b].update_skin();
+  measure_residuals(s);
   ++s.tick;
 
   react(s, input);

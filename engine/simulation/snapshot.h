@@ -91,11 +91,18 @@ struct MaterialSnapshot {
   double mass_kg = 0.0;  // of the body
 };
 
+// How far a body's surface stays behind its lattice, metres, since its knots or fixing planes last changed.
+struct ResidualSnapshot {
+  double largest_m = 0.0;
+  double root_mean_square_m = 0.0;
+};
+
 struct BodySnapshot {
   SurfaceSnapshot surface;
   LatticeSnapshot lattice;
   MaterialSnapshot material;
-  MeshSnapshot mesh = {};  // of a soft mesh, which has no surface; no triangles otherwise
+  ResidualSnapshot residual = {};  // of a body with a surface
+  MeshSnapshot mesh = {};          // of a soft mesh, which has no surface; no triangles otherwise
 
   bool is_mesh() const { return mesh.triangles != nullptr; }
 };

@@ -97,7 +97,9 @@ void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::ve
     if (mesh) {
       write_mesh(*mesh, out[b].mesh);
     } else {
-      write_surface(bodies[b].mapping().current(), out[b].surface);
+      const BodyMapping& mapping = bodies[b].mapping();
+      write_surface(mapping.current(), out[b].surface);
+      out[b].residual = {mapping.residual().largest_m, mapping.residual().root_mean_square_m};
     }
     write_lattice(bodies[b].lattice, bodies[b].held, bodies[b].touched, out[b].lattice);
     write_material(b < scene.bodies.size() ? scene.bodies[b].material : scene.tool.body->soft->material,

@@ -99,7 +99,7 @@ Scene random_scene(Random& random, const std::vector<Material>& bundled) {
 
 constexpr double fastest_m_per_s = 5.0;
 constexpr int stroke_ticks = 2000, rest_ticks = 1000;
-// The hand roams within this of the body's middle; a body that follows it is not further away.
+// The hand roams within this of the body's middle; what it draws out of the body reaches no further.
 const Vector3 roam_m(0.06, 0.03, 0.03);
 const Vector3 middle_m(0.03, 0.0, 0.0);
 constexpr double bounds_m = 0.5;
@@ -155,12 +155,17 @@ std::string in_words(const Scene& scene) {
   return words;
 }
 
-// Whether every node is finite and near.
+// Whether every node is finite and near: where something holds the body about its place, of a free one, which
+// may fly, about its middle.
 bool is_in_bounds(const SpringLattice& lattice) {
-  for (const Vector3& node : lattice.positions()) {
-    if (!((node - middle_m).norm() < bounds_m)) return false;
+  const std::vector<Vector3> nodes = lattice.positions();
+  Vector3 middle = middle_m;
+  if (!lattice.has_held_nodes()) {
+    middle.setZero();
+    for (const Vector3& node : nodes) middle += node / static_cast<double>(nodes.size());
   }
-  return true;
+  return std::all_of(nodes.begin(), nodes.end(),
+                     [&](const Vector3& node) { return (node - middle).norm() < bounds_m; });
 }
 
 int inverted_cells(const SpringLattice& lattice) {

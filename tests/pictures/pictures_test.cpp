@@ -1,7 +1,7 @@
-// The bend as a designer sees it and the stages of a contact, compared with the approved pictures in
-// screenshots/ by their worst 16 x 16 block. A picture that differs leaves itself, the approved one and their
-// difference in picture-failures/ of the build folder. tests/approve makes what the program draws now the
-// approved pictures.
+// The bend as a designer sees it, the stages of a contact and presses into materials, compared with the
+// approved pictures in screenshots/ by their worst 16 x 16 block. A picture that differs leaves itself, the
+// approved one and their difference in picture-failures/ of the build folder. tests/approve makes what the
+// program draws now the approved pictures.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -200,6 +200,32 @@ TEST_F(ContactPictures, Points) {
 
 TEST_F(ContactPictures, SpheresOfTwoSurfaces) {
   compare_moment({"contact-surfaces", 0.625, surfaces});
+}
+
+class MaterialPictures : public MomentPictures {};
+
+TEST_F(MaterialPictures, ClayPressed) {
+  compare_moment({"clay-pressed", 0.55, "clay-press"});
+}
+
+TEST_F(MaterialPictures, ClayKeepsTheDent) {
+  compare_moment({"clay-let-go", 1.0, "clay-press"});
+}
+
+TEST_F(MaterialPictures, SiliconePressed) {
+  compare_moment({"silicone-pressed", 0.55, "silicone-press"});
+}
+
+TEST_F(MaterialPictures, SiliconeSpringsBack) {
+  compare_moment({"silicone-let-go", 1.0, "silicone-press"});
+}
+
+TEST_F(MaterialPictures, GelatinHeld) {
+  compare_moment({"gelatin-held", 0.6, "gelatin-press"});
+}
+
+TEST_F(MaterialPictures, GelatinComesBackSlowly) {
+  compare_moment({"gelatin-let-go", 0.72, "gelatin-press"});
 }
 
 }  // namespace

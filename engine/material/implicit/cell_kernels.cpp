@@ -195,7 +195,7 @@ inline void stiffness_times(const CellBatch& b, const Field& field, Field& resul
   for (int a = 0; a < cell_axes; ++a) {
     for (int l = 0; l < lanes; ++l) result[a][l] = 0.0;
   }
-  const float(*k)[lanes] = b.stiffness;
+  const double(*k)[lanes] = b.stiffness;
   for (int row = 0; row < cell_axes; ++row) {
     Lanes sum;
     for (int l = 0; l < lanes; ++l) sum[l] = 0.0;

@@ -12,9 +12,10 @@ inline constexpr int cell_stiffness_size = 300;  // the lower half, row by row
 // Lanes that hold no cell have no stiffness, and the nodes of another.
 struct CellBatch {
   int node[8][cell_lanes];
-  float stiffness[cell_stiffness_size][cell_lanes];  // N/m
-  double rest[cell_axes][cell_lanes];                // from the middle, m
-  double gradient[cell_axes][cell_lanes];            // of the shape functions there, 1/m
+  // N/m. To all digits: what rounding makes of a rigid motion's nothing must stay far below the mass.
+  double stiffness[cell_stiffness_size][cell_lanes];
+  double rest[cell_axes][cell_lanes];      // from the middle, m
+  double gradient[cell_axes][cell_lanes];  // of the shape functions there, 1/m
 
   // As the cells are now: set by take_forces().
   double quaternion[4][cell_lanes];    // w, x, y, z

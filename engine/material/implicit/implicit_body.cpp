@@ -48,7 +48,7 @@ void take_cell(CellBatch& batch, int lane, const CellCorners& corners, const Cel
   int entry = 0;
   for (int row = 0; row < cell_axes; ++row) {
     for (int column = 0; column <= row; ++column, ++entry) {
-      batch.stiffness[entry][lane] = static_cast<float>(stiffness(row, column));
+      batch.stiffness[entry][lane] = stiffness(row, column);
     }
   }
 }
@@ -229,10 +229,7 @@ ImplicitReport ImplicitBody::solve(double inertia, double stiffness) {
 // With the momentum and the moment of momentum that the body has.
 ImplicitBody::RigidMotion ImplicitBody::rigid_motion() const {
   double mass_kg = 0.0;
-  RigidMotion motion{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
-  const auto place = [&](int n) -> Vector3 {
-    return mesh_.nodes[static_cast<std::size_t>(n)] + displacement(n);
-  };
+  RigidMotion motion;
   for (int n = 0; n < node_count(); ++n) {
     mass_kg += this->mass_kg(n);
     motion.middle_m += this->mass_kg(n) * place(n);
@@ -254,14 +251,11 @@ ImplicitBody::RigidMotion ImplicitBody::rigid_motion() const {
   return motion;
 }
 
-// Beside the rigid motion of a free body. Returns whether any was.
-bool ImplicitBody::cap_speeds(double cap_m_per_s) {
-  RigidMotion motion{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
-  if (!has_held_nodes_) motion = rigid_motion();
+// Beside the rigid motion. Returns whether any was.
+bool ImplicitBody::cap_speeds(const RigidMotion& motion, double cap_m_per_s) {
   bool capped = false;
   for (int n = 0; n < node_count(); ++n) {
-    const Vector3 from_middle = mesh_.nodes[static_cast<std::size_t>(n)] + displacement(n) - motion.middle_m;
-    const Vector3 whole = motion.velocity_m_per_s + motion.spin_rad_per_s.cross(from_middle);
+    const Vector3 whole = motion.velocity_at(place(n));
     const Vector3 own = velocity(n) - whole;
     const double speed = own.norm();
     if (speed <= cap_m_per_s) continue;
@@ -269,6 +263,22 @@ bool ImplicitBody::cap_speeds(double cap_m_per_s) {
     capped = true;
   }
   return capped;
+}
+
+// A free body turns as a whole, and what its nodes do beside that turns with it: along straight lines a fast
+// spin would draw it out, by half the square of the angle of a step.
+void ImplicitBody::move_and_turn(const RigidMotion& motion, double step_s) {
+  const Vector3 half_turn = 0.5 * step_s * motion.spin_rad_per_s;
+  const Eigen::Matrix3d turn =
+      Quaternion(1.0, half_turn.x(), half_turn.y(), half_turn.z()).normalized().toRotationMatrix() -
+      Eigen::Matrix3d::Identity();
+  for (int n = 0; n < node_count(); ++n) {
+    const Vector3 from_middle = place(n) - motion.middle_m, now = velocity(n);
+    const Vector3 own = now - motion.velocity_at(place(n));
+    const Vector3 turned = turn * from_middle;
+    set_displacement(n, displacement(n) + turned + step_s * (motion.velocity_m_per_s + own + turn * own));
+    set_velocity(n, now + motion.spin_rad_per_s.cross(turned) + turn * own);
+  }
 }
 
 Vector3 ImplicitBody::sum_over_nodes(const Doubles& of) const {
@@ -312,8 +322,13 @@ double ImplicitBody::push(const std::vector<double>& impulses) {
 }
 
 bool ImplicitBody::move(double step_s) {
-  const bool capped = cap_speeds(speed_cap_cells * cell_size_ / step_s);
-  for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) moved_[n] += step_s * velocity_[n];
+  const RigidMotion motion = has_held_nodes_ ? RigidMotion{} : rigid_motion();
+  const bool capped = cap_speeds(motion, speed_cap_cells * cell_size_ / step_s);
+  if (has_held_nodes_) {
+    for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) moved_[n] += step_s * velocity_[n];
+  } else {
+    move_and_turn(motion, step_s);
+  }
   return capped;
 }
 

@@ -102,10 +102,16 @@ class ImplicitBody {
   double fastest_square();
 
   struct RigidMotion {
-    Vector3 middle_m, velocity_m_per_s, spin_rad_per_s;
+    Vector3 middle_m = Vector3::Zero(), velocity_m_per_s = Vector3::Zero(), spin_rad_per_s = Vector3::Zero();
+
+    Vector3 velocity_at(const Vector3& place_m) const {
+      return velocity_m_per_s + spin_rad_per_s.cross(place_m - middle_m);
+    }
   };
+  Vector3 place(int node) const { return mesh_.nodes[static_cast<std::size_t>(node)] + displacement(node); }
   RigidMotion rigid_motion() const;
-  bool cap_speeds(double cap_m_per_s);
+  bool cap_speeds(const RigidMotion& motion, double cap_m_per_s);
+  void move_and_turn(const RigidMotion& motion, double step_s);
   Vector3 sum_over_nodes(const Doubles& of) const;
   void restore_momentum();
   void apply_matrix(double inertia, double stiffness, const Doubles& field, Doubles& out) const;

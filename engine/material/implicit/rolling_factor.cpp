@@ -12,8 +12,6 @@ namespace {
 // Products that a piece may take: a tenth or two of a millisecond. A long body's factor takes some four of
 // them.
 constexpr double products_a_piece = 8e5;
-// Of the first entry of the diagonal.
-constexpr double least_pivot = 1e-14;
 
 }  // namespace
 
@@ -54,7 +52,7 @@ void RollingFactor::add_cell(const MatrixParts& parts, const CellBatch& b, int l
   for (int e = 0; e < 9; ++e) rotation(e / 3, e % 3) = b.turn[e][lane] + (e % 4 == 0 ? 1.0 : 0.0);
   const auto entry = [&](int row, int column) {
     const int low = std::min(row, column), high = std::max(row, column);
-    return static_cast<double>(b.stiffness[high * (high + 1) / 2 + low][lane]);
+    return b.stiffness[high * (high + 1) / 2 + low][lane];
   };
   for (int a = 0; a < 8; ++a) {
     for (int c = 0; c < 8; ++c) {
@@ -98,9 +96,9 @@ void RollingFactor::take_columns(const MatrixParts& parts, int count) {
   const int all_layers = static_cast<int>(parts.cells->layers.size()) - 1;
   const int layers = std::min(all_layers, (to - 1) / slice_columns_ + 1);
   for (; next_.layers < layers; ++next_.layers) add_layer(parts, next_.layers);
-  const double first = parts.cells->batches[0].stiffness[0][0];
-  kernels_->factor(next_.band, next_.columns, to,
-                   least_pivot * (next_.inertia * parts.mass[0] + next_.stiffness * first));
+  // No pivot of D + K is below the entry of the diagonal D where K is not indefinite, but by rounding.
+  const double lightest = *std::min_element(parts.mass, parts.mass + next_.band.size / 3);
+  kernels_->factor(next_.band, next_.columns, to, next_.inertia * lightest);
   next_.columns = to;
   if (to == next_.band.size) std::swap(used_, next_.band);
 }

@@ -68,10 +68,11 @@ struct LatticeView {
   const unsigned char* active_block = nullptr;
   const unsigned char* free_block = nullptr;  // one a block: 0 where no node is free, so that none moves
   SpringArrays springs[lattice_direction_count];
-  int corner_offset[8] = {};              // from a cell's first corner, bit 0 = k, bit 1 = j, bit 2 = i
-  int corner_direction[8] = {};           // the spring direction from the first corner to each; [0] unused
-  const float* bulk_stiffness = nullptr;  // K_v V0, J
-  const float* inverse_volume = nullptr;  // 1/V0, 1/m^3
+  int corner_offset[8] = {};                 // from a cell's first corner, bit 0 = k, bit 1 = j, bit 2 = i
+  int corner_direction[8] = {};              // the spring direction from the first corner to each; [0] unused
+  const float* bulk_stiffness = nullptr;     // K_v V0, J
+  const float* crushed_stiffness = nullptr;  // of a cell that is crushed, J; see volume_forces()
+  const float* inverse_volume = nullptr;     // 1/V0, 1/m^3
   float* rest_volume_sum = nullptr;  // 12 V0 as volume_forces() computes it, so that rest has no strain at
                                      // all; reforming changes it
   const float* has_cell = nullptr;   // 1 or 0
@@ -112,7 +113,8 @@ struct LatticeKernels {
   void (*spring_forces)(const LatticeView&);
   // f = -p dV/dx, p = K_v x, x = J - 1, ahead in time, with the exact volume of each trilinear cell. Below
   // Poisson's ratios of 1/4 K_v is negative, and this energy unbounded below: there
-  // p = K_v x / (1 + (x / 0.1)^2), which the springs outlast.
+  // p = K_v x / (1 + (x / 0.1)^2), which the springs outlast. A cell crushed below 0.3 of its volume pushes
+  // back by crushed_stiffness beside that: to springs a cell inside out is as good as one that is not.
   void (*volume_forces)(const LatticeView&);
   // v = (v + h (f/m + g)) * decay.
   void (*kick)(const LatticeView&, float h_s, float decay, float gx, float gy, float gz);

@@ -144,7 +144,7 @@ class SpringLattice {
   Floats stiffness_[lattice_direction_count], rest_length_[lattice_direction_count];
   Floats square_difference_[lattice_direction_count], first_rest_length_[lattice_direction_count];
   Floats crept_[lattice_direction_count], tangent_[lattice_direction_count];
-  Floats bulk_, inverse_volume_, rest_volume_sum_, has_cell_, inverse_cell_count_, node_dilation_;
+  Floats bulk_, crushed_, inverse_volume_, rest_volume_sum_, has_cell_, inverse_cell_count_, node_dilation_;
   Floats row_sum_, stable_inverse_mass_;
   Floats power_x_, power_y_, power_z_, power_noise_;
 };

@@ -138,6 +138,15 @@ inline float dilation_of(const LatticeView& view, const FaceDiagonals& p, int n)
   return (volume_sum(p) - view.rest_volume_sum[n]) * (1.0f / 12.0f) * view.inverse_volume[n];
 }
 
+// Below this dilation a cell is crushed.
+constexpr float crushed_dilation = -0.7f;
+
+// How a cell's pressure grows with its volume, J.
+inline float tangent_of(const LatticeView& view, const FaceDiagonals& p, int n) {
+  const float crushed = dilation_of(view, p, n) < crushed_dilation ? view.crushed_stiffness[n] : 0.0f;
+  return view.bulk_stiffness[n] + crushed;
+}
+
 template <bool gives_way>
 void add_volume_forces(const LatticeView& view) {
   BlockCells cells;
@@ -147,12 +156,14 @@ void add_volume_forces(const LatticeView& view) {
       const int n = start + l;
       const FaceDiagonals p = diagonals_ahead(view, n);
       float dilation = dilation_of(view, p, n);
+      const float beyond = dilation - crushed_dilation, crushed = beyond < 0.0f ? beyond : 0.0f;
       if (gives_way) {
         const float softening = view.bulk_stiffness[n] < 0.0f ? 100.0f : 0.0f;
         dilation = dilation / (1.0f + softening * dilation * dilation);
       }
-      cells.set(l, -view.bulk_stiffness[n] * view.inverse_volume[n] * dilation * (1.0f / 12.0f),
-                volume_gradient(p));
+      const float elastic = view.bulk_stiffness[n] * view.inverse_volume[n] * dilation * (1.0f / 12.0f);
+      const float held = view.crushed_stiffness[n] * view.inverse_volume[n] * crushed * (1.0f / 12.0f);
+      cells.set(l, -(elastic + held), volume_gradient(p));
     }
     add_corner_forces(view, start, cells);
   }
@@ -189,7 +200,7 @@ void add_volume_row_sums(const LatticeView& view, float* sum) {
   for (int start = 0; start < view.padded_count; start += block) {
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
-      const FaceDiagonals g = volume_gradient(present_diagonals(view, n));
+      const FaceDiagonals p = present_diagonals(view, n), g = volume_gradient(p);
       const Vector by_corner[8] = {g.b + g.d + g.e, g.f, g.c, g.b, g.a, g.e, g.d, g.a + g.c + g.f};
       float length[8], total = 0.0f;
       for (int c = 0; c < 8; ++c) {
@@ -197,7 +208,7 @@ void add_volume_row_sums(const LatticeView& view, float* sum) {
         total += length[c];
       }
       const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
-      const float bulk = view.bulk_stiffness[n];
+      const float bulk = tangent_of(view, p, n);
       const float scale = (bulk < 0.0f ? -bulk : bulk) * inverse * inverse * total;
       for (int c = 0; c < 8; ++c) share[c][l] = scale * length[c];
     }
@@ -214,10 +225,10 @@ void take_volume_stiffness(const LatticeView& view) {
     if (view.active_block[start / block] == 0) continue;
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
-      const FaceDiagonals gradient = volume_gradient(diagonals_ahead(view, n));
+      const FaceDiagonals p = diagonals_ahead(view, n), gradient = volume_gradient(p);
       const float rate = volume_rate(view, gradient, view.power_x, view.power_y, view.power_z, n);
       const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
-      cells.set(l, -view.bulk_stiffness[n] * inverse * inverse * rate, gradient);
+      cells.set(l, -tangent_of(view, p, n) * inverse * inverse * rate, gradient);
     }
     add_corner_forces(view, start, cells);
   }

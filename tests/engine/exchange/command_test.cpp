@@ -21,7 +21,8 @@ TEST(Command, ReadsWhatItWrites) {
                               SetSymmetry{{true, Vector3(0.01, 0, 0), Vector3::UnitX()}},
                               ResetProxy{},
                               LiftTool{},
-                              KeepShape{}};
+                              KeepShape{},
+                              RefineKnots{1}};
   for (const Command& command : commands) {
     const Json json = command_to_json(command);
     EXPECT_TRUE(is_simulation_command(json)) << json_to_line(json);
@@ -42,7 +43,7 @@ TEST(Command, KnowsItsNames) {
 TEST(Command, NamesWhatIsWrong) {
   EXPECT_EQ(refusal("{\"command\": \"fly\"}"),
             "bend.jsonl: line 4: command is \"fly\", must be one of place_plane, remove_planes, set_tool, "
-            "set_material, set_sculpting, set_symmetry, reset_proxy, lift_tool, keep_shape");
+            "set_material, set_sculpting, set_symmetry, reset_proxy, lift_tool, keep_shape, refine_knots");
   EXPECT_EQ(refusal("{}"), "bend.jsonl: line 4: command is missing");
   EXPECT_EQ(refusal("{\"command\": 3}"), "bend.jsonl: line 4: command is 3, must be a text in quotes");
   EXPECT_EQ(refusal("[]"), "bend.jsonl: line 4: is a list of 0, must be an object");

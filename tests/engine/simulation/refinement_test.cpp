@@ -1,0 +1,122 @@
+// What the control net cannot follow of the lattice, and knots where it matters.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/simulation/body_mapping.h"
+#include "engine/simulation/simulation.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+struct Mapped {
+  SpringLattice lattice;
+  BodyMapping mapping;
+};
+
+Mapped mapped_handle() {
+  const Simulation simulation = simulate(small_handle());
+  const SpringLattice& of = simulation.lattice();
+  SpringLattice lattice =
+      SpringLattice::make(of.mesh(), of.material(), of.youngs_modulus_pa(), InstructionSet::baseline).value();
+  BodyMapping mapping =
+      BodyMapping::make(simulation.surface(), simulation.surface(), lattice, {}, InstructionSet::baseline)
+          .value();
+  return {std::move(lattice), std::move(mapping)};
+}
+
+MappingResidual residual_of(Mapped& body) {
+  body.mapping.update(body.lattice);
+  body.mapping.measure_residual();
+  return body.mapping.residual();
+}
+
+// A net follows any affine motion exactly (Piegl and Tiller 1997, 3.3: affine invariance).
+TEST(MappingResidual, IsNothingForAffineMotions) {
+  Mapped body = mapped_handle();
+  Eigen::Matrix3d linear;
+  linear << 0.02, 0.1, -0.03, 0.05, -0.01, 0.04, 0.0, 0.02, 0.03;
+  for (int n = 0; n < body.lattice.mesh().node_count(); ++n) {
+    body.lattice.set_displacement(n, linear * body.lattice.mesh().nodes[n] + Vector3(0.01, 0, 0));
+  }
+  // Single precision of moves of up to 1 cm.
+  EXPECT_LT(residual_of(body).largest_m, 1e-7);
+}
+
+// Of a single node the net follows some, and the rest is where the node is.
+TEST(MappingResidual, IsWhereOneNodeMoves) {
+  Mapped body = mapped_handle();
+  const LatticeMesh& mesh = body.lattice.mesh();
+  const int node = mesh.index(mesh.count[0] / 2, mesh.count[1] - 1, mesh.count[2] / 2);
+  body.lattice.set_displacement(node, Vector3(0, 1e-3, 0));
+  const MappingResidual residual = residual_of(body);
+  EXPECT_GT(residual.largest_m, 5e-5);
+  EXPECT_LT(residual.largest_m, 1e-3);
+  EXPECT_LT(residual.root_mean_square_m, 0.3 * residual.largest_m);
+  const Vector3 place = evaluate(body.mapping.rest(), residual.u, residual.v).position_m;
+  EXPECT_LT((place - mesh.nodes[static_cast<std::size_t>(node)]).norm(), 2.0 * mesh.mean_edge());
+}
+
+void press(Simulation& simulation, double to_y_m, int ticks) {
+  for (int t = 0; t <= ticks; ++t) {
+    simulation.advance(above(0.03, 0.004 + (to_y_m - 0.004) * static_cast<double>(t) / ticks));
+  }
+}
+
+Scene pointed_scene() {
+  Scene scene = small_handle();
+  scene.tool.kind = ToolKind::point;
+  scene.tool.iterations = 1;
+  return scene;
+}
+
+double shown_residual_m(Simulation& simulation) {
+  for (int t = 0; t < 200; ++t) simulation.advance(above(0.03, 0.0015));
+  Snapshot snapshot;
+  simulation.write_snapshot(snapshot);
+  return snapshot.bodies.front().residual.largest_m;
+}
+
+double largest_difference(const Surface& one, const Surface& other) {
+  double largest = 0.0;
+  for (int a = 0; a < 48; ++a) {
+    for (int b = 0; b <= 60; ++b) {
+      const double u = a / 48.0, v = 1e-3 * b;
+      largest = std::max(largest, (evaluate(one, u, v).position_m - evaluate(other, u, v).position_m).norm());
+    }
+  }
+  return largest;
+}
+
+TEST(RefineKnots, KeepsTheShapeAndFollowsBetterThere) {
+  Simulation plain = simulate(pointed_scene());
+  press(plain, 0.0015, 300);
+  const double left_m = shown_residual_m(plain);
+  EXPECT_GT(left_m, 2e-5);
+
+  Simulation refined = simulate(pointed_scene());
+  for (int k = 1; k <= 3; ++k) {
+    press(refined, 0.0024 - 1e-4 * k, 100);
+    const Surface before = refined.surface();
+    ASSERT_TRUE(refined.apply(RefineKnots{}).ok());
+    EXPECT_EQ(refined.surface().net.rows, before.net.rows + 1);
+    EXPECT_EQ(refined.surface().net.columns, before.net.columns + 1);
+    EXPECT_EQ(refined.scene().bodies[0].surface.net.rows, before.net.rows + 1);
+    EXPECT_LT(largest_difference(refined.surface(), before), 1e-12);
+  }
+  press(refined, 0.0015, 300);
+  EXPECT_LT(shown_residual_m(refined), 0.8 * left_m);
+}
+
+TEST(RefineKnots, IsRefusedWhereNothingMoved) {
+  Simulation simulation = simulate(small_handle());
+  const Status refused = simulation.apply(RefineKnots{});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message,
+            "refine_knots: nothing moved since the knots were last changed; shape the body first");
+  EXPECT_FALSE(simulation.apply(RefineKnots{1}).ok());
+}
+
+}  // namespace
+}  // namespace spoonbill
