@@ -10,7 +10,8 @@
 //        "control_points_mm": [[[x, y, z], ...], ...]},          a list along v for each point along u
 //      "material": {"name": "clay", "source": "...", "youngs_modulus_pa": 2e5, "poissons_ratio": 0.45,
 //        "density_kg_per_m3": 1700, "damping_ratio": 0.1, "plastic": true, "yield_strain": 0.02,
-//        "flow_rate_per_s": 40,
+//        "flow_rate_per_s": 40,                                  "loss_factor": 0.2 may stand for a
+//                                                                damping ratio of half of it
 //        "hardening": 0.1, "stiffening": 2, "friction": 0.3,         may be left out: 0
 //        "relaxing_share": 0.5, "relaxation_time_s": 30},            may be left out: does not creep
 //      "lattice": {"node_budget": 2000,                          or "nodes": [4, 8, 60]

@@ -101,6 +101,16 @@ void add_lattice_request(const LatticeRequest& lattice, Json& json) {
   if (lattice.feature_map) json["feature_map"] = feature_map_to_json(*lattice.feature_map);
 }
 
+// Of a Voigt element a mode's loss factor is twice its damping ratio.
+double read_damping_ratio(FieldReader& reader) {
+  if (!reader.has("loss_factor")) return reader.number("damping_ratio", damping_ratio_range);
+  if (reader.has("damping_ratio")) {
+    reader.refuse("loss_factor", "says what damping_ratio says; leave one of them out");
+    reader.ignore("damping_ratio");
+  }
+  return 0.5 * reader.number("loss_factor", {2.0 * damping_ratio_range.low, 2.0 * damping_ratio_range.high});
+}
+
 Material read_material_fields(FieldReader& reader) {
   Material material;
   material.name = reader.text("name");
@@ -108,7 +118,7 @@ Material read_material_fields(FieldReader& reader) {
   material.youngs_modulus_pa = reader.number("youngs_modulus_pa", youngs_modulus_range_pa);
   material.poissons_ratio = reader.number("poissons_ratio", poissons_ratio_range);
   material.density_kg_per_m3 = reader.number("density_kg_per_m3", density_range_kg_per_m3);
-  material.damping_ratio = reader.number("damping_ratio", damping_ratio_range);
+  material.damping_ratio = read_damping_ratio(reader);
   material.plastic = reader.boolean("plastic");
   material.yield_strain = reader.number("yield_strain", yield_strain_range_of(material.plastic));
   material.flow_rate_per_s = reader.number("flow_rate_per_s", flow_rate_range_per_s);

@@ -141,6 +141,35 @@ TEST(Document, StatesRangesInTheUnitOfTheFile) {
             "sample.json: sculpting.gravity_m_per_s2 must be no longer than 100");
 }
 
+TEST(Document, RefusesWrongMaterialsWithTheRange) {
+  const auto with = [](const char* field, const Json& value) {
+    return refusal([&](Json& j) { j["body"]["material"][field] = value; });
+  };
+  EXPECT_EQ(with("youngs_modulus_pa", -2e5),
+            "sample.json: body.material.youngs_modulus_pa is -200000.0, must be 1 to 1e+12");
+  EXPECT_EQ(with("youngs_modulus_pa", "200 kPa"),
+            "sample.json: body.material.youngs_modulus_pa is \"200 kPa\", must be a number");
+  EXPECT_EQ(with("youngs_modulus_pa", nullptr),  // as JSON writes what is no number
+            "sample.json: body.material.youngs_modulus_pa is null, must be a number");
+  EXPECT_EQ(with("density_kg_per_m3", 0),
+            "sample.json: body.material.density_kg_per_m3 is 0, must be 1 to 30000");
+  EXPECT_EQ(with("density_kg_per_m3", 1e300),
+            "sample.json: body.material.density_kg_per_m3 is 1e+300, must be 1 to 30000");
+  EXPECT_NE(with("youngs_modulus_kpa", 200).find("unknown field \"youngs_modulus_kpa\""), std::string::npos);
+  EXPECT_EQ(with("loss_factor", 0.1),
+            "sample.json: body.material.loss_factor says what damping_ratio says; leave one of them out");
+}
+
+TEST(Document, TakesALossFactorForADampingRatio) {
+  Json json = document_to_json(sample_document());
+  Json& material = json["body"]["material"];
+  material.erase("damping_ratio");
+  material["loss_factor"] = 0.3;
+  const auto read = document_from_json(json, "sample.json");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_DOUBLE_EQ(read->scene.bodies[0].material.damping_ratio, 0.15);
+}
+
 TEST(Document, RefusesAbsurdSurfaces) {
   EXPECT_EQ(refusal([](Json& j) { j["body"]["surface"]["v"]["degree"] = 12; }),
             "sample.json: body.surface.v.degree is 12, must be 1 to 9");
