@@ -127,7 +127,9 @@ void fact_row(const char* label, const std::string& text) {
 bool deed_row(const char* label, const std::string& text, const char* button) {
   fact_row(label, text);
   const float width = ImGui::CalcTextSize(button).x + 2.0F * ImGui::GetStyle().FramePadding.x;
-  ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
+  ImGui::SameLine();
+  const float room = ImGui::GetContentRegionAvail().x - width;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0F, room));
   return ImGui::Button(button);
 }
 
