@@ -202,10 +202,9 @@ void draw_view(const PanelModel& model, const Theme& theme, PanelAnswer& answer)
 
 void draw_device(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
   {
-    const RowGroup group("Device", theme);
+    const RowGroup group(("Device: " + model.device).c_str(), theme);
     if (!group) return;
     Sculpting sculpting = model.sculpting;
-    fact_row("Name", model.device);
     gauge_row("Force", model.force_limit_n > 0.0 ? model.force_n / model.force_limit_n : 0.0,
               rounded(model.force_n, 2, "") + " of " + newtons_text(model.force_limit_n));
     if (quantity_row(force_scale, sculpting.force_scale, rounded(sculpting.force_scale, 2, " \u00d7"),

@@ -210,7 +210,7 @@ TEST(Panel, OffersTheStagesOfContact) {
   };
   frame.draw(full_model());
   frame.draw(full_model());
-  EXPECT_TRUE(click(200.0F, 501.0F).empty());
+  EXPECT_TRUE(click(200.0F, 521.0F).empty());
   frame.draw(full_model());
   const ImGuiWindow* list = nullptr;
   for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
