@@ -4,6 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "engine/material/node_motion.h"
+#include "engine/material/settling.h"
+#include "engine/material/support_motion.h"
+
 namespace spoonbill {
 namespace {
 
@@ -61,29 +65,6 @@ Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, fl
   return lattice.kernels().drift(view, drift);
 }
 
-void set_velocity(const LatticeView& view, int n, const Vector3& velocity) {
-  view.vx[n] = static_cast<float>(velocity.x());
-  view.vy[n] = static_cast<float>(velocity.y());
-  view.vz[n] = static_cast<float>(velocity.z());
-}
-
-// As drift() leaves a node; returns the square of what it moved since the springs were linearised.
-float place_node(const LatticeView& view, int n, const Vector3& displacement, float tau) {
-  float* const d[3] = {view.dx, view.dy, view.dz};
-  float* const ahead[3] = {view.ahead_x, view.ahead_y, view.ahead_z};
-  float* const moved[3] = {view.moved_x, view.moved_y, view.moved_z};
-  const float* const v[3] = {view.vx, view.vy, view.vz};
-  const float* const reference[3] = {view.reference_x, view.reference_y, view.reference_z};
-  float square = 0.0f;
-  for (int axis = 0; axis < 3; ++axis) {
-    d[axis][n] = static_cast<float>(displacement[axis]);
-    ahead[axis][n] = d[axis][n] + tau * v[axis][n];
-    moved[axis][n] = ahead[axis][n] - reference[axis][n];
-    square += moved[axis][n] * moved[axis][n];
-  }
-  return square;
-}
-
 void linearise(const SpringLattice& lattice, const LatticeView& view) {
   lattice.kernels().look_ahead(view, lattice.damping_time_s());
   lattice.kernels().linearise_springs(view);
@@ -107,32 +88,37 @@ struct Relaxation {
   std::array<LatticeView, lattice_capacity> view;
   std::array<float, lattice_capacity> cap{};  // m/s
   std::array<Drifted, lattice_capacity> drifted{};
+  std::array<double, lattice_capacity> damping_per_s{};
+  double time_s = 0.0;  // of the material, in the tick
 
   std::size_t count() const { return lattices.size(); }
   bool has_springs(std::size_t at) const { return lattices[at].core == nullptr; }
   SpringLattice& lattice(std::size_t at) const { return *lattices[at].lattice; }
 };
 
-void kick(Relaxation& relaxation, const RelaxSettings& settings, float h) {
-  const float decay = 1.0f / (1.0f + h * static_cast<float>(settings.damping_per_s));
+void kick(Relaxation& relaxation, float h) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
     const SpringLattice& lattice = relaxation.lattice(at);
     const LatticeView& view = relaxation.view[at];
     const Vector3& g = relaxation.lattices[at].gravity_m_per_s2;
+    const float decay = 1.0f / (1.0f + h * static_cast<float>(relaxation.damping_per_s[at]));
     take_forces(lattice, view, relaxation.drifted[at].moved_square);
+    bear(relaxation.lattices[at].supports, lattice, view, g, static_cast<double>(h));
     lattice.kernels().kick(view, h, decay, static_cast<float>(g.x()), static_cast<float>(g.y()),
                            static_cast<float>(g.z()));
+    hand_to_supports(relaxation.lattices[at].supports, view, relaxation.time_s);
   }
 }
 
 void solve_contacts(const Relaxation& relaxation, float h, double fraction,
-                    std::span<const TouchingTool> tools, BodyContacts* between) {
+                    std::span<const TouchingTool> tools, BodyContacts* between, GroundContacts* ground) {
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
   std::array<float, lattice_capacity> push_caps{};
   for (std::size_t at = 0; at < relaxation.count(); ++at) push_caps[at] = 0.5f * relaxation.cap[at];
   for (const TouchingTool& tool : tools) tool.contacts->solve(views, *tool.state, h, fraction, push_caps);
   if (between) between->solve(views, h, push_caps);
+  if (ground) ground->solve(views, h, push_caps);
 }
 
 // What carried nodes pull at the tool with, and their velocity, which the kick has taken.
@@ -168,13 +154,37 @@ void carry(Relaxation& relaxation, std::span<const TouchingTool> tools) {
   }
 }
 
+// Places supported nodes at this share of their way.
+void place_supported(Relaxation& relaxation, double share) {
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    const float square = place_supported(relaxation.lattices[at].supports, relaxation.view[at], share,
+                                         relaxation.lattice(at).damping_time_s());
+    relaxation.drifted[at].moved_square = std::max(relaxation.drifted[at].moved_square, square);
+  }
+}
+
+// Returns whether a support had to be held back.
+bool begin_supports(Relaxation& relaxation) {
+  bool limited = false;
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    const RelaxedLattice& relaxed = relaxation.lattices[at];
+    if (relaxed.supports.empty()) continue;
+    const double reach_m = static_cast<double>(relaxation.cap[at]) * relaxation.time_s;
+    limited |= limit_ways(relaxed.supports, *relaxed.lattice, reach_m);
+    hand_to_supports(relaxed.supports, relaxation.view[at], relaxation.time_s);
+  }
+  return limited;
+}
+
 // What the speeds of a lattice's nodes are relative to.
 Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at, std::span<const TouchingTool> tools) {
   for (const TouchingTool& tool : tools) {
     if (tool.motion.carried.body == static_cast<int>(at)) return tool.state->velocity_m_per_s;
   }
   const SpringLattice& lattice = relaxation.lattice(at);
-  if (lattice.has_held_nodes()) return Vector3::Zero();
+  if (lattice.has_held_nodes()) {
+    return riding_velocity(relaxation.lattices[at].supports, lattice, relaxation.time_s);
+  }
   float sum[4];
   lattice.kernels().momentum(relaxation.view[at], lattice.free_mass(), sum);
   const float inverse = sum[3] > 0.0f ? 1.0f / sum[3] : 0.0f;
@@ -240,11 +250,32 @@ void creep(Relaxation& relaxation, std::uint64_t turn, double tick_time_s) {
   }
 }
 
-void begin_core_steps(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
-                      double time_s) {
-  for (const RelaxedLattice& relaxed : lattices) {
+// With the springs linearised.
+void choose_damping(Relaxation& relaxation, const RelaxSettings& settings) {
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    double& damping = relaxation.damping_per_s[at];
+    damping = settings.damping_per_s;
+    if (!settings.settles) continue;
+    const double quotient = relaxation.has_springs(at)
+                                ? rayleigh_quotient(relaxation.lattice(at), relaxation.view[at])
+                                : relaxation.lattices[at].core->rayleigh_quotient();
+    damping = std::max(damping, settling_damping_per_s(quotient));
+  }
+}
+
+void begin_core_steps(const Relaxation& relaxation) {
+  const double time_s = relaxation.time_s;
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    const RelaxedLattice& relaxed = relaxation.lattices[at];
     if (!relaxed.core) continue;
-    relaxed.core->begin_step({time_s, settings.damping_per_s, relaxed.gravity_m_per_s2}, *relaxed.lattice);
+    const ImplicitStep step{time_s, relaxation.damping_per_s[at], relaxed.gravity_m_per_s2};
+    for (const SupportedNodes& support : relaxed.supports) {
+      if (support.moves) relaxed.core->move_held(support.nodes, (support.end_m - support.start_m) / time_s);
+    }
+    relaxed.core->begin_step(step, *relaxed.lattice);
+    for (SupportedNodes& support : relaxed.supports) {
+      support.impulse_ns -= time_s * relaxed.core->force_on_held(support.nodes, relaxed.gravity_m_per_s2);
+    }
   }
 }
 
@@ -260,8 +291,8 @@ double felt_modulus_limit_pa(double unit_frequency, double damping_ratio) {
 }
 
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
-                  std::span<const TouchingTool> tools, BodyContacts* between) {
-  Relaxation relaxation{lattices, {}, {}, {}};
+                  std::span<const TouchingTool> tools, BodyContacts* between, GroundContacts* ground) {
+  Relaxation relaxation{lattices, {}, {}, {}, {}, 0.0};
   const bool flows = settings.tick % 2 == 1;
   for (std::size_t at = 0; at < lattices.size(); ++at) {
     SpringLattice& lattice = *lattices[at].lattice;
@@ -270,25 +301,29 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     linearise(lattice, relaxation.view[at]);
     if (!flows) follow_fastest_frequency(lattice, relaxation.view[at]);
   }
+  choose_damping(relaxation, settings);
   const Substeps substeps = choose_substeps(relaxation, settings.step_s);
   RelaxReport report;
   report.substeps = substeps.count;
   report.nodes_slowed = substeps.slowed;
   report.material_time_s = settings.iterations * substeps.count * substeps.h;
-  begin_core_steps(lattices, settings, report.material_time_s);
-  for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, report.material_time_s);
+  relaxation.time_s = report.material_time_s;
   const float h = static_cast<float>(substeps.h);
   for (std::size_t at = 0; at < lattices.size(); ++at) {
     relaxation.cap[at] = speed_cap(relaxation.lattice(at), h);
   }
+  report.speed_capped = begin_supports(relaxation);
+  begin_core_steps(relaxation);
+  for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, report.material_time_s);
   if (substeps.slowed) steady_strained_nodes(relaxation, h);
   const int total = settings.iterations * substeps.count;
   for (int s = 0; s < total; ++s) {
-    kick(relaxation, settings, h);
+    kick(relaxation, h);
     hand_over(relaxation, tools);
-    solve_contacts(relaxation, h, static_cast<double>(s) / total, tools, between);
+    solve_contacts(relaxation, h, static_cast<double>(s) / total, tools, between, ground);
     report.speed_capped |= drift(relaxation, h, tools);
     carry(relaxation, tools);
+    place_supported(relaxation, static_cast<double>(s + 1) / total);
   }
   for (const RelaxedLattice& relaxed : lattices) {
     if (relaxed.core) relaxed.core->end_step(*relaxed.lattice);

@@ -8,8 +8,10 @@
 
 #include "engine/material/contact/body_contacts.h"
 #include "engine/material/contact/contact_constraints.h"
+#include "engine/material/contact/ground_contacts.h"
 #include "engine/material/implicit/implicit_core.h"
 #include "engine/material/springs/spring_lattice.h"
+#include "engine/material/supported_nodes.h"
 
 namespace spoonbill {
 
@@ -55,13 +57,15 @@ struct RelaxSettings {
   std::uint64_t tick = 0;             // its number
   int iterations = 1;                 // relaxation steps
   double step_s = relaxation_step_s;  // material time of each
-  double damping_per_s = 0.0;         // mass-proportional
+  double damping_per_s = 0.0;         // mass-proportional; where they settle, the least
+  bool settles = false;               // each body as settling.h damps it
 };
 
 struct RelaxedLattice {
   SpringLattice* lattice;
   Vector3 gravity_m_per_s2 = Vector3::Zero();
   ImplicitCore* core = nullptr;  // where one moves the lattice, its springs rest
+  std::span<SupportedNodes> supports = {};
 };
 
 struct RelaxReport {
@@ -80,8 +84,10 @@ struct TouchingTool {
 
 // Advances at most lattice_capacity lattices, by as many substeps as the one that needs most; those with a
 // core by one implicit step, around the contacts. The tools act in their order, then the bodies on each
-// other. Denormals must be flushed by the caller for the speed's sake (see DenormalsFlushed).
+// other, then the ground. Denormals must be flushed by the caller for the speed's sake (see
+// DenormalsFlushed).
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
-                  std::span<const TouchingTool> tools, BodyContacts* between = nullptr);
+                  std::span<const TouchingTool> tools, BodyContacts* between = nullptr,
+                  GroundContacts* ground = nullptr);
 
 }  // namespace spoonbill

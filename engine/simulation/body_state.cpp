@@ -37,6 +37,12 @@ std::vector<std::uint8_t> nodes_behind(const SpringLattice& lattice, const std::
   return held;
 }
 
+void BodyState::hold_behind(const std::vector<FixingPlane>& planes) {
+  std::vector<std::uint8_t> nodes = nodes_behind(lattice, planes);
+  supports.take_nodes(lattice, nodes);
+  hold(std::move(nodes));
+}
+
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
                                   InstructionSet set) {
   Result<LatticeMesh> mesh = tube_lattice(body.surface, body.lattice);
@@ -47,13 +53,19 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
   if (!core.ok()) return core.error();
   Result<BodyMapping> mapping = BodyMapping::make(body.surface, body.surface, lattice.value(), planes, set);
   if (!mapping.ok()) return mapping.error();
-  std::vector<std::uint8_t> held = nodes_behind(lattice.value(), planes), touched(held.size(), 0);
+  Result<BodyLoads> loads =
+      BodyLoads::make(body.loads, mesh.value(), [&](double u, double v) { return mapping->at(u, v); });
+  if (!loads.ok()) return loads.error();
+  Result<BodySupports> supports = BodySupports::make(body.supports, mesh.value());
+  if (!supports.ok()) return supports.error();
   BodyState state{std::move(lattice).value(),
                   std::move(mapping).value(),
                   Smoothing(mesh.value()),
                   {},
-                  std::move(touched)};
-  state.hold(std::move(held));
+                  std::vector<std::uint8_t>(mesh->nodes.size(), 0)};
+  state.loads = std::move(loads).value();
+  state.supports = std::move(supports).value();
+  state.hold_behind(planes);
   state.set_core(std::move(core).value());
   return state;
 }

@@ -11,7 +11,9 @@
 #include "engine/material/implicit/implicit_core.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "engine/result.h"
+#include "engine/simulation/body_loads.h"
 #include "engine/simulation/body_mapping.h"
+#include "engine/simulation/body_supports.h"
 #include "engine/simulation/mesh_mapping.h"
 #include "engine/simulation/scene.h"
 #include "engine/simulation/smoothing.h"
@@ -26,7 +28,11 @@ struct BodyState {
   std::vector<std::uint8_t> held, touched;  // one byte a node
   std::optional<ImplicitCore> core = {};    // where the material is too stiff for the lattice's springs
   bool core_rests = false;
+  BodyLoads loads = {};
+  BodySupports supports = {};
 
+  // Lets the supports hold what the planes do not.
+  void hold_behind(const std::vector<FixingPlane>& planes);
   // One byte a node.
   void hold(std::vector<std::uint8_t> nodes) {
     held = std::move(nodes);

@@ -132,6 +132,7 @@ Status CommandApplier::operator()(const KeepShape&) {
   }
   for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
     state.bodies[b].smoothing = Smoothing(lattices[b].mesh());
+    state.bodies[b].supports.begin_anew(state.bodies[b].lattice, lattices[b]);
     state.bodies[b].lattice = std::move(lattices[b]);
     state.bodies[b].set_core(std::move(cores[b]));
   }
@@ -183,7 +184,7 @@ Status CommandApplier::set_planes(std::vector<FixingPlane> planes) {
     mappings.push_back(std::move(mapping).value());
   }
   for (BodyState& body : state.scene_bodies()) {
-    body.hold(nodes_behind(body.lattice, planes));
+    body.hold_behind(planes);
   }
   state.scene.planes = std::move(planes);
   set_mappings(std::move(mappings));
@@ -214,6 +215,7 @@ void CommandApplier::make_contacts() {
   state.pairs = make_pairs(state.bodies);
   state.self = make_self(state.bodies);
   state.between = make_between();
+  state.on_ground = OnGround(state.scene_bodies());
 }
 
 }  // namespace spoonbill

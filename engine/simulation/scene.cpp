@@ -28,6 +28,15 @@ Status check_lattice_request(const LatticeRequest& lattice) {
                std::to_string(node_budget_range.high)};
 }
 
+Status check_loads(const Body& body) {
+  if (Status status = check_range("loads", static_cast<int>(body.loads.size()), load_count_range);
+      !status.ok()) {
+    return status;
+  }
+  // What is wrong with one of them is said where it is put on the lattice.
+  return check_range("supports", static_cast<int>(body.supports.size()), support_count_range);
+}
+
 Status check_tool(const Tool& tool) {
   if (Status status = check_range("tool: radius_m", tool.radius_m, tool_radius_range_m); !status.ok()) {
     return status;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "engine/result.h"
 #include "engine/simulation/checks.h"
 #include "engine/simulation/fixing_plane.h"
+#include "engine/simulation/loads.h"
 #include "engine/simulation/snapshot.h"
 #include "engine/simulation/tool_body.h"
 
@@ -23,6 +25,8 @@ struct Body {
   Surface surface;
   Material material;
   LatticeRequest lattice;
+  std::vector<Load> loads = {};
+  std::vector<Support> supports = {};
 };
 
 struct Tool {
@@ -38,6 +42,8 @@ struct Sculpting {
   double damping_per_s = 4.0;  // mass-proportional
   Vector3 gravity_m_per_s2 = Vector3::Zero();
   double force_scale = 1.0;  // newtons at the hand for each newton of contact
+  // Damped besides as each body needs it to come to rest without swinging: see settling.h.
+  bool settles = false;
 };
 
 // Sculpting both sides at once: what the hand does on one side of the plane, a second tool does mirrored.
@@ -53,6 +59,7 @@ struct Scene {
   Tool tool;
   Sculpting sculpting;
   Symmetry symmetry = {};
+  std::optional<Ground> ground = {};
 };
 
 // What files, commands and the panel's sliders accept: wide enough for any concept, finite for every solver.
@@ -68,6 +75,7 @@ inline constexpr double gravity_limit_m_per_s2 = 100.0;  // of the vector's leng
 inline constexpr Range<double> force_scale_range{0.0, 1e6};
 
 // Each names the field, the value and the range of the first thing that is not within it.
+Status check_loads(const Body& body);  // and supports
 Status check_lattice_request(const LatticeRequest& lattice);
 Status check_tool(const Tool& tool);
 Status check_sculpting(const Sculpting& sculpting);

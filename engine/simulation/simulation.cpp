@@ -30,9 +30,13 @@ Status check_scene(const Scene& scene) {
   }
   for (const Body& body : scene.bodies) {
     if (Status status = check_lattice_request(body.lattice); !status.ok()) return status;
+    if (Status status = check_loads(body); !status.ok()) return status;
   }
   for (const FixingPlane& plane : scene.planes) {
     if (Status status = check_fixing_plane(plane); !status.ok()) return status;
+  }
+  if (scene.ground) {
+    if (Status status = check_ground(*scene.ground); !status.ok()) return status;
   }
   return check_symmetry(scene.symmetry);
 }
@@ -60,6 +64,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
   if (model->soft) bodies.push_back(*std::move(model->soft));
   std::vector<BodyPairContact> pairs = make_pairs(bodies);
   std::vector<BodySelfContact> self = make_self(bodies);
+  OnGround on_ground({bodies.data(), scene.bodies.size()});
   std::vector<std::shared_ptr<const ToolBody>> kept = {modelled_body(scene.tool)};
   return Simulation(std::make_unique<State>(State{std::move(scene),
                                                   set,
@@ -70,6 +75,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
                                                   make_between(),
                                                   std::move(pairs),
                                                   std::move(self),
+                                                  std::move(on_ground),
                                                   false,
                                                   0.0,
                                                   std::move(kept),
@@ -142,15 +148,26 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
 }
 
 void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
+  const int iterations = s.scene.tool.iterations;
+  if (s.scene.ground) {
+    s.on_ground.find(s.scene_bodies(), *s.scene.ground, s.scene.sculpting.gravity_m_per_s2,
+                     iterations * relaxation_step_s);
+  }
   std::array<RelaxedLattice, lattice_capacity> lattices{};
   for (std::size_t b = 0; b < s.stepped(); ++b) {
     // What a body sags at rest is its weight over its stiffness: a softer one must weigh less to sag the
-    // same.
+    // same, and bear less.
     BodyState& body = s.bodies[b];
-    lattices[b] = {&body.lattice, s.scene.sculpting.gravity_m_per_s2 / real_over_felt(s, b), body.mover()};
+    const double ratio = real_over_felt(s, b);
+    body.loads.apply(1.0 / ratio, body.lattice, body.mover());
+    const double end_s = static_cast<double>(s.tick + 1) * tick_s;
+    lattices[b] = {&body.lattice, s.scene.sculpting.gravity_m_per_s2 / ratio, body.mover(),
+                   body.supports.begin_tick(body.lattice, end_s, tick_s)};
   }
-  const RelaxSettings settings{s.tick, s.scene.tool.iterations, tick_s, s.scene.sculpting.damping_per_s};
-  s.relaxed = relax({lattices.data(), s.stepped()}, settings, tools, &s.between);
+  const RelaxSettings settings{s.tick, iterations, relaxation_step_s, s.scene.sculpting.damping_per_s,
+                               s.scene.sculpting.settles};
+  s.relaxed = relax({lattices.data(), s.stepped()}, settings, tools, &s.between,
+                    s.scene.ground ? &s.on_ground.contacts() : nullptr);
 }
 
 std::uint32_t flags_of(const Simulation::State& s) {
@@ -170,6 +187,7 @@ void mark_touched(Simulation::State& s) {
     const int body = static_cast<int>(b);
     s.between.mark_touched(body, touched.data());
     if (is_tool(s, b)) continue;
+    if (s.scene.ground) s.on_ground.contacts().mark_touched(body, touched.data());
     s.tool.contact.constraints().mark_touched(body, touched.data());
     if (s.scene.symmetry.on) s.mirrored.contact.constraints().mark_touched(body, touched.data());
   }
@@ -229,6 +247,17 @@ std::uint64_t Simulation::tick() const {
 }
 const SpringLattice& Simulation::lattice(int body) const {
   return state_->bodies[static_cast<std::size_t>(body)].lattice;
+}
+Vector3 Simulation::support_force_n(int support, int body) const {
+  const auto at = static_cast<std::size_t>(body);
+  const SupportedNodes& bears = state_->bodies[at].supports.supports()[static_cast<std::size_t>(support)];
+  return bears.impulse_ns * (real_over_felt(*state_, at) / std::max(state_->relaxed.material_time_s, tick_s));
+}
+Vector3 Simulation::ground_force_n(int body) const {
+  if (!state_->scene.ground) return Vector3::Zero();
+  const double ratio = real_over_felt(*state_, static_cast<std::size_t>(body));
+  return state_->on_ground.contacts().impulse_ns(body) *
+         (ratio / std::max(state_->relaxed.material_time_s, tick_s));
 }
 const Surface& Simulation::surface(int body) const {
   return state_->bodies[static_cast<std::size_t>(body)].mapping().current();

@@ -84,6 +84,10 @@ class Simulation {
   const SpringLattice& lattice(int body = 0) const;
   const Surface& surface(int body = 0) const;
 
+  // The mean force of a support, or of the ground, on a body through the last tick, at the real stiffness.
+  Vector3 support_force_n(int support, int body = 0) const;
+  Vector3 ground_force_n(int body = 0) const;
+
   struct State;
 
  private:

@@ -79,8 +79,8 @@ ImplicitBody::ImplicitBody(const LatticeMesh& mesh, const BandKernels& band, con
       cell_size_(mesh.mean_edge()),
       size_(3 * mesh.node_count()),
       factor_(mesh, band) {
-  for (Doubles* a : {&mass3_, &free_, &moved_, &velocity_, &applied_, &force_, &residual_, &direction_,
-                     &image_, &conditioned_}) {
+  for (Doubles* a : {&mass3_, &free_, &moved_, &velocity_, &applied_, &held_velocity_, &force_, &residual_,
+                     &direction_, &image_, &conditioned_}) {
     a->assign(static_cast<std::size_t>(factor_.padded_size()), 0.0);
   }
   mass_.assign(static_cast<std::size_t>(mesh.node_count()), 0.0);
@@ -164,6 +164,8 @@ void ImplicitBody::hold(std::span<const std::uint8_t> held) {
     }
     if (!is_free) set_velocity(n, Vector3::Zero());
   }
+  std::fill(held_velocity_.begin(), held_velocity_.end(), 0.0);
+  held_moves_ = false;
   factor_.forget();
 }
 
@@ -176,6 +178,13 @@ void ImplicitBody::apply_matrix(double inertia, double stiffness, const Doubles&
   cells_->apply(block_.batches.data(), static_cast<int>(block_.batches.size()), stiffness, field.data(),
                 out.data());
   free_only(out);
+}
+
+// Leaves the free nodes their velocities, and takes what the held ones will pull at them.
+void ImplicitBody::take_held_motion(double stiffness, double h) {
+  free_only(velocity_);
+  apply_matrix(0.0, stiffness, held_velocity_, image_);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) force_[n] -= image_[n] / h;
 }
 
 // Takes the residual of the best multiple of the present velocities, from none to all of them: what is left
@@ -255,6 +264,7 @@ ImplicitBody::RigidMotion ImplicitBody::rigid_motion() const {
 bool ImplicitBody::cap_speeds(const RigidMotion& motion, double cap_m_per_s) {
   bool capped = false;
   for (int n = 0; n < node_count(); ++n) {
+    if (free_[3 * static_cast<std::size_t>(n)] == 0.0) continue;
     const Vector3 whole = motion.velocity_at(place(n));
     const Vector3 own = velocity(n) - whole;
     const double speed = own.norm();
@@ -299,6 +309,17 @@ void ImplicitBody::restore_momentum() {
   for (int n = 0; n < node_count(); ++n) set_velocity(n, velocity(n) + more);
 }
 
+double ImplicitBody::rayleigh_quotient() {
+  const int blocks = rounded_up(size_, band_block);
+  std::copy(velocity_.begin(), velocity_.end(), direction_.begin());
+  free_only(direction_);
+  apply_matrix(0.0, 1.0, direction_, image_);
+  const double strained = band_->dot(direction_.data(), image_.data(), blocks);
+  apply_matrix(1.0, 0.0, direction_, image_);
+  const double moved = band_->dot(direction_.data(), image_.data(), blocks);
+  return moved > 0.0 ? strained / moved : 0.0;
+}
+
 ImplicitReport ImplicitBody::solve_velocities(const ImplicitStep& step) {
   const double h = step.step_s, inertia = 1.0 + h * step.damping_per_s, stiffness = h * (h + damping_time_);
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {
@@ -307,8 +328,12 @@ ImplicitReport ImplicitBody::solve_velocities(const ImplicitStep& step) {
   cells_->take_forces(block_.batches.data(), static_cast<int>(block_.batches.size()), moved_.data(),
                       force_.data());
   factor_.take_piece({&block_, mass_.data(), free_.data(), inertia, stiffness});
+  if (held_moves_) take_held_motion(stiffness, h);
   begin_solve(inertia, stiffness, h);
   ImplicitReport report = solve(inertia, stiffness);
+  if (held_moves_) {
+    for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) velocity_[n] += held_velocity_[n];
+  }
   if (!has_held_nodes_) restore_momentum();
   return report;
 }

@@ -2,6 +2,7 @@
 // implicit Euler method, stable at any step.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -35,6 +36,7 @@ struct ImplicitReport {
 // they have by then never stores more energy than standing still would. Their preconditioner is the Cholesky
 // factor of the same matrix as it was a few ticks ago, taken a piece each tick: bodies are long, and their
 // nodes counted along them, so that it is a narrow band.
+// Nodes that are held and moved have w given: what they pull at the free ones goes to the right.
 //
 // A node may move at most half a cell in a step, beside the body as a whole, or where a node is held: what
 // crushes cells faster cannot be undone.
@@ -63,6 +65,18 @@ class ImplicitBody {
   void set_velocity(int node, const Vector3& v) { put(velocity_, node, v); }
   // Until changed, N.
   void set_node_force(int node, const Vector3& force_n) { put(applied_, node, force_n); }
+  void add_node_force(int node, const Vector3& force_n) { put(applied_, node, at(applied_, node) + force_n); }
+  void clear_node_forces() { std::fill(applied_.begin(), applied_.end(), 0.0); }
+  // Moves a held node in the coming steps, until hold() is called.
+  void move_held(int node, const Vector3& velocity_m_per_s) {
+    put(held_velocity_, node, velocity_m_per_s);
+    held_moves_ = true;
+  }
+  // On a held node, N: what its cells and the applied force did as the last step began.
+  Vector3 force_on_held(int node) const { return at(force_, node); }
+
+  // Of the free nodes' velocities, with the tangent of the last step: (v.Kv) / (v.Mv); 0 at rest.
+  double rayleigh_quotient();
 
   // A step in its parts: the velocities at its end; what contacts push, by coordinate, N s, as far as the
   // whole body answers at once, with the work that they do on what they change, J; and the move, which says
@@ -115,6 +129,7 @@ class ImplicitBody {
   Vector3 sum_over_nodes(const Doubles& of) const;
   void restore_momentum();
   void apply_matrix(double inertia, double stiffness, const Doubles& field, Doubles& out) const;
+  void take_held_motion(double stiffness, double h);
   void begin_solve(double inertia, double stiffness, double h);
   ImplicitReport solve(double inertia, double stiffness);
 
@@ -123,12 +138,13 @@ class ImplicitBody {
   const CellKernels* cells_;
   double damping_time_ = 0.0, cell_size_;
   int size_;  // coordinates
-  bool has_held_nodes_ = false;
+  bool has_held_nodes_ = false, held_moves_ = false;
   Vector3 momentum_ = Vector3::Zero();  // of a free body, at the end of the step
   RollingFactor factor_;
   CellBlock block_;
   Doubles mass_, mass3_, free_;  // by node; by coordinate, 0 where held; 1 or 0
   Doubles moved_, velocity_, applied_;
+  Doubles held_velocity_;                                       // 0 of free nodes
   Doubles force_, residual_, direction_, image_, conditioned_;  // working memory
 };
 

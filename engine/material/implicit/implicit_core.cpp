@@ -155,6 +155,35 @@ void ImplicitCore::take_moved_nodes(const SpringLattice& lattice) {
   }
 }
 
+void ImplicitCore::take_node_forces(const SpringLattice& lattice, std::span<const int> nodes) {
+  body_.clear_node_forces();
+  for (const int n : nodes) {
+    if (lattice.is_held(n)) continue;
+    const Vector3 force_n(lattice.applied_force(0)[n], lattice.applied_force(1)[n],
+                          lattice.applied_force(2)[n]);
+    const GridPoint& follower = followers_[static_cast<std::size_t>(n)];
+    for (std::size_t c = 0; c < 8; ++c) body_.add_node_force(follower.node[c], follower.weight[c] * force_n);
+  }
+}
+
+void ImplicitCore::move_held(std::span<const int> nodes, const Vector3& velocity_m_per_s) {
+  for (int n = 0; n < body_.node_count(); ++n) {
+    if (std::binary_search(nodes.begin(), nodes.end(), nearest_[static_cast<std::size_t>(n)])) {
+      body_.move_held(n, velocity_m_per_s);
+    }
+  }
+}
+
+Vector3 ImplicitCore::force_on_held(std::span<const int> nodes, const Vector3& gravity_m_per_s2) const {
+  Vector3 sum = Vector3::Zero();
+  for (int n = 0; n < body_.node_count(); ++n) {
+    if (std::binary_search(nodes.begin(), nodes.end(), nearest_[static_cast<std::size_t>(n)])) {
+      sum += body_.force_on_held(n) + body_.mass_kg(n) * gravity_m_per_s2;
+    }
+  }
+  return sum;
+}
+
 ImplicitReport ImplicitCore::begin_step(const ImplicitStep& step, SpringLattice& lattice) {
   step_s_ = step.step_s;
   const ImplicitReport report = body_.solve_velocities(step);

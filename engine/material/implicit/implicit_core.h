@@ -45,6 +45,16 @@ class ImplicitCore {
   // Nodes that something else has moved for good keep their new places beside the block.
   void take_moved_nodes(const SpringLattice& lattice);
 
+  // Of the block's velocities, (v.Kv) / (v.Mv); 0 at rest.
+  double rayleigh_quotient() { return body_.rayleigh_quotient(); }
+  // Takes the forces on these nodes of the lattice, N, instead of all that it had; held nodes bear their own.
+  void take_node_forces(const SpringLattice& lattice, std::span<const int> nodes);
+  // What follows these held nodes of the lattice, which are in order, moves at this velocity in the coming
+  // step.
+  void move_held(std::span<const int> nodes, const Vector3& velocity_m_per_s);
+  // The force on what follows them as the last step began, N: of the cells, of loads and of gravity.
+  Vector3 force_on_held(std::span<const int> nodes, const Vector3& gravity_m_per_s2) const;
+
   // The lattice's velocities at the end of a step without contacts; contacts then change them.
   ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice);
   // Gives the block what contacts changed, and takes the lattice along.

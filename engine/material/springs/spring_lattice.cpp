@@ -332,7 +332,8 @@ void SpringLattice::set_contact_inverse_mass(double inverse_mass_per_kg) {
 }
 
 void SpringLattice::hold(std::span<const std::uint8_t> held) {
-  has_held_nodes_ = std::find(held.begin(), held.end(), std::uint8_t{1}) != held.end();
+  held_count_ =
+      static_cast<int>(std::count_if(held.begin(), held.end(), [](std::uint8_t is) { return is != 0; }));
   for (int n = 0; n < mesh_.node_count(); ++n) {
     const bool free = held[static_cast<std::size_t>(n)] == 0;
     inverse_mass_[n] = free ? free_inverse_mass(n) : 0.0f;

@@ -52,7 +52,8 @@ class SpringLattice {
   // Held nodes keep their displacement exactly. One byte a node, 1 = held.
   void hold(std::span<const std::uint8_t> held);
   bool is_held(int node) const { return inverse_mass_[node] == 0.0f; }
-  bool has_held_nodes() const { return has_held_nodes_; }
+  bool has_held_nodes() const { return held_count_ > 0; }
+  int held_count() const { return held_count_; }
   float inverse_mass(int node) const { return inverse_mass_[node]; }
   float mass(int node) const { return node_mass_[node]; }
 
@@ -131,8 +132,8 @@ class SpringLattice {
   Material material_;
   float fastest_frequency_ = 0.0f, damping_time_ = 0.0f, cell_size_ = 0.0f;
   float contact_inverse_mass_ = 0.0f;
-  bool has_applied_force_ = false, has_held_nodes_ = false;
-  int padded_count_ = 0;
+  bool has_applied_force_ = false;
+  int held_count_ = 0, padded_count_ = 0;
   int offset_[lattice_direction_count] = {};
 
   Floats dx_, dy_, dz_, vx_, vy_, vz_, fx_, fy_, fz_;

@@ -1,0 +1,60 @@
+#include "engine/material/lattice/shell_faces.h"
+
+#include <cmath>
+
+namespace spoonbill {
+namespace {
+
+void add_side(const LatticeMesh& mesh, std::size_t axis, int end, std::vector<ShellFace>& faces) {
+  const std::size_t first = (axis + 1) % 3, second = (axis + 2) % 3;
+  const auto node = [&](int a, int b) {
+    std::array<int, 3> place{};
+    place[axis] = end;
+    place[first] = a;
+    place[second] = b;
+    return mesh.index(place[0], place[1], place[2]);
+  };
+  for (int a = 0; a + 1 < mesh.count[first]; ++a) {
+    for (int b = 0; b + 1 < mesh.count[second]; ++b) {
+      const int corner = node(a, b), beside = node(a + 1, b), across = node(a + 1, b + 1),
+                above = node(a, b + 1);
+      faces.push_back(end > 0 ? ShellFace{corner, beside, across, above}
+                              : ShellFace{corner, above, across, beside});
+    }
+  }
+}
+
+// The mean of the corners, which are all within half a turn of the first.
+BodyPlace middle_of(const ShellFace& face, const std::vector<BodyPlace>& places) {
+  BodyPlace middle;
+  const double first = places[static_cast<std::size_t>(face[0])].around;
+  for (const int node : face) {
+    const BodyPlace& place = places[static_cast<std::size_t>(node)];
+    middle.along += 0.25 * place.along;
+    middle.around += 0.25 * (place.around - std::round(place.around - first));
+  }
+  middle.around -= std::floor(middle.around);
+  return middle;
+}
+
+}  // namespace
+
+std::vector<ShellFace> shell_faces(const LatticeMesh& mesh) {
+  std::vector<ShellFace> faces;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    add_side(mesh, axis, 0, faces);
+    add_side(mesh, axis, mesh.count[axis] - 1, faces);
+  }
+  return faces;
+}
+
+std::vector<ShellFace> faces_in(const BodyRegion& region, const std::vector<ShellFace>& faces,
+                                const std::vector<BodyPlace>& places) {
+  std::vector<ShellFace> within;
+  for (const ShellFace& face : faces) {
+    if (contains(region, middle_of(face, places))) within.push_back(face);
+  }
+  return within;
+}
+
+}  // namespace spoonbill

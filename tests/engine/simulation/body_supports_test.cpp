@@ -1,0 +1,202 @@
+// Supports of a body that hold and move it.
+#include "engine/simulation/body_supports.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/engine/allocations.h"
+#include "tests/engine/material/block.h"
+#include "tests/engine/simulation/handle.h"
+#include "tests/engine/simulation/loaded_block.h"
+#include "tests/engine/simulation/soft_bodies.h"
+
+namespace spoonbill {
+namespace {
+
+const BodyRegion start{{0.0, 0.0}}, end{{1.0, 1.0}};
+
+Support ramp(const BodyRegion& region, const Vector3& way_m, double duration_s) {
+  return {region, SupportMotion{MotionKind::ramp, way_m, duration_s}};
+}
+
+Support oscillation(const BodyRegion& region, const Vector3& way_m, double frequency_hz) {
+  SupportMotion motion;
+  motion.kind = MotionKind::oscillation;
+  motion.way_m = way_m;
+  motion.frequency_hz = frequency_hz;
+  return {region, motion};
+}
+
+TEST(SupportMotion, GoesItsWayWithoutAJerk) {
+  const SupportMotion motion{MotionKind::ramp, Vector3(0, 0.01, 0), 2.0};
+  EXPECT_EQ(way_at(motion, 0.0), Vector3(0, 0, 0));
+  EXPECT_DOUBLE_EQ(way_at(motion, 1.0).y(), 0.005);
+  EXPECT_EQ(way_at(motion, 2.0), Vector3(0, 0.01, 0));
+  EXPECT_EQ(way_at(motion, 9.0), Vector3(0, 0.01, 0));
+  double fastest = 0.0;
+  for (int step = 0; step < 2000; ++step) {
+    fastest = std::max(fastest, (way_at(motion, 1e-3 * (step + 1)) - way_at(motion, 1e-3 * step)).y() / 1e-3);
+  }
+  EXPECT_NEAR(fastest, top_speed_m_per_s(motion), 1e-6 * fastest);
+}
+
+// Against the library's sine, once it has grown.
+TEST(SupportMotion, SwingsAsASine) {
+  const SupportMotion motion = *oscillation({}, Vector3(0.002, 0, 0), 3.0).motion;
+  EXPECT_EQ(way_at(motion, 0.0).x(), 0.0);
+  double fastest = 0.0;
+  for (int step = 0; step < 3000; ++step) {
+    const double time = 1e-3 * step;
+    fastest = std::max(fastest, std::abs(way_at(motion, time + 1e-6).x() - way_at(motion, time).x()) / 1e-6);
+    if (time < 1.0 / 3.0) continue;
+    EXPECT_NEAR(way_at(motion, time).x(), 0.002 * std::sin(6.0 * std::numbers::pi * time), 1e-14);
+  }
+  EXPECT_LE(fastest, top_speed_m_per_s(motion) * (1.0 + 1e-6));
+  EXPECT_GT(fastest, top_speed_m_per_s(motion) * 0.99);
+}
+
+// A bar of no Poisson's ratio: E A d / L, exactly but for what is not linear at a strain of 1e-3.
+TEST(BodySupports, APulledEndBearsWhatABarSays) {
+  for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
+    const double youngs = stepping == Stepping::springs ? 2e4 : 5e6, area = 1e-4, length = 0.06, way = 6e-5;
+    Material material = elastic_material(youngs, 0.0, 1000.0);
+    material.damping_ratio = 0.3;
+    LoadedBlock bar({0.01, 0.01, length}, {4, 4, 19}, material, stepping);
+    bar.support({{start, {}}, ramp(end, Vector3(0, 0, way), 0.3)});
+    for (int tick = 0; tick < 1500; ++tick) bar.tick(100.0);
+    const double expected = youngs * area * way / length;
+    EXPECT_NEAR(bar.support_force_n(1).z() / expected, 1.0, 3e-3);
+    EXPECT_NEAR(bar.support_force_n(0).z() / -expected, 1.0, 3e-3);
+    const LatticeMesh& mesh = bar.lattice.mesh();
+    for (int n = mesh.node_count() - 16; n < mesh.node_count(); ++n) {
+      EXPECT_EQ(static_cast<float>(bar.lattice.displacement(n).z()), static_cast<float>(way));
+    }
+    // Straight between the ends.
+    EXPECT_NEAR(bar.slice_m(9).z() / (0.5 * way), 1.0, 5e-3);
+  }
+}
+
+// Held nodes have the support's place and velocity at the end of every tick.
+TEST(BodySupports, MovesItsNodesExactly) {
+  for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
+    Material material = elastic_material(stepping == Stepping::springs ? 2e4 : 5e6, 0.3, 1000.0);
+    material.damping_ratio = 0.1;
+    LoadedBlock body({0.012, 0.012, 0.04}, {4, 4, 11}, material, stepping);
+    const Support shaken = oscillation({{0.0, 0.3}}, Vector3(0.003, 0, 0.001), 8.0);
+    body.support({shaken});
+    for (int tick = 1; tick <= 500; ++tick) {
+      body.tick(5.0);
+      const Vector3 now = way_at(*shaken.motion, body.time_s),
+                    before = way_at(*shaken.motion, body.time_s - 1e-3);
+      for (const int n : body.supports.supports()[0].nodes) {
+        ASSERT_LT((body.lattice.displacement(n) - now).norm(), 1e-9) << tick;
+        ASSERT_LT((body.lattice.velocity(n) - (now - before) / 1e-3).norm(), 1e-5) << tick;
+      }
+      ASSERT_LT((body.slice_m(10) - now).norm(), 0.02) << tick;
+    }
+  }
+}
+
+// Faster than the lattice's waves it would leave cells inside out: it lags.
+TEST(BodySupports, WaitsForALatticeThatItWouldOutrun) {
+  LoadedBlock body({0.012, 0.012, 0.04}, {4, 4, 11}, elastic_material(2e3, 0.3, 1000.0), Stepping::springs);
+  body.support({{start, {}}, ramp(end, Vector3(0, 0, 0.02), 0.01)});
+  for (int tick = 0; tick < 10; ++tick) body.tick(5.0);
+  EXPECT_LT(body.slice_m(10).z(), 0.01);
+  EXPECT_GT(body.slice_m(10).z(), 0.0);
+  for (int tick = 0; tick < 1000; ++tick) body.tick(5.0);
+  EXPECT_NEAR(body.slice_m(10).z(), 0.02, 1e-8);
+}
+
+TEST(BodySupports, RefuseWhatHoldsNothing) {
+  const LatticeMesh mesh = box_mesh({0.01, 0.01, 0.04}, {4, 4, 13});
+  const auto refused = [&](const Support& support) {
+    const auto made = BodySupports::make({support}, mesh);
+    return made.ok() ? "" : made.error().message;
+  };
+  EXPECT_EQ(refused({{{0.51, 0.52}}, {}}),
+            "supports[0]: its region holds no node of the lattice; make it larger");
+  EXPECT_EQ(
+      refused(oscillation({}, Vector3(0.5, 0, 0), 10.0)),
+      "supports[0]: motion reaches 31.41592653589793 m/s, must stay below 5; take a shorter way or more "
+      "time");
+}
+
+// 60 mm along x: held by its first tenth, and pulled up by its last.
+Scene moved_handle() {
+  Scene scene = small_handle();
+  scene.bodies[0].material = silicone();
+  scene.bodies[0].supports = {{{{0.0, 0.1}}, {}}, oscillation({{0.9, 1.0}}, Vector3(0, 0.002, 0), 2.0)};
+  scene.tool.iterations = 2;
+  return scene;
+}
+
+const ToolInput far_away = above(0.03, 0.2);
+
+TEST(BodySupports, MoveTheSkin) {
+  Simulation simulation = simulate(moved_handle());
+  const Vector3 before = evaluate(simulation.surface(), 0.0, 0.06).position_m;
+  // Five quarters of a period: at the top.
+  for (int tick = 0; tick < 625; ++tick) simulation.advance(far_away);
+  const Vector3 now = evaluate(simulation.surface(), 0.0, 0.06).position_m;
+  EXPECT_NEAR(now.y() - before.y(), 0.002, 2e-5) << "what the control net follows of it";
+  EXPECT_GT(simulation.support_force_n(1).y(), 0.0);
+  EXPECT_NEAR(simulation.support_force_n(1).y() / -simulation.support_force_n(0).y(), 1.0, 0.2)
+      << "it still swings a little";
+}
+
+TEST(BodySupports, GoOnAfterWhatElseHappens) {
+  Simulation simulation = simulate(moved_handle());
+  const auto at_end = [&] {
+    return simulation.lattice().position(simulation.lattice().mesh().node_count() - 1).y();
+  };
+  const double rest = at_end();
+  const auto run_to = [&](std::uint64_t tick) {
+    while (simulation.tick() < tick) simulation.advance(far_away);
+  };
+  const auto way = [&](std::uint64_t tick) {
+    return way_at(*moved_handle().bodies[0].supports[1].motion, 1e-3 * static_cast<double>(tick)).y();
+  };
+  run_to(600);
+  const ShapeState then = simulation.shape();
+  run_to(700);
+  ASSERT_TRUE(simulation.restore(then).ok());
+  run_to(800);
+  EXPECT_NEAR(at_end() - rest, way(800), 1e-8) << "an undone stroke does not leave it behind";
+  ASSERT_TRUE(simulation.apply(KeepShape{}).ok());
+  run_to(900);
+  EXPECT_NEAR(at_end() - rest, way(900), 1e-8);
+  ASSERT_TRUE(simulation.apply(PlacePlane{{Vector3(0.02, 0, 0), Vector3::UnitX()}}).ok());
+  ASSERT_TRUE(simulation.apply(SetMaterial{small_handle().bodies[0].material, 0}).ok());
+  run_to(1000);
+  EXPECT_NEAR(at_end() - rest, way(1000), 1e-8);
+  const double held_at = at_end();
+  ASSERT_TRUE(simulation.apply(PlacePlane{{Vector3(0.05, 0, 0), -Vector3::UnitX()}}).ok());
+  run_to(1100);
+  EXPECT_EQ(at_end(), held_at) << "what a plane holds stays";
+  ASSERT_TRUE(simulation.apply(RemovePlanes{}).ok());
+  run_to(1300);
+  EXPECT_NE(at_end(), held_at);
+}
+
+TEST(BodySupports, AreTheSameOnEveryRunAndAllocateNothing) {
+  Scene scene = moved_handle();
+  scene.bodies[0].loads = {PressureLoad{{}, 50.0}, ForceLoad{{{0.4, 0.6}}, Vector3(0, -0.01, 0)},
+                           PointLoad{0.25, 0.03, Vector3(0, 0, 0.002)}};
+  scene.ground = Ground{Vector3(0, -0.01, 0)};
+  for (const double youngs : {1e5, 2e9}) {
+    scene.bodies[0].material.youngs_modulus_pa = youngs;
+    Simulation first = simulate(scene), second = simulate(scene);
+    first.advance(far_away);
+    const std::size_t before = allocation_count();
+    for (int tick = 0; tick < 300; ++tick) first.advance(far_away);
+    EXPECT_EQ(allocation_count(), before);
+    for (int tick = 0; tick < 301; ++tick) second.advance(far_away);
+    EXPECT_EQ(first.state_hash(), second.state_hash());
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill

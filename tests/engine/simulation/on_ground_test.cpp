@@ -1,0 +1,191 @@
+// Bodies on the rigid ground.
+#include "engine/simulation/on_ground.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tests/engine/material/block.h"
+#include "tests/engine/simulation/handle.h"
+#include "tests/engine/simulation/loaded_block.h"
+#include "tests/engine/simulation/soft_bodies.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double g_m_per_s2 = 9.81;
+
+// A block on its flat side y = 0, and a ground of which gravity leans away.
+class Incline {
+ public:
+  Incline(double angle_rad, double friction, Stepping stepping)
+      : block_({0.02, 0.01, 0.03}, {5, 4, 7}, material(stepping), stepping),
+        gravity_(g_m_per_s2 * Vector3(std::sin(angle_rad), -std::cos(angle_rad), 0.0)),
+        friction_(friction) {}
+
+  void tick() {
+    contacts_.clear();
+    const LatticeMesh& mesh = block_.lattice.mesh();
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      if (mesh.place(n)[1] > 0) continue;
+      EXPECT_TRUE(contacts_.add(0, block_.lattice, n, block_.lattice.position(n).y(), friction_));
+    }
+    contacts_.begin(Vector3::UnitY());
+    block_.tick(0.0, gravity_, &contacts_);
+  }
+
+  // Of the whole block.
+  Vector3 mean(bool velocity) const {
+    Vector3 sum = Vector3::Zero();
+    const SpringLattice& lattice = block_.lattice;
+    for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+      sum +=
+          static_cast<double>(lattice.mass(n)) * (velocity ? lattice.velocity(n) : lattice.displacement(n));
+    }
+    return sum / lattice.mass_kg();
+  }
+
+  double deepest_m() const {
+    double deepest = 0.0;
+    for (const Vector3& position : block_.lattice.positions()) deepest = std::max(deepest, -position.y());
+    return deepest;
+  }
+  Vector3 ground_force_n() const { return contacts_.impulse_ns(0) / tick_s; }
+  double weight_n() const { return g_m_per_s2 * block_.lattice.mass_kg(); }
+
+ private:
+  static Material material(Stepping stepping) {
+    Material material = elastic_material(stepping == Stepping::springs ? 2e4 : 5e6, 0.3, 1000.0);
+    material.damping_ratio = 0.3;
+    return material;
+  }
+
+  LoadedBlock block_;
+  Vector3 gravity_;
+  double friction_;
+  GroundContacts contacts_{1000};
+};
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+// a = g (sin t - mu cos t). The block also swings as it begins: half a second is many of its periods.
+TEST(OnGround, ABlockSlidesDownAnInclineAsCoulombSays) {
+  for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
+    for (const double friction : {0.0, 0.2, 0.4}) {
+      Incline incline(30.0 * degree, friction, stepping);
+      for (int tick = 0; tick < 200; ++tick) incline.tick();
+      const double before = incline.mean(true).x();
+      for (int tick = 0; tick < 500; ++tick) incline.tick();
+      const double acceleration = (incline.mean(true).x() - before) / 0.5;
+      const double expected = g_m_per_s2 * (std::sin(30.0 * degree) - friction * std::cos(30.0 * degree));
+      EXPECT_NEAR(acceleration / expected, 1.0, 0.01) << friction;
+      EXPECT_LT(incline.deepest_m(), 1e-6);
+    }
+  }
+}
+
+TEST(OnGround, ABlockSticksBelowTheAngleOfFriction) {
+  for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
+    Incline incline(30.0 * degree, std::tan(32.0 * degree), stepping);
+    for (int tick = 0; tick < 500; ++tick) incline.tick();
+    const double settled = incline.mean(false).x();
+    Vector3 force = Vector3::Zero();
+    for (int tick = 0; tick < 1000; ++tick) {
+      incline.tick();
+      force += incline.ground_force_n() / 1000.0;
+    }
+    EXPECT_NEAR(incline.mean(false).x(), settled, 1e-6) << "in a second";
+    EXPECT_NEAR(force.x() / (-incline.weight_n() * std::sin(30.0 * degree)), 1.0, 0.02);
+    EXPECT_NEAR(force.y() / (incline.weight_n() * std::cos(30.0 * degree)), 1.0, 0.02);
+  }
+}
+
+double lowest_of_skin(const Simulation& simulation) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j <= 120; ++j) {
+      const Surface& surface = simulation.surface();
+      const double u =
+          surface.u.domain_start() + (surface.u.domain_end() - surface.u.domain_start()) * i / 60.0;
+      lowest = std::min(lowest, evaluate(surface, u, 0.06 * j / 120.0).position_m.y());
+    }
+  }
+  return lowest;
+}
+
+constexpr double ground_y_m = -0.006;
+
+Scene falling_handle(double youngs_modulus_pa) {
+  Scene scene = small_handle();
+  scene.bodies[0].material = silicone();
+  scene.bodies[0].material.youngs_modulus_pa = youngs_modulus_pa;
+  scene.bodies[0].material.friction = 0.4;
+  scene.ground = Ground{Vector3(0, ground_y_m, 0)};
+  scene.sculpting.gravity_m_per_s2 = Vector3(0, -g_m_per_s2, 0);
+  scene.tool.iterations = 1;
+  return scene;
+}
+
+const ToolInput far_away = above(0.03, 0.2);
+
+// Soft, softened by sculpting, and stiff.
+TEST(OnGround, AHandleThatFallsComesToRestOnItsSkin) {
+  for (const double youngs : {1e4, 2e5, 2e9}) {
+    Simulation simulation = simulate(falling_handle(youngs));
+    const double cell = static_cast<double>(simulation.lattice().cell_size_m());
+    for (int tick = 0; tick < 1500; ++tick) {
+      simulation.advance(far_away);
+      if (tick % 10 == 0) {
+        ASSERT_GT(lowest_of_skin(simulation), ground_y_m - ground_depth_limit_cells * cell) << tick;
+      }
+    }
+    EXPECT_LT(lowest_of_skin(simulation), ground_y_m + ground_depth_limit_cells * cell) << youngs;
+    const double weight = g_m_per_s2 * simulation.lattice().mass_kg();
+    Vector3 force = Vector3::Zero();
+    for (int tick = 0; tick < 200; ++tick) {
+      simulation.advance(far_away);
+      force += simulation.ground_force_n() / 200.0;
+    }
+    EXPECT_NEAR(force.y() / weight, 1.0, 0.03) << youngs;
+    const Vector3 before = simulation.lattice().position(0);
+    for (int tick = 0; tick < 500; ++tick) simulation.advance(far_away);
+    EXPECT_LT((simulation.lattice().position(0) - before).norm(), 2e-5) << youngs;
+    Snapshot snapshot;
+    simulation.write_snapshot(snapshot);
+    const auto& touched = snapshot.bodies[0].lattice.touched;
+    EXPECT_GT(std::count(touched.begin(), touched.end(), std::uint8_t{1}), 0);
+  }
+}
+
+// From 20 mm and faster than a cell a tick, as relaxation steps of a soft body may bring it.
+TEST(OnGround, NoFallIsTooFast) {
+  Scene scene = falling_handle(1e4);
+  scene.ground->point_m.y() = -0.03;
+  scene.sculpting.gravity_m_per_s2 = Vector3(0, -80.0, 0);
+  scene.tool.iterations = 8;
+  Simulation simulation = simulate(scene);
+  const double cell = static_cast<double>(simulation.lattice().cell_size_m());
+  for (int tick = 0; tick < 400; ++tick) {
+    simulation.advance(far_away);
+    ASSERT_GT(lowest_of_skin(simulation), -0.03 - ground_depth_limit_cells * cell) << tick;
+  }
+}
+
+TEST(OnGround, RefusesWhatIsNoGround) {
+  Scene scene = falling_handle(1e4);
+  scene.ground->normal = Vector3(0, 2, 0);
+  const auto refused = Simulation::make(scene, InstructionSet::baseline);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message.substr(0, 14), "ground: normal");
+  scene.ground = Ground{};
+  scene.ground->friction = -1.0;
+  const auto slippery = Simulation::make(scene, InstructionSet::baseline);
+  ASSERT_FALSE(slippery.ok());
+  EXPECT_EQ(slippery.error().message, "ground: friction is -1, must be 0 to 5");
+}
+
+}  // namespace
+}  // namespace spoonbill
