@@ -13,6 +13,24 @@ namespace {
 constexpr std::size_t document_bytes_limit = std::size_t{64} << 20;
 constexpr std::size_t material_bytes_limit = std::size_t{1} << 20;
 
+// And supports; a body may have neither.
+void read_loads(FieldReader& reader, Body& body) {
+  const auto visit = [&](const char* field, const Range<int>& count, const auto& take) {
+    reader.ignore(field);
+    if (!reader.has(field)) return;
+    std::size_t index = 0;
+    for (const Json& item : reader.list(field, count)) {
+      FieldReader item_reader = reader.element(item, field, index++);
+      take(item_reader);
+      item_reader.finish();
+    }
+  };
+  visit("loads", load_count_range,
+        [&](FieldReader& item) { body.loads.push_back(read_load(item, body.surface)); });
+  visit("supports", support_count_range,
+        [&](FieldReader& item) { body.supports.push_back(read_support(item)); });
+}
+
 std::optional<Body> read_body(FieldReader reader) {
   std::string name = reader.text("name");
   FieldReader surface_reader = reader.inner("surface");
@@ -24,9 +42,12 @@ std::optional<Body> read_body(FieldReader reader) {
   FieldReader lattice_reader = reader.inner("lattice");
   const LatticeRequest lattice = read_lattice_request(lattice_reader);
   lattice_reader.finish();
-  reader.finish();
   if (!surface || !reader.status().ok()) return std::nullopt;
-  return Body{std::move(name), *std::move(surface), std::move(material), lattice};
+  Body body{std::move(name), *std::move(surface), std::move(material), lattice};
+  read_loads(reader, body);
+  reader.finish();
+  if (!reader.status().ok()) return std::nullopt;
+  return body;
 }
 
 // Those of a document with one body are in no list.
@@ -71,6 +92,14 @@ Symmetry read_symmetry_of(FieldReader& reader) {
   return symmetry;
 }
 
+std::optional<Ground> read_ground_of(FieldReader& reader) {
+  if (!reader.has("ground")) return std::nullopt;
+  FieldReader ground_reader = reader.inner("ground");
+  const Ground ground = read_ground(ground_reader);
+  ground_reader.finish();
+  return ground;
+}
+
 // One that nobody has chosen is left out, so that documents without symmetry stay as they are.
 bool is_chosen(const Symmetry& symmetry) {
   const Symmetry usual;
@@ -83,6 +112,8 @@ Json body_to_json(const Body& body) {
   json["surface"] = surface_to_json(body.surface);
   add_material_fields(body.material, json["material"]);
   add_lattice_request(body.lattice, json["lattice"]);
+  for (const Load& load : body.loads) json["loads"].push_back(load_to_json(load));
+  for (const Support& support : body.supports) json["supports"].push_back(support_to_json(support));
   return json;
 }
 
@@ -107,11 +138,13 @@ Result<Document> document_from_json(const Json& json, const std::string& source)
   const Sculpting sculpting = read_sculpting(sculpting_reader);
   sculpting_reader.finish();
   const Symmetry symmetry = read_symmetry_of(reader);
+  const std::optional<Ground> ground = read_ground_of(reader);
   Json view = reader.has("view") ? reader.object("view") : Json::object();
   reader.ignore("view");
   reader.finish();
   if (!bodies || !reader.status().ok()) return reader.status().error();
-  return Document{std::move(name), Scene{*std::move(bodies), std::move(planes), tool, sculpting, symmetry},
+  return Document{std::move(name),
+                  Scene{*std::move(bodies), std::move(planes), tool, sculpting, symmetry, ground},
                   std::move(view)};
 }
 
@@ -129,6 +162,7 @@ Json document_to_json(const Document& document) {
   add_tool(document.scene.tool, json["tool"]);
   add_sculpting(document.scene.sculpting, json["sculpting"]);
   if (is_chosen(document.scene.symmetry)) add_symmetry(document.scene.symmetry, json["symmetry"]);
+  if (document.scene.ground) add_ground(*document.scene.ground, json["ground"]);
   json["view"] = document.view;
   return json;
 }

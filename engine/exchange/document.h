@@ -16,16 +16,27 @@
 //        "relaxing_share": 0.5, "relaxation_time_s": 30},            may be left out: does not creep
 //      "lattice": {"node_budget": 2000,                          or "nodes": [4, 8, 60]
 //        "feature_map": {"draws_per_node": 500, "first_rate": 0.1, "last_rate": 0.01,
-//          "first_neighbourhood": 2, "last_neighbourhood": 1, "seed": 1}}},    may be left out
+//          "first_neighbourhood": 2, "last_neighbourhood": 1, "seed": 1}},     may be left out
+//      "loads": [{"kind": "pressure", "region": {...}, "pressure_pa": 500},    may be left out
+//        {"kind": "force", "region": {...}, "force_n": [0, -2, 0], "shared_by": "surface"},  or "volume"
+//        {"kind": "point", "u": 0.5, "v": 0.1, "force_n": [0, -2, 0]}],
+//      "supports": [{"region": {...},                            may be left out
+//        "motion": {"kind": "ramp", "way_mm": [0, 5, 0], "duration_s": 2}}]},    may be left out: is still
 //    "other_bodies": [{"name": ...}, ...],                       each as "body"; may be left out
 //    "fixing_planes": [{"point_mm": [20, 0, 0], "normal": [1, 0, 0]}],    may be left out
 //    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6,
 //      "solid": {"shape": "box", "half_extents_mm": [4, 3, 10]},  of kind solid; see below
 //      "soft": {"material": {...}, "lattice": {...},              may be left out: rigid
 //        "grip": {"point_mm": [0, 1, 0], "normal": [0, -1, 0]}}},   in the tool's frame
-//    "sculpting": {"damping_per_s": 4, "gravity_m_per_s2": [0, 0, 0], "force_scale": 1},
+//    "sculpting": {"damping_per_s": 4, "gravity_m_per_s2": [0, 0, 0], "force_scale": 1,
+//      "settles": true},                                         may be left out: swings
+//    "ground": {"point_mm": [0, 0, 0], "normal": [0, 1, 0], "friction": 0.5},       may be left out
 //    "symmetry": {"on": true, "point_mm": [0, 0, 0], "normal": [0, 0, 1]},          may be left out
 //    "view": {...}}                                              may be left out
+//
+// A region is a part of its body (body_region.h): {"along": [0.9, 1], "around": [0.25, 0.75], "depth_mm": [0,
+// 2]}, of which each may be left out; one depth alone is from there inwards. An oscillation has
+// "frequency_hz" instead of "duration_s"; loads.h says how both move.
 //
 // Shapes of a solid: sphere (radius_mm), ellipsoid (semi_axes_mm), cylinder and capsule (radius_mm,
 // half_length_mm), box (half_extents_mm), cone (base_radius_mm, height_mm), torus (ring_radius_mm,
@@ -84,7 +95,8 @@ Result<Material> read_material(const std::filesystem::path& file);
 //          {"command": "keep_shape"}
 //   {"command": "set_material", "name", "source", "youngs_modulus_pa", ...}
 //     and, but for the first, "body": 1, its place in the list of all bodies
-//   {"command": "set_sculpting", "damping_per_s", "gravity_m_per_s2", "force_scale"}
+//   {"command": "set_sculpting", "damping_per_s", "gravity_m_per_s2", "force_scale",
+//     "settles" may be left out}
 //   {"command": "set_symmetry", "on", "point_mm", "normal"}     {"command": "reset_proxy"}
 //   {"command": "lift_tool"}
 Result<Command> command_from_json(const Json& json, const std::string& source);

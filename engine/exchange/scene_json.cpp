@@ -156,6 +156,7 @@ Sculpting read_sculpting(FieldReader& reader) {
   sculpting.gravity_m_per_s2 =
       reader.vector("gravity_m_per_s2", {-gravity_limit_m_per_s2, gravity_limit_m_per_s2});
   sculpting.force_scale = reader.number("force_scale", force_scale_range);
+  if (reader.has("settles")) sculpting.settles = reader.boolean("settles");
   if (sculpting.gravity_m_per_s2.norm() > gravity_limit_m_per_s2) {
     reader.refuse("gravity_m_per_s2",
                   "must be no longer than " + std::to_string(static_cast<int>(gravity_limit_m_per_s2)));
@@ -167,6 +168,7 @@ void add_sculpting(const Sculpting& sculpting, Json& json) {
   json["damping_per_s"] = number_to_json(sculpting.damping_per_s);
   json["gravity_m_per_s2"] = vector_to_json(sculpting.gravity_m_per_s2);
   json["force_scale"] = number_to_json(sculpting.force_scale);
+  if (sculpting.settles) json["settles"] = true;
 }
 
 }  // namespace spoonbill

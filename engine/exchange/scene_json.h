@@ -26,6 +26,18 @@ void add_tool(const Tool& tool, Json& json);
 Sculpting read_sculpting(FieldReader& reader);
 void add_sculpting(const Sculpting& sculpting, Json& json);
 
+BodyRegion read_region(FieldReader reader);
+Json region_to_json(const BodyRegion& region);
+
+// A point must be on the body's surface.
+Load read_load(FieldReader& reader, const Surface& surface);
+Json load_to_json(const Load& load);
+Support read_support(FieldReader& reader);
+Json support_to_json(const Support& support);
+
+Ground read_ground(FieldReader& reader);
+void add_ground(const Ground& ground, Json& json);
+
 Symmetry read_symmetry(FieldReader& reader);
 void add_symmetry(const Symmetry& symmetry, Json& json);
 
