@@ -43,19 +43,6 @@ double face_volume(const Vector3& a, const Vector3& b, const Vector3& c, const V
   return (a.dot(b.cross(c)) + a.dot(c.cross(d)) + a.dot(b.cross(d)) + b.dot(c.cross(d))) / 12.0;
 }
 
-// The derivative of the trilinear map by (a, b, c), columns along i, j, k.
-Eigen::Matrix3d trilinear_jacobian(const CellCorners& p, double a, double b, double c) {
-  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
-  for (int corner = 0; corner < 8; ++corner) {
-    const bool hi = corner & 4, hj = corner & 2, hk = corner & 1;
-    const double wi = hi ? a : 1.0 - a, wj = hj ? b : 1.0 - b, wk = hk ? c : 1.0 - c;
-    jacobian.col(0) += p[corner] * ((hi ? 1.0 : -1.0) * wj * wk);
-    jacobian.col(1) += p[corner] * (wi * (hj ? 1.0 : -1.0) * wk);
-    jacobian.col(2) += p[corner] * (wi * wj * (hk ? 1.0 : -1.0));
-  }
-  return jacobian;
-}
-
 std::array<double, 8> trilinear_weights(double a, double b, double c) {
   std::array<double, 8> weights;
   for (int corner = 0; corner < 8; ++corner) {
@@ -73,6 +60,18 @@ double cell_volume(const CellCorners& p) {
   return face_volume(q[0], q[1], q[3], q[2]) + face_volume(q[0], q[2], q[6], q[4]) +
          face_volume(q[0], q[4], q[5], q[1]) + face_volume(q[4], q[6], q[7], q[5]) +
          face_volume(q[2], q[3], q[7], q[6]) + face_volume(q[1], q[5], q[7], q[3]);
+}
+
+Eigen::Matrix3d trilinear_jacobian(const CellCorners& p, double a, double b, double c) {
+  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
+  for (int corner = 0; corner < 8; ++corner) {
+    const bool hi = corner & 4, hj = corner & 2, hk = corner & 1;
+    const double wi = hi ? a : 1.0 - a, wj = hj ? b : 1.0 - b, wk = hk ? c : 1.0 - c;
+    jacobian.col(0) += p[corner] * ((hi ? 1.0 : -1.0) * wj * wk);
+    jacobian.col(1) += p[corner] * (wi * (hj ? 1.0 : -1.0) * wk);
+    jacobian.col(2) += p[corner] * (wi * wj * (hk ? 1.0 : -1.0));
+  }
+  return jacobian;
 }
 
 double smallest_jacobian_ratio(const CellCorners& corners) {

@@ -58,6 +58,9 @@ double smallest_jacobian_ratio(const CellCorners& corners);
 // The point at (a, b, c), each 0 to 1 inside the cell, along i, j and k.
 Vector3 trilinear(const CellCorners& corners, double a, double b, double c);
 
+// The derivative of that map, columns along i, j and k, m.
+Eigen::Matrix3d trilinear_jacobian(const CellCorners& corners, double a, double b, double c);
+
 // Where `point` lies in a cell: the weights of its corners, and by how much (in units of the cell) the point
 // lies outside it. Newton's method on the trilinear map; `outside` is infinite where it does not converge.
 struct CellLocation {

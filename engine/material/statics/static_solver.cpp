@@ -41,6 +41,7 @@ class Equilibrium {
 
   // From `at` on, with this share of the loads.
   bool find(double share, Coordinates& at) {
+    double first = 0.0;
     for (int step = 0; step < steps_a_load && steps_ < settings_->step_limit; ++step) {
       const StaticSystem::Forces forces = take(at, Tangent::stressed);
       const Coordinates loads = share * system_->loads(*loads_, at);
@@ -49,6 +50,8 @@ class Equilibrium {
       if (!std::isfinite(size)) return false;
       if (unbalanced.norm() <= settings_->tolerance * size) return true;
       ++steps_;
+      first = std::max(first, unbalanced.norm() / size);
+      tell(share, unbalanced.norm() / size, first);
       if (!factor(at)) return false;
       if (!descend(factors_.solve(unbalanced), loads, unbalanced, at)) return false;
     }
@@ -59,6 +62,13 @@ class Equilibrium {
   bool may_go_on() const { return steps_ < settings_->step_limit; }
 
  private:
+  // Newton's method comes nearer by orders of magnitude, the more the nearer it is.
+  void tell(double share, double unbalanced, double first) const {
+    if (!settings_->progress) return;
+    const double orders = std::log(first / settings_->tolerance);
+    settings_->progress(orders > 0.0 ? share * std::log(first / unbalanced) / orders : 0.0);
+  }
+
   StaticSystem::Forces take(const Coordinates& at, Tangent tangent) { return system_->respond(at, tangent); }
 
   // Where stress makes the tangent indefinite, Newton's step need not lead downhill.

@@ -1,0 +1,107 @@
+#include "engine/simulation/rest_shape.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/material/lattice/shell_faces.h"
+#include "engine/simulation/body_state.h"
+
+namespace spoonbill {
+namespace {
+
+Vector3 last_way(const Support& support) {
+  if (!support.motion || support.motion->kind == MotionKind::oscillation) return Vector3::Zero();
+  return support.motion->way_m;
+}
+
+std::vector<HeldAxis> held_axes(const BodyState& state, const Body& body) {
+  std::vector<Vector3> way_m(state.held.size(), Vector3::Zero());
+  for (std::size_t s = 0; s < body.supports.size(); ++s) {
+    for (const int node : state.supports.supports()[s].nodes) {
+      way_m[static_cast<std::size_t>(node)] = last_way(body.supports[s]);
+    }
+  }
+  std::vector<HeldAxis> held;
+  for (std::size_t n = 0; n < way_m.size(); ++n) {
+    if (state.held[n] != 0) hold_node(static_cast<int>(n), way_m[n], held);
+  }
+  return held;
+}
+
+// The largest by size.
+double principal_strain(const CellCorners& rest, const CellCorners& bent, const Vector3& at) {
+  const Eigen::Matrix3d gradient = trilinear_jacobian(bent, at.x(), at.y(), at.z()) *
+                                   trilinear_jacobian(rest, at.x(), at.y(), at.z()).inverse();
+  const Eigen::Matrix3d strain = 0.5 * (gradient.transpose() * gradient - Eigen::Matrix3d::Identity());
+  const Vector3 principal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(strain).eigenvalues();
+  return principal[std::abs(principal[0]) > std::abs(principal[2]) ? 0 : 2];
+}
+
+void find_strain(const LatticeMesh& bent, RestShape& shape) {
+  for (int i = 0; i + 1 < bent.count[0]; ++i) {
+    for (int j = 0; j + 1 < bent.count[1]; ++j) {
+      for (int k = 0; k + 1 < bent.count[2]; ++k) {
+        const CellCorners corners = shape.mesh.cell(i, j, k), moved = bent.cell(i, j, k);
+        for (int face = 0; face < 6; ++face) {
+          Vector3 at = Vector3::Constant(0.5);
+          at[face / 2] = face % 2;
+          const double strain = principal_strain(corners, moved, at);
+          if (std::abs(strain) <= std::abs(shape.largest_strain)) continue;
+          shape.largest_strain = strain;
+          shape.strained_m = trilinear(corners, at.x(), at.y(), at.z());
+        }
+      }
+    }
+  }
+}
+
+void measure(const StaticBody& body, const StaticLoads& loads, RestShape& shape) {
+  LatticeMesh bent = shape.mesh;
+  const std::vector<Vector3>& moved = shape.result.displacement_m;
+  for (std::size_t n = 0; n < moved.size(); ++n) {
+    bent.nodes[n] += moved[n];
+    shape.reaction_n += shape.result.reaction_n[n];
+    shape.load_n += body.mass_kg(static_cast<int>(n)) * loads.gravity_m_per_s2;
+    if (moved[n].norm() > moved[static_cast<std::size_t>(shape.furthest_node)].norm()) {
+      shape.furthest_node = static_cast<int>(n);
+    }
+  }
+  for (const NodeForce& force : loads.forces) shape.load_n += force.force_n;
+  for (const PressedFace& face : loads.pressures) {
+    const auto at = [&](std::size_t c) { return bent.nodes[static_cast<std::size_t>(face.nodes[c])]; };
+    shape.load_n -= face.pressure_pa * vector_area(at(0), at(1), at(2), at(3));
+  }
+  find_strain(bent, shape);
+}
+
+}  // namespace
+
+Result<RestShape> rest_shape(const Scene& scene, int body,
+                             const std::function<void(double share)>& progress) {
+  const Body& as_set = scene.bodies[static_cast<std::size_t>(body)];
+  Result<BodyState> state = make_body_state(as_set, scene.planes, InstructionSet::baseline);
+  if (!state.ok()) return state.error();
+  const std::vector<HeldAxis> held = held_axes(state.value(), as_set);
+  if (held.empty()) return Error{"nothing holds it; give it a support or the document a fixing plane"};
+  const Result<StaticBody> body_at_rest =
+      StaticBody::make(state->lattice.mesh(), as_set.material, CellKind::hexahedra);
+  if (!body_at_rest.ok()) return body_at_rest.error();
+  const StaticLoads loads{scene.sculpting.gravity_m_per_s2, state->loads.forces(), state->loads.pressures()};
+  StaticSettings settings;
+  settings.progress = progress;
+  Result<StaticResult> result = rest_under_load(body_at_rest.value(), loads, held, settings);
+  if (!result.ok()) return result.error();
+  RestShape shape{state->lattice.mesh(), std::move(result).value(), as_set.surface};
+  shape.held_nodes = static_cast<int>(held.size() / 3);
+  measure(body_at_rest.value(), loads, shape);
+  for (int n = 0; n < shape.mesh.node_count(); ++n) {
+    state->lattice.set_displacement(n, shape.result.displacement_m[static_cast<std::size_t>(n)]);
+  }
+  state->update_skin();
+  shape.surface = state->mapping().current();
+  return shape;
+}
+
+}  // namespace spoonbill
