@@ -118,7 +118,13 @@ void solve_contacts(const Relaxation& relaxation, float h, double fraction,
   for (std::size_t at = 0; at < relaxation.count(); ++at) push_caps[at] = 0.5f * relaxation.cap[at];
   for (const TouchingTool& tool : tools) tool.contacts->solve(views, *tool.state, h, fraction, push_caps);
   if (between) between->solve(views, h, push_caps);
-  if (ground) ground->solve(views, h, push_caps);
+  if (!ground) return;
+  // A core moves once, at the end of the tick.
+  std::array<double, lattice_capacity> times_s{};
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    times_s[at] = relaxation.has_springs(at) ? static_cast<double>(h) : relaxation.time_s;
+  }
+  ground->solve(views, times_s, push_caps);
 }
 
 // What carried nodes pull at the tool with, and their velocity, which the kick has taken.

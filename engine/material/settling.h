@@ -7,7 +7,7 @@ namespace spoonbill {
 
 // Of the critical damping of the motion that a body is in: a little more than 1, so that what else it holds
 // does not carry it past its rest.
-inline constexpr double settling_ratio = 1.3;
+inline constexpr double settling_ratio = 1.1;
 
 // The mass-proportional damping, 1/s, that does so for a motion v whose Rayleigh quotient (v.Kv) / (v.Mv),
 // the square of a frequency, is this. As dynamic relaxation adapts its damping (Underwood 1983): fast modes

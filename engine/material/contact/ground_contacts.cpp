@@ -27,8 +27,8 @@ void GroundContacts::begin(const Vector3& normal) {
   normal_ = normal;
 }
 
-void GroundContacts::solve(std::span<const LatticeView> lattices, float h_s, std::span<const float> caps) {
-  const double h = static_cast<double>(h_s);
+void GroundContacts::solve(std::span<const LatticeView> lattices, std::span<const double> times_s,
+                           std::span<const float> caps) {
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
     const auto body = static_cast<std::size_t>(constraint.body);
@@ -40,7 +40,8 @@ void GroundContacts::solve(std::span<const LatticeView> lattices, float h_s, std
     const Vector3 velocity(view.vx[n], view.vy[n], view.vz[n]);
     const double gap_m = constraint.gap_m + normal_.dot(displacement - constraint.at_m);
     const ContactPush push{gap_m, normal_, velocity, 1.0 / inverse_mass};
-    const auto impulse = push.impulse(h, pace, static_cast<double>(caps[body]), constraint.friction);
+    const auto impulse =
+        push.impulse(times_s[body], pace, static_cast<double>(caps[body]), constraint.friction);
     if (!impulse) continue;
     set_velocity(view, n, velocity + inverse_mass * *impulse);
     constraint.impulse_ns += *impulse;

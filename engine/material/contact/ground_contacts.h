@@ -23,8 +23,8 @@ class GroundContacts {
   // Begins a tick; `normal`, a unit vector, points out of the ground. After add().
   void begin(const Vector3& normal);
 
-  // After the kick and before the drift of a substep of h_s.
-  void solve(std::span<const LatticeView> lattices, float h_s,
+  // After the kick and before the drift; each lattice then moves for its time.
+  void solve(std::span<const LatticeView> lattices, std::span<const double> times_s,
              std::span<const float> push_speed_caps_m_per_s);
 
   int count() const { return count_; }

@@ -21,7 +21,7 @@ LoadedBlock pushed_bar(Stepping stepping) {
   material.damping_ratio = 0.02;
   LoadedBlock bar({0.012, 0.012, 0.06}, {4, 4, 16}, material, stepping);
   bar.support({{{{0.0, 0.0}}, {}}});
-  bar.load({ForceLoad{{{1.0, 1.0}}, Vector3(1e-8 * material.youngs_modulus_pa, 0, 0)}});
+  bar.load({ForceLoad{{{1.0, 1.0}}, Vector3(5e-8 * material.youngs_modulus_pa, 0, 0)}});
   return bar;
 }
 
@@ -59,8 +59,8 @@ TEST(Settling, IsCriticalForTheMotionThatABodyIsIn) {
   EXPECT_LT(std::sqrt(quotient), 4.0 * omega);
 }
 
-// The shares stated here are those of a damped oscillator at 1.3 of its critical damping, 0.10 of the energy,
-// and a little for the modes beside the first.
+// An oscillator at 1.1 of its critical damping has at most 0.11 of its energy in motion; 0.15 leaves a little
+// for the modes beside the first.
 TEST(Settling, AReleasedBodyComesBackWithoutSwinging) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     LoadedBlock bar = pushed_bar(stepping), swinging = pushed_bar(stepping);
@@ -72,7 +72,7 @@ TEST(Settling, AReleasedBodyComesBackWithoutSwinging) {
     const double bent = tip_m(bar);
     EXPECT_GT(bent, 1e-3);
     EXPECT_NEAR(bent / tip_m(swinging), 1.0, 0.01) << "both come to the same rest";
-    const double stored_j = 0.5 * bent * 1e-8 * bar.lattice.material().youngs_modulus_pa;
+    const double stored_j = 0.5 * bent * 5e-8 * bar.lattice.material().youngs_modulus_pa;
     bar.load_share = 0.0;
     double before = bent, most_j = 0.0;
     int ticks = 0;
