@@ -37,6 +37,10 @@ constexpr int levels = 2;
 Result<Surface> read_body(const std::filesystem::path& file) {
   auto document = read_document(file);
   if (!document) return document.error();
+  if (document->scene.bodies[0].shell_thickness_m) {
+    return Error{file.string() +
+                 ": its body is a shell, and collide takes solid ones; give it a mesh of both faces"};
+  }
   Surface surface = std::move(document->scene.bodies[0].surface);
   if (Status closed = check_closed_tube(surface); !closed) {
     return Error{file.string() + ": " + closed.error().message};

@@ -40,7 +40,7 @@ Result<Eigen::MatrixXd> constrained_inverse(const GridDirection& direction,
     const bool held =
         !constraints.held_columns.empty() && constraints.held_columns[static_cast<std::size_t>(c)] != 0;
     if (held) continue;
-    if (constraints.keep_ends && (c == 0 || c == controls - 1)) {
+    if ((constraints.keep_first && c == 0) || (constraints.keep_last && c == controls - 1)) {
       const Eigen::Index sample = c == 0 ? 0 : samples - 1;
       inverse(c, sample) = 1.0;
       left_over.col(sample) -= a.col(c);
@@ -77,7 +77,8 @@ Result<DisplacementRefit> DisplacementRefit::make(const Grid& grid, const RefitC
                                                   InstructionSet set) {
   const auto u_inverse = pseudo_inverse(grid.u.knots, grid.u.parameters);
   if (!u_inverse) return Error{"direction u: " + u_inverse.error().message};
-  const bool constrained = constraints.keep_ends || !constraints.held_columns.empty();
+  const bool constrained =
+      constraints.keep_first || constraints.keep_last || !constraints.held_columns.empty();
   const auto v_inverse = constrained ? constrained_inverse(grid.v, constraints)
                                      : pseudo_inverse(grid.v.knots, grid.v.parameters);
   if (!v_inverse) return Error{"direction v: " + v_inverse.error().message};

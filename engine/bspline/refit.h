@@ -16,8 +16,8 @@ namespace spoonbill {
 // What a refit must keep in direction v, besides fitting.
 struct RefitConstraints {
   std::vector<std::uint8_t> held_columns;  // one a control column: 1 = never moves; empty = none
-  bool keep_ends =
-      false;  // the first and last sample are met exactly, so that a pole stays a pole; needs a clamped v
+  // The first or the last sample is met exactly, so that a pole stays a pole; needs a clamped v.
+  bool keep_first = false, keep_last = false;
 };
 
 // Holds both pseudo-inverses in single precision and the working memory; no allocation after make(). One

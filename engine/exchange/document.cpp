@@ -4,6 +4,7 @@
 
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/file.h"
+#include "engine/exchange/length.h"
 #include "engine/exchange/scene_json.h"
 
 namespace spoonbill {
@@ -45,6 +46,9 @@ std::optional<Body> read_body(FieldReader reader) {
   if (!surface || !reader.status().ok()) return std::nullopt;
   Body body{std::move(name), *std::move(surface), std::move(material), lattice};
   read_loads(reader, body);
+  if (reader.has("shell_thickness_mm")) {
+    body.shell_thickness_m = reader.length_m("shell_thickness_mm", shell_thickness_range_m);
+  }
   reader.finish();
   if (!reader.status().ok()) return std::nullopt;
   return body;
@@ -114,6 +118,7 @@ Json body_to_json(const Body& body) {
   add_lattice_request(body.lattice, json["lattice"]);
   for (const Load& load : body.loads) json["loads"].push_back(load_to_json(load));
   for (const Support& support : body.supports) json["supports"].push_back(support_to_json(support));
+  if (body.shell_thickness_m) json["shell_thickness_mm"] = length_to_json(*body.shell_thickness_m);
   return json;
 }
 

@@ -21,7 +21,8 @@
 //        {"kind": "force", "region": {...}, "force_n": [0, -2, 0], "shared_by": "surface"},  or "volume"
 //        {"kind": "point", "u": 0.5, "v": 0.1, "force_n": [0, -2, 0]}],
 //      "supports": [{"region": {...},                            may be left out
-//        "motion": {"kind": "ramp", "way_mm": [0, 5, 0], "duration_s": 2}}]},    may be left out: is still
+//        "motion": {"kind": "ramp", "way_mm": [0, 5, 0], "duration_s": 2}}],     may be left out: is still
+//      "shell_thickness_mm": 2},                               may be left out: solid; see shell_lattice.h
 //    "other_bodies": [{"name": ...}, ...],                       each as "body"; may be left out
 //    "fixing_planes": [{"point_mm": [20, 0, 0], "normal": [1, 0, 0]}],    may be left out
 //    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6,

@@ -15,10 +15,11 @@ constexpr int refit_levels = 1;
 constexpr int edge_stations = 512;
 constexpr int edge_bisections = 40;
 
+constexpr int around = 64;
+
 bool ring_behind(const Surface& surface, const FixingPlane& plane, double v) {
-  constexpr int around = 64;
   const double start = surface.u.domain_start(), length = surface.u.domain_end() - start;
-  for (int s = 0; s < around; ++s) {
+  for (int s = 0; s <= around; ++s) {
     const Vector3 point = evaluate(surface, start + length * s / around, v).position_m;
     if (plane.normal.dot(point - plane.point_m) > 0.0) return false;
   }
@@ -55,6 +56,7 @@ FixedStretch fixed_stretch(const Surface& surface, const std::vector<FixingPlane
   const double start = surface.v.domain_start(), length = surface.v.domain_end() - start;
   double low = 0.0, high = 0.0;
   for (const FixingPlane& plane : planes) {
+    if (surface.v.is_periodic()) break;
     low = std::max(low, share_behind(surface, plane, false));
     high = std::max(high, share_behind(surface, plane, true));
   }
@@ -98,21 +100,35 @@ std::vector<std::uint8_t> columns_to_hold(const KnotVector& v, const FixedStretc
   return held;
 }
 
-// The cell in which a point lies, or which it lies nearest to, among those around the nearest node.
-EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
-  int nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (int n = 0; n < mesh.node_count(); ++n) {
-    const double distance = (mesh.nodes[n] - point).squaredNorm();
-    if (distance < least) {
-      least = distance;
-      nearest = n;
+bool is_clamped(const KnotVector& knots, bool at_end) {
+  if (knots.is_periodic()) return false;
+  const std::vector<double>& all = knots.knots();
+  const auto degree = static_cast<std::size_t>(knots.degree());
+  return at_end ? all.back() == all[all.size() - 1 - degree] : all.front() == all[degree];
+}
+
+// Whether an end of v is a single point, to a millionth of the net's extent.
+bool is_pole(const Surface& surface, bool at_end) {
+  constexpr double share = 1e-6;
+  if (!surface.u.is_periodic() || surface.v.is_periodic()) return false;
+  const double v = at_end ? surface.v.domain_end() : surface.v.domain_start();
+  const double start = surface.u.domain_start(), length = surface.u.domain_end() - start;
+  const Vector3 first = position(surface, start, v);
+  double farthest = 0.0, extent = 0.0;
+  for (int s = 1; s < around; ++s) {
+    farthest = std::max(farthest, (position(surface, start + length * s / around, v) - first).norm());
+  }
+  for (int i = 0; i < surface.net.rows; ++i) {
+    for (int j = 0; j < surface.net.columns; ++j) {
+      extent = std::max(extent, (surface.net.point(i, j) - first).norm());
     }
   }
-  const auto [ni, nj, nk] = mesh.place(nearest);
-  CellLocation best;
-  best.outside = std::numeric_limits<double>::infinity();
-  std::array<int, 3> cell{};
+  return farthest <= share * extent;
+}
+
+void offer_cells_around(const LatticeMesh& mesh, int node, const Vector3& point, CellLocation& best,
+                        std::array<int, 3>& cell) {
+  const auto [ni, nj, nk] = mesh.place(node);
   for (int i = std::max(0, ni - 1); i <= std::min(ni, mesh.count[0] - 2); ++i) {
     for (int j = std::max(0, nj - 1); j <= std::min(nj, mesh.count[1] - 2); ++j) {
       for (int k = std::max(0, nk - 1); k <= std::min(nk, mesh.count[2] - 2); ++k) {
@@ -124,6 +140,24 @@ EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
       }
     }
   }
+}
+
+// The cell in which a point lies, or which it lies nearest to, among those around the nearest node.
+EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
+  int nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    const double distance = (mesh.nodes[n] - point).squaredNorm();
+    if (distance < least) {
+      least = distance;
+      nearest = n;
+    }
+  }
+  CellLocation best;
+  best.outside = std::numeric_limits<double>::infinity();
+  std::array<int, 3> cell{};
+  offer_cells_around(mesh, nearest, point, best, cell);
+  if (mesh.twin(nearest) != nearest) offer_cells_around(mesh, mesh.twin(nearest), point, best, cell);
   EmbeddedPoint embedded;
   if (!(best.outside < 1.0)) {
     embedded.count = 1;
@@ -133,7 +167,8 @@ EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
   }
   embedded.count = 8;
   for (int c = 0; c < 8; ++c) {
-    embedded.node[c] = mesh.index(cell[0] + (c >> 2 & 1), cell[1] + (c >> 1 & 1), cell[2] + (c & 1));
+    embedded.node[c] =
+        mesh.joined(mesh.index(cell[0] + (c >> 2 & 1), cell[1] + (c >> 1 & 1), cell[2] + (c & 1)));
     embedded.weight[c] = static_cast<float>(best.weights[c]);
   }
   return embedded;
@@ -158,7 +193,14 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
   Result<NestedGrid> nested = make_nested_grid(mapping.rest_.u, mapping.rest_.v, refit_levels);
   if (!nested.ok()) return nested.error();
   mapping.nested_ = std::make_shared<NestedGrid>(std::move(nested).value());
-  RefitConstraints constraints{columns_to_hold(mapping.rest_.v, fixed), true};
+  const KnotVector& v = mapping.rest_.v;
+  RefitConstraints constraints{columns_to_hold(v, fixed), true, true};
+  if (lattice.mesh().thin) {
+    constraints.keep_first = is_clamped(v, false);
+    constraints.keep_last = is_clamped(v, true);
+    mapping.first_pole_ = is_pole(mapping.rest_, false);
+    mapping.last_pole_ = is_pole(mapping.rest_, true);
+  }
   mapping.held_columns_ = constraints.held_columns;
   Result<DisplacementRefit> refit = DisplacementRefit::make(mapping.nested_->grid, constraints, set);
   if (!refit.ok()) return refit.error();
@@ -170,6 +212,15 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
   return mapping;
 }
 
+int BodyMapping::twin_of(int row, int column) const {
+  const Grid& grid = nested_->grid;
+  const int last_column = grid.columns() - 1;
+  const bool pole = (column == 0 && first_pole_) || (column == last_column && last_pole_);
+  const bool over_u = row == grid.rows() - 1 && rest_.u.is_periodic();
+  const bool over_v = column == last_column && rest_.v.is_periodic();
+  return (pole || over_u ? 0 : row) * grid.columns() + (over_v ? 0 : column);
+}
+
 void BodyMapping::embed(const SpringLattice& lattice) {
   const Grid& grid = nested_->grid;
   const auto columns = static_cast<std::size_t>(grid.columns());
@@ -178,11 +229,10 @@ void BodyMapping::embed(const SpringLattice& lattice) {
   embedding_.reserve(samples);
   for (int i = 0; i < grid.rows(); ++i) {
     for (int j = 0; j < grid.columns(); ++j) {
-      // The seam and the poles are one place, and must have one embedding to the last bit to stay so.
-      const bool pole = j == 0 || j == grid.columns() - 1;
-      const int twin_row = pole || i == grid.rows() - 1 ? 0 : i;
-      if (twin_row != i) {
-        embedding_.push_back(embedding_[static_cast<std::size_t>(twin_row * grid.columns() + j)]);
+      // What is one place must have one embedding to the last bit to stay so.
+      const int twin = twin_of(i, j);
+      if (twin != i * grid.columns() + j) {
+        embedding_.push_back(embedding_[static_cast<std::size_t>(twin)]);
         continue;
       }
       embedding_.push_back(embed_point(

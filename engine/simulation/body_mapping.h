@@ -32,7 +32,8 @@ class BodyMapping {
   // `rest` is the surface that the lattice's rest shape was filled from, `current` the surface as it is now,
   // with the same knots; the lattice's present displacements belong to `current`. Behind each plane the part
   // of the surface that lies wholly there stays exactly: knots are inserted at its edge (which changes no
-  // shape), and the control points that reach into it are held.
+  // shape), and the control points that reach into it are held. Only along v, and where v is open: a sheet
+  // that is fixed across u is so as its nodes are.
   static Result<BodyMapping> make(const Surface& rest, const Surface& current, const SpringLattice& lattice,
                                   const std::vector<FixingPlane>& planes, InstructionSet set);
 
@@ -62,6 +63,8 @@ class BodyMapping {
  private:
   BodyMapping(Surface rest, Surface current, InstructionSet set)
       : set_(set), rest_(std::move(rest)), base_(current), current_(std::move(current)) {}
+  // Of a sample, the one with whose place it is one: over a seam, or at a pole. Itself of most.
+  int twin_of(int row, int column) const;
   void embed(const SpringLattice& lattice);
   // The embedding of one sample without gaps, as the tick reads it: a place that is not used has weight 0.
   struct CellWeights {
@@ -82,6 +85,7 @@ class BodyMapping {
   AlignedVector<float> sample_[3];         // as the refit takes them
   std::vector<float> control_[3];
   std::vector<std::uint8_t> held_columns_;
+  bool first_pole_ = true, last_pole_ = true;    // of v
   std::vector<DisplacementRefit> refit_;         // one, once made
   std::vector<GridEvaluator<float>> evaluator_;  // the same
   GridSamples<float> followed_;                  // what the surface moved at the samples

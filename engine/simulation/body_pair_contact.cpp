@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/simulation/shell_gap.h"
+
 namespace spoonbill {
 
 EmbeddedPoint embedding_of(const BodyMapping& mapping, const NearPoint& near) {
@@ -69,11 +71,32 @@ std::optional<SurfaceSpot> deepest_of(const std::vector<SampleNearMesh>& samples
 }
 
 void find_near(SurfaceProximity& proximity, const BodyState& first, const BodyState& second, double margin) {
-  proximity.find(first.mapping().current(), second.mapping().current(), margin);
+  const MaybeShell one{&first.mapping().current(), first.shell_thickness_m},
+      other{&second.mapping().current(), second.shell_thickness_m};
+  proximity.find(*one.surface, *other.surface, margin + one.thickness_m + other.thickness_m);
+  if (!(one.thickness_m > 0.0 || other.thickness_m > 0.0)) return;
+  proximity.keep_if([&](NearPoint& near) { return settle_shell_gap(one, other, margin, near); },
+                    [&](NearPoint& near) { return settle_shell_gap(other, one, margin, near); });
 }
 
 void find_near(MeshProximity& proximity, const BodyState& first, const BodyState& second, double margin) {
-  proximity.find(first.mapping().current(), second.mesh()->current(), margin);
+  const Surface& surface = first.mapping().current();
+  const DeformingMesh& mesh = second.mesh()->current();
+  const double thickness = first.shell_thickness_m;
+  proximity.find(surface, mesh, margin + thickness);
+  if (!(thickness > 0.0)) return;
+  const Grid& grid = first.mapping().nested().grid;
+  proximity.keep_if(
+      [&](SampleNearMesh& near) {
+        const double u = grid.u.parameters[near.sample / grid.columns()],
+                     v = grid.v.parameters[near.sample % grid.columns()];
+        near.mesh.gap_m -= far_face_lead_m(thickness, unit_normal(surface, u, v), near.mesh.normal);
+        return near.mesh.gap_m <= margin;
+      },
+      [&](VertexNearSurface& near) {
+        return gap_to_shell(surface, thickness, near.u, near.v, mesh.vertices_m()[near.vertex], margin,
+                            near.normal, near.gap_m);
+      });
 }
 
 }  // namespace

@@ -1,11 +1,19 @@
 #include "engine/simulation/body_state.h"
 
 #include <algorithm>
+#include <cmath>
 
-#include "engine/material/lattice/tube_lattice.h"
 #include "engine/material/lattice_solver.h"
+#include "engine/number_text.h"
 
 namespace spoonbill {
+namespace {
+
+std::string rounded_text(double number) {
+  return number_text(std::round(10.0 * number) / 10.0);
+}
+
+}  // namespace
 
 Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material& material,
                                         InstructionSet set) {
@@ -19,12 +27,26 @@ Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material&
 Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const std::vector<Vector3>& rest_m,
                                             InstructionSet set) {
   const Material& material = lattice.material();
-  const bool for_springs = material.youngs_modulus_pa < stiff_youngs_modulus_pa &&
+  const bool for_springs = material.youngs_modulus_pa < stiff_youngs_modulus_pa && !lattice.mesh().thin &&
                            material.poissons_ratio >= least_spring_poissons_ratio;
   if (!is_plainly_elastic(material) || for_springs) return std::optional<ImplicitCore>();
   Result<ImplicitCore> core = ImplicitCore::make(lattice.mesh(), rest_m, material, set);
   if (!core.ok()) return core.error();
   return std::optional<ImplicitCore>(std::move(core).value());
+}
+
+std::string remark_on(const BodyState& body) {
+  if (body.core) return {};
+  const LatticeReport& report = body.lattice.report();
+  int worst = 0;
+  const auto off = [&](int axis) { return std::abs(report.youngs_modulus_ratio[axis] - 1.0); };
+  for (int axis = 1; axis < 3; ++axis) {
+    if (off(axis) > off(worst)) worst = axis;
+  }
+  if (!(off(worst) > slender_stiffness_limit)) return {};
+  return std::string("lattice: cells too slender to sculpt with, ") +
+         rounded_text(report.youngs_modulus_ratio[worst]) + " times as stiff as the material along " +
+         "xyz"[worst] + "; give a node_budget instead of nodes";
 }
 
 std::vector<std::uint8_t> nodes_behind(const SpringLattice& lattice, const std::vector<FixingPlane>& planes) {
@@ -44,8 +66,8 @@ void BodyState::hold_behind(const std::vector<FixingPlane>& planes) {
 }
 
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
-                                  InstructionSet set) {
-  Result<LatticeMesh> mesh = tube_lattice(body.surface, body.lattice);
+                                  InstructionSet set, const FeatureMapWatch& watch) {
+  Result<LatticeMesh> mesh = lattice_of(body, watch);
   if (!mesh.ok()) return mesh.error();
   Result<SpringLattice> lattice = sculpting_lattice(mesh.value(), body.material, set);
   if (!lattice.ok()) return lattice.error();
@@ -63,6 +85,7 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
                   Smoothing(mesh.value()),
                   {},
                   std::vector<std::uint8_t>(mesh->nodes.size(), 0)};
+  state.shell_thickness_m = body.shell_thickness_m.value_or(0.0);
   state.loads = std::move(loads).value();
   state.supports = std::move(supports).value();
   state.hold_behind(planes);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -30,6 +31,7 @@ struct BodyState {
   bool core_rests = false;
   BodyLoads loads = {};
   BodySupports supports = {};
+  double shell_thickness_m = 0.0;  // 0: a solid
 
   // Lets the supports hold what the planes do not.
   void hold_behind(const std::vector<FixingPlane>& planes);
@@ -73,7 +75,7 @@ struct BodyState {
 
 // Refused with the field named where the body cannot be simulated.
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
-                                  InstructionSet set);
+                                  InstructionSet set, const FeatureMapWatch& watch = {});
 
 // The lattice of a body at the stiffness that sculpting can hold.
 Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material& material,
@@ -84,9 +86,16 @@ Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material&
 // lattice and its springs.
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
 
-// What moves a lattice instead of its springs. Unstrained at `rest_m`. None where the springs do.
+// What moves a lattice instead of its springs: of a stiff elastic body, and of an elastic shell, which bends
+// where springs in one layer would be twice too stiff. Unstrained at `rest_m`. None where the springs do.
 Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const std::vector<Vector3>& rest_m,
                                             InstructionSet set);
+
+// What is wrong with a body that can be simulated all the same, in a line with its remedy; empty: nothing.
+// Cells too slender for springs are stiffer along them than the material, by a share that this is the limit
+// of: such a lattice may be drawn and felt, but not as the material named.
+inline constexpr double slender_stiffness_limit = 0.25;
+std::string remark_on(const BodyState& body);
 
 // One byte a node, 1 where a plane holds it.
 std::vector<std::uint8_t> nodes_behind(const SpringLattice& lattice, const std::vector<FixingPlane>& planes);

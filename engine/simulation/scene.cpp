@@ -4,6 +4,11 @@
 
 namespace spoonbill {
 
+Result<LatticeMesh> lattice_of(const Body& body, const FeatureMapWatch& watch) {
+  if (body.shell_thickness_m) return shell_lattice(body.surface, *body.shell_thickness_m, body.lattice);
+  return tube_lattice(body.surface, body.lattice, watch);
+}
+
 Status check_symmetry(const Symmetry& symmetry) {
   if (Status status = check_position("symmetry: point_m", symmetry.point_m); !status.ok()) return status;
   return check_unit("symmetry: normal", symmetry.normal);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/bspline/surface.h"
+#include "engine/material/lattice/shell_lattice.h"
 #include "engine/material/lattice/tube_lattice.h"
 #include "engine/material/material.h"
 #include "engine/range.h"
@@ -19,7 +20,8 @@
 
 namespace spoonbill {
 
-// A solid body bounded by one tube: periodic in u, closed by a pole at both ends of v.
+// A solid body bounded by one tube: periodic in u, closed by a pole at both ends of v. Or, with a thickness,
+// a thin shell behind one (see shell_lattice.h).
 struct Body {
   std::string name;
   Surface surface;
@@ -27,6 +29,7 @@ struct Body {
   LatticeRequest lattice;
   std::vector<Load> loads = {};
   std::vector<Support> supports = {};
+  std::optional<double> shell_thickness_m = {};
 };
 
 struct Tool {
@@ -73,6 +76,9 @@ inline constexpr Range<int> tool_iterations_range{1, 8};
 inline constexpr Range<double> sculpting_damping_range_per_s{0.0, 1000.0};
 inline constexpr double gravity_limit_m_per_s2 = 100.0;  // of the vector's length
 inline constexpr Range<double> force_scale_range{0.0, 1e6};
+
+// Of a solid or a shell, at rest.
+Result<LatticeMesh> lattice_of(const Body& body, const FeatureMapWatch& watch = {});
 
 // Each names the field, the value and the range of the first thing that is not within it.
 Status check_loads(const Body& body);  // and supports

@@ -48,11 +48,11 @@ Error about(const Body& body, const Scene& scene, const Error& error) {
 
 }  // namespace
 
-Result<Simulation> Simulation::make(Scene scene, InstructionSet set) {
+Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const FeatureMapWatch& watch) {
   if (const Status status = check_scene(scene); !status.ok()) return status.error();
   std::vector<BodyState> bodies;
   for (const Body& body : scene.bodies) {
-    Result<BodyState> state = make_body_state(body, scene.planes, set);
+    Result<BodyState> state = make_body_state(body, scene.planes, set, watch);
     if (!state.ok()) return about(body, scene, state.error());
     state->rest_core(scene.tool.action == ToolAction::pull);
     bodies.push_back(std::move(state).value());
@@ -241,6 +241,15 @@ void Simulation::write_scene(Scene& scene) const {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     scene.bodies[b].surface = state_->bodies[b].mapping().current();
   }
+}
+std::vector<std::string> Simulation::remarks() const {
+  std::vector<std::string> remarks;
+  for (const Body& body : state_->scene.bodies) {
+    const auto at = static_cast<std::size_t>(&body - state_->scene.bodies.data());
+    const std::string remark = remark_on(state_->bodies[at]);
+    if (!remark.empty()) remarks.push_back(about(body, state_->scene, Error{remark}).message);
+  }
+  return remarks;
 }
 std::uint64_t Simulation::tick() const {
   return state_->tick;

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "engine/bspline/surface.h"
 #include "engine/instruction_set.h"
@@ -46,8 +48,8 @@ struct ShapeState {
 class Simulation {
  public:
   // Builds grids, lattice and working memory. Refused with the field named where the scene cannot be
-  // simulated.
-  static Result<Simulation> make(Scene scene, InstructionSet set);
+  // simulated. `watch` is told how feature maps come along, one body after the other.
+  static Result<Simulation> make(Scene scene, InstructionSet set, const FeatureMapWatch& watch = {});
 
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -78,6 +80,9 @@ class Simulation {
   void write_shape(ShapeState& shape) const;
   // Refused when the state is of another lattice.
   Status restore(const ShapeState& shape);
+
+  // See remark_on(): a line for each body of the scene that has one.
+  std::vector<std::string> remarks() const;
 
   // For studies and tests: a body's lattice, and its surface as it is now, where it has one: any of the
   // scene's.

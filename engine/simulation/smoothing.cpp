@@ -28,7 +28,9 @@ Smoothing::Smoothing(const LatticeMesh& mesh)
     : shell_(static_cast<std::size_t>(mesh.node_count())),
       rest_per_m_(shell_.size()),
       rest_middle_(shell_.size(), Vector3::Zero()),
-      stride_{mesh.count[1], 1, mesh.count[0] * mesh.count[1]} {
+      stride_{mesh.count[1], 1, mesh.count[0] * mesh.count[1]},
+      count_i_(mesh.count[0]),
+      closed_(mesh.closed) {
   near_.reserve(shell_.size());
   const auto at_rest = [&](int node) { return mesh.nodes[static_cast<std::size_t>(node)]; };
   for (int n = 0; n < mesh.node_count(); ++n) connect(mesh, n);
@@ -43,6 +45,17 @@ Smoothing::Smoothing(const LatticeMesh& mesh)
   }
 }
 
+// The neighbours before and after a node inside the block along an axis: over the seam of one that is closed.
+std::array<int, 2> Smoothing::beside(int node, int axis) const {
+  const int stride = stride_[static_cast<std::size_t>(axis)];
+  std::array<int, 2> nodes = {node - stride, node + stride};
+  if (!closed_ || axis != 0) return nodes;
+  const int i = node / stride % count_i_, around = stride * (count_i_ - 1);
+  if (i == 0) nodes[0] += around;
+  if (i == count_i_ - 1) nodes[1] -= around;
+  return nodes;
+}
+
 // The pairs in the order that makes their cross product point out of the body.
 void Smoothing::connect(const LatticeMesh& mesh, int node) {
   const std::array<int, 3> at = mesh.place(node);
@@ -52,7 +65,7 @@ void Smoothing::connect(const LatticeMesh& mesh, int node) {
   Vector3 outward = Vector3::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     const bool low = at[axis] == 0, high = at[axis] == mesh.count[axis] - 1;
-    if (!low && !high) continue;
+    if ((!low && !high) || (mesh.closed && axis == 0)) continue;
     inward[ends] = low ? node + stride_[axis] : node - stride_[axis];
     outward += (mesh.nodes[node] - mesh.nodes[inward[ends]]).normalized();
     ++ends;
@@ -60,7 +73,7 @@ void Smoothing::connect(const LatticeMesh& mesh, int node) {
   if (ends == 0) return;
   for (int axis = 0; axis < 3; ++axis) {
     const bool between = at[axis] > 0 && at[axis] < mesh.count[axis] - 1;
-    if (between) shell.pairs[shell.pair_count++] = {node - stride_[axis], node + stride_[axis]};
+    if (between || (mesh.closed && axis == 0)) shell.pairs[shell.pair_count++] = beside(node, axis);
   }
   // Over an edge of the block; at a corner along the ring, which i and j make.
   if (ends >= 2) shell.pairs[shell.pair_count++] = {inward[0], inward[1]};
@@ -108,7 +121,9 @@ std::optional<double> Smoothing::bend_toward(const SpringLattice& lattice, int n
   if (!bend) return std::nullopt;
   const ShellNode& shell = shell_[static_cast<std::size_t>(neighbour)];
   for (std::size_t p = 0; p < 2; ++p) {
-    if (shell.pairs[p][0] != node && shell.pairs[p][1] != node) continue;
+    const int twin = lattice.mesh().twin(node);
+    const auto leads = [&](int to) { return to == node || to == twin; };
+    if (!leads(shell.pairs[p][0]) && !leads(shell.pairs[p][1])) continue;
     height_factor = std::min(height_factor, bend->height_factor[p]);
     return bend->per_m[p];
   }
@@ -137,7 +152,8 @@ template <class PositionOf>
 Smoothing::Middle Smoothing::middle_at(int node, const PositionOf& position_of) const {
   Middle middle{position_of(node), {}};
   for (int axis = 0; axis < 3; ++axis) {
-    const Vector3 before = position_of(node - stride_[axis]), after = position_of(node + stride_[axis]);
+    const auto [low, high] = beside(node, axis);
+    const Vector3 before = position_of(low), after = position_of(high);
     middle.offset -= (before + after) / 6.0;
     middle.across.col(axis) = after - before;
   }
@@ -153,7 +169,7 @@ void Smoothing::apply(SpringLattice& lattice, const SmoothingBrush& brush, std::
   const double reach_square = brush.reach_m * brush.reach_m;
   near_.clear();
   for (int n = 0; n < static_cast<int>(shell_.size()); ++n) {
-    if (lattice.is_held(n)) continue;
+    if (lattice.is_held(n) || lattice.mesh().joined(n) != n) continue;
     if ((lattice.position(n) - brush.centre_m).squaredNorm() < reach_square) near_.push_back(n);
   }
   const std::size_t rounds = (near_.size() + turns_a_tick - 1) / turns_a_tick;

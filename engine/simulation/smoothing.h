@@ -65,10 +65,14 @@ class Smoothing {
   Vector3 off_the_middle(const SpringLattice& lattice, int node) const;
   void connect(const LatticeMesh& mesh, int node);
 
+  std::array<int, 2> beside(int node, int axis) const;
+
   std::vector<ShellNode> shell_;                   // one a node
   std::vector<std::array<double, 2>> rest_per_m_;  // of nodes on the shell
   std::vector<Vector3> rest_middle_;               // of inner nodes: the offset in shares of `across`
   std::array<int, 3> stride_{};
+  int count_i_ = 0;        // of the lattice
+  bool closed_ = false;    // see LatticeMesh
   std::vector<int> near_;  // working memory
 };
 

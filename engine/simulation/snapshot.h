@@ -103,6 +103,7 @@ struct BodySnapshot {
   MaterialSnapshot material;
   ResidualSnapshot residual = {};  // of a body with a surface
   MeshSnapshot mesh = {};          // of a soft mesh, which has no surface; no triangles otherwise
+  double shell_thickness_m = 0.0;  // behind the surface; 0: it bounds a solid
 
   bool is_mesh() const { return mesh.triangles != nullptr; }
 };

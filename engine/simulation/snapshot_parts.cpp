@@ -101,6 +101,7 @@ void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::ve
       write_surface(mapping.current(), out[b].surface);
       out[b].residual = {mapping.residual().largest_m, mapping.residual().root_mean_square_m};
     }
+    out[b].shell_thickness_m = bodies[b].shell_thickness_m;
     write_lattice(bodies[b].lattice, bodies[b].held, bodies[b].touched, out[b].lattice);
     write_material(b < scene.bodies.size() ? scene.bodies[b].material : scene.tool.body->soft->material,
                    scene.sculpting, bodies[b], out[b].material);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/simulation/body_pair_contact.h"
+#include "engine/simulation/shell_gap.h"
 
 namespace spoonbill {
 namespace {
@@ -15,6 +16,14 @@ constexpr double margin_cells = 0.5;
 
 double margin_of(const BodyState& body) {
   return margin_cells * static_cast<double>(body.lattice.cell_size_m());
+}
+
+// The way in which the tool pushes a point: the gradient of its distance.
+Vector3 push_at(const ToolShape& tool, const Vector3& point_m) {
+  if (tool.is_solid()) return tool.at(point_m).gradient;
+  const Vector3 from_centre = point_m - tool.centre_m;
+  const double distance = from_centre.norm();
+  return distance > 0.0 ? Vector3(from_centre / distance) : Vector3::Zero();
 }
 
 bool is_inside(const CollisionResult& collision) {
@@ -119,14 +128,54 @@ void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& 
   const double margin = std::max(margin_of(body), hold.reach_m);
   if (is_surface()) return find_near(contact, body, margin, hold);
   shape_ = shape_of(tool, model, hold);
-  contact.collision = contact.collider.collide(body.mapping().current(), shape_, margin, true);
+  const double thickness = body.shell_thickness_m;
+  contact.collision =
+      contact.collider.collide(body.mapping().current(), shape_, margin + thickness, !(thickness > 0.0));
+  if (thickness > 0.0) take_face(contact, body, margin);
+}
+
+bool ToolContact::is_small(const BodyState& body) const {
+  return !is_solid_ && shape_.radius_m < static_cast<double>(body.lattice.cell_size_m());
+}
+
+void ToolContact::take_face(BodyContact& contact, const BodyState& body, double margin) const {
+  CollisionResult& collision = contact.collision;
+  SurfaceContact& nearest = collision.nearest;
+  if (!collision.found) return;
+  const double thickness = body.shell_thickness_m;
+  const Surface& surface = body.mapping().current();
+  Vector3 normal = nearest.normal;
+  bool behind = false;
+  if (is_small(body)) {
+    // Which may come through the surface's middle: the side tells, not the way that it pushes.
+    double gap = 0.0;
+    collision.found = gap_to_shell(surface, thickness, nearest.u, nearest.v, shape_.centre_m,
+                                   margin + shape_.radius_m, normal, gap);
+    behind = normal.dot(nearest.normal) < 0.0;
+    nearest.depth_m = shape_.radius_m - gap;
+  } else {
+    const double lead = far_face_lead_m(thickness, normal, push_at(shape_, nearest.point_m));
+    behind = lead > 0.0;
+    nearest.depth_m += lead;
+    collision.found = -nearest.depth_m <= margin;
+  }
+  if (!behind) return;
+  nearest.point_m -= thickness * nearest.normal;
+  nearest.normal = -nearest.normal;
+  nearest.tangent_v = -nearest.tangent_v;
 }
 
 void ToolContact::find_near(BodyContact& contact, const BodyState& body, double margin,
                             const ToolHold& hold) {
   const Surface& surface = body.mapping().current();
   SurfaceProximity& proximity = *contact.proximity;
-  proximity.find(surface, *placed_, margin, hold.turn.determinant() < 0.0 ? -1.0 : 1.0);
+  const double thickness = body.shell_thickness_m;
+  proximity.find(surface, *placed_, margin + thickness, hold.turn.determinant() < 0.0 ? -1.0 : 1.0);
+  if (thickness > 0.0) {
+    const MaybeShell shell{&surface, thickness}, solid{placed_.get(), 0.0};
+    proximity.keep_if([&](NearPoint& near) { return settle_shell_gap(shell, solid, margin, near); },
+                      [&](NearPoint& near) { return settle_shell_gap(solid, shell, margin, near); });
+  }
   contact.collision = {};
   contact.collision.overflow = proximity.overflow();
   const auto deepest =
@@ -158,10 +207,38 @@ void ToolContact::visit_near(BodyContact& contact, const BodyState& state, const
 void ToolContact::add_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
+  if (state.shell_thickness_m > 0.0 && !is_surface()) return add_shell_pushes(body, state, hold);
   if (!is_solid_) return add_sphere_pushes(body, state);
   add_plane_push(body, state, {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m},
                  hold);
   visit_near(contact, state, [&](const Pushed& pushed) { add_plane_push(body, state, pushed, hold); });
+}
+
+double ToolContact::gap_of(const BodyState& state, const NearSample& sample) const {
+  if (!(state.shell_thickness_m > 0.0)) return sample.distance_m;
+  const Grid& grid = state.mapping().nested().grid;
+  const double u = grid.u.parameters[sample.index / grid.columns()],
+               v = grid.v.parameters[sample.index % grid.columns()];
+  const Vector3 normal = unit_normal(state.mapping().current(), u, v);
+  const Vector3 push = push_at(shape_, position(state.mapping().current(), u, v));
+  return sample.distance_m - far_face_lead_m(state.shell_thickness_m, normal, push);
+}
+
+// Away from the tool, whichever face it is at.
+void ToolContact::add_shell_pushes(int body, const BodyState& state, const ToolHold& hold) {
+  BodyContact& contact = contacts_[body];
+  const SurfaceContact& nearest = contact.collision.nearest;
+  const EmbeddedPoint deepest = state.mapping().at(nearest.u, nearest.v);
+  if (is_small(state)) return add_plane_push(body, state, {deepest, -nearest.normal, -nearest.depth_m}, hold);
+  const Vector3 push = push_at(shape_, position(state.mapping().current(), nearest.u, nearest.v));
+  add_plane_push(body, state, {deepest, push, -nearest.depth_m}, hold);
+  const double margin = std::max(margin_of(state), hold.reach_m);
+  for (const NearSample& sample : contact.collider.near_samples()) {
+    const double gap = gap_of(state, sample);
+    if (gap > margin) continue;
+    const Vector3 away = push_at(shape_, contact.collider.levels().sample(sample.index));
+    add_plane_push(body, state, {state.mapping().sample(sample.index), away, gap}, hold);
+  }
 }
 
 // The samples, and the plane of the nearest point: for a tool that fits between samples always, for others
@@ -202,7 +279,7 @@ void ToolContact::add_grips(int body, const BodyState& state, const Pose& pose) 
     return;
   }
   for (const NearSample& sample : contact.collider.near_samples()) {
-    if (sample.distance_m <= 0.0) grip(state.mapping().sample(sample.index));
+    if (gap_of(state, sample) <= 0.0) grip(state.mapping().sample(sample.index));
   }
 }
 

@@ -71,10 +71,17 @@ class ToolContact {
   void find(BodyContact& contact, const BodyState& body, const Tool& tool, const ToolModel& model,
             const ToolHold& hold);
   void find_near(BodyContact& contact, const BodyState& body, double margin, const ToolHold& hold);
+  // Of a shell: which of its faces the tool is nearest to, and how deep in it.
+  void take_face(BodyContact& contact, const BodyState& body, double margin) const;
+  // A sphere that fits between samples.
+  bool is_small(const BodyState& body) const;
   // Whether the tool is a B-spline: the model is of the last solid, and what is held may be none.
   bool is_surface() const { return is_solid_ && placed_ != nullptr; }
   void add_pushes(int body, const BodyState& state, const ToolHold& hold);
   void add_sphere_pushes(int body, const BodyState& state);
+  // Of a sample of a body that is near the tool: to its surface, or to the far face of a shell.
+  double gap_of(const BodyState& state, const NearSample& sample) const;
+  void add_shell_pushes(int body, const BodyState& state, const ToolHold& hold);
   void add_plane_push(int body, const BodyState& state, const Pushed& pushed, const ToolHold& hold);
   void add_grips(int body, const BodyState& state, const Pose& pose);
 

@@ -2,7 +2,9 @@
 // nearest points, and vertices of the mesh with the surface's.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "engine/collision/levels/element_tree.h"
@@ -36,6 +38,16 @@ class MeshProximity {
   // All that is within `margin_m`. The surface must have the grid's knots and bound a body, du x dv outwards;
   // the mesh must be the one of the patches, settled.
   void find(const Surface& surface, const DeformingMesh& mesh, double margin_m);
+
+  // Keeps those of the points of either that `keep_sample` and `keep_vertex` keep, as they leave them.
+  template <class KeepSample, class KeepVertex>
+  void keep_if(const KeepSample& keep_sample, const KeepVertex& keep_vertex) {
+    std::erase_if(samples_, [&](SampleNearMesh& near) { return !keep_sample(near); });
+    std::erase_if(vertices_, [&](VertexNearSurface& near) { return !keep_vertex(near); });
+    least_gap_m_ = std::numeric_limits<double>::infinity();
+    for (const SampleNearMesh& near : samples_) least_gap_m_ = std::min(least_gap_m_, near.mesh.gap_m);
+    for (const VertexNearSurface& near : vertices_) least_gap_m_ = std::min(least_gap_m_, near.gap_m);
+  }
 
   // Of the last find().
   const std::vector<SampleNearMesh>& of_surface() const { return samples_; }

@@ -41,12 +41,12 @@ class NearPoints {
   // Between its samples a surface may be nearer than at any.
   void add_between_samples(const SurfaceLevels& other, double outside);
 
-  // Keeps the points for which keep(point) holds.
+  // Keeps the points for which keep(point) holds, as it leaves them.
   template <class Keep>
   void keep_if(const Keep& keep) {
     std::size_t kept = 0;
     least_gap_m_ = std::numeric_limits<double>::infinity();
-    for (const NearPoint& near : near_) {
+    for (NearPoint& near : near_) {
       if (!keep(near)) {
         if (near.sample >= 0) placed_at_[near.sample] = 0;
         continue;

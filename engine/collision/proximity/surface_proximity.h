@@ -20,6 +20,13 @@ class SurfaceProximity {
   // outwards, or inwards of the second where `second_outside` is -1, as of a mirrored surface.
   void find(const Surface& first, const Surface& second, double margin_m, double second_outside = 1.0);
 
+  // Keeps those of the points of either that `keep_first` and `keep_second` keep, as they leave them.
+  template <class KeepFirst, class KeepSecond>
+  void keep_if(const KeepFirst& keep_first, const KeepSecond& keep_second) {
+    first_.keep_if(keep_first);
+    second_.keep_if(keep_second);
+  }
+
   // Of the last find(): the points of one surface.
   const std::vector<NearPoint>& of_first() const { return first_.points(); }
   const std::vector<NearPoint>& of_second() const { return second_.points(); }

@@ -104,7 +104,7 @@ void ImplicitBody::take_cells(const Material& material) {
         take_cell(batch, lane, corners,
                   share * hexahedron_stiffness(corners, material.youngs_modulus_pa, material.poissons_ratio));
         for (int c = 0; c < 8; ++c) {
-          const int node = mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1));
+          const int node = mesh_.joined(mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1)));
           mass_[static_cast<std::size_t>(node)] +=
               material.density_kg_per_m3 * share * cell_volume(corners) / 8.0;
           for (int rest = lane; rest < cell_lanes; ++rest) batch.node[c][rest] = node;
@@ -133,7 +133,8 @@ double ImplicitBody::fastest_square() {
     cells_->apply(block_.batches.data(), static_cast<int>(block_.batches.size()), 1.0, direction_.data(),
                   image_.data());
     for (int n = 0; n < size_; ++n) {
-      image_[static_cast<std::size_t>(n)] /= mass_[static_cast<std::size_t>(n / 3)];
+      const double mass = mass_[static_cast<std::size_t>(n / 3)];
+      image_[static_cast<std::size_t>(n)] *= mass > 0.0 ? 1.0 / mass : 0.0;
     }
     const double length = std::sqrt(band_->dot(image_.data(), image_.data(), rounded_up(size_, band_block)));
     square =
@@ -156,13 +157,14 @@ void ImplicitBody::take_damping(const Material& material) {
 void ImplicitBody::hold(std::span<const std::uint8_t> held) {
   has_held_nodes_ = std::find(held.begin(), held.end(), std::uint8_t{1}) != held.end();
   for (int n = 0; n < node_count(); ++n) {
-    const bool is_free = held[static_cast<std::size_t>(n)] == 0;
+    const bool is_first = mesh_.joined(n) == n;  // the second of a place has no coordinates of its own
+    const bool is_free = held[static_cast<std::size_t>(n)] == 0 && is_first;
     for (int axis = 0; axis < 3; ++axis) {
       const auto at = static_cast<std::size_t>(3 * n + axis);
       free_[at] = is_free ? 1.0 : 0.0;
       mass3_[at] = is_free ? mass_[static_cast<std::size_t>(n)] : 0.0;
     }
-    if (!is_free) set_velocity(n, Vector3::Zero());
+    if (!is_free && is_first) set_velocity(n, Vector3::Zero());
   }
   std::fill(held_velocity_.begin(), held_velocity_.end(), 0.0);
   held_moves_ = false;
@@ -283,6 +285,7 @@ void ImplicitBody::move_and_turn(const RigidMotion& motion, double step_s) {
       Quaternion(1.0, half_turn.x(), half_turn.y(), half_turn.z()).normalized().toRotationMatrix() -
       Eigen::Matrix3d::Identity();
   for (int n = 0; n < node_count(); ++n) {
+    if (mesh_.joined(n) != n) continue;
     const Vector3 from_middle = place(n) - motion.middle_m, now = velocity(n);
     const Vector3 own = now - motion.velocity_at(place(n));
     const Vector3 turned = turn * from_middle;
@@ -306,7 +309,9 @@ void ImplicitBody::restore_momentum() {
     mass += mass_kg(n);
   }
   const Vector3 more = (momentum_ - momentum) / mass;
-  for (int n = 0; n < node_count(); ++n) set_velocity(n, velocity(n) + more);
+  for (int n = 0; n < node_count(); ++n) {
+    if (mass_kg(n) > 0.0) set_velocity(n, velocity(n) + more);
+  }
 }
 
 double ImplicitBody::rayleigh_quotient() {

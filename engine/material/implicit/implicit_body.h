@@ -53,34 +53,39 @@ class ImplicitBody {
 
   const LatticeMesh& mesh() const { return mesh_; }
   int node_count() const { return mesh_.node_count(); }
+  // 0 of the second of two nodes that are one place.
   double mass_kg(int node) const { return mass_[static_cast<std::size_t>(node)]; }
   double damping_time_s() const { return damping_time_; }
 
   // One byte a node, 1 = held. Takes the factor anew.
   void hold(std::span<const std::uint8_t> held);
 
-  Vector3 displacement(int node) const { return at(moved_, node); }
-  Vector3 velocity(int node) const { return at(velocity_, node); }
-  void set_displacement(int node, const Vector3& d) { put(moved_, node, d); }
-  void set_velocity(int node, const Vector3& v) { put(velocity_, node, v); }
+  // Of either node of a place.
+  Vector3 displacement(int node) const { return at(moved_, mesh_.joined(node)); }
+  Vector3 velocity(int node) const { return at(velocity_, mesh_.joined(node)); }
+  void set_displacement(int node, const Vector3& d) { put(moved_, mesh_.joined(node), d); }
+  void set_velocity(int node, const Vector3& v) { put(velocity_, mesh_.joined(node), v); }
   // Until changed, N.
-  void set_node_force(int node, const Vector3& force_n) { put(applied_, node, force_n); }
-  void add_node_force(int node, const Vector3& force_n) { put(applied_, node, at(applied_, node) + force_n); }
+  void set_node_force(int node, const Vector3& force_n) { put(applied_, mesh_.joined(node), force_n); }
+  void add_node_force(int node, const Vector3& force_n) {
+    const int joined = mesh_.joined(node);
+    put(applied_, joined, at(applied_, joined) + force_n);
+  }
   void clear_node_forces() { std::fill(applied_.begin(), applied_.end(), 0.0); }
   // Moves a held node in the coming steps, until hold() is called.
   void move_held(int node, const Vector3& velocity_m_per_s) {
-    put(held_velocity_, node, velocity_m_per_s);
+    put(held_velocity_, mesh_.joined(node), velocity_m_per_s);
     held_moves_ = true;
   }
   // On a held node, N: what its cells and the applied force did as the last step began.
-  Vector3 force_on_held(int node) const { return at(force_, node); }
+  Vector3 force_on_held(int node) const { return at(force_, mesh_.joined(node)); }
 
   // Of the free nodes' velocities, with the tangent of the last step: (v.Kv) / (v.Mv); 0 at rest.
   double rayleigh_quotient();
 
-  // A step in its parts: the velocities at its end; what contacts push, by coordinate, N s, as far as the
-  // whole body answers at once, with the work that they do on what they change, J; and the move, which says
-  // whether a node met the speed cap.
+  // A step in its parts: the velocities at its end; what contacts push, by coordinate (of the first node of
+  // each place), N s, as far as the whole body answers at once, with the work that they do on what they
+  // change, J; and the move, which says whether a node met the speed cap.
   ImplicitReport solve_velocities(const ImplicitStep& step);
   double push(const std::vector<double>& impulses);
   bool move(double step_s);

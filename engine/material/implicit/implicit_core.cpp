@@ -61,34 +61,52 @@ GridPoint weighted(const LatticeMesh& of, int node, const LatticeMesh& by) {
       corner[axis] = places[axis].first + high[axis];
       weight *= high[axis] ? places[axis].share : 1.0 - places[axis].share;
     }
-    result.node[static_cast<std::size_t>(c)] = by.index(corner[0], corner[1], corner[2]);
+    result.node[static_cast<std::size_t>(c)] = by.joined(by.index(corner[0], corner[1], corner[2]));
     result.weight[static_cast<std::size_t>(c)] = weight;
   }
   return result;
 }
 
 // Entries of the band: what a solution multiplies.
-double band_size(const std::array<int, 3>& count) {
-  const int slice = count[0] * count[1];
-  return 9.0 * slice * count[2] * (slice + count[1] + 2);
+double band_size(const LatticeMesh& block) {
+  return 9.0 * block.node_count() * (node_reach(block) + 1);
 }
 
 // As many as fit the budget and the band, and no more than the lattice has.
-Result<std::array<int, 3>> coarse_counts(const LatticeMesh& mesh, const Vector3& size_m) {
+Result<LatticeMesh> coarse_block(const LatticeMesh& mesh, const Vector3& size_m) {
+  LatticeMesh block;
+  block.closed = mesh.closed;
+  block.thin = mesh.thin;
   for (int budget = implicit_node_budget;; budget = budget * 4 / 5) {
-    Result<std::array<int, 3>> counts = lattice_counts({budget, std::nullopt}, size_m);
-    if (!counts.ok()) return counts;
-    std::array<int, 3> count = counts.value();
-    for (std::size_t axis = 0; axis < 3; ++axis) count[axis] = std::min(count[axis], mesh.count[axis]);
-    if (band_size(count) <= largest_band || budget < least_budget) return count;
+    const LatticeRequest request{budget, std::nullopt};
+    Result<std::array<int, 3>> counts =
+        mesh.thin ? shell_counts(request, size_m, mesh.closed) : lattice_counts(request, size_m);
+    if (!counts.ok()) return counts.error();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      block.count[axis] = std::min(counts.value()[axis], mesh.count[axis]);
+    }
+    if (band_size(block) <= largest_band || budget < least_budget) return block;
   }
 }
 
+// A shell's cells are bent: coarser ones, whose chords are longer, must have its volume all the same.
+void take_shell_shares(const LatticeMesh& mesh, LatticeMesh& coarse) {
+  const auto volume_of = [](const LatticeMesh& of) {
+    double volume = 0.0;
+    for (int k = 0; k + 1 < of.count[2]; ++k) {
+      for (int i = 0; i + 1 < of.count[0]; ++i) {
+        for (int j = 0; j + 1 < of.count[1]; ++j) volume += of.share(i, j, k) * cell_volume(of.cell(i, j, k));
+      }
+    }
+    return volume;
+  };
+  coarse.cell_shares.assign(coarse.cell_count(), volume_of(mesh) / volume_of(coarse));
+}
+
 Result<LatticeMesh> coarser(const LatticeMesh& mesh, const std::vector<Vector3>& nodes) {
-  const Result<std::array<int, 3>> counts = coarse_counts(mesh, extents(mesh, nodes));
-  if (!counts.ok()) return counts.error();
-  LatticeMesh coarse;
-  coarse.count = counts.value();
+  Result<LatticeMesh> block = coarse_block(mesh, extents(mesh, nodes));
+  if (!block.ok()) return block;
+  LatticeMesh coarse = std::move(block).value();
   coarse.nodes.assign(static_cast<std::size_t>(coarse.node_count()), Vector3::Zero());
   for (int n = 0; n < coarse.node_count(); ++n) {
     const GridPoint at = weighted(coarse, n, mesh);
@@ -96,6 +114,7 @@ Result<LatticeMesh> coarser(const LatticeMesh& mesh, const std::vector<Vector3>&
       coarse.nodes[static_cast<std::size_t>(n)] += at.weight[c] * nodes[static_cast<std::size_t>(at.node[c])];
     }
   }
+  if (mesh.thin) take_shell_shares(mesh, coarse);
   return coarse;
 }
 
@@ -208,7 +227,7 @@ double ImplicitCore::take_impulses(const SpringLattice& lattice) {
   std::fill(impulse_.begin(), impulse_.end(), 0.0);
   double squares = 0.0;
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    if (lattice.is_held(n)) continue;
+    if (lattice.is_held(n) || lattice.mesh().joined(n) != n) continue;
     const auto at = static_cast<std::size_t>(n);
     const Vector3 before(velocity_[at][0], velocity_[at][1], velocity_[at][2]);
     const Vector3 impulse = (lattice.velocity(n) - before) / contact_inverse_mass_;

@@ -15,9 +15,13 @@ constexpr double products_a_piece = 8e5;
 
 }  // namespace
 
+int node_reach(const LatticeMesh& mesh) {
+  return mesh.closed ? mesh.index(mesh.count[0] - 2, mesh.count[1] - 1, 1) : mesh.index(1, 1, 1);
+}
+
 RollingFactor::RollingFactor(const LatticeMesh& mesh, const BandKernels& kernels)
     : kernels_(&kernels), slice_columns_(3 * mesh.count[0] * mesh.count[1]) {
-  const int size = 3 * mesh.node_count(), half_band = 3 * (mesh.index(1, 1, 1) + 1) - 1;
+  const int size = 3 * mesh.node_count(), half_band = 3 * (node_reach(mesh) + 1) - 1;
   const int stride = (half_band + band_block) / band_block * band_block + band_block;
   for (Doubles& columns : columns_) {
     columns.assign(static_cast<std::size_t>(size + 1) * static_cast<std::size_t>(stride), 0.0);

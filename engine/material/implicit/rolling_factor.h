@@ -26,6 +26,9 @@ struct MatrixParts {
   double inertia, stiffness;
 };
 
+// How far apart two nodes of a cell can be counted, nodes of a place (LatticeMesh::joined) as one.
+int node_reach(const LatticeMesh& mesh);
+
 // Its coordinates are 3 n + axis, and nodes are counted along the body: the matrix is a band. One owner;
 // allocates only when made.
 class RollingFactor {

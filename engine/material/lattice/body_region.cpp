@@ -71,16 +71,16 @@ bool contains(const BodyRegion& region, const BodyPlace& place) {
 
 std::vector<BodyPlace> node_places(const LatticeMesh& mesh) {
   std::vector<Triangle> hull;
-  for (std::size_t axis = 0; axis < 3; ++axis) add_faces(mesh, axis, hull);
+  for (std::size_t axis = mesh.closed ? 1 : 0; axis < 3; ++axis) add_faces(mesh, axis, hull);
   std::vector<BodyPlace> places(mesh.nodes.size());
   for (int n = 0; n < mesh.node_count(); ++n) {
     const std::array<int, 3> at = mesh.place(n);
     BodyPlace& place = places[static_cast<std::size_t>(n)];
     place.along = static_cast<double>(at[2]) / (mesh.count[2] - 1);
     if (!mesh.turns.empty()) place.around = mesh.turns[static_cast<std::size_t>(n)];
-    const bool inside = at[0] > 0 && at[1] > 0 && at[2] > 0 && at[0] + 1 < mesh.count[0] &&
-                        at[1] + 1 < mesh.count[1] && at[2] + 1 < mesh.count[2];
-    if (inside) place.depth_m = nearest_distance(hull, mesh.nodes[static_cast<std::size_t>(n)]);
+    const bool inside = mesh.closed || (at[0] > 0 && at[0] + 1 < mesh.count[0]);
+    const bool in_layers = at[1] > 0 && at[2] > 0 && at[1] + 1 < mesh.count[1] && at[2] + 1 < mesh.count[2];
+    if (inside && in_layers) place.depth_m = nearest_distance(hull, mesh.nodes[static_cast<std::size_t>(n)]);
   }
   return places;
 }

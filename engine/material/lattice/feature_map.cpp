@@ -206,7 +206,7 @@ CellQuality quality_of(const LatticeMesh& mesh) {
 }
 
 FeatureMapReport order_by_feature_map(LatticeMesh& mesh, const FeatureMapSettings& settings,
-                                      const std::function<bool(double)>& progress) {
+                                      const FeatureMapWatch& watch) {
   FeatureMapReport report;
   report.before = report.after = quality_of(mesh);
   FeatureMap map(mesh);
@@ -215,13 +215,14 @@ FeatureMapReport order_by_feature_map(LatticeMesh& mesh, const FeatureMapSetting
       static_cast<std::int64_t>(settings.draws_per_node) * static_cast<std::int64_t>(map.inside_count());
   for (std::int64_t draw = 0; draw < count; ++draw) {
     const double way = static_cast<double>(draw) / static_cast<double>(count);
-    if (progress && draw % draws_between_looks == 0 && !progress(way)) return report;
+    if (watch.progress && draw % draws_between_looks == 0 && !watch.progress(way)) return report;
     map.learn(draws.next(), between(settings.first_rate, settings.last_rate, way),
               between(settings.first_neighbourhood, settings.last_neighbourhood, way));
   }
   report.share = take_moves(map.mesh().nodes, report.before.worst_jacobian, mesh);
   report.after = quality_of(mesh);
-  if (progress) progress(1.0);
+  if (watch.progress) watch.progress(1.0);
+  if (watch.done) watch.done(report);
   return report;
 }
 

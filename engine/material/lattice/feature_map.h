@@ -42,10 +42,16 @@ struct FeatureMapReport {
       0.0;  // how much of the map's moves was kept: all, or as much as makes no cell worse than the worst
 };
 
+// Who waits for a map. Called on the thread that makes it; either may be empty.
+struct FeatureMapWatch {
+  // Told a share from 0 to 1 now and then; stops the map, with nothing moved, by returning false.
+  std::function<bool(double)> progress;
+  std::function<void(const FeatureMapReport&)> done;
+};
+
 // Moves the nodes that are not on the shell. The same seed gives the same nodes. The worst Jacobian never
-// falls. `progress` is told a share from 0 to 1 now and then, and stops it, with nothing moved, by returning
-// false.
+// falls.
 FeatureMapReport order_by_feature_map(LatticeMesh& mesh, const FeatureMapSettings& settings,
-                                      const std::function<bool(double)>& progress = {});
+                                      const FeatureMapWatch& watch = {});
 
 }  // namespace spoonbill

@@ -14,9 +14,9 @@ CellCorners LatticeMesh::cell(int i, int j, int k) const {
 
 NodePlace LatticeMesh::place_of(int i, int j, int k) const {
   if (!places.empty()) return places[static_cast<std::size_t>(index(i, j, k))];
-  const bool shell =
-      i == 0 || j == 0 || k == 0 || i == count[0] - 1 || j == count[1] - 1 || k == count[2] - 1;
-  return shell ? NodePlace::on_shell : NodePlace::in_body;
+  const bool end_of_i = !closed && (i == 0 || i == count[0] - 1);
+  const bool at_end = end_of_i || j == 0 || k == 0 || j == count[1] - 1 || k == count[2] - 1;
+  return at_end ? NodePlace::on_shell : NodePlace::in_body;
 }
 
 double LatticeMesh::mean_edge() const {

@@ -16,6 +16,11 @@ enum class NodePlace : std::uint8_t { beside_body, in_body, on_shell };
 // and what a plane holds of it is one stretch of memory.
 struct LatticeMesh {
   std::array<int, 3> count{};
+  // i runs once around: nodes of the last i are those of the first and stay one place, whose first stands for
+  // both.
+  bool closed = false;
+  // A thin shell: j runs through its thickness, from the face that its normals point out of.
+  bool thin = false;
   std::vector<Vector3> nodes;  // m
   // How much of each cell there is, in the order of its first corners; empty: all of every one.
   std::vector<double> cell_shares;
@@ -29,6 +34,14 @@ struct LatticeMesh {
     return {index / count[1] % count[0], index % count[1], index / (count[0] * count[1])};
   }
   int node_count() const { return count[0] * count[1] * count[2]; }
+  // The other node of the same place; itself where it is alone.
+  int twin(int node) const {
+    if (!closed) return node;
+    const int i = place(node)[0], last = count[0] - 1;
+    return i == 0 ? node + last * count[1] : i == last ? node - last * count[1] : node;
+  }
+  // The node that stands for its place.
+  int joined(int node) const { return closed && place(node)[0] == count[0] - 1 ? twin(node) : node; }
   std::size_t cell_count() const {
     return static_cast<std::size_t>((count[0] - 1) * (count[1] - 1) * (count[2] - 1));
   }

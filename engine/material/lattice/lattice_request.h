@@ -11,8 +11,9 @@
 namespace spoonbill {
 
 // How many nodes a body gets across (first, second) and along (third) itself, or along x, y and z where it
-// is made of triangles: given, or counted out so that cells are near-cubic and at most `node_budget` nodes
-// are spent.
+// is made of triangles, or along u, through and along v of a shell (around, through and along of one that
+// closes, the first node around counted again as the last): given, or counted out so that cells are
+// near-cubic and at most `node_budget` nodes are spent.
 struct LatticeRequest {
   int node_budget = 2000;
   std::optional<std::array<int, 3>> counts;  // each at least 2
@@ -23,5 +24,10 @@ struct LatticeRequest {
 
 // For a body of these extents, each above zero. Refused: counts below 2.
 Result<std::array<int, 3>> lattice_counts(const LatticeRequest& request, const Vector3& size_m);
+// The same for a shell, which one layer of cells may fill; `closed` where the first direction runs around.
+Result<std::array<int, 3>> shell_counts(const LatticeRequest& request, const Vector3& size_m, bool closed);
+
+// A ring of fewer cells is none.
+inline constexpr int least_cells_around = 3;
 
 }  // namespace spoonbill

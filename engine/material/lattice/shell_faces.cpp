@@ -41,7 +41,7 @@ BodyPlace middle_of(const ShellFace& face, const std::vector<BodyPlace>& places)
 
 std::vector<ShellFace> shell_faces(const LatticeMesh& mesh) {
   std::vector<ShellFace> faces;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = mesh.closed ? 1 : 0; axis < 3; ++axis) {
     add_side(mesh, axis, 0, faces);
     add_side(mesh, axis, mesh.count[axis] - 1, faces);
   }

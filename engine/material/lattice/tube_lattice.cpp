@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/material/lattice/share_table.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -18,19 +19,6 @@ constexpr double least_thickness = 1e-4;
 // Of the radius: how little the points of a ring lie out along their normals where it is pressed flat, by
 // rounding of positions and normals.
 constexpr double flat = 1e-9;
-
-// A monotone table from one quantity to another, looked up linearly.
-struct Table {
-  std::vector<double> from, to;
-
-  double at(double x) const {
-    const auto upper = std::upper_bound(from.begin(), from.end(), x);
-    if (upper == from.begin()) return to.front();
-    if (upper == from.end()) return to.back();
-    const auto i = static_cast<std::size_t>(upper - from.begin());
-    return to[i - 1] + (to[i] - to[i - 1]) * (x - from[i - 1]) / (from[i] - from[i - 1]);
-  }
-};
 
 double along(const KnotVector& knots, double share) {
   return knots.domain_start() + share * (knots.domain_end() - knots.domain_start());
@@ -132,11 +120,36 @@ CrossSection principal_axes(const Ring& ring, const Vector3& axis) {
   return section;
 }
 
+// Counts that suit the middle make slender cells elsewhere where an extent differs much along the body, as of
+// a spoon: then the one between its least and its greatest.
+struct Extents {
+  double width, thickness;
+};
+
+Extents extents_to_fill(const Surface& surface, const Profile& profile, std::size_t first, std::size_t last,
+                        const CrossSection& middle) {
+  constexpr double much = 2.5;
+  constexpr std::size_t stations = 24;
+  Extents least{middle.width, middle.thickness}, most = least;
+  for (std::size_t s = 0; s <= stations; ++s) {
+    const Ring ring = sample_ring(surface, profile.v[first + (last - first) * s / stations]);
+    if (!(ring.along.norm() > 0.0)) continue;
+    const CrossSection section = principal_axes(ring, ring.along.normalized());
+    least = {std::min(least.width, section.width), std::min(least.thickness, section.thickness)};
+    most = {std::max(most.width, section.width), std::max(most.thickness, section.thickness)};
+  }
+  const auto between = [](double low, double high, double usual) {
+    return low > 0.0 && high > much * low ? std::sqrt(low * high) : usual;
+  };
+  return {between(least.width, most.width, middle.width),
+          between(least.thickness, most.thickness, middle.thickness)};
+}
+
 // The ring's arc length as a table to u (unwrapped past the seam), and the arc lengths at which the ring
 // crosses +e1, +e2, -e1, -e2 and +e1 again. Found by signs alone: no library function whose bits differ among
 // processors.
 struct RingArc {
-  Table arc_to_u;
+  ShareTable arc_to_u;
   std::array<double, 5> crossing{};
   double perimeter = 0.0;
 };
@@ -262,7 +275,7 @@ void place_turns(const Surface& surface, const RingParameters& ring, LatticeMesh
 void fill_cap(const Surface& surface, const RingParameters& ring, LatticeMesh& mesh, int k, double pole_v,
               double rim_v) {
   const int ni = mesh.count[0], nj = mesh.count[1];
-  Table length_to_v;
+  ShareTable length_to_v;
   double length = 0.0;
   Vector3 previous = evaluate(surface, ring.u[0], pole_v).position_m;
   for (int s = 0; s <= 64; ++s) {
@@ -325,13 +338,14 @@ Status check_closed_tube(const Surface& surface) {
   return {};
 }
 
-Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& request) {
+Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& request,
+                                 const FeatureMapWatch& watch) {
   if (const Status status = check_closed_tube(surface); !status.ok()) return status.error();
   const Profile profile = sample_profile(surface);
   const std::size_t first_rim = find_rim(profile, false), last_rim = find_rim(profile, true);
   if (first_rim >= last_rim) return Error{"surface: too short between its caps for a lattice"};
   const double first_distance = profile.distance[first_rim], last_distance = profile.distance[last_rim];
-  const double middle_v = Table{profile.distance, profile.v}.at(0.5 * (first_distance + last_distance));
+  const double middle_v = ShareTable{profile.distance, profile.v}.at(0.5 * (first_distance + last_distance));
   const Ring middle = sample_ring(surface, middle_v);
   // Not from rim to rim: a coil's ends may lie anywhere.
   if (!(middle.along.norm() > 0.0)) {
@@ -343,14 +357,15 @@ Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& r
                  number_text(section.width * 1e3) +
                  " mm wide: too flat for a lattice; make it at least a ten-thousandth as thick"};
   }
+  const Extents extents = extents_to_fill(surface, profile, first_rim, last_rim, section);
   const Result<std::array<int, 3>> counts =
-      lattice_counts(request, {section.width, section.thickness, last_distance - first_distance});
+      lattice_counts(request, {extents.width, extents.thickness, last_distance - first_distance});
   if (!counts.ok()) return counts.error();
   LatticeMesh mesh;
   mesh.count = counts.value();
   mesh.nodes.assign(static_cast<std::size_t>(mesh.node_count()), Vector3::Zero());
   const RingParameters ring = ring_parameters(surface, middle, section, mesh.count[0], mesh.count[1]);
-  const Table distance_to_v{profile.distance, profile.v};
+  const ShareTable distance_to_v{profile.distance, profile.v};
   const int last = mesh.count[2] - 1;
   for (int k = 1; k < last; ++k) {
     fill_ring(surface, ring, mesh, k,
@@ -361,7 +376,7 @@ Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& r
   fill_cap(surface, ring, mesh, last, surface.v.domain_end(), profile.v[last_rim]);
   if (const Status status = check_cells(mesh); !status.ok()) return status.error();
   place_turns(surface, ring, mesh);
-  if (request.feature_map) order_by_feature_map(mesh, *request.feature_map);
+  if (request.feature_map) order_by_feature_map(mesh, *request.feature_map, watch);
   return mesh;
 }
 

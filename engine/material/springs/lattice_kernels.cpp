@@ -322,6 +322,7 @@ void row_sums(const LatticeView& view, float* sum) {
     }
   }
   add_volume_row_sums(view, sum);
+  join_seam(view, sum);
 }
 
 inline float mass_norm(const float* mass, const float* x, const float* y, const float* z, int count) {
@@ -350,6 +351,7 @@ float power_step(const LatticeView& view, const float* mass) {
   clear(view.fx, view.fy, view.fz, count);
   add_spring_tangent(view, {view.power_x, view.power_y, view.power_z});
   take_volume_stiffness(view);
+  join_seam_forces(view);
   const float before = mass_norm(mass, view.power_x, view.power_y, view.power_z, count);
   divide_by_mass(view.fx, view.inverse_mass, count);
   divide_by_mass(view.fy, view.inverse_mass, count);

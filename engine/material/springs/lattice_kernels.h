@@ -63,6 +63,10 @@ struct LatticeView {
   float *spring_x = nullptr, *spring_y = nullptr, *spring_z = nullptr;  // the springs' forces then, N
   const float* inverse_mass = nullptr;                                  // 1/kg; 0 where held
   const float* free_node = nullptr;  // 1 where free, 0 where held or padding
+  // Pairs of nodes that are one place (LatticeMesh::closed), first the one that stands for both: what acts on
+  // either acts on both, and where they move they move together.
+  const int* seam = nullptr;
+  int seam_count = 0;
   // One a block: 0 where no spring or cell that starts there has a free node. Forces leave such blocks out,
   // and are then those on free nodes alone.
   const unsigned char* active_block = nullptr;
@@ -116,9 +120,10 @@ struct LatticeKernels {
   // p = K_v x / (1 + (x / 0.1)^2), which the springs outlast. A cell crushed below 0.3 of its volume pushes
   // back by crushed_stiffness beside that: to springs a cell inside out is as good as one that is not.
   void (*volume_forces)(const LatticeView&);
-  // v = (v + h (f/m + g)) * decay.
+  // v = (v + h (f/m + g)) * decay, with the forces on a seam's pairs added up.
   void (*kick)(const LatticeView&, float h_s, float decay, float gx, float gy, float gz);
-  // Caps speeds relative to the mean, then d += h v, and looks ahead.
+  // Caps speeds relative to the mean, then d += h v, and looks ahead; the second of a seam's pair at the
+  // first's velocity.
   Drifted (*drift)(const LatticeView&, const Drift&);
   // Mass-weighted sums of velocity over free nodes; masses enter as given. sum[4]: x, y, z, mass.
   void (*momentum)(const LatticeView&, const float* mass, float sum[4]);

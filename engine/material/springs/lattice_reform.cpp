@@ -59,9 +59,19 @@ bool SpringLattice::reform(int node, const Vector3& move_m) {
   // What single precision makes of it.
   const Vector3 before = displacement(node);
   const Vector3 move = (before + move_m).cast<float>().cast<double>() - before;
-  Reforming next;
+  const int twin = mesh_.twin(node);
+  Reforming next, of_twin;
   if (!reform_springs(node, move, next) || !reform_cells(node, move, next)) return false;
+  if (twin != node && (!reform_springs(twin, move, of_twin) || !reform_cells(twin, move, of_twin))) {
+    return false;
+  }
   set_displacement(node, before + move);
+  take_reformed(next);
+  take_reformed(of_twin);
+  return true;
+}
+
+void SpringLattice::take_reformed(const Reforming& next) {
   for (std::size_t s = 0; s < next.spring_count; ++s) {
     const auto& [d, start, rest] = next.springs[s];
     const float change = rest - rest_length_[d][start];
@@ -71,7 +81,6 @@ bool SpringLattice::reform(int node, const Vector3& move_m) {
   for (std::size_t c = 0; c < next.cell_count; ++c) {
     rest_volume_sum_[next.cells[c].first] = next.cells[c].rest_volume_sum;
   }
-  return true;
 }
 
 }  // namespace spoonbill

@@ -14,7 +14,23 @@ inline void kick_block(float* __restrict v, const float* __restrict f, const flo
   for (int l = 0; l < block; ++l) v[l] = (v[l] + h * (f[l] * inverse_mass[l] + g)) * decay * free[l];
 }
 
+// Gives the second of a seam's pair what the first has.
+void follow_seam(const LatticeView& view, float* of) {
+  for (int s = 0; s < view.seam_count; ++s) of[view.seam[2 * s + 1]] = of[view.seam[2 * s]];
+}
+
 }  // namespace
+
+void join_seam(const LatticeView& view, float* of) {
+  for (int s = 0; s < view.seam_count; ++s) of[view.seam[2 * s]] += of[view.seam[2 * s + 1]];
+  follow_seam(view, of);
+}
+
+void join_seam_forces(const LatticeView& view) {
+  join_seam(view, view.fx);
+  join_seam(view, view.fy);
+  join_seam(view, view.fz);
+}
 
 void look_ahead(const LatticeView& view, float tau) {
   for (int i = 0; i < view.padded_count; ++i) view.ahead_x[i] = view.dx[i] + tau * view.vx[i];
@@ -23,6 +39,7 @@ void look_ahead(const LatticeView& view, float tau) {
 }
 
 void kick(const LatticeView& view, float h, float decay, float gx, float gy, float gz) {
+  join_seam_forces(view);
   for (int i = 0; i < view.padded_count; i += block) {
     if (view.free_block[i / block] == 0) continue;
     const float *inverse_mass = view.inverse_mass + i, *free = view.free_node + i;
@@ -80,6 +97,9 @@ Drifted drift(const LatticeView& view, const Drift& drift) {
   alignas(64) float ratio[block], squares[block];
   const float inverse_square = 1.0f / (drift.cap_m_per_s * drift.cap_m_per_s);
   Drifted drifted;
+  follow_seam(view, view.vx);
+  follow_seam(view, view.vy);
+  follow_seam(view, view.vz);
   for (int i = 0; i < view.padded_count; i += block) {
     if (view.free_block[i / block] == 0) continue;
     speed_ratios(view.vx + i, view.vy + i, view.vz + i, view.free_node + i, ratio, drift, inverse_square);

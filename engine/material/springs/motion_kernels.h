@@ -11,6 +11,10 @@
 
 namespace spoonbill::SPOONBILL_KERNELS {
 
+// Adds up a field on the nodes over each of a seam's pairs.
+void join_seam(const LatticeView& view, float* of);
+void join_seam_forces(const LatticeView& view);
+
 void look_ahead(const LatticeView& view, float tau_s);
 void kick(const LatticeView& view, float h_s, float decay, float gx, float gy, float gz);
 Drifted drift(const LatticeView& view, const Drift& drift);

@@ -76,6 +76,9 @@ void SpringLattice::lay_out(const LatticeMesh& mesh) {
     offset_[d] = direction_step[d][0] * row + direction_step[d][1] + direction_step[d][2] * layer;
     reach = std::max(reach, offset_[d]);
   }
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    if (mesh.joined(n) != n) seam_.insert(seam_.end(), {mesh.joined(n), n});
+  }
   padded_count_ = (mesh.node_count() + lattice_block - 1) / lattice_block * lattice_block;
   const std::size_t size = static_cast<std::size_t>(padded_count_ + reach + lattice_block);
   for (Floats* a : {&dx_,
@@ -156,6 +159,7 @@ void SpringLattice::assemble(const Material& material, double youngs_modulus_pa)
     report_.poissons_ratio[axis] /= rest_volume_;
   }
   total_mass_ = material.density_kg_per_m3 * rest_volume_;
+  join_nodes(sum);
   store_nodes(sum);
   for (int d = 0; d < lattice_direction_count; ++d) store_springs(d, sum);
 }
@@ -199,12 +203,23 @@ void SpringLattice::add_cell(int i, int j, int k, Assembly& sum) {
   report_.worst_jacobian = std::min(report_.worst_jacobian, smallest_jacobian_ratio(corners));
 }
 
+// The first of a seam's pair has the mass of both.
+void SpringLattice::join_nodes(Assembly& sum) {
+  for (std::size_t s = 0; s < seam_.size(); s += 2) {
+    const auto first = static_cast<std::size_t>(seam_[s]), second = static_cast<std::size_t>(seam_[s + 1]);
+    sum.mass[first] += sum.mass[second];
+    sum.mass[second] = 0.0;
+    sum.cell_count[first] += sum.cell_count[second];
+    sum.cell_count[second] = sum.cell_count[first];
+  }
+}
+
 void SpringLattice::store_nodes(const Assembly& sum) {
   for (std::size_t n = 0; n < sum.mass.size(); ++n) {
     node_mass_[n] = static_cast<float>(sum.mass[n]);
     inverse_cell_count_[n] = static_cast<float>(1.0 / sum.cell_count[n]);
-    power_noise_[n] =
-        noise_share * mixed(static_cast<std::uint32_t>(n) + 1) / std::sqrt(static_cast<float>(total_mass_));
+    power_noise_[n] = noise_share * mixed(static_cast<std::uint32_t>(mesh_.joined(static_cast<int>(n))) + 1) /
+                      std::sqrt(static_cast<float>(total_mass_));
   }
 }
 
@@ -231,9 +246,10 @@ void SpringLattice::store_springs(int d, const Assembly& sum) {
 void SpringLattice::measure_fastest_frequency() {
   const LatticeView lattice = view();
   for (int n = 0; n < mesh_.node_count(); ++n) {
-    power_x_[n] = mixed(static_cast<std::uint32_t>(3 * n + 1));
-    power_y_[n] = mixed(static_cast<std::uint32_t>(3 * n + 2));
-    power_z_[n] = mixed(static_cast<std::uint32_t>(3 * n + 3));
+    const int place = mesh_.joined(n);
+    power_x_[n] = mixed(static_cast<std::uint32_t>(3 * place + 1));
+    power_y_[n] = mixed(static_cast<std::uint32_t>(3 * place + 2));
+    power_z_[n] = mixed(static_cast<std::uint32_t>(3 * place + 3));
   }
   kernels_->look_ahead(lattice, 0.0f);
   kernels_->linearise_springs(lattice);
@@ -272,6 +288,8 @@ LatticeView SpringLattice::view() {
   v.spring_z = spring_force_[2].data();
   v.inverse_mass = inverse_mass_.data();
   v.free_node = free_node_.data();
+  v.seam = seam_.data();
+  v.seam_count = static_cast<int>(seam_.size() / 2);
   v.active_block = active_block_.data();
   v.free_block = free_block_.data();
   for (int d = 0; d < lattice_direction_count; ++d) {
@@ -321,7 +339,7 @@ double SpringLattice::volume_m3() const {
 }
 
 float SpringLattice::free_inverse_mass(int node) const {
-  return contact_inverse_mass_ > 0.0f ? contact_inverse_mass_ : 1.0f / node_mass_[node];
+  return contact_inverse_mass_ > 0.0f ? contact_inverse_mass_ : 1.0f / node_mass_[mesh_.joined(node)];
 }
 
 void SpringLattice::set_contact_inverse_mass(double inverse_mass_per_kg) {
@@ -335,7 +353,8 @@ void SpringLattice::hold(std::span<const std::uint8_t> held) {
   held_count_ =
       static_cast<int>(std::count_if(held.begin(), held.end(), [](std::uint8_t is) { return is != 0; }));
   for (int n = 0; n < mesh_.node_count(); ++n) {
-    const bool free = held[static_cast<std::size_t>(n)] == 0;
+    const bool free =
+        held[static_cast<std::size_t>(n)] == 0 && held[static_cast<std::size_t>(mesh_.twin(n))] == 0;
     inverse_mass_[n] = free ? free_inverse_mass(n) : 0.0f;
     free_mass_[n] = free ? node_mass_[n] : 0.0f;
     free_node_[n] = free ? 1.0f : 0.0f;
@@ -357,15 +376,19 @@ void SpringLattice::find_active_blocks() {
 }
 
 void SpringLattice::set_displacement(int node, const Vector3& d) {
-  dx_[node] = static_cast<float>(d.x());
-  dy_[node] = static_cast<float>(d.y());
-  dz_[node] = static_cast<float>(d.z());
+  for (const int n : {node, mesh_.twin(node)}) {
+    dx_[n] = static_cast<float>(d.x());
+    dy_[n] = static_cast<float>(d.y());
+    dz_[n] = static_cast<float>(d.z());
+  }
 }
 
 void SpringLattice::set_velocity(int node, const Vector3& v) {
-  vx_[node] = static_cast<float>(v.x());
-  vy_[node] = static_cast<float>(v.y());
-  vz_[node] = static_cast<float>(v.z());
+  for (const int n : {node, mesh_.twin(node)}) {
+    vx_[n] = static_cast<float>(v.x());
+    vy_[n] = static_cast<float>(v.y());
+    vz_[n] = static_cast<float>(v.z());
+  }
 }
 
 void SpringLattice::set_node_force(int node, const Vector3& force_n) {

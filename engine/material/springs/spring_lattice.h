@@ -55,6 +55,7 @@ class SpringLattice {
   bool has_held_nodes() const { return held_count_ > 0; }
   int held_count() const { return held_count_; }
   float inverse_mass(int node) const { return inverse_mass_[node]; }
+  // 0 of the second of two nodes that are one place.
   float mass(int node) const { return node_mass_[node]; }
 
   // Displacements from the rest shape along one axis, m, one a node.
@@ -63,11 +64,12 @@ class SpringLattice {
   Vector3 position(int node) const { return mesh_.nodes[node] + displacement(node); }
   std::vector<Vector3> positions() const;  // of all nodes
   Vector3 velocity(int node) const { return {vx_[node], vy_[node], vz_[node]}; }
+  // Of both nodes of a place.
   void set_displacement(int node, const Vector3& d);
   void set_velocity(int node, const Vector3& v);
-  // Moves a node for good: its springs and cells take their new lengths and volumes as their rest, so that no
-  // strain changes. False, and nothing changed, where a spring would leave half to twice its first length, as
-  // in flow, or a cell a quarter to four times its first volume.
+  // Moves a node, and its twin, for good: its springs and cells take their new lengths and volumes as their
+  // rest, so that no strain changes. False, and nothing changed, where a spring would leave half to twice its
+  // first length, as in flow, or a cell a quarter to four times its first volume.
   bool reform(int node, const Vector3& move_m);
   // A force on a node that stays until changed, N.
   void set_node_force(int node, const Vector3& force_n);
@@ -113,6 +115,7 @@ class SpringLattice {
   struct Assembly;
   void assemble(const Material& material, double youngs_modulus_pa);
   void add_cell(int i, int j, int k, Assembly& sum);
+  void join_nodes(Assembly& sum);
   void store_nodes(const Assembly& sum);
   void store_springs(int direction, const Assembly& sum);
   void measure_fastest_frequency();
@@ -122,6 +125,7 @@ class SpringLattice {
   struct Reforming;
   bool reform_springs(int node, const Vector3& move, Reforming& next) const;
   bool reform_cells(int node, const Vector3& move, Reforming& next) const;
+  void take_reformed(const Reforming& next);
 
   using Floats = AlignedVector<float>;
 
@@ -134,6 +138,7 @@ class SpringLattice {
   float contact_inverse_mass_ = 0.0f;
   bool has_applied_force_ = false;
   int held_count_ = 0, padded_count_ = 0;
+  std::vector<int> seam_;  // see LatticeView::seam
   int offset_[lattice_direction_count] = {};
 
   Floats dx_, dy_, dz_, vx_, vy_, vz_, fx_, fy_, fz_;

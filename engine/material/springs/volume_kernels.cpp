@@ -1,5 +1,7 @@
 #include "engine/material/springs/volume_kernels.h"
 
+#include "engine/material/springs/motion_kernels.h"
+
 namespace spoonbill::SPOONBILL_KERNELS {
 namespace {
 
@@ -192,6 +194,7 @@ void average_dilations(const LatticeView& view) {
       for (int l = 0; l < block; ++l) j[l] += dilation[l];
     }
   }
+  join_seam(view, view.node_dilation);
   for (int i = 0; i < view.padded_count; ++i) view.node_dilation[i] *= view.inverse_cell_count[i];
 }
 

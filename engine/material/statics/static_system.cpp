@@ -31,10 +31,18 @@ void add_pressure(const PressedFace& face, const LatticeMesh& mesh, const Eigen:
 }  // namespace
 
 StaticSystem::StaticSystem(const StaticBody& body, const std::vector<HeldAxis>& held)
-    : body_(&body), held_(&held), free_(3 * static_cast<std::size_t>(body.mesh().node_count()), 0) {
-  for (const HeldAxis& axis : held) free_[static_cast<std::size_t>(3 * axis.node + axis.axis)] = -1;
-  for (Eigen::Index& place : free_) {
-    if (place == 0) place = free_count_++;
+    : body_(&body), held_(held), free_(3 * static_cast<std::size_t>(body.mesh().node_count()), 0) {
+  const LatticeMesh& mesh = body.mesh();
+  for (const HeldAxis& axis : held) {
+    if (mesh.twin(axis.node) != axis.node) {
+      held_.push_back({mesh.twin(axis.node), axis.axis, axis.displacement_m});
+    }
+  }
+  for (const HeldAxis& axis : held_) free_[static_cast<std::size_t>(3 * axis.node + axis.axis)] = -1;
+  for (std::size_t c = 0; c < free_.size(); ++c) {
+    const int node = static_cast<int>(c / 3), joined = mesh.joined(node);  // not after the node
+    if (free_[c] == 0)
+      free_[c] = joined == node ? free_count_++ : free_[3 * static_cast<std::size_t>(joined) + c % 3];
   }
   lay_out();
 }
@@ -74,7 +82,7 @@ void StaticSystem::lay_out() {
 }
 
 void StaticSystem::hold(double share, Coordinates& at) const {
-  for (const HeldAxis& axis : *held_) {
+  for (const HeldAxis& axis : held_) {
     at[3 * static_cast<Eigen::Index>(axis.node) + axis.axis] = share * axis.displacement_m;
   }
 }
@@ -135,9 +143,9 @@ StaticSystem::Coordinates StaticSystem::loads(const StaticLoads& loads, const Co
 }
 
 StaticSystem::Coordinates StaticSystem::free_of(const Coordinates& all) const {
-  Coordinates result(free_count_);
+  Coordinates result = Coordinates::Zero(free_count_);
   for (std::size_t c = 0; c < free_.size(); ++c) {
-    if (free_[c] >= 0) result[free_[c]] = all[static_cast<Eigen::Index>(c)];
+    if (free_[c] >= 0) result[free_[c]] += all[static_cast<Eigen::Index>(c)];
   }
   return result;
 }

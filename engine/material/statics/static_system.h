@@ -45,7 +45,7 @@ class StaticSystem {
   void add(std::size_t cell, const CellMatrix& tangent);
 
   const StaticBody* body_;
-  const std::vector<HeldAxis>* held_;
+  std::vector<HeldAxis> held_;      // on both nodes of a place
   std::vector<Eigen::Index> free_;  // by coordinate: which free one it is; -1 where held
   Eigen::Index free_count_ = 0;
   Stiffness stiffness_;

@@ -138,7 +138,7 @@ TEST(DisplacementRefit, HeldColumnsNeverMoveAndKeptEndsFollowTheirSamples) {
   RefitConstraints constraints;
   constraints.held_columns.assign(13, 0);
   constraints.held_columns[4] = constraints.held_columns[5] = 1;
-  constraints.keep_ends = true;
+  constraints.keep_first = constraints.keep_last = true;
   auto refit = DisplacementRefit::make(grid, constraints, best_instruction_set()).value();
   // Every sample of the first column moves alike, as at a pole.
   auto samples = random_numbers(random, 20 * 29, 0.01);

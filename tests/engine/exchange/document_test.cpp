@@ -55,6 +55,29 @@ TEST(Document, NeedsNoPlanesAndNoView) {
   EXPECT_TRUE(read->scene.planes.empty());
 }
 
+TEST(Document, KeepsTheThicknessOfAShell) {
+  Document document = sample_document();
+  EXPECT_FALSE(document_to_json(document)["body"].contains("shell_thickness_mm")) << "a solid has none";
+  document.scene.bodies[0].shell_thickness_m = 0.0015;
+  const Json json = document_to_json(document);
+  EXPECT_EQ(json_to_line(json["body"]["shell_thickness_mm"]), "1.5");
+  EXPECT_EQ(through_text(document).scene.bodies[0].shell_thickness_m, 0.0015);
+}
+
+TEST(Document, RefusesWhatIsNoThickness) {
+  const auto refused = [](const Json& thickness) {
+    return refusal([&](Json& json) { json["body"]["shell_thickness_mm"] = thickness; });
+  };
+  for (const Json& thickness : {Json(-2), Json(0), Json(1000), Json("thin"), Json(nullptr), Json::array()}) {
+    const std::string message = refused(thickness);
+    EXPECT_EQ(message.substr(0, 36), "sample.json: body.shell_thickness_mm") << thickness;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+  // Only a surface's body has one.
+  EXPECT_NE(refusal([](Json& json) { json["tool"]["shell_thickness_mm"] = 2; }).find("shell_thickness_mm"),
+            std::string::npos);
+}
+
 TEST(Document, ScalesNormalsToUnitLength) {
   Json json = document_to_json(sample_document());
   json["fixing_planes"][0]["normal"] = {0, 3, 4};

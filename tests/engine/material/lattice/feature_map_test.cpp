@@ -82,14 +82,33 @@ TEST(FeatureMap, CanBeStopped) {
   LatticeMesh mesh = crowded_bend();
   const std::vector<Vector3> before = mesh.nodes;
   double last = -1.0;
-  const FeatureMapReport report = order_by_feature_map(mesh, {}, [&last](double share) {
-    EXPECT_GT(share, last);
-    last = share;
-    return share < 0.1;
-  });
+  int done = 0;
+  const FeatureMapReport report = order_by_feature_map(mesh, {},
+                                                       {[&last](double share) {
+                                                          EXPECT_GT(share, last);
+                                                          last = share;
+                                                          return share < 0.1;
+                                                        },
+                                                        [&done](const FeatureMapReport&) { ++done; }});
+  EXPECT_EQ(done, 0);
   EXPECT_EQ(mesh.nodes, before);
   EXPECT_EQ(report.share, 0.0);
   EXPECT_GE(last, 0.1);
+}
+
+TEST(FeatureMap, TellsHowItComesAlongAndWhatItMade) {
+  LatticeMesh mesh = crowded_bend();
+  double last = -1.0;
+  FeatureMapReport told;
+  const FeatureMapReport report = order_by_feature_map(mesh, {},
+                                                       {[&last](double share) {
+                                                          last = share;
+                                                          return true;
+                                                        },
+                                                        [&told](const FeatureMapReport& of) { told = of; }});
+  EXPECT_EQ(last, 1.0);
+  EXPECT_EQ(told.share, report.share);
+  EXPECT_EQ(told.after.worst_jacobian, quality_of(mesh).worst_jacobian);
 }
 
 TEST(FeatureMap, SettingsHaveRanges) {

@@ -1,0 +1,119 @@
+// Lattices of box-like and round bodies, whose ends are caps as large as their sides, and of merged ones
+// whose thickness varies.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "engine/material/lattice/feature_map.h"
+#include "engine/material/lattice/tube_lattice.h"
+#include "engine/material/springs/spring_lattice.h"
+#include "tests/engine/material/block.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// A tube along z; at the share of its length, half its width over x and half its thickness over y. Rings are
+// superellipses. The rings beside the poles lie in their planes, so that the ends are smooth.
+struct Profile {
+  double length_m;
+  double exponent;
+  std::function<double(double)> half_width_m, half_thickness_m;
+};
+
+Surface tube_of(const Profile& profile, int around = 16, int along = 20) {
+  const KnotVector knots = KnotVector::clamped_uniform(3, along).value();
+  ControlNet net(around, along);
+  for (int i = 0; i < around; ++i) {
+    const double angle = 2.0 * pi * i / around, c = std::cos(angle), s = std::sin(angle);
+    const double radius =
+        std::pow(std::pow(std::abs(c), profile.exponent) + std::pow(std::abs(s), profile.exponent),
+                 -1.0 / profile.exponent);
+    for (int j = 0; j < along; ++j) {
+      double share = (knots.knots()[j + 1] + knots.knots()[j + 2] + knots.knots()[j + 3]) / 3.0;
+      const bool pole = j == 0 || j == along - 1;
+      const double width = pole ? 0.0 : profile.half_width_m(share);
+      const double thickness = pole ? 0.0 : profile.half_thickness_m(share);
+      if (j == 1) share = 0.0;
+      if (j == along - 2) share = 1.0;
+      net.set_point(i, j, {width * radius * c, thickness * radius * s, profile.length_m * share});
+    }
+  }
+  return make_surface(KnotVector::periodic_uniform(3, around).value(), knots, net).value();
+}
+
+// Of a circle's or an ellipse's height over the share of its length.
+double arch(double share) {
+  return std::sqrt(std::max(0.0, 1.0 - std::pow(2.0 * share - 1.0, 2)));
+}
+
+Profile sphere() {
+  const auto half = [](double share) { return 0.03 * arch(share); };
+  return {0.06, 2.0, half, half};
+}
+Profile egg() {
+  const auto half = [](double share) { return 0.022 * arch(share) * (1.15 - 0.3 * share); };
+  return {0.058, 2.0, half, half};
+}
+Profile pear() {
+  const auto half = [](double share) {
+    return 0.03 * arch(share) * (share < 0.5 ? 1.0 : 1.0 - 0.55 * std::pow(std::sin(pi * (share - 0.5)), 2));
+  };
+  return {0.09, 2.0, half, half};
+}
+Profile rounded_box() {
+  const auto end = [](double share) {
+    return std::pow(1.0 - std::pow(std::abs(2.0 * share - 1.0), 8.0), 0.125);
+  };
+  return {0.03, 8.0, [end](double share) { return 0.012 * end(share); },
+          [end](double share) { return 0.01 * end(share); }};
+}
+// A handle of 12 x 9 mm that goes over into an end of 36 x 2 mm.
+Profile spoon() {
+  const auto blend = [](double share) {
+    const double t = std::clamp((share - 0.5) / 0.2, 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+  };
+  const auto end = [](double share) {
+    return std::pow(1.0 - std::pow(std::abs(2.0 * share - 1.0), 8.0), 0.125);
+  };
+  return {0.15, 2.5, [=](double share) { return end(share) * (0.006 + 0.012 * blend(share)); },
+          [=](double share) { return end(share) * (0.0045 - 0.0035 * blend(share)); }};
+}
+
+TEST(RoundBodies, HavePositiveCells) {
+  struct Case {
+    const char* name;
+    Profile profile;
+    double worst_jacobian;
+  };
+  for (const Case& of : {Case{"sphere", sphere(), 0.1}, Case{"egg", egg(), 0.1}, Case{"pear", pear(), 0.1},
+                         Case{"rounded box", rounded_box(), 0.3}, Case{"spoon", spoon(), 0.05}}) {
+    for (const int budget : {500, 2000, 8000}) {
+      const Result<LatticeMesh> mesh = tube_lattice(tube_of(of.profile), {budget, {}});
+      ASSERT_TRUE(mesh.ok()) << of.name << ", " << budget << ": " << mesh.error().message;
+      const CellQuality quality = quality_of(mesh.value());
+      EXPECT_GT(quality.worst_jacobian, of.worst_jacobian) << of.name << ", " << budget;
+      EXPECT_LT(quality.volume_spread, 1.0) << of.name << ", " << budget;
+    }
+  }
+}
+
+// As a mean over the cells, along each axis.
+TEST(RoundBodies, RoundedBoxIsAsStiffAsItsMaterial) {
+  for (const int budget : {2000, 8000}) {
+    const LatticeMesh mesh = tube_lattice(tube_of(rounded_box()), {budget, {}}).value();
+    const SpringLattice lattice =
+        SpringLattice::make(mesh, elastic_material(1e5, 0.3, 1000.0), 1e5, InstructionSet::baseline).value();
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(lattice.report().youngs_modulus_ratio[axis], 1.0, 0.03) << budget << ", axis " << axis;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill
