@@ -3,6 +3,7 @@
 #include <CLI/Formatter.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "app/commands/command.h"
@@ -10,6 +11,7 @@
 #include "app/files/file_kind.h"
 #include "app/report/document_facts.h"
 #include "app/report/hash_text.h"
+#include "app/report/map_progress.h"
 #include "app/session/session.h"
 #include "engine/number_text.h"
 #include "haptic/recording.h"
@@ -32,25 +34,31 @@ void add_duration(FactSheet& facts, std::uint64_t ticks) {
   facts.add("", "", "duration_s", static_cast<double>(ticks) / 1000.0);
 }
 
-Status add_simulated(FactSheet& facts, const Document& document, const std::string& source) {
+Status add_simulated(FactSheet& facts, const Document& document, const std::string& source,
+                     Console& console) {
   add_document_facts(facts, document);
-  auto session =
-      Session::make(document, source, VirtualDevice::default_specification(), best_instruction_set());
+  MapProgress maps(console);
+  auto session = Session::make(document, source, VirtualDevice::default_specification(),
+                               best_instruction_set(), maps.watch());
   if (!session) return session.error();
   Snapshot snapshot;
   write_snapshot(session.value(), snapshot);
   add_simulation_facts(facts, snapshot);
+  for (const std::string& remark : session->simulation.remarks()) facts.add("Note", remark, "", nullptr);
+  facts.add("", "", "remarks", session->simulation.remarks());
+  const bool has_map = document.scene.bodies[0].lattice.feature_map.has_value();
+  add_cell_facts(facts, session->simulation.lattice().mesh(), has_map ? maps.report() : std::nullopt);
   return {};
 }
 
-Status describe_document(FactSheet& facts, const std::filesystem::path& file) {
+Status describe_document(FactSheet& facts, const std::filesystem::path& file, Console& console) {
   const auto document = read_document(file);
   if (!document) return document.error();
   facts.add("Kind", "document", "kind", "document");
-  return add_simulated(facts, document.value(), file.string());
+  return add_simulated(facts, document.value(), file.string(), console);
 }
 
-Status describe_recording(FactSheet& facts, const std::filesystem::path& file) {
+Status describe_recording(FactSheet& facts, const std::filesystem::path& file, Console& console) {
   const auto recording = read_recording(file);
   if (!recording) return recording.error();
   if (Status checked = check_commands(recording->commands); !checked) return checked;
@@ -66,7 +74,7 @@ Status describe_recording(FactSheet& facts, const std::filesystem::path& file) {
   const DeviceSpecification& device = recording->header.device;
   facts.add("Device", device.name + ", at most " + number_text(device.maximum_force_n) + " N", "device",
             {{"name", device.name}, {"maximum_force_n", device.maximum_force_n}});
-  return add_simulated(facts, recording->header.document, file.string());
+  return add_simulated(facts, recording->header.document, file.string(), console);
 }
 
 Status describe_script(FactSheet& facts, const std::filesystem::path& file) {
@@ -88,14 +96,14 @@ Status describe_material(FactSheet& facts, const std::filesystem::path& file) {
   return {};
 }
 
-Status describe(FactSheet& facts, const std::filesystem::path& file) {
+Status describe(FactSheet& facts, const std::filesystem::path& file, Console& console) {
   const auto kind = kind_of_file(file);
   if (!kind) return kind.error();
   switch (kind.value()) {
     case FileKind::document:
-      return describe_document(facts, file);
+      return describe_document(facts, file, console);
     case FileKind::recording:
-      return describe_recording(facts, file);
+      return describe_recording(facts, file, console);
     case FileKind::script:
       return describe_script(facts, file);
     case FileKind::material:
@@ -107,7 +115,7 @@ Status describe(FactSheet& facts, const std::filesystem::path& file) {
 Status info(const InfoOptions& options, Console& console) {
   FactSheet facts;
   facts.add("File", options.file.string(), "file", options.file.string());
-  if (Status described = describe(facts, options.file); !described) return described;
+  if (Status described = describe(facts, options.file, console); !described) return described;
   facts.print(console.out, options.json);
   return {};
 }
@@ -120,7 +128,8 @@ CommandEntry add_info(CLI::App& root) {
   parser->footer(
       "A model is reported with its size, its surfaces' degrees, control points and knots, and the lattice "
       "that a\n"
-      "simulation would have: nodes, mass, and the Young's modulus felt while sculpting.\n"
+      "simulation would have: nodes, how good its cells are, mass, and the Young's modulus felt while "
+      "sculpting.\n"
       "Example: spoonbill info assets/models/spoon-handle.json");
   parser->add_option("FILE", options->file, "A document, script or material (.json), or a recording")
       ->required();

@@ -14,6 +14,7 @@
 #include "app/live/performance.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/hash_text.h"
+#include "app/report/map_progress.h"
 #include "app/report/progress_bar.h"
 #include "app/session/lockstep.h"
 #include "app/session/scripted_device.h"
@@ -53,8 +54,12 @@ Status run(Lockstep& lockstep, Session& session, Console& console) {
 Status record_input(const RecordOptions& options, const RecordingHeader& header, const std::string& model,
                     LockstepInput input, Console& console) {
   if (Status checked = check_commands(input.commands); !checked) return checked;
-  auto session = Session::make(header.document, model, header.device, options.instruction_set);
+  auto session = [&] {
+    MapProgress maps(console);
+    return Session::make(header.document, model, header.device, options.instruction_set, maps.watch());
+  }();
   if (!session) return session.error();
+  for (const std::string& remark : session->simulation.remarks()) console.err << remark << '\n';
   const RecordingPlace place(options.out);
   auto writer = RecordingWriter::create(place.written(), header);
   if (!writer) return writer.error();

@@ -17,6 +17,7 @@
 #include "app/panel/session_panel.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/hash_text.h"
+#include "app/report/map_progress.h"
 #include "app/report/progress_bar.h"
 #include "app/session/lockstep.h"
 #include "haptic/playback_device.h"
@@ -159,8 +160,11 @@ Status run_with_pictures(const Replay& replay, FactSheet& facts) {
 Status replay_recording(const ReplayOptions& options, const Recording& recording, Console& console) {
   if (Status checked = check_commands(recording.commands); !checked) return checked;
   const std::string source = options.recording.string();
-  auto session =
-      Session::make(recording.header.document, source, recording.header.device, options.instruction_set);
+  auto session = [&] {
+    MapProgress maps(console, options.progress);
+    return Session::make(recording.header.document, source, recording.header.device, options.instruction_set,
+                         maps.watch());
+  }();
   if (!session) return session.error();
   std::optional<RecordingWriter> writer;
   const RecordingPlace place(options.rerecord);

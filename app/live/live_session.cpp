@@ -58,6 +58,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
   LiveFrame first;
   write_snapshot(made, first.snapshot);
   write_facts(made, first.facts);
+  const std::vector<std::string> remarks = made.simulation.remarks();
   const LiveScene first_scene{made.title, document_of(made).scene};
   std::unique_ptr<LiveSession> live(
       new LiveSession(std::move(session).value(), std::move(device).value(), settings, first, first_scene));
@@ -70,6 +71,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
   if (const std::string notice = live->loop_->figures().notice; !notice.empty()) {
     live->notices_.add(Notice::Kind::information, notice);
   }
+  for (const std::string& remark : remarks) live->notices_.add(Notice::Kind::problem, remark);
   return live;
 }
 

@@ -45,6 +45,18 @@ std::string direction_text(const KnotVector& knots) {
          (knots.is_periodic() ? "periodic" : "open");
 }
 
+// 1 is a box, 0 a cell about to fold over.
+std::string quality_text(const CellQuality& quality) {
+  std::array<char, 80> text{};
+  std::snprintf(text.data(), text.size(), "worst Jacobian %.2f, volumes vary by %.0f %%",
+                quality.worst_jacobian, 100.0 * quality.volume_spread);
+  return text.data();
+}
+
+Json quality_facts(const CellQuality& quality) {
+  return {{"worst_jacobian", quality.worst_jacobian}, {"volume_spread", quality.volume_spread}};
+}
+
 }  // namespace
 
 void add_document_facts(FactSheet& facts, const Document& document) {
@@ -53,7 +65,10 @@ void add_document_facts(FactSheet& facts, const Document& document) {
   facts.add("Name", document.name, "name", document.name);
   facts.add("Unit", "mm (of the file's lengths)", "unit", "mm");
   facts.add("Size", size_text(size), "size_mm", {1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z()});
-  facts.add("Body", body.name, "body", body.name);
+  const std::string kind =
+      body.shell_thickness_m ? ", a shell of " + number_text(1e3 * *body.shell_thickness_m) + " mm" : "";
+  facts.add("Body", body.name + kind, "body", body.name);
+  if (body.shell_thickness_m) facts.add("", "", "shell_thickness_m", *body.shell_thickness_m);
   facts.add("Along u", direction_text(body.surface.u), "", nullptr);
   facts.add("Along v", direction_text(body.surface.v), "", nullptr);
   facts.add("", "", "surfaces",
@@ -69,6 +84,17 @@ void add_material_facts(FactSheet& facts, const Material& material) {
                 number_text(material.poissons_ratio) + ", density " +
                 density_text(material.density_kg_per_m3),
             "material", material_to_json(material));
+}
+
+void add_cell_facts(FactSheet& facts, const LatticeMesh& mesh, const std::optional<FeatureMapReport>& map) {
+  const CellQuality quality = quality_of(mesh);
+  Json json = quality_facts(quality);
+  if (map) {
+    json["before_feature_map"] = quality_facts(map->before);
+    json["feature_map_share"] = map->share;
+    facts.add("Cells before", quality_text(map->before), "", nullptr);
+  }
+  facts.add(map ? "Cells mapped" : "Cells", quality_text(quality), "cells", json);
 }
 
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot) {

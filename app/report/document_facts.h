@@ -1,6 +1,8 @@
 // What there is to say about a document, its material and the simulation made from it.
 #pragma once
 
+#include <optional>
+
 #include "app/report/fact_sheet.h"
 #include "engine/exchange/document.h"
 #include "engine/simulation/snapshot.h"
@@ -14,5 +16,8 @@ void add_material_facts(FactSheet& facts, const Material& material);
 
 // Of the snapshot of a simulation that has just been built.
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot);
+
+// How good the lattice's cells are, and what a feature map made of them where there was one.
+void add_cell_facts(FactSheet& facts, const LatticeMesh& mesh, const std::optional<FeatureMapReport>& map);
 
 }  // namespace spoonbill

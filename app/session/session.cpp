@@ -43,10 +43,10 @@ struct RequestApplier {
 }  // namespace
 
 Result<Session> Session::make(const Document& document, const std::string& source, DeviceSpecification device,
-                              InstructionSet set) {
+                              InstructionSet set, const FeatureMapWatch& watch) {
   auto view = view_from_json(document.view, source);
   if (!view) return view.error();
-  auto simulation = Simulation::make(document.scene, set);
+  auto simulation = Simulation::make(document.scene, set, watch);
   if (!simulation) return Error{source + ": " + simulation.error().message};
   StrokeHistory history(simulation.value());
   return Session{document.name,

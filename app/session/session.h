@@ -34,9 +34,9 @@ struct Session {
   std::uint32_t flags = tick_flag_none;  // TickFlag bits, gathered until somebody clears them
   std::vector<FileMark> marks;           // gathered until somebody takes them
 
-  // `source` names the document's file in messages.
+  // `source` names the document's file in messages; `watch` is told how feature maps come along.
   static Result<Session> make(const Document& document, const std::string& source, DeviceSpecification device,
-                              InstructionSet set);
+                              InstructionSet set, const FeatureMapWatch& watch = {});
 };
 
 // One tick of touch; the undo history follows.
