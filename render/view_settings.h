@@ -18,6 +18,7 @@ struct Overlays {
   bool fixed_nodes = true;       // green squares
   bool touched_nodes = true;     // red discs
   bool lattice = false;          // the thinnest lines
+  bool cells = false;            // thick lines: where the lattice's hexahedra meet the surface
   bool control_net = false;      // thin lines with points
   bool force = true;             // the force on the hand: an arrow with its newtons
   bool contact_normals = false;  // short lines out of the contact points

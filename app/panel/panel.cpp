@@ -194,8 +194,12 @@ void draw_view(const PanelModel& model, const Theme& theme, PanelAnswer& answer)
   };
   pair("Fixed nodes", overlays.fixed_nodes, "Touched nodes", overlays.touched_nodes);
   pair("Lattice", overlays.lattice, "Control net", overlays.control_net);
-  pair("Force", overlays.force, "Fixing planes", overlays.fixing_planes);
-  pair("See through", see_through, "Legend", overlays.legend);
+  pair("See through", see_through, "Fixing planes", overlays.fixing_planes);
+  // Three short ones, so that the panel needs no row more.
+  pair("Force", overlays.force, "Cells", overlays.cells);
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(0.71F * theme.metrics.panel_width_px);
+  changed |= ImGui::Checkbox("Legend", &overlays.legend);
   changed |= draw_stage(overlays);
   if (changed) answer.requests.emplace_back(ChangeView{overlays_command(overlays, see_through)});
 }

@@ -19,10 +19,11 @@ constexpr Range<double> pitch_range_deg{-89.0, 89.0};
 constexpr Range<double> field_of_view_range_deg{5.0, 90.0};
 constexpr Range<double> distance_range_m{0.001, 100.0};
 
-constexpr std::array<std::pair<const char*, bool Overlays::*>, 12> overlay_fields = {{
+constexpr std::array<std::pair<const char*, bool Overlays::*>, 13> overlay_fields = {{
     {"fixed_nodes", &Overlays::fixed_nodes},
     {"touched_nodes", &Overlays::touched_nodes},
     {"lattice", &Overlays::lattice},
+    {"cells", &Overlays::cells},
     {"control_net", &Overlays::control_net},
     {"force", &Overlays::force},
     {"contact_normals", &Overlays::contact_normals},

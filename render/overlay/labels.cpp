@@ -156,6 +156,7 @@ std::vector<Label> legend_of(const Snapshot& snapshot, const ViewSettings& setti
     add("plane of symmetry", LabelSymbol::line, palette::symmetry_plane);
   }
   if (on.control_net) add("control net", LabelSymbol::diamond, palette::control_net);
+  if (on.cells) add("cell boundaries", LabelSymbol::line, palette::cell_edge);
   if (on.lattice) add("lattice", LabelSymbol::line, palette::lattice);
   if (on.contact_normals && !snapshot.contacts.empty()) {
     add("contact normals", LabelSymbol::line, palette::contact_normal);

@@ -12,9 +12,11 @@ struct Colour {
 
 namespace palette {
 
-inline constexpr Colour fixed_node{28, 150, 84};        // squares
-inline constexpr Colour touched_node{214, 40, 46};      // discs
-inline constexpr Colour lattice{52, 62, 74, 150};       // the thinnest lines
+inline constexpr Colour fixed_node{28, 150, 84};    // squares
+inline constexpr Colour touched_node{214, 40, 46};  // discs
+inline constexpr Colour lattice{52, 62, 74, 150};   // the thinnest lines
+inline constexpr Colour cell_edge{178, 30, 52};     // thick lines
+inline constexpr Colour far_cell_edge{178, 30, 52, 170};
 inline constexpr Colour control_net{38, 66, 128, 190};  // thin lines and diamonds
 inline constexpr Colour force{226, 116, 14};            // the arrow
 inline constexpr Colour contact_normal{112, 46, 134};   // short lines

@@ -188,7 +188,7 @@ std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& 
   }
   for (const BodySnapshot& each : snapshot.bodies) {
     const LatticeSnapshot& lattice = each.lattice;
-    if (on.lattice || on.fixed_nodes || on.touched_nodes) {
+    if (on.lattice || on.cells || on.fixed_nodes || on.touched_nodes) {
       strips.include_points(lattice.x, lattice.y, lattice.z);
     }
     if (on.control_net && !each.is_mesh()) strips.include(net_box(each.surface));

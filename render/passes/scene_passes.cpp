@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "render/overlay/cell_lines.h"
 #include "render/overlay/contact_normals.h"
 #include "render/overlay/contact_stage.h"
 #include "render/overlay/control_net.h"
@@ -130,7 +131,13 @@ void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, co
   };
   draw_bodies(false);
   draw_force(view, snapshot, settings);
+  CellLines cells;
+  if (settings.overlays.cells) {
+    for (const BodySnapshot& body : snapshot.bodies) append_cell_lines(body.lattice, view.eye_m, cells);
+  }
+  passes_.line.draw(view, cells.far, 0.0f);
   draw_bodies(true);
+  passes_.line.draw(view, cells.near, lift_m(snapshot));
   draw_overlays(view, snapshot, settings);
   if (settings.overlays.fixing_planes) draw_planes(view, snapshot, bodies.bounds());
   if (settings.overlays.symmetry_plane) draw_symmetry(view, snapshot, bodies.bounds());

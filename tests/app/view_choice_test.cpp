@@ -41,6 +41,9 @@ TEST(ViewChoice, CommandsChangeWhatTheyName) {
       apply_view_command(parsed(R"({"command": "set_overlays", "control_net": true})"), "test", choice));
   EXPECT_TRUE(choice.overlays.control_net);
   EXPECT_TRUE(choice.overlays.force);
+  EXPECT_FALSE(choice.overlays.cells);
+  ASSERT_TRUE(apply_view_command(parsed(R"({"command": "set_overlays", "cells": true})"), "test", choice));
+  EXPECT_TRUE(choice.overlays.cells);
   ASSERT_TRUE(apply_view_command(
       parsed(R"({"command": "set_camera", "target_mm": [0, 0, 0], "distance_mm": 100})"), "test", choice));
   EXPECT_FALSE(choice.shows_whole_body);

@@ -15,7 +15,9 @@
 #include "app/frames/frame_painter.h"
 #include "app/panel/session_panel.h"
 #include "app/session/lockstep.h"
+#include "engine/exchange/document.h"
 #include "haptic/playback_device.h"
+#include "haptic/virtual_device.h"
 #include "render/image/compare.h"
 #include "render/image/png.h"
 
@@ -29,6 +31,7 @@ constexpr double tolerance = 2.0;
 constexpr int width_px = 1280, height_px = 720;
 
 const std::filesystem::path recording_folder = SPOONBILL_ASSETS "/recordings";
+const std::filesystem::path model_folder = SPOONBILL_ASSETS "/models";
 const std::filesystem::path approved_folder = SPOONBILL_SCREENSHOTS;
 const std::filesystem::path failure_folder = SPOONBILL_PICTURE_FAILURES;
 
@@ -71,6 +74,22 @@ class MomentPictures : public ::testing::Test {
     EXPECT_TRUE(lockstep.run_to(tick_of_frame(frame)));
     session->flags = tick_flag_none;  // of many frames at once
     write_snapshot(session.value(), snapshot);
+    return {std::move(session).value(), std::move(painter).value(), std::move(snapshot), framed};
+  }
+
+  // A model as it is opened, before any tick.
+  static Stage stage_of_model(const char* model) {
+    const auto file = model_folder / (std::string(model) + ".json");
+    const auto document = read_document(file);
+    EXPECT_TRUE(document) << document.error().message;
+    auto session = Session::make(document.value(), file.string(), VirtualDevice::default_specification(),
+                                 best_instruction_set());
+    EXPECT_TRUE(session) << session.error().message;
+    Snapshot snapshot;
+    write_snapshot(session.value(), snapshot);
+    auto painter = FramePainter::make(width_px, height_px);
+    EXPECT_TRUE(painter) << painter.error().message;
+    const BoundingBox framed = framed_box(snapshot);
     return {std::move(session).value(), std::move(painter).value(), std::move(snapshot), framed};
   }
 
@@ -226,6 +245,14 @@ TEST_F(MaterialPictures, GelatinHeld) {
 
 TEST_F(MaterialPictures, GelatinComesBackSlowly) {
   compare_moment({"gelatin-let-go", 0.72, "gelatin-press"});
+}
+
+// The boundaries of hexahedra in a translucent body, those of its far side seen through it.
+using LatticePictures = MomentPictures;
+
+TEST_F(LatticePictures, CellsOfJelly) {
+  Stage stage = stage_of_model("jelly");
+  compare("jelly-cells", paint(stage, {}));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "render/overlay/cell_lines.h"
 #include "render/overlay/fixing_plane.h"
 #include "render/overlay/force_arrow.h"
 #include "render/overlay/ground_grid.h"
@@ -187,6 +188,47 @@ TEST(SurfaceLook, MaterialsLookLikeThemselves) {
   EXPECT_EQ(look_of_material("Steel 304").metalness, 1.0f);
   EXPECT_GT(look_of_material("jelly").translucency, 0.3f);
   EXPECT_EQ(look_of_material("unobtainium").translucency, 0.0f);
+}
+
+LatticeSnapshot block_of_nodes(int ni, int nj, int nk) {
+  LatticeSnapshot block;
+  block.count[0] = ni;
+  block.count[1] = nj;
+  block.count[2] = nk;
+  for (int i = 0; i < ni; ++i) {
+    for (int j = 0; j < nj; ++j) {
+      for (int k = 0; k < nk; ++k) {
+        block.x.push_back(static_cast<float>(i));
+        block.y.push_back(static_cast<float>(j));
+        block.z.push_back(static_cast<float>(k));
+      }
+    }
+  }
+  block.in_body.assign(block.x.size(), 1);
+  return block;
+}
+
+// Of a cube seen from beyond a corner, nine edges belong to the three faces that look back, three to the
+// others.
+TEST(CellLines, AreNearWhereAFaceLooksAtTheEye) {
+  CellLines of_corner, of_face;
+  append_cell_lines(block_of_nodes(2, 2, 2), {5.0f, 4.0f, 3.0f}, of_corner);
+  EXPECT_EQ(of_corner.near.size(), 9u);
+  EXPECT_EQ(of_corner.far.size(), 3u);
+  append_cell_lines(block_of_nodes(2, 2, 2), {0.5f, 0.5f, 9.0f}, of_face);
+  EXPECT_EQ(of_face.near.size(), 4u);
+  EXPECT_EQ(of_face.far.size(), 8u);
+  for (const OverlayLine& line : of_face.near) EXPECT_EQ(line.start_m.z(), 1.0f);
+}
+
+// Each once: the edges of the hull are twice its faces, by Euler.
+TEST(CellLines, AreTheOuterEdgesEachOnce) {
+  CellLines lines;
+  append_cell_lines(block_of_nodes(12, 12, 12), {50.0f, 40.0f, 30.0f}, lines);
+  EXPECT_EQ(lines.near.size() + lines.far.size(), 2u * 6u * 11u * 11u);
+  CellLines none;
+  append_cell_lines(LatticeSnapshot{}, {1.0f, 1.0f, 1.0f}, none);
+  EXPECT_TRUE(none.near.empty() && none.far.empty());
 }
 
 }  // namespace
