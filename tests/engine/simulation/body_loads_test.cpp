@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "engine/material/statics/static_solver.h"
 #include "tests/engine/material/block.h"
@@ -117,15 +118,16 @@ TEST(BodyLoads, RefuseARegionWithoutNodes) {
   const LatticeMesh mesh = box_mesh({0.01, 0.01, 0.04}, {4, 4, 13});
   const auto none = [](double, double) { return EmbeddedPoint(); };
   const auto refused = [&](const Load& load) {
-    const auto made = BodyLoads::make({ForceLoad{}, load}, mesh, none);
+    const std::vector<Load> loads(2, load);
+    const auto made = BodyLoads::make(loads, mesh, none);
     return made.ok() ? "" : made.error().message;
   };
   EXPECT_EQ(refused(PressureLoad{{{0.50, 0.51}}, 10.0}),
-            "loads[1]: its region holds no middle of a face of the lattice's shell; make it larger");
-  EXPECT_EQ(refused(ForceLoad{{{0.51, 0.52}}, {}, ForceShare::volume}),
-            "loads[1]: its region holds no node of the lattice; make it larger");
-  EXPECT_EQ(refused(PressureLoad{{{0.5, 1.0}}, std::nan("")}).substr(0, 23), "loads[1]: pressure_pa i");
-  EXPECT_EQ(refused(PressureLoad{{{0.5, 1.5}}, 1.0}).substr(0, 15), "loads[1]: along");
+            "loads[0]: its region holds no middle of a face of the lattice's shell; make it larger");
+  EXPECT_EQ(refused(ForceLoad{{{0.51, 0.52}}, Vector3::Zero(), ForceShare::volume}),
+            "loads[0]: its region holds no node of the lattice; make it larger");
+  EXPECT_EQ(refused(PressureLoad{{{0.5, 1.0}}, std::nan("")}).substr(0, 23), "loads[0]: pressure_pa i");
+  EXPECT_EQ(refused(PressureLoad{{{0.5, 1.5}}, 1.0}).substr(0, 15), "loads[0]: along");
 }
 
 }  // namespace
