@@ -53,7 +53,7 @@ OnGround::OnGround(std::span<const BodyState> bodies) : contacts_(capacity_for(b
     }
     for (int n = 0; n < mesh.node_count(); ++n) {
       const std::vector<int>& samples = hanging[static_cast<std::size_t>(n)];
-      if (!on_shell(mesh, n)) continue;
+      if (!on_shell(mesh, n) || mesh.joined(n) != n) continue;
       of_body.footings.push_back(
           {n, static_cast<int>(of_body.samples.size()), static_cast<int>(samples.size())});
       of_body.samples.insert(of_body.samples.end(), samples.begin(), samples.end());
