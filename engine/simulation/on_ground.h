@@ -12,7 +12,7 @@ namespace spoonbill {
 
 // How deep the skin of a body that lies on the ground comes to be in it, in lattice cells: what hangs on a
 // node turns with its neighbours too, and the control net follows a dent only in part.
-inline constexpr double ground_depth_limit_cells = 0.05;
+inline constexpr double ground_depth_limit_cells = 0.1;
 
 // One owner, the simulation; rebuilt with the mapping of a body. find() allocates nothing.
 class OnGround {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace spoonbill {
@@ -100,8 +101,12 @@ void RollingFactor::take_columns(const MatrixParts& parts, int count) {
   const int all_layers = static_cast<int>(parts.cells->layers.size()) - 1;
   const int layers = std::min(all_layers, (to - 1) / slice_columns_ + 1);
   for (; next_.layers < layers; ++next_.layers) add_layer(parts, next_.layers);
-  // No pivot of D + K is below the entry of the diagonal D where K is not indefinite, but by rounding.
-  const double lightest = *std::min_element(parts.mass, parts.mass + next_.band.size / 3);
+  // No pivot of D + K is below the entry of the diagonal D where K is not indefinite, but by rounding. The
+  // second node of a seam's pair has no mass.
+  double lightest = std::numeric_limits<double>::max();
+  for (const double* mass = parts.mass; mass != parts.mass + next_.band.size / 3; ++mass) {
+    if (*mass > 0.0) lightest = std::min(lightest, *mass);
+  }
   kernels_->factor(next_.band, next_.columns, to, next_.inertia * lightest);
   next_.columns = to;
   if (to == next_.band.size) std::swap(used_, next_.band);

@@ -145,7 +145,7 @@ TEST(Bodies, EachTakesItsOwnMaterial) {
   EXPECT_EQ(simulation.scene().bodies[1].material.name, "silicone");
   const Status refused = simulation.apply(SetMaterial{silicone(), 2});
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().message, "body: is 2, must be 0 to 1");
+  EXPECT_EQ(refused.error().message, "body is 2, must be 0 to 1");
 }
 
 TEST(Bodies, AreAtMostEight) {

@@ -57,7 +57,8 @@ TEST(SupportMotion, SwingsAsASine) {
   EXPECT_GT(fastest, top_speed_m_per_s(motion) * 0.99);
 }
 
-// A bar of no Poisson's ratio: E A d / L, exactly but for what is not linear at a strain of 1e-3.
+// A bar of no Poisson's ratio: E A d / L, exactly but for what is not linear at a strain of 1e-3. Springs
+// have one of 0.2 at least, and their held ends, which do not narrow, make the bar a little stiffer.
 TEST(BodySupports, APulledEndBearsWhatABarSays) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     const double youngs = stepping == Stepping::springs ? 2e4 : 5e6, area = 1e-4, length = 0.06, way = 6e-5;
@@ -67,8 +68,9 @@ TEST(BodySupports, APulledEndBearsWhatABarSays) {
     bar.support({{start, {}}, ramp(end, Vector3(0, 0, way), 0.3)});
     for (int tick = 0; tick < 1500; ++tick) bar.tick(100.0);
     const double expected = youngs * area * way / length;
-    EXPECT_NEAR(bar.support_force_n(1).z() / expected, 1.0, 3e-3);
-    EXPECT_NEAR(bar.support_force_n(0).z() / -expected, 1.0, 3e-3);
+    const double allowed = stepping == Stepping::springs ? 0.01 : 3e-3;
+    EXPECT_NEAR(bar.support_force_n(1).z() / expected, 1.0, allowed);
+    EXPECT_NEAR(bar.support_force_n(0).z() / -expected, 1.0, allowed);
     const LatticeMesh& mesh = bar.lattice.mesh();
     for (int n = mesh.node_count() - 16; n < mesh.node_count(); ++n) {
       EXPECT_EQ(static_cast<float>(bar.lattice.displacement(n).z()), static_cast<float>(way));
@@ -145,7 +147,7 @@ TEST(BodySupports, MoveTheSkin) {
   const Vector3 now = evaluate(simulation.surface(), 0.0, 0.06).position_m;
   EXPECT_NEAR(now.y() - before.y(), 0.002, 2e-5) << "what the control net follows of it";
   EXPECT_GT(simulation.support_force_n(1).y(), 0.0);
-  EXPECT_NEAR(simulation.support_force_n(1).y() / -simulation.support_force_n(0).y(), 1.0, 0.02);
+  EXPECT_NEAR(simulation.support_force_n(1).y() / -simulation.support_force_n(0).y(), 1.0, 0.03);
 }
 
 TEST(BodySupports, GoOnAfterWhatElseHappens) {

@@ -89,7 +89,7 @@ TEST(Settling, AReleasedBodyComesBackWithoutSwinging) {
       bar.tick(0.0);
       ASSERT_GT(tip_m(bar), -0.01 * bent) << "does not swing past its rest";
     }
-    EXPECT_NEAR(tip_m(bar), 0.0, 1e-3 * bent);
+    EXPECT_NEAR(tip_m(bar), 0.0, 2e-3 * bent);
   }
 }
 
@@ -111,7 +111,7 @@ TEST(Settling, AStrokeAllocatesNothingAndEndsAtRest) {
   EXPECT_EQ(allocation_count(), before);
   EXPECT_TRUE(touched);
   const LatticeMesh& mesh = simulation.lattice().mesh();
-  for (int n = 0; n < mesh.node_count(); ++n) EXPECT_LT(simulation.lattice().displacement(n).norm(), 5e-5);
+  for (int n = 0; n < mesh.node_count(); ++n) EXPECT_LT(simulation.lattice().displacement(n).norm(), 1e-4);
 }
 
 }  // namespace

@@ -264,7 +264,8 @@ TEST(ShellLattice, SpringsOfARingKnowNoSeam) {
     plain_substep(lattice, h);
     const std::vector<double> out = gone_out(mesh, [&](int n) { return lattice.displacement(n); });
     farthest = std::max(farthest, out.front());
-    for (const double here : out) EXPECT_NEAR(here, out.front(), 1e-3 * 0.02 * 0.05) << step;
+    // Nodes at knots and nodes between them are of two kinds, which swing a little apart.
+    for (std::size_t i = 2; i < out.size(); ++i) EXPECT_NEAR(out[i], out[i % 2], 1e-3 * 0.02 * 0.05) << step;
     EXPECT_EQ(out.front(), out.back());
   }
   EXPECT_GT(farthest, 1e-4);
