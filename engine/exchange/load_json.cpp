@@ -39,7 +39,7 @@ Range<double> read_depths(FieldReader& reader) {
 }
 
 Vector3 read_limited(FieldReader& reader, const char* field, double limit) {
-  const Vector3 vector = reader.vector(field, {-limit, limit});
+  Vector3 vector = reader.vector(field, {-limit, limit});
   if (vector.norm() > limit) reader.refuse(field, "must be no longer than " + number_text(limit));
   return vector;
 }

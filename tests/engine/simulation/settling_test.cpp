@@ -107,7 +107,7 @@ TEST(Settling, AStrokeAllocatesNothingAndEndsAtRest) {
   for (int tick = 0; tick < 300; ++tick) {
     touched |= simulation.advance(above(0.055, 0.0095 - 2e-5 * tick)).touching;
   }
-  for (int tick = 0; tick < 600; ++tick) simulation.advance(above(0.055, 0.03));
+  for (int tick = 0; tick < 2000; ++tick) simulation.advance(above(0.055, 0.03));
   EXPECT_EQ(allocation_count(), before);
   EXPECT_TRUE(touched);
   const LatticeMesh& mesh = simulation.lattice().mesh();
