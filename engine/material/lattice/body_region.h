@@ -1,5 +1,5 @@
 // A part of a body in the body's own coordinates, so that it stays where it is however the body is bent: what
-// has a material or a friction of its own, is loaded, or is held.
+// is loaded, or is held.
 #pragma once
 
 #include <limits>
