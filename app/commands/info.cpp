@@ -129,7 +129,8 @@ CommandEntry add_info(CLI::App& root) {
   parser->footer(
       "A model is reported with its size, its surfaces' degrees, control points and knots, and the lattice "
       "that a\n"
-      "simulation would have: nodes, how good its cells are, mass, the Young's modulus felt while sculpting,\n"
+      "simulation would have: nodes, how good its cells are, mass, the Young's modulus felt while "
+      "sculpting,\n"
       "and what the lattice achieves of the material's elasticity along each axis.\n"
       "Example: spoonbill info assets/models/spoon-handle.json");
   parser->add_option("FILE", options->file, "A document, script or material (.json), or a recording")

@@ -29,7 +29,8 @@ Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const LatticeMa
 Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const std::vector<Vector3>& rest_m,
                                             InstructionSet set) {
   const LatticeMaterials& materials = lattice.materials();
-  const bool for_springs = largest_youngs_modulus_pa(materials) < stiff_youngs_modulus_pa && !lattice.mesh().thin &&
+  const bool for_springs = largest_youngs_modulus_pa(materials) < stiff_youngs_modulus_pa &&
+                           !lattice.mesh().thin &&
                            least_poissons_ratio(materials) >= least_spring_poissons_ratio;
   if (!are_plainly_elastic(materials) || for_springs) return std::optional<ImplicitCore>();
   Result<ImplicitCore> core = ImplicitCore::make(lattice.mesh(), rest_m, materials, set);

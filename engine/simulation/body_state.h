@@ -89,8 +89,8 @@ Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const LatticeMa
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
 
 // What moves a lattice instead of its springs: of one whose materials are all plainly elastic, and whose
-// stiffest is as stiff as that; and of an elastic shell, which bends where springs in one layer would be twice
-// too stiff. Unstrained at `rest_m`. None where the springs do.
+// stiffest is as stiff as that; and of an elastic shell, which bends where springs in one layer would be
+// twice too stiff. Unstrained at `rest_m`. None where the springs do.
 Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const std::vector<Vector3>& rest_m,
                                             InstructionSet set);
 
