@@ -59,11 +59,15 @@ Json quality_facts(const CellQuality& quality) {
   return {{"worst_jacobian", quality.worst_jacobian}, {"volume_spread", quality.volume_spread}};
 }
 
-std::string three_text(const double (&values)[3], double scale, int decimals) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f / %.*f / %.*f", decimals, scale * values[0], decimals,
-                scale * values[1], decimals, scale * values[2]);
+std::string decimals_text(double value, int decimals) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
   return text.data();
+}
+
+std::string three_text(const double (&values)[3], double scale, int decimals) {
+  return decimals_text(scale * values[0], decimals) + " / " + decimals_text(scale * values[1], decimals) +
+         " / " + decimals_text(scale * values[2], decimals);
 }
 
 }  // namespace
@@ -127,9 +131,10 @@ void add_elasticity_facts(FactSheet& facts, const Simulation& simulation) {
     const std::string of = bodies.size() == 1 ? "" : " of " + bodies[b].name;
     facts.add("Achieved E" + of, three_text(report.youngs_modulus_ratio, 100.0, 1) + " % along x, y, z", "",
               nullptr);
-    facts.add("Achieved Poisson" + of,
-              three_text(report.poissons_ratio, 1.0, 3) + " of " + number_text(report.wanted_poissons_ratio),
-              "", nullptr);
+    facts.add(
+        "Achieved Poisson" + of,
+        three_text(report.poissons_ratio, 1.0, 3) + " of " + decimals_text(report.wanted_poissons_ratio, 3),
+        "", nullptr);
     all.push_back({{"body", bodies[b].name},
                    {"youngs_modulus_ratio", report.youngs_modulus_ratio},
                    {"poissons_ratio", report.poissons_ratio},
