@@ -91,6 +91,25 @@ double out_of_middle(const LatticeMesh& mesh, int i, int j) {
   return std::max(std::abs(s), std::abs(t));
 }
 
+// The faces of the block that are the body's: a closed one has none where it meets itself.
+Hull hull_of(const LatticeMesh& mesh) {
+  std::vector<Triangle> faces;
+  for (std::size_t axis = mesh.closed ? 1 : 0; axis < 3; ++axis) add_faces(mesh, axis, faces);
+  return Hull(std::move(faces));
+}
+
+// Without depths.
+std::vector<BodyPlace> places_on_block(const LatticeMesh& mesh) {
+  std::vector<BodyPlace> places(mesh.nodes.size());
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    BodyPlace& place = places[static_cast<std::size_t>(n)];
+    place.along = static_cast<double>(mesh.place(n)[2]) / (mesh.count[2] - 1);
+    if (!mesh.turns.empty()) place.around = mesh.turns[static_cast<std::size_t>(n)];
+  }
+  return places;
+}
+
+// Without its depth.
 BodyPlace middle_place(const LatticeMesh& mesh, const std::vector<BodyPlace>& nodes, int i, int j, int k) {
   BodyPlace place;
   double cosines = 0.0, sines = 0.0;
@@ -98,7 +117,6 @@ BodyPlace middle_place(const LatticeMesh& mesh, const std::vector<BodyPlace>& no
     const int ci = i + (c >> 2 & 1), cj = j + (c >> 1 & 1);
     const BodyPlace& corner = nodes[static_cast<std::size_t>(mesh.index(ci, cj, k + (c & 1)))];
     place.along += corner.along / 8.0;
-    place.depth_m += corner.depth_m / 8.0;
     const double out = out_of_middle(mesh, ci, cj), angle = 2.0 * std::numbers::pi * corner.around;
     cosines += out * std::cos(angle);
     sines += out * std::sin(angle);
@@ -130,29 +148,28 @@ bool contains(const BodyRegion& region, const BodyPlace& place) {
 }
 
 std::vector<BodyPlace> node_places(const LatticeMesh& mesh) {
-  std::vector<Triangle> faces;
-  for (std::size_t axis = mesh.closed ? 1 : 0; axis < 3; ++axis) add_faces(mesh, axis, faces);
-  Hull hull(std::move(faces));
-  std::vector<BodyPlace> places(mesh.nodes.size());
+  Hull hull = hull_of(mesh);
+  std::vector<BodyPlace> places = places_on_block(mesh);
   for (int n = 0; n < mesh.node_count(); ++n) {
     const std::array<int, 3> at = mesh.place(n);
-    BodyPlace& place = places[static_cast<std::size_t>(n)];
-    place.along = static_cast<double>(at[2]) / (mesh.count[2] - 1);
-    if (!mesh.turns.empty()) place.around = mesh.turns[static_cast<std::size_t>(n)];
+    const auto node = static_cast<std::size_t>(n);
     const bool inside = mesh.closed || (at[0] > 0 && at[0] + 1 < mesh.count[0]);
     const bool in_layers = at[1] > 0 && at[2] > 0 && at[1] + 1 < mesh.count[1] && at[2] + 1 < mesh.count[2];
-    if (inside && in_layers) place.depth_m = hull.distance(mesh.nodes[static_cast<std::size_t>(n)]);
+    if (inside && in_layers) places[node].depth_m = hull.distance(mesh.nodes[node]);
   }
   return places;
 }
 
 std::vector<BodyPlace> cell_places(const LatticeMesh& mesh) {
-  const std::vector<BodyPlace> nodes = node_places(mesh);
+  Hull hull = hull_of(mesh);
+  const std::vector<BodyPlace> nodes = places_on_block(mesh);
   std::vector<BodyPlace> places(mesh.cell_count());
   for (int k = 0; k + 1 < mesh.count[2]; ++k) {
     for (int i = 0; i + 1 < mesh.count[0]; ++i) {
       for (int j = 0; j + 1 < mesh.count[1]; ++j) {
-        places[mesh.cell_index(i, j, k)] = middle_place(mesh, nodes, i, j, k);
+        BodyPlace& place = places[mesh.cell_index(i, j, k)];
+        place = middle_place(mesh, nodes, i, j, k);
+        place.depth_m = hull.distance(trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5));
       }
     }
   }
