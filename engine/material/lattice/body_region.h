@@ -31,8 +31,8 @@ bool contains(const BodyRegion& region, const BodyPlace& place);
 // no tube, shares count along the block, and around is 0.
 std::vector<BodyPlace> node_places(const LatticeMesh& mesh);
 
-// One of each cell, of its middle, by LatticeMesh::cell_index(): the mean of its corners' depths and shares
-// along, and the mean direction around, to which a corner counts the more the further out it is.
+// One of each cell, of its middle, by LatticeMesh::cell_index(): its own depth, the mean of its corners'
+// shares along, and the mean direction around, to which a corner counts the more the further out it is.
 std::vector<BodyPlace> cell_places(const LatticeMesh& mesh);
 
 // The shares within 0 to 1 and in order, the depths at least 0 and in order; the message names the field.
