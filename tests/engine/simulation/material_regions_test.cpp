@@ -88,7 +88,17 @@ TEST(MaterialRegions, TheSofterHalfIsDentedDeeper) {
   EXPECT_GT(dent_m(0.042, hard, soft), 1.3 * dent_m(0.018, hard, soft));
 }
 
-// How far the tool has slipped over the surface below it when the hand has moved 1 mm along.
+// Where along the handle's top, in v, its surface is at x now.
+double top_at(const Simulation& simulation, double x_m) {
+  double low = 0.0, high = 0.06;
+  for (int halving = 0; halving < 40; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (evaluate(simulation.surface(), 11.0 / 12.0, middle).position_m.x() < x_m ? low : high) = middle;
+  }
+  return low;
+}
+
+// How far the tool has slipped over the place below it when the hand has moved half a millimetre along.
 double slip_m(Simulation& simulation, double x_m) {
   const auto press = [&](double moved_m, int ticks) {
     Reaction reaction;
@@ -100,17 +110,15 @@ double slip_m(Simulation& simulation, double x_m) {
     EXPECT_TRUE(reaction.touching);
     return reaction.proxy.position_m.x();
   };
-  const auto below = [&] {
-    const Surface& surface = simulation.surface();
-    return evaluate(surface, 11.0 / 12.0, x_m).position_m.x();  // the tenth of twelve points is on top
-  };
   for (int tick = 0; tick < 100; ++tick) {
     ToolInput input = above(x_m, 0.0095 - 2e-5 * tick);
     input.coupling_n_per_m = 700.0;
     simulation.advance(input);
   }
-  const double tool = press(0.0, 200), surface = below();
-  return (press(1e-3, 300) - tool) - (below() - surface);
+  const double tool = press(0.0, 200), below = top_at(simulation, tool);
+  const auto place = [&] { return evaluate(simulation.surface(), 11.0 / 12.0, below).position_m.x(); };
+  const double surface = place();
+  return (press(0.5e-3, 300) - tool) - (place() - surface);
 }
 
 TEST(MaterialRegions, AToolSticksToOneHalfAndSlidesOnTheOther) {
@@ -120,8 +128,9 @@ TEST(MaterialRegions, AToolSticksToOneHalfAndSlidesOnTheOther) {
   const Scene scene = held_handle(elastic("rubber", 1e5, 0.02), {rough});
   Simulation smooth_side = simulate(scene), rough_side = simulate(scene);
   const double slid = slip_m(smooth_side, 0.02), stuck = slip_m(rough_side, 0.04);
-  EXPECT_GT(slid, 0.8e-3);
-  EXPECT_LT(stuck, 0.25e-3);
+  EXPECT_GT(slid, 0.4e-3);
+  // A tenth: the skin between the nodes that it holds gives way.
+  EXPECT_LT(stuck, 0.05e-3);
 }
 
 // Coulomb: dragged along, the tool feels the friction of the region times the push.
