@@ -6,7 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/material/lattice/shell_lattice.h"
 #include "engine/material/lattice/tube_lattice.h"
+#include "tests/engine/material/lattice/shells.h"
 
 namespace spoonbill {
 namespace {
@@ -118,6 +120,29 @@ TEST(BodyRegion, DepthInABoxIsTheDistanceToItsNearestFace) {
     EXPECT_NEAR(places[n].along, point.z() / size_m.z(), 1e-15);
     EXPECT_EQ(places[n].around, 0.0);
   }
+}
+
+// A ring has no faces where it closes: its cells are half its thickness deep all the way around.
+TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
+  LatticeRequest request;
+  request.counts = {25, 2, 3};
+  const Result<LatticeMesh> ring = shell_lattice(open_ring(0.02, 0.006), 0.002, request);
+  ASSERT_TRUE(ring.ok()) << ring.error().message;
+  const std::vector<BodyPlace> places = cell_places(ring.value());
+  BodyRegion across_seam;
+  across_seam.around = {0.9, 0.1};
+  int held = 0;
+  for (int i = 0; i < 24; ++i) {
+    for (int k = 0; k < 2; ++k) {
+      const BodyPlace& place = places[ring->cell_index(i, 0, k)];
+      EXPECT_NEAR(place.around, (i + 0.5) / 24.0, 1e-3);
+      EXPECT_NEAR(place.along, 0.25 + 0.5 * k, 1e-12);
+      // Chords of 15 degrees are less than 1 % of the thickness nearer than arcs.
+      EXPECT_NEAR(place.depth_m, 0.001, 2e-5);
+      held += contains(across_seam, place) ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(held, 8) << "the middles of four of 24 cells around, twice";
 }
 
 TEST(BodyRegion, AroundMayPassTheSeam) {
