@@ -44,6 +44,7 @@ Status add_simulated(FactSheet& facts, const Document& document, const std::stri
   Snapshot snapshot;
   write_snapshot(session.value(), snapshot);
   add_simulation_facts(facts, snapshot);
+  add_elasticity_facts(facts, session->simulation);
   for (const std::string& remark : session->simulation.remarks()) facts.add("Note", remark, "", nullptr);
   facts.add("", "", "remarks", session->simulation.remarks());
   const bool has_map = document.scene.bodies[0].lattice.feature_map.has_value();
@@ -128,8 +129,9 @@ CommandEntry add_info(CLI::App& root) {
   parser->footer(
       "A model is reported with its size, its surfaces' degrees, control points and knots, and the lattice "
       "that a\n"
-      "simulation would have: nodes, how good its cells are, mass, and the Young's modulus felt while "
-      "sculpting.\n"
+      "simulation would have: nodes, how good its cells are, mass, the Young's modulus felt while "
+      "sculpting,\n"
+      "and what the lattice achieves of the material's elasticity along each axis.\n"
       "Example: spoonbill info assets/models/spoon-handle.json");
   parser->add_option("FILE", options->file, "A document, script or material (.json), or a recording")
       ->required();

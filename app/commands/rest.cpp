@@ -43,6 +43,11 @@ std::string small_length_text(double metres) {
   return text.data();
 }
 
+void add_if_not_elastic(const Material& material, FactSheet& facts) {
+  if (is_plainly_elastic(material)) return;
+  facts.add("  Material", material.name + ", as if it were elastic", "", nullptr);
+}
+
 void add_body(FactSheet& facts, const Body& body, const RestShape& shape, Json& list) {
   const auto furthest = static_cast<std::size_t>(shape.furthest_node);
   const Vector3 displacement = shape.result.displacement_m[furthest], place = shape.mesh.nodes[furthest];
@@ -58,8 +63,9 @@ void add_body(FactSheet& facts, const Body& body, const RestShape& shape, Json& 
                 (shape.largest_strain < 0.0 ? " pressed" : " stretched") + ", at " +
                 place_text(shape.strained_m),
             "", nullptr);
-  if (!is_plainly_elastic(body.material)) {
-    facts.add("  Material", body.material.name + ", as if it were elastic", "", nullptr);
+  add_if_not_elastic(body.material, facts);
+  for (const MaterialRegion& region : body.regions) {
+    if (region.material) add_if_not_elastic(*region.material, facts);
   }
   list.push_back({{"name", body.name},
                   {"nodes", shape.mesh.node_count()},

@@ -8,6 +8,7 @@
 
 #include "app/panel/rows.h"
 #include "app/report/quantity_text.h"
+#include "app/report/region_text.h"
 #include "app/view/stage_choice.h"
 #include "app/view/view_choice.h"
 
@@ -127,6 +128,14 @@ void ask_for(Material material, PanelAnswer& answer) {
   answer.requests.emplace_back(Command(SetMaterial{std::move(material)}));
 }
 
+// In two rows at most: more would push the last ones out of a small window.
+void draw_regions(const std::vector<MaterialRegion>& regions) {
+  if (regions.empty()) return;
+  fact_row("Region 1", made_of_text(regions[0]));
+  if (regions.size() == 2) fact_row("Region 2", made_of_text(regions[1]));
+  if (regions.size() > 2) fact_row("Others", std::to_string(regions.size() - 1) + " regions");
+}
+
 void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
   const RowGroup group("Material", theme);
   if (!group) return;
@@ -143,6 +152,7 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
   const bool damped = quantity_row(damping, sculpting.damping_per_s,
                                    rounded(sculpting.damping_per_s, 1, " /s"), answer.refusal);
   fact_row("After touch", after_touch_text(material));
+  draw_regions(model.regions);
   fact_row("Mass", grams_text(model.mass_kg));
   if (changed) ask_for(std::move(material), answer);
   if (damped) answer.requests.emplace_back(Command(SetSculpting{sculpting}));

@@ -5,7 +5,9 @@
 #include <cstdio>
 
 #include "app/report/quantity_text.h"
+#include "app/report/region_text.h"
 #include "engine/bspline/surface.h"
+#include "engine/exchange/region_json.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -57,6 +59,17 @@ Json quality_facts(const CellQuality& quality) {
   return {{"worst_jacobian", quality.worst_jacobian}, {"volume_spread", quality.volume_spread}};
 }
 
+std::string decimals_text(double value, int decimals) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
+}
+
+std::string three_text(const double (&values)[3], double scale, int decimals) {
+  return decimals_text(scale * values[0], decimals) + " / " + decimals_text(scale * values[1], decimals) +
+         " / " + decimals_text(scale * values[2], decimals);
+}
+
 }  // namespace
 
 void add_document_facts(FactSheet& facts, const Document& document) {
@@ -74,6 +87,7 @@ void add_document_facts(FactSheet& facts, const Document& document) {
   facts.add("", "", "surfaces",
             Json::array({{{"u", direction_facts(body.surface.u)}, {"v", direction_facts(body.surface.v)}}}));
   add_material_facts(facts, body.material);
+  add_region_facts(facts, body);
   facts.add("Fixing planes", std::to_string(document.scene.planes.size()), "fixing_planes",
             document.scene.planes.size());
 }
@@ -95,6 +109,38 @@ void add_cell_facts(FactSheet& facts, const LatticeMesh& mesh, const std::option
     facts.add("Cells before", quality_text(map->before), "", nullptr);
   }
   facts.add(map ? "Cells mapped" : "Cells", quality_text(quality), "cells", json);
+}
+
+void add_region_facts(FactSheet& facts, const Body& body) {
+  if (body.regions.empty()) return;
+  Json json;
+  add_material_regions(body.regions, json);
+  for (std::size_t r = 0; r < body.regions.size(); ++r) {
+    const MaterialRegion& region = body.regions[r];
+    facts.add("Region " + std::to_string(r + 1), place_text(region.region) + ": " + made_of_text(region), "",
+              nullptr);
+  }
+  facts.add("", "", "regions", json["regions"]);
+}
+
+void add_elasticity_facts(FactSheet& facts, const Simulation& simulation) {
+  Json all = Json::array();
+  const std::vector<Body>& bodies = simulation.scene().bodies;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const LatticeReport& report = simulation.report(static_cast<int>(b));
+    const std::string of = bodies.size() == 1 ? "" : " of " + bodies[b].name;
+    facts.add("Achieved E" + of, three_text(report.youngs_modulus_ratio, 100.0, 1) + " % along x, y, z", "",
+              nullptr);
+    facts.add(
+        "Achieved Poisson" + of,
+        three_text(report.poissons_ratio, 1.0, 3) + " of " + decimals_text(report.wanted_poissons_ratio, 3),
+        "", nullptr);
+    all.push_back({{"body", bodies[b].name},
+                   {"youngs_modulus_ratio", report.youngs_modulus_ratio},
+                   {"poissons_ratio", report.poissons_ratio},
+                   {"wanted_poissons_ratio", report.wanted_poissons_ratio}});
+  }
+  facts.add("", "", "achieved", all);
 }
 
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot) {

@@ -5,6 +5,7 @@
 
 #include "app/report/fact_sheet.h"
 #include "engine/exchange/document.h"
+#include "engine/simulation/simulation.h"
 #include "engine/simulation/snapshot.h"
 
 namespace spoonbill {
@@ -13,6 +14,13 @@ namespace spoonbill {
 void add_document_facts(FactSheet& facts, const Document& document);
 
 void add_material_facts(FactSheet& facts, const Material& material);
+
+// What the body's regions are made of, where it has any.
+void add_region_facts(FactSheet& facts, const Body& body);
+
+// Young's modulus over the wanted one and Poisson's ratio along x, y and z, of each body: what the cells
+// achieve that step it.
+void add_elasticity_facts(FactSheet& facts, const Simulation& simulation);
 
 // Of the snapshot of a simulation that has just been built.
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot);

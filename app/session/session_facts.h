@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/session/session.h"
 #include "engine/simulation/scene.h"
@@ -13,6 +14,7 @@ struct SessionFacts {
   std::string title;
   Tool tool;
   Material material;
+  std::vector<MaterialRegion> regions;  // of the first body, as the material is
   Sculpting sculpting;
   Symmetry symmetry;
   bool can_undo = false;

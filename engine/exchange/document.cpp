@@ -5,6 +5,7 @@
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/file.h"
 #include "engine/exchange/length.h"
+#include "engine/exchange/region_json.h"
 #include "engine/exchange/scene_json.h"
 
 namespace spoonbill {
@@ -49,6 +50,7 @@ std::optional<Body> read_body(FieldReader reader) {
   if (reader.has("shell_thickness_mm")) {
     body.shell_thickness_m = reader.length_m("shell_thickness_mm", shell_thickness_range_m);
   }
+  body.regions = read_material_regions(reader);
   reader.finish();
   if (!reader.status().ok()) return std::nullopt;
   return body;
@@ -119,6 +121,7 @@ Json body_to_json(const Body& body) {
   for (const Load& load : body.loads) json["loads"].push_back(load_to_json(load));
   for (const Support& support : body.supports) json["supports"].push_back(support_to_json(support));
   if (body.shell_thickness_m) json["shell_thickness_mm"] = length_to_json(*body.shell_thickness_m);
+  add_material_regions(body.regions, json);
   return json;
 }
 

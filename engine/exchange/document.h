@@ -17,6 +17,8 @@
 //      "lattice": {"node_budget": 2000,                          or "nodes": [4, 8, 60]
 //        "feature_map": {"draws_per_node": 500, "first_rate": 0.1, "last_rate": 0.01,
 //          "first_neighbourhood": 2, "last_neighbourhood": 1, "seed": 1}},     may be left out
+//      "regions": [{"region": {...}, "material": {...}, "friction": 0.8}],     may be left out; of material
+//                                                               and friction one at least
 //      "loads": [{"kind": "pressure", "region": {...}, "pressure_pa": 500},    may be left out
 //        {"kind": "force", "region": {...}, "force_n": [0, -2, 0], "shared_by": "surface"},  or "volume"
 //        {"kind": "point", "u": 0.5, "v": 0.1, "force_n": [0, -2, 0]}],
@@ -37,7 +39,7 @@
 //
 // A region is a part of its body (body_region.h): {"along": [0.9, 1], "around": [0.25, 0.75], "depth_mm": [0,
 // 2]}, of which each may be left out; one depth alone is from there inwards. An oscillation has
-// "frequency_hz" instead of "duration_s"; loads.h says how both move.
+// "frequency_hz" instead of "duration_s"; loads.h says how both move. Of regions of material, later ones win.
 //
 // Shapes of a solid: sphere (radius_mm), ellipsoid (semi_axes_mm), cylinder and capsule (radius_mm,
 // half_length_mm), box (half_extents_mm), cone (base_radius_mm, height_mm), torus (ring_radius_mm,

@@ -11,8 +11,6 @@
 namespace spoonbill {
 namespace {
 
-// Of the strain beyond yield that one flow may take away: the rest of it stays for the next.
-constexpr double largest_flow_share = 0.5;
 // Ticks from one creep to the next. What creeps in a tick would be lost in the rounding of a rest length.
 constexpr std::uint64_t creep_pause = 8;
 
@@ -24,7 +22,7 @@ struct Substeps {
 
 Substeps choose_substeps(const SpringLattice& lattice, double step_s) {
   const double omega = lattice.fastest_frequency();
-  const double limit = stability_share * stable_step_s(omega, 0.5 * lattice.damping_time_s() * omega);
+  const double limit = stability_share * stable_step_s(omega, lattice.damping_ratio());
   const double wanted = std::ceil(step_s / limit);
   if (!(wanted <= substep_ceiling)) return {substep_ceiling, step_s / substep_ceiling, true};
   const int count = std::max(1, static_cast<int>(wanted));
@@ -79,6 +77,7 @@ void take_forces(const SpringLattice& lattice, const LatticeView& view, float mo
   kernels.start_forces(view);
   if (linear && moved_square > 0.0f) kernels.spring_forces(view);
   kernels.volume_forces(view);
+  if (lattice.is_damped_further()) kernels.damp_further(view);
   apply_node_forces(lattice, view);
 }
 
@@ -233,11 +232,12 @@ void flow(Relaxation& relaxation, double material_time_s) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const SpringLattice& lattice = relaxation.lattice(at);
     const Material& material = lattice.material();
-    if (!material.plastic || !relaxation.has_springs(at)) continue;
-    const double share = std::min(largest_flow_share, 2.0 * material.flow_rate_per_s * material_time_s);
+    if (!lattice.flows() || !relaxation.has_springs(at)) continue;
+    const double time_s = 2.0 * material_time_s;
+    const double step = std::min(largest_flow_step, 2.0 * material.flow_rate_per_s * material_time_s);
     lattice.kernels().flow(relaxation.view[at],
                            {static_cast<float>(material.yield_strain), static_cast<float>(material.hardening),
-                            static_cast<float>(share)});
+                            static_cast<float>(step), static_cast<float>(time_s)});
   }
 }
 
@@ -249,10 +249,11 @@ void creep(Relaxation& relaxation, std::uint64_t turn, double tick_time_s) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const SpringLattice& lattice = relaxation.lattice(at);
     const Material& material = lattice.material();
-    if (!(material.relaxing_share > 0.0) || !relaxation.has_springs(at)) continue;
+    if (!lattice.creeps() || !relaxation.has_springs(at)) continue;
     const double step = 1.0 / (1.0 + material.relaxation_time_s / time_s);
-    lattice.kernels().creep(relaxation.view[at], direction,
-                            {static_cast<float>(material.relaxing_share), static_cast<float>(step)});
+    lattice.kernels().creep(
+        relaxation.view[at], direction,
+        {static_cast<float>(material.relaxing_share), static_cast<float>(step), static_cast<float>(time_s)});
   }
 }
 

@@ -15,22 +15,25 @@ std::string rounded_text(double number) {
 
 }  // namespace
 
-Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material& material,
+Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const LatticeMaterials& materials,
                                         InstructionSet set) {
   // Measured at 1 Pa: frequencies scale with the root of the modulus, the springs with the modulus.
-  Result<SpringLattice> unit = SpringLattice::make(mesh, material, 1.0, set);
+  Result<SpringLattice> unit = SpringLattice::make(mesh, materials, 1.0, set);
   if (!unit.ok()) return unit;
-  const double unit_limit = felt_modulus_limit_pa(unit->fastest_frequency(), material.damping_ratio);
-  return SpringLattice::make(mesh, material, std::min(material.youngs_modulus_pa, unit_limit), set);
+  const Material& own = materials.own();
+  const double damping_ratio = materials.are_several() ? unit->damping_ratio() : own.damping_ratio;
+  const double unit_limit = felt_modulus_limit_pa(unit->fastest_frequency(), damping_ratio);
+  return SpringLattice::make(mesh, materials, std::min(own.youngs_modulus_pa, unit_limit), set);
 }
 
 Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const std::vector<Vector3>& rest_m,
                                             InstructionSet set) {
-  const Material& material = lattice.material();
-  const bool for_springs = material.youngs_modulus_pa < stiff_youngs_modulus_pa && !lattice.mesh().thin &&
-                           material.poissons_ratio >= least_spring_poissons_ratio;
-  if (!is_plainly_elastic(material) || for_springs) return std::optional<ImplicitCore>();
-  Result<ImplicitCore> core = ImplicitCore::make(lattice.mesh(), rest_m, material, set);
+  const LatticeMaterials& materials = lattice.materials();
+  const bool for_springs = largest_youngs_modulus_pa(materials) < stiff_youngs_modulus_pa &&
+                           !lattice.mesh().thin &&
+                           least_poissons_ratio(materials) >= least_spring_poissons_ratio;
+  if (!are_plainly_elastic(materials) || for_springs) return std::optional<ImplicitCore>();
+  Result<ImplicitCore> core = ImplicitCore::make(lattice.mesh(), rest_m, materials, set);
   if (!core.ok()) return core.error();
   return std::optional<ImplicitCore>(std::move(core).value());
 }
@@ -69,7 +72,9 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
                                   InstructionSet set, const FeatureMapWatch& watch) {
   Result<LatticeMesh> mesh = lattice_of(body, watch);
   if (!mesh.ok()) return mesh.error();
-  Result<SpringLattice> lattice = sculpting_lattice(mesh.value(), body.material, set);
+  const Result<LatticeMaterials> materials = lattice_materials(mesh.value(), body.material, body.regions);
+  if (!materials.ok()) return materials.error();
+  Result<SpringLattice> lattice = sculpting_lattice(mesh.value(), materials.value(), set);
   if (!lattice.ok()) return lattice.error();
   Result<std::optional<ImplicitCore>> core = core_of(lattice.value(), mesh->nodes, set);
   if (!core.ok()) return core.error();

@@ -61,6 +61,8 @@ struct BodyState {
     return mover() ? lattice.material().youngs_modulus_pa : lattice.youngs_modulus_pa();
   }
 
+  const LatticeReport& report() const { return mover() ? mover()->report() : lattice.report(); }
+
   // What every body has but a tessellated tool that gives way.
   BodyMapping& mapping() { return *std::get_if<BodyMapping>(&skin); }
   const BodyMapping& mapping() const { return *std::get_if<BodyMapping>(&skin); }
@@ -77,8 +79,8 @@ struct BodyState {
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
                                   InstructionSet set, const FeatureMapWatch& watch = {});
 
-// The lattice of a body at the stiffness that sculpting can hold.
-Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material& material,
+// The lattice of a body at the stiffness that sculpting can hold: all its materials softened alike.
+Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const LatticeMaterials& materials,
                                         InstructionSet set);
 
 // Elastic bodies are stepped with their true stiffness from here on: the few newtons of a hand dent them by
@@ -86,8 +88,9 @@ Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const Material&
 // lattice and its springs.
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
 
-// What moves a lattice instead of its springs: of a stiff elastic body, and of an elastic shell, which bends
-// where springs in one layer would be twice too stiff. Unstrained at `rest_m`. None where the springs do.
+// What moves a lattice instead of its springs: of one whose materials are all plainly elastic, and whose
+// stiffest is as stiff as that; and of an elastic shell, which bends where springs in one layer would be
+// twice too stiff. Unstrained at `rest_m`. None where the springs do.
 Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const std::vector<Vector3>& rest_m,
                                             InstructionSet set);
 

@@ -16,6 +16,7 @@ struct RemovePlanes {};
 struct SetTool {
   Tool tool;
 };
+// Of what no region of the body says otherwise.
 struct SetMaterial {
   Material material;
   int body = 0;  // in the scene

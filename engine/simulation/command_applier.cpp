@@ -94,7 +94,9 @@ Status CommandApplier::operator()(const SetMaterial& command) {
   if (Status status = check_body(command.body); !status.ok()) return status;
   const std::size_t at = static_cast<std::size_t>(command.body);
   BodyState& body = state.bodies[at];
-  Result<SpringLattice> lattice = sculpting_lattice(body.lattice.mesh(), command.material, state.set);
+  LatticeMaterials materials = body.lattice.materials();
+  materials.set_own(command.material);
+  Result<SpringLattice> lattice = sculpting_lattice(body.lattice.mesh(), materials, state.set);
   if (!lattice.ok()) return lattice.error();
   lattice->set_shape(body.lattice.shape());
   // Cast in a stiff material, a body keeps the shape that it has; from one stiff material to another, the
@@ -117,7 +119,7 @@ Status CommandApplier::operator()(const KeepShape&) {
     const BodyState& body = state.bodies[b];
     LatticeMesh mesh = body.lattice.mesh();
     mesh.nodes = body.lattice.positions();
-    Result<SpringLattice> lattice = sculpting_lattice(mesh, state.scene.bodies[b].material, state.set);
+    Result<SpringLattice> lattice = sculpting_lattice(mesh, body.lattice.materials(), state.set);
     if (!lattice.ok()) return lattice.error();
     lattice->hold(body.held);
     const Surface& surface = body.mapping().current();

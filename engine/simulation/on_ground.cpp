@@ -80,7 +80,6 @@ void OnGround::find(std::span<const BodyState> bodies, const Ground& ground, con
 void OnGround::find(int number, const BodyState& body, const Ground& ground, double reach_m) {
   const BodyFootings& of_body = bodies_[static_cast<std::size_t>(number)];
   const double cell_m = static_cast<double>(body.lattice.cell_size_m());
-  const double friction = std::min(ground.friction, body.lattice.material().friction);
   for (const Footing& footing : of_body.footings) {
     double gap_m = ground.normal.dot(body.lattice.position(footing.node) - ground.point_m);
     if (gap_m > reach_m + cell_m) continue;
@@ -88,7 +87,9 @@ void OnGround::find(int number, const BodyState& body, const Ground& ground, dou
       const EmbeddedPoint& sample = body.mapping().sample(of_body.samples[static_cast<std::size_t>(s)]);
       gap_m = std::min(gap_m, ground.normal.dot(place_of(body.lattice, sample) - ground.point_m));
     }
-    if (gap_m <= reach_m) contacts_.add(number, body.lattice, footing.node, gap_m, friction);
+    if (gap_m > reach_m) continue;
+    const double friction = std::min(ground.friction, body.lattice.friction(footing.node));
+    contacts_.add(number, body.lattice, footing.node, gap_m, friction);
   }
 }
 

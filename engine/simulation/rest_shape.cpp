@@ -86,7 +86,7 @@ Result<RestShape> rest_shape(const Scene& scene, int body,
   const std::vector<HeldAxis> held = held_axes(state.value(), as_set);
   if (held.empty()) return Error{"nothing holds it; give it a support or the document a fixing plane"};
   const Result<StaticBody> body_at_rest =
-      StaticBody::make(state->lattice.mesh(), as_set.material, CellKind::hexahedra);
+      StaticBody::make(state->lattice.mesh(), state->lattice.materials(), CellKind::hexahedra);
   if (!body_at_rest.ok()) return body_at_rest.error();
   const StaticLoads loads{scene.sculpting.gravity_m_per_s2, state->loads.forces(), state->loads.pressures()};
   StaticSettings settings;

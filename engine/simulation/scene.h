@@ -9,6 +9,7 @@
 #include "engine/bspline/surface.h"
 #include "engine/material/lattice/shell_lattice.h"
 #include "engine/material/lattice/tube_lattice.h"
+#include "engine/material/lattice_materials.h"
 #include "engine/material/material.h"
 #include "engine/range.h"
 #include "engine/result.h"
@@ -25,8 +26,9 @@ namespace spoonbill {
 struct Body {
   std::string name;
   Surface surface;
-  Material material;
+  Material material;  // of what no region says otherwise
   LatticeRequest lattice;
+  std::vector<MaterialRegion> regions = {};  // later ones win over earlier ones
   std::vector<Load> loads = {};
   std::vector<Support> supports = {};
   std::optional<double> shell_thickness_m = {};

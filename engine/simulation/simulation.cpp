@@ -268,6 +268,9 @@ Vector3 Simulation::ground_force_n(int body) const {
   return state_->on_ground.contacts().impulse_ns(body) *
          (ratio / std::max(state_->relaxed.material_time_s, tick_s));
 }
+const LatticeReport& Simulation::report(int body) const {
+  return state_->bodies[static_cast<std::size_t>(body)].report();
+}
 const Surface& Simulation::surface(int body) const {
   return state_->bodies[static_cast<std::size_t>(body)].mapping().current();
 }

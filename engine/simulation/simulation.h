@@ -88,6 +88,8 @@ class Simulation {
   // scene's.
   const SpringLattice& lattice(int body = 0) const;
   const Surface& surface(int body = 0) const;
+  // What steps the body achieves of its materials' elasticity.
+  const LatticeReport& report(int body = 0) const;
 
   // The mean force of a support, or of the ground, on a body through the last tick, at the real stiffness.
   Vector3 support_force_n(int support, int body = 0) const;

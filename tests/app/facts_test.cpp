@@ -7,6 +7,7 @@
 #include "app/program.h"
 #include "engine/bspline/surface.h"
 #include "engine/exchange/document.h"
+#include "engine/simulation/simulation.h"
 #include "tests/app/workplace.h"
 
 namespace spoonbill {
@@ -33,6 +34,37 @@ TEST(Info, TellsOfAModel) {
   EXPECT_GT(facts["mass_kg"], 0.0);
   EXPECT_GT(facts["felt_youngs_modulus_pa"], 0.0);
   EXPECT_NE(run({"info", place.text("model.json")}).out.find("Size"), std::string::npos);
+}
+
+// The lattice's own report, and the regions as the document has them.
+TEST(Info, TellsOfRegionsAndOfWhatABodyAchieves) {
+  const Workplace place;
+  auto document = read_document(place.path("model.json"));
+  ASSERT_TRUE(document);
+  Body& body = document->scene.bodies[0];
+  MaterialRegion region;
+  region.region.along = {0.5, 1.0};
+  region.material = body.material;
+  region.material->name = "grip";
+  region.friction = 0.75;
+  body.regions = {region};
+  place.write("grip.json", json_to_page(document_to_json(document.value())));
+  const Json facts = json_of(run({"info", place.text("grip.json"), "--json"}).out);
+  ASSERT_EQ(facts["regions"].size(), 1U);
+  EXPECT_EQ(facts["regions"][0]["material"]["name"], "grip");
+  EXPECT_EQ(facts["regions"][0]["friction"], 0.75);
+  const auto simulation = Simulation::make(document->scene, best_instruction_set());
+  ASSERT_TRUE(simulation) << simulation.error().message;
+  const LatticeReport& report = simulation->report();
+  ASSERT_EQ(facts["achieved"].size(), 1U);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(facts["achieved"][0]["youngs_modulus_ratio"][axis], report.youngs_modulus_ratio[axis]);
+    EXPECT_EQ(facts["achieved"][0]["poissons_ratio"][axis], report.poissons_ratio[axis]);
+  }
+  EXPECT_NEAR(facts["achieved"][0]["wanted_poissons_ratio"], body.material.poissons_ratio, 1e-12);
+  const std::string text = run({"info", place.text("grip.json")}).out;
+  EXPECT_NE(text.find("50 to 100 % along: grip, friction 0.75"), std::string::npos) << text;
+  EXPECT_NE(text.find("Achieved E"), std::string::npos) << text;
 }
 
 TEST(Info, TellsOfRecordingScriptAndMaterial) {

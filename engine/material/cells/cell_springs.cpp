@@ -172,7 +172,11 @@ AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellSpr
           tensor_component(tensor, exponent[0], exponent[1], exponent[2]) + bulk_stiffness_pa;
     }
   }
-  const Eigen::Matrix3d compliance = normal.inverse();
+  return elasticity_of(normal);
+}
+
+AchievedElasticity elasticity_of(const Eigen::Matrix3d& normal_stiffness_pa) {
+  const Eigen::Matrix3d compliance = normal_stiffness_pa.inverse();
   AchievedElasticity result;
   for (int axis = 0; axis < 3; ++axis) {
     result.youngs_modulus_pa[axis] = 1.0 / compliance(axis, axis);

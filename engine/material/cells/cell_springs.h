@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "engine/material/cells/achieved_elasticity.h"
 #include "engine/material/lattice/lattice_mesh.h"
 
 namespace spoonbill {
@@ -38,11 +39,7 @@ CellSprings cell_springs(const CellCorners& corners, double shear_modulus_pa);
 double bulk_stiffness(double youngs_modulus_pa, double poissons_ratio);
 double shear_modulus(double youngs_modulus_pa, double poissons_ratio);
 
-// Young's modulus and Poisson's ratio of a cell along x, y and z, from its springs and volume force.
-struct AchievedElasticity {
-  Vector3 youngs_modulus_pa;
-  Vector3 poissons_ratio;  // mean of the two lateral ratios for tension along each axis
-};
+// From its springs and volume force.
 AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellSprings& springs,
                                        double bulk_stiffness_pa);
 

@@ -81,32 +81,82 @@ CellGradients middle_gradients(const CellCorners& corners) {
 }
 
 CellMatrix hexahedron_stiffness(const CellCorners& corners, double youngs_modulus_pa, double poissons_ratio) {
-  const Elasticity elasticity = isotropic(youngs_modulus_pa, poissons_ratio);
-  const Eigen::Matrix3d middle = jacobian(corners, natural_gradients(Vector3::Zero()));
-  const MiddleJacobian at_middle{middle.inverse(), middle.determinant()};
+  const HexahedronPart whole{-Vector3::Ones(), Vector3::Ones(), youngs_modulus_pa, poissons_ratio};
+  return hexahedron_stiffness(corners, {&whole, 1});
+}
+
+namespace {
+
+struct Sums {
   CellMatrix outer = CellMatrix::Zero();
   MixedMatrix mixed = MixedMatrix::Zero();
   InnerMatrix inner = InnerMatrix::Zero();
+};
+
+// Visits the Gauss points of a part, with what each counts of the natural volume.
+template <class Visit>
+void visit_points(const Vector3& low, const Vector3& high, const Visit& visit) {
+  const Vector3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
   for (int point = 0; point < 8; ++point) {
-    const Vector3 at = natural(point) / std::sqrt(3.0);
-    const CellGradients natural = natural_gradients(at);
-    const Eigen::Matrix3d here = jacobian(corners, natural);
-    const double determinant = here.determinant();
-    const CellGradients gradients = natural * here.inverse().transpose();
-    const std::array<Vector3, 3> of_inner = inner_gradients(at, at_middle, determinant);
-    Eigen::Matrix<double, 6, 24> strain;
-    for (int c = 0; c < 8; ++c) strain.middleCols<3>(3 * c) = strain_rows(gradients.row(c).transpose());
-    Eigen::Matrix<double, 6, inner_count> inner_strain;
-    for (int m = 0; m < 3; ++m) {
-      inner_strain.middleCols<3>(3 * m) = strain_rows(of_inner[static_cast<std::size_t>(m)]);
-    }
-    const Eigen::Matrix<double, 6, inner_count> inner_stress = determinant * elasticity * inner_strain;
-    outer += determinant * strain.transpose() * elasticity * strain;
-    mixed += strain.transpose() * inner_stress;
-    inner += inner_strain.transpose() * inner_stress;
+    visit(Vector3(middle + half.cwiseProduct(natural(point) / std::sqrt(3.0))), half.prod());
   }
-  const CellMatrix stiffness = outer - mixed * inner.ldlt().solve(mixed.transpose());
+}
+
+void add_point(const CellCorners& corners, const MiddleJacobian& at_middle, const Vector3& at, double weight,
+               const Elasticity& elasticity, Sums& sums) {
+  const CellGradients natural = natural_gradients(at);
+  const Eigen::Matrix3d here = jacobian(corners, natural);
+  const double determinant = here.determinant(), volume = weight * determinant;
+  const CellGradients gradients = natural * here.inverse().transpose();
+  const std::array<Vector3, 3> of_inner = inner_gradients(at, at_middle, determinant);
+  Eigen::Matrix<double, 6, 24> strain;
+  for (int c = 0; c < 8; ++c) strain.middleCols<3>(3 * c) = strain_rows(gradients.row(c).transpose());
+  Eigen::Matrix<double, 6, inner_count> inner_strain;
+  for (int m = 0; m < 3; ++m) {
+    inner_strain.middleCols<3>(3 * m) = strain_rows(of_inner[static_cast<std::size_t>(m)]);
+  }
+  const Eigen::Matrix<double, 6, inner_count> inner_stress = volume * elasticity * inner_strain;
+  sums.outer += volume * strain.transpose() * elasticity * strain;
+  sums.mixed += strain.transpose() * inner_stress;
+  sums.inner += inner_strain.transpose() * inner_stress;
+}
+
+}  // namespace
+
+CellMatrix hexahedron_stiffness(const CellCorners& corners, std::span<const HexahedronPart> parts) {
+  const Eigen::Matrix3d middle = jacobian(corners, natural_gradients(Vector3::Zero()));
+  const MiddleJacobian at_middle{middle.inverse(), middle.determinant()};
+  Sums sums;
+  for (const HexahedronPart& part : parts) {
+    const Elasticity elasticity = isotropic(part.youngs_modulus_pa, part.poissons_ratio);
+    visit_points(part.low, part.high, [&](const Vector3& at, double weight) {
+      add_point(corners, at_middle, at, weight, elasticity, sums);
+    });
+  }
+  const CellMatrix stiffness = sums.outer - sums.mixed * sums.inner.ldlt().solve(sums.mixed.transpose());
   return 0.5 * (stiffness + stiffness.transpose());
+}
+
+std::array<double, 8> part_volumes(const CellCorners& corners, const Vector3& low, const Vector3& high) {
+  std::array<double, 8> volumes{};
+  visit_points(low, high, [&](const Vector3& at, double weight) {
+    const double volume = weight * jacobian(corners, natural_gradients(at)).determinant();
+    for (int c = 0; c < 8; ++c) {
+      volumes[static_cast<std::size_t>(c)] +=
+          volume * (Vector3::Ones() + natural(c).cwiseProduct(at)).prod() / 8.0;
+    }
+  });
+  return volumes;
+}
+
+AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellMatrix& stiffness) {
+  Eigen::Matrix<double, 24, 3> stretches = Eigen::Matrix<double, 24, 3>::Zero();
+  for (int c = 0; c < 8; ++c) {
+    for (int axis = 0; axis < 3; ++axis) {
+      stretches(3 * c + axis, axis) = corners[static_cast<std::size_t>(c)][axis];
+    }
+  }
+  return elasticity_of(stretches.transpose() * stiffness * stretches / cell_volume(corners));
 }
 
 }  // namespace spoonbill

@@ -41,7 +41,7 @@ double compliance_between(const BodyPoint& first, const BodyPoint& second) {
 }
 
 double friction_between(const BodyPoint& first, const BodyPoint& second) {
-  return std::min(first.lattice->material().friction, second.lattice->material().friction);
+  return std::min(first.point.friction(*first.lattice), second.point.friction(*second.lattice));
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ bool ContactConstraints::add(Kind kind, int body, const SpringLattice& lattice, 
                             direction,
                             offset_m,
                             point.compliance(lattice),
-                            lattice.material().friction,
+                            point.friction(lattice),
                             false};
   return true;
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/material/cells/hexahedron.h"
+#include "engine/material/implicit/block_cell.h"
 
 namespace spoonbill {
 namespace {
@@ -55,9 +55,11 @@ void take_cell(CellBatch& batch, int lane, const CellCorners& corners, const Cel
 
 }  // namespace
 
-Result<ImplicitBody> ImplicitBody::make(const LatticeMesh& mesh, const Material& material,
+Result<ImplicitBody> ImplicitBody::make(const LatticeMesh& mesh, const BlockMaterials& materials,
                                         InstructionSet set) {
-  if (const Status status = check_material(material); !status.ok()) return status.error();
+  for (const Material& material : materials.materials) {
+    if (const Status status = check_material(material); !status.ok()) return status.error();
+  }
   for (const int count : mesh.count) {
     if (count < 2) return Error{"lattice: node counts must be at least 2 in each direction"};
   }
@@ -66,8 +68,8 @@ Result<ImplicitBody> ImplicitBody::make(const LatticeMesh& mesh, const Material&
       mesh,
       chosen(set, kernels_baseline::band_kernels, kernels_avx2::band_kernels, kernels_avx512::band_kernels),
       chosen(set, kernels_baseline::cell_kernels, kernels_avx2::cell_kernels, kernels_avx512::cell_kernels));
-  body.take_cells(material);
-  body.take_damping(material);
+  body.take_cells(materials);
+  body.take_damping(materials);
   body.hold(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
   return body;
 }
@@ -86,27 +88,30 @@ ImplicitBody::ImplicitBody(const LatticeMesh& mesh, const BandKernels& band, con
   mass_.assign(static_cast<std::size_t>(mesh.node_count()), 0.0);
 }
 
-void ImplicitBody::take_cells(const Material& material) {
+void ImplicitBody::take_cells(const BlockMaterials& materials) {
   block_.layer_cells = (mesh_.count[0] - 1) * (mesh_.count[1] - 1);
+  double volume_m3 = 0.0;
   for (int k = 0; k + 1 < mesh_.count[2]; ++k) {
     block_.layers.push_back(static_cast<int>(block_.batches.size()));
     int lane = cell_lanes;
     for (int i = 0; i + 1 < mesh_.count[0]; ++i) {
       for (int j = 0; j + 1 < mesh_.count[1]; ++j) {
-        const CellCorners corners = mesh_.cell(i, j, k);
-        const double share = mesh_.share(i, j, k);
         if (lane == cell_lanes) {
           block_.batches.emplace_back();
           block_.batches.back() = {};
           lane = 0;
         }
+        const BlockCell cell{mesh_.cell(i, j, k), mesh_.share(i, j, k),
+                             parts_of(materials, mesh_.cell_index(i, j, k)), &materials.materials};
         CellBatch& batch = block_.batches.back();
-        take_cell(batch, lane, corners,
-                  share * hexahedron_stiffness(corners, material.youngs_modulus_pa, material.poissons_ratio));
+        const CellMatrix stiffness = cell.stiffness();
+        take_cell(batch, lane, cell.corners, cell.share * stiffness);
+        cell.report(stiffness, report_);
+        volume_m3 += cell.volume_m3();
+        const std::array<double, 8> masses = cell.masses();
         for (int c = 0; c < 8; ++c) {
           const int node = mesh_.joined(mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1)));
-          mass_[static_cast<std::size_t>(node)] +=
-              material.density_kg_per_m3 * share * cell_volume(corners) / 8.0;
+          mass_[static_cast<std::size_t>(node)] += masses[static_cast<std::size_t>(c)];
           for (int rest = lane; rest < cell_lanes; ++rest) batch.node[c][rest] = node;
         }
         for (int rest = lane; rest < cell_lanes; ++rest) {
@@ -118,6 +123,7 @@ void ImplicitBody::take_cells(const Material& material) {
     }
   }
   block_.layers.push_back(static_cast<int>(block_.batches.size()));
+  report_.divide_by(volume_m3);
 }
 
 // The largest eigenvalue of M^-1 K, by power iteration.
@@ -147,11 +153,14 @@ double ImplicitBody::fastest_square() {
 }
 
 // As springs are damped: the ratio is of the fastest mode.
-void ImplicitBody::take_damping(const Material& material) {
+void ImplicitBody::take_damping(const BlockMaterials& materials) {
+  const Material& stiffest = *std::max_element(
+      materials.materials.begin(), materials.materials.end(),
+      [](const Material& a, const Material& b) { return a.youngs_modulus_pa < b.youngs_modulus_pa; });
   std::fill(force_.begin(), force_.end(), 0.0);
   cells_->take_forces(block_.batches.data(), static_cast<int>(block_.batches.size()), moved_.data(),
                       force_.data());
-  damping_time_ = 2.0 * material.damping_ratio / std::sqrt(fastest_square());
+  damping_time_ = 2.0 * stiffest.damping_ratio / std::sqrt(fastest_square());
 }
 
 void ImplicitBody::hold(std::span<const std::uint8_t> held) {

@@ -9,8 +9,10 @@
 
 #include "engine/aligned_vector.h"
 #include "engine/instruction_set.h"
+#include "engine/material/implicit/block_materials.h"
 #include "engine/material/implicit/rolling_factor.h"
 #include "engine/material/lattice/lattice_mesh.h"
+#include "engine/material/lattice_report.h"
 #include "engine/material/material.h"
 #include "engine/result.h"
 
@@ -44,8 +46,11 @@ struct ImplicitReport {
 // One owner; built outside the tick, allocates nothing afterwards.
 class ImplicitBody {
  public:
-  // Refused: fewer than 2 nodes a direction, folded cells, a material outside its ranges.
-  static Result<ImplicitBody> make(const LatticeMesh& mesh, const Material& material, InstructionSet set);
+  // Of several materials the damping ratio is the stiffest one's, for the fastest mode is there; what else
+  // differs between them counts by part. Refused: fewer than 2 nodes a direction, folded cells, materials
+  // outside their ranges.
+  static Result<ImplicitBody> make(const LatticeMesh& mesh, const BlockMaterials& materials,
+                                   InstructionSet set);
   ImplicitBody(ImplicitBody&&) = default;
   ImplicitBody& operator=(ImplicitBody&&) = default;
   ImplicitBody(const ImplicitBody&) = delete;
@@ -56,6 +61,7 @@ class ImplicitBody {
   // 0 of the second of two nodes that are one place.
   double mass_kg(int node) const { return mass_[static_cast<std::size_t>(node)]; }
   double damping_time_s() const { return damping_time_; }
+  const LatticeReport& report() const { return report_; }
 
   // One byte a node, 1 = held. Takes the factor anew.
   void hold(std::span<const std::uint8_t> held);
@@ -115,8 +121,8 @@ class ImplicitBody {
   static void put(Doubles& of, int node, const Vector3& v) {
     for (int axis = 0; axis < 3; ++axis) of[3 * static_cast<std::size_t>(node) + axis] = v[axis];
   }
-  void take_cells(const Material& material);
-  void take_damping(const Material& material);
+  void take_cells(const BlockMaterials& materials);
+  void take_damping(const BlockMaterials& materials);
   void free_only(Doubles& of) const;
   double fastest_square();
 
@@ -139,6 +145,7 @@ class ImplicitBody {
   ImplicitReport solve(double inertia, double stiffness);
 
   LatticeMesh mesh_;
+  LatticeReport report_;
   const BandKernels* band_;
   const CellKernels* cells_;
   double damping_time_ = 0.0, cell_size_;

@@ -121,10 +121,11 @@ Result<LatticeMesh> coarser(const LatticeMesh& mesh, const std::vector<Vector3>&
 }  // namespace
 
 Result<ImplicitCore> ImplicitCore::make(const LatticeMesh& mesh, const std::vector<Vector3>& rest_m,
-                                        const Material& material, InstructionSet set) {
+                                        const LatticeMaterials& materials, InstructionSet set) {
   const Result<LatticeMesh> coarse = coarser(mesh, rest_m);
   if (!coarse.ok()) return coarse.error();
-  Result<ImplicitBody> body = ImplicitBody::make(coarse.value(), material, set);
+  Result<ImplicitBody> body =
+      ImplicitBody::make(coarse.value(), block_materials(materials, mesh.count, coarse->count), set);
   if (!body.ok()) return body.error();
   ImplicitCore core(std::move(body).value());
   core.rest_m_ = rest_m;

@@ -30,9 +30,10 @@ class ImplicitCore {
  public:
   // Unstrained where the lattice's nodes are at `rest_m`.
   static Result<ImplicitCore> make(const LatticeMesh& mesh, const std::vector<Vector3>& rest_m,
-                                   const Material& material, InstructionSet set);
+                                   const LatticeMaterials& materials, InstructionSet set);
 
   const LatticeMesh& mesh() const { return body_.mesh(); }
+  const LatticeReport& report() const { return body_.report(); }
   const std::vector<Vector3>& rest_m() const { return rest_m_; }
   // What an impulse on a node of the lattice gives it of velocity in contacts, 1/kg.
   double contact_inverse_mass() const { return contact_inverse_mass_; }

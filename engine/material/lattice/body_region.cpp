@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <utility>
 
 #include "engine/collision/meshes/nearest_on_triangle.h"
 #include "engine/number_text.h"
@@ -41,13 +43,89 @@ void add_faces(const LatticeMesh& mesh, std::size_t axis, std::vector<Triangle>&
   }
 }
 
-double nearest_distance(const std::vector<Triangle>& triangles, const Vector3& point) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Triangle& triangle : triangles) {
-    const Vector3 there = nearest_on_triangle(triangle[0], triangle[1], triangle[2], point).point;
-    nearest = std::min(nearest, (there - point).squaredNorm());
+// Finds how far points are from the triangles; near in turn, most triangles are passed over by their spheres.
+class Hull {
+ public:
+  explicit Hull(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
+    for (const Triangle& triangle : triangles_) {
+      const Vector3 middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
+      double radius = 0.0;
+      for (const Vector3& corner : triangle) radius = std::max(radius, (corner - middle).norm());
+      spheres_.push_back({middle, radius});
+    }
   }
-  return std::sqrt(nearest);
+
+  double distance(const Vector3& point) {
+    double nearest = distance_to(last_, point);
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      const double reach = nearest + spheres_[t].radius;
+      if ((spheres_[t].middle - point).squaredNorm() > reach * reach) continue;
+      const double there = distance_to(t, point);
+      if (!(there < nearest)) continue;
+      nearest = there;
+      last_ = t;
+    }
+    return nearest;
+  }
+
+ private:
+  struct Sphere {
+    Vector3 middle;
+    double radius;
+  };
+
+  double distance_to(std::size_t t, const Vector3& point) const {
+    const Triangle& triangle = triangles_[t];
+    return (nearest_on_triangle(triangle[0], triangle[1], triangle[2], point).point - point).norm();
+  }
+
+  std::vector<Triangle> triangles_;
+  std::vector<Sphere> spheres_;
+  std::size_t last_ = 0;  // the nearest of the point before
+};
+
+// How far out of the block's middle line a node lies, 0 to 1, counted in nodes. A shell has no middle line.
+double out_of_middle(const LatticeMesh& mesh, int i, int j) {
+  if (mesh.thin) return 1.0;
+  const double s = 2.0 * i / (mesh.count[0] - 1) - 1.0, t = 2.0 * j / (mesh.count[1] - 1) - 1.0;
+  return std::max(std::abs(s), std::abs(t));
+}
+
+// The faces of the block that are the body's: a closed one has none where it meets itself.
+Hull hull_of(const LatticeMesh& mesh) {
+  std::vector<Triangle> faces;
+  for (std::size_t axis = mesh.closed ? 1 : 0; axis < 3; ++axis) add_faces(mesh, axis, faces);
+  return Hull(std::move(faces));
+}
+
+// Without depths.
+std::vector<BodyPlace> places_on_block(const LatticeMesh& mesh) {
+  std::vector<BodyPlace> places(mesh.nodes.size());
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    BodyPlace& place = places[static_cast<std::size_t>(n)];
+    place.along = static_cast<double>(mesh.place(n)[2]) / (mesh.count[2] - 1);
+    if (!mesh.turns.empty()) place.around = mesh.turns[static_cast<std::size_t>(n)];
+  }
+  return places;
+}
+
+// Without its depth.
+BodyPlace middle_place(const LatticeMesh& mesh, const std::vector<BodyPlace>& nodes, int i, int j, int k) {
+  BodyPlace place;
+  double cosines = 0.0, sines = 0.0;
+  for (int c = 0; c < 8; ++c) {
+    const int ci = i + (c >> 2 & 1), cj = j + (c >> 1 & 1);
+    const BodyPlace& corner = nodes[static_cast<std::size_t>(mesh.index(ci, cj, k + (c & 1)))];
+    place.along += corner.along / 8.0;
+    const double out = out_of_middle(mesh, ci, cj), angle = 2.0 * std::numbers::pi * corner.around;
+    cosines += out * std::cos(angle);
+    sines += out * std::sin(angle);
+  }
+  constexpr double on_axis = 1e-9;
+  if (std::hypot(cosines, sines) < on_axis) return place;
+  const double turn = std::atan2(sines, cosines) / (2.0 * std::numbers::pi);
+  place.around = turn < 0.0 ? turn + 1.0 : turn;
+  return place;
 }
 
 Status check_shares(const char* field, const Range<double>& shares, bool may_pass_seam) {
@@ -70,17 +148,30 @@ bool contains(const BodyRegion& region, const BodyPlace& place) {
 }
 
 std::vector<BodyPlace> node_places(const LatticeMesh& mesh) {
-  std::vector<Triangle> hull;
-  for (std::size_t axis = mesh.closed ? 1 : 0; axis < 3; ++axis) add_faces(mesh, axis, hull);
-  std::vector<BodyPlace> places(mesh.nodes.size());
+  Hull hull = hull_of(mesh);
+  std::vector<BodyPlace> places = places_on_block(mesh);
   for (int n = 0; n < mesh.node_count(); ++n) {
     const std::array<int, 3> at = mesh.place(n);
-    BodyPlace& place = places[static_cast<std::size_t>(n)];
-    place.along = static_cast<double>(at[2]) / (mesh.count[2] - 1);
-    if (!mesh.turns.empty()) place.around = mesh.turns[static_cast<std::size_t>(n)];
+    const auto node = static_cast<std::size_t>(n);
     const bool inside = mesh.closed || (at[0] > 0 && at[0] + 1 < mesh.count[0]);
     const bool in_layers = at[1] > 0 && at[2] > 0 && at[1] + 1 < mesh.count[1] && at[2] + 1 < mesh.count[2];
-    if (inside && in_layers) place.depth_m = nearest_distance(hull, mesh.nodes[static_cast<std::size_t>(n)]);
+    if (inside && in_layers) places[node].depth_m = hull.distance(mesh.nodes[node]);
+  }
+  return places;
+}
+
+std::vector<BodyPlace> cell_places(const LatticeMesh& mesh) {
+  Hull hull = hull_of(mesh);
+  const std::vector<BodyPlace> nodes = places_on_block(mesh);
+  std::vector<BodyPlace> places(mesh.cell_count());
+  for (int k = 0; k + 1 < mesh.count[2]; ++k) {
+    for (int i = 0; i + 1 < mesh.count[0]; ++i) {
+      for (int j = 0; j + 1 < mesh.count[1]; ++j) {
+        BodyPlace& place = places[mesh.cell_index(i, j, k)];
+        place = middle_place(mesh, nodes, i, j, k);
+        place.depth_m = hull.distance(trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5));
+      }
+    }
   }
   return places;
 }

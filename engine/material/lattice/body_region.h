@@ -1,5 +1,5 @@
 // A part of a body in the body's own coordinates, so that it stays where it is however the body is bent: what
-// is loaded, or is held.
+// has a material or a friction of its own, is loaded, or is held.
 #pragma once
 
 #include <limits>
@@ -30,6 +30,10 @@ bool contains(const BodyRegion& region, const BodyPlace& place);
 // One of each node, at rest. The depth is the distance to the faces of the block's hull. Of a block that is
 // no tube, shares count along the block, and around is 0.
 std::vector<BodyPlace> node_places(const LatticeMesh& mesh);
+
+// One of each cell, of its middle, by LatticeMesh::cell_index(): its own depth, the mean of its corners'
+// shares along, and the mean direction around, to which a corner counts the more the further out it is.
+std::vector<BodyPlace> cell_places(const LatticeMesh& mesh);
 
 // The shares within 0 to 1 and in order, the depths at least 0 and in order; the message names the field.
 Status check_region(const BodyRegion& region);

@@ -1,5 +1,7 @@
 #include "engine/material/lattice/embedded_point.h"
 
+#include <algorithm>
+
 namespace spoonbill {
 namespace {
 
@@ -51,6 +53,18 @@ double EmbeddedPoint::compliance(const SpringLattice& lattice) const {
     sum += share * share * lattice.inverse_mass(node[i]);
   }
   return sum;
+}
+
+double EmbeddedPoint::friction(const SpringLattice& lattice) const {
+  if (lattice.materials().friction_of_node.empty() || count == 0) return lattice.material().friction;
+  double sum = 0.0, least = lattice.friction(node[0]), most = least;
+  for (int i = 0; i < count; ++i) {
+    const double own = lattice.friction(node[i]);
+    sum += static_cast<double>(weight[i]) * own;
+    least = std::min(least, own);
+    most = std::max(most, own);
+  }
+  return std::clamp(sum, least, most);
 }
 
 Vector3 EmbeddedPoint::displacement_m(const LatticeView& lattice) const {

@@ -23,6 +23,8 @@ struct EmbeddedPoint {
   Vector3 rest_m(const SpringLattice& lattice) const;
   // What an impulse on the point gives it of velocity, 1/kg; 0 when every node is held.
   double compliance(const SpringLattice& lattice) const;
+  // The mean of its nodes', by their weights; between the least and the most of them.
+  double friction(const SpringLattice& lattice) const;
   Vector3 displacement_m(const LatticeView& lattice) const;
   Vector3 velocity_m_per_s(const LatticeView& lattice) const;
   // Spreads an impulse, N s, over the nodes.

@@ -1,5 +1,6 @@
 #include "engine/material/springs/lattice_kernels.h"
 
+#include "engine/material/springs/flow_kernels.h"
 #include "engine/material/springs/motion_kernels.h"
 #include "engine/material/springs/volume_kernels.h"
 
@@ -47,7 +48,7 @@ void clear(float* x, float* y, float* z, int count) {
 // force is k (L - L0) a / L = k s / (L^2 + L0 L) a, in which a small extension keeps all its digits. Its
 // derivative is transverse I + axial a a^T with transverse = k (L - L0) / L and axial = k L0 / L^3; a spring
 // pressed below half its length is taken as at half, where it is not yet too weak to hold its direction.
-enum class Springs { linear, stiffening, softening };
+enum class Springs { linear, stiffening, softening, mixed };
 
 struct Stiffened {
   float secant, tangent;  // over those of a linear spring
@@ -56,9 +57,13 @@ struct Stiffened {
 // By b e^2.
 template <Springs springs>
 inline Stiffened stiffened(float by) {
-  if (springs == Springs::stiffening) return {1.0f + min_of(by, 1.0f), by < 1.0f ? 1.0f + 3.0f * by : 2.0f};
-  const float square = 1.0f / (1.0f - by), root = __builtin_sqrtf(square);
-  return {root, root * square};
+  const Stiffened more = {1.0f + min_of(by, 1.0f), by < 1.0f ? 1.0f + 3.0f * by : 2.0f};
+  if (springs == Springs::stiffening) return more;
+  const float square = 1.0f / (1.0f - (springs == Springs::mixed ? min_of(by, 0.0f) : by));
+  const float root = __builtin_sqrtf(square);
+  const Stiffened less = {root, root * square};
+  if (springs == Springs::softening) return less;
+  return {by > 0.0f ? more.secant : less.secant, by > 0.0f ? more.tangent : less.tangent};
 }
 
 template <Springs springs>
@@ -71,6 +76,7 @@ inline void linearise_block(const LatticeView& view, const SpringArrays& s, int 
   float* __restrict far_y = view.spring_y + start + o;
   float* __restrict far_z = view.spring_z + start + o;
   float* __restrict tangent = s.tangent + tangent_runs * start;
+  const float* const own_stiffening = springs == Springs::mixed ? s.stiffening + start : nullptr;
 #pragma GCC ivdep
   for (int l = 0; l < block; ++l) {
     const float ex = wx[l + o] - wx[l], ey = wy[l + o] - wy[l], ez = wz[l + o] - wz[l];
@@ -83,7 +89,8 @@ inline void linearise_block(const LatticeView& view, const SpringArrays& s, int 
     float scale = k[l] * squares * (square * inverse), stiffness = k[l];
     if (springs != Springs::linear) {
       const float strain = squares / (rest[l] * (length + rest[l]));
-      const Stiffened by = stiffened<springs>(view.stiffening * strain * strain);
+      const float stiffening = springs == Springs::mixed ? own_stiffening[l] : view.stiffening;
+      const Stiffened by = stiffened<springs>(stiffening * strain * strain);
       scale *= by.secant;
       stiffness *= by.tangent;
     }
@@ -167,7 +174,9 @@ void linearise_springs(const LatticeView& view) {
   set_to(view.reference_z, view.ahead_z, count);
   clear(view.moved_x, view.moved_y, view.moved_z, count);
   clear(view.spring_x, view.spring_y, view.spring_z, count);
-  if (view.stiffening > 0.0f) {
+  if (view.springs[0].stiffening) {
+    linearise_all<Springs::mixed>(view);
+  } else if (view.stiffening > 0.0f) {
     linearise_all<Springs::stiffening>(view);
   } else if (view.stiffening < 0.0f) {
     linearise_all<Springs::softening>(view);
@@ -192,120 +201,33 @@ void spring_forces(const LatticeView& view) {
   add_spring_tangent(view, {view.moved_x, view.moved_y, view.moved_z});
 }
 
-// Two Newton steps from the tangent at 1: within 1e-4 for J from 0.5 to 2, exact at 1. 0 outside 0.3 to 3:
-// about a node whose cells are crushed or torn, flow would take the distortion for the new shape.
-inline float cube_root(float j) {
-  const float a = min_of(max_of(j, 0.3f), 3.0f);
-  float y = 1.0f + (a - 1.0f) * (1.0f / 3.0f);
-  y = y - (y * y * y - a) / (3.0f * y * y);
-  y = y - (y * y * y - a) / (3.0f * y * y);
-  return a == j ? y : 0.0f;
-}
-
-// The present length of each spring of a block, squared.
-inline void square_block(const LatticeView& view, const SpringArrays& s, int start,
-                         float* __restrict square) {
+inline void damp_block(const LatticeView& view, const SpringArrays& s, int start, BlockForces& near) {
   const int o = s.offset;
-  const float *dx = view.dx + start, *dy = view.dy + start, *dz = view.dz + start;
-  const float *rx = s.rest_x + start, *ry = s.rest_y + start, *rz = s.rest_z + start;
+  const float *vx = view.vx + start, *vy = view.vy + start, *vz = view.vz + start;
+  const float *const tangent = s.tangent + tangent_runs * start, *c = s.further_damping + start;
+  float* __restrict far_x = view.fx + start + o;
+  float* __restrict far_y = view.fy + start + o;
+  float* __restrict far_z = view.fz + start + o;
+#pragma GCC ivdep
   for (int l = 0; l < block; ++l) {
-    const float ax = rx[l] + (dx[l + o] - dx[l]), ay = ry[l] + (dy[l + o] - dy[l]),
-                az = rz[l] + (dz[l + o] - dz[l]);
-    square[l] = ax * ax + ay * ay + az * az + tiny;
+    const float mx = vx[l + o] - vx[l], my = vy[l + o] - vy[l], mz = vz[l + o] - vz[l];
+    const float ax = tangent[l], ay = tangent[block + l], az = tangent[2 * block + l];
+    const float pull = c[l] * (mx * ax + my * ay + mz * az) / (ax * ax + ay * ay + az * az + tiny);
+    const float fx = pull * ax, fy = pull * ay, fz = pull * az;
+    near.x[l] += fx;
+    near.y[l] += fy;
+    near.z[l] += fz;
+    far_x[l] -= fx;
+    far_y[l] -= fy;
+    far_z[l] -= fz;
   }
 }
 
-inline void flow_block(const float* __restrict square, const float* __restrict root,
-                       const float* __restrict root_far, const float* __restrict stiffness,
-                       const float* __restrict first, float* __restrict rest_length,
-                       float* __restrict square_difference, const FlowRule& rule) {
-  for (int l = 0; l < block; ++l) {
-    const float rest = rest_length[l];
-    const float strain =
-        __builtin_sqrtf(square[l]) / (rest * max_of(0.5f * (root[l] + root_far[l]), 0.1f)) - 1.0f;
-    const float yielded = rest / first[l] - 1.0f;
-    const float yield = rule.yield + rule.hardening * max_of(yielded, -yielded);
-    const float beyond = max_of(strain - yield, 0.0f) + min_of(strain + yield, 0.0f);
-    const float limited = min_of(max_of(beyond * rule.rate_step, -0.1f), 0.1f) * rest;
-    const float next = min_of(max_of(rest + limited, 0.5f * first[l]), 2.0f * first[l]);
-    const float change = stiffness[l] > 0.0f && root[l] > 0.0f && root_far[l] > 0.0f ? next - rest : 0.0f;
-    square_difference[l] -= change * (2.0f * rest + change);
-    rest_length[l] = rest + change;
-  }
-}
-
-// Whether a spring of a block may be strained beyond yield, without root or quotient. The margin is far above
-// the rounding of either way to compute a strain.
-inline bool may_flow(const float* __restrict square, const float* __restrict root,
-                     const float* __restrict root_far, const float* __restrict stiffness,
-                     const float* __restrict rest, float yield) {
-  const float margin = yield - 1e-5f, over = 1.0f + margin, under = max_of(1.0f - margin, 0.0f);
-  alignas(64) float beyond[16] = {};
-  for (int start = 0; start < block; start += 16) {
-    for (int l = 0; l < 16; ++l) {
-      const int i = start + l;
-      const float free = rest[i] * max_of(0.5f * (root[i] + root_far[i]), 0.1f), free_square = free * free;
-      const float out =
-          max_of(square[i] - over * over * free_square, under * under * free_square - square[i]);
-      beyond[l] = max_of(beyond[l], out * stiffness[i]);
-    }
-  }
-  for (int l = 1; l < 16; ++l) beyond[0] = max_of(beyond[0], beyond[l]);
-  return beyond[0] > 0.0f || margin <= 0.0f;
-}
-
-void take_dilation_roots(const LatticeView& view, float* __restrict root) {
-  average_dilations(view);
-  const float* __restrict dilation = view.node_dilation;
-  for (int i = 0; i < view.padded_count; ++i) root[i] = cube_root(dilation[i]);
-}
-
-void flow(const LatticeView& view, const FlowRule& rule) {
-  float* const root = view.fx;
-  take_dilation_roots(view, root);
-  alignas(64) float square[block];
-  for (const SpringArrays& s : view.springs) {
-    for (int start = 0; start < view.padded_count; start += block) {
-      if (view.active_block[start / block] == 0) continue;
-      const float *near = root + start, *far = near + s.offset, *stiffness = s.stiffness + start;
-      square_block(view, s, start, square);
-      if (!may_flow(square, near, far, stiffness, s.rest_length + start, rule.yield)) continue;
-      flow_block(square, near, far, stiffness, s.first_rest_length + start, s.rest_length + start,
-                 s.square_difference + start, rule);
-    }
-  }
-}
-
-inline void creep_block(const float* __restrict square, const float* __restrict root,
-                        const float* __restrict root_far, const float* __restrict stiffness,
-                        const float* __restrict first, float* __restrict crept, float* __restrict rest_length,
-                        float* __restrict square_difference, const CreepRule& rule) {
-  for (int l = 0; l < block; ++l) {
-    const float rest = rest_length[l], own = rest / (1.0f + crept[l]);
-    const float strain =
-        __builtin_sqrtf(square[l]) / (own * max_of(0.5f * (root[l] + root_far[l]), 0.1f)) - 1.0f;
-    const float moved = own * (1.0f + crept[l] + rule.rate_step * (rule.share * strain - crept[l]));
-    const float bounded = min_of(max_of(moved, 0.5f * first[l]), 2.0f * first[l]);
-    const bool creeps = stiffness[l] > 0.0f && root[l] > 0.0f && root_far[l] > 0.0f;
-    const float next = creeps ? bounded : rest, change = next - rest;
-    square_difference[l] -= change * (2.0f * rest + change);
-    rest_length[l] = rest + change;
-    crept[l] = next / own - 1.0f;
-  }
-}
-
-void creep(const LatticeView& view, int direction, const CreepRule& rule) {
-  float* const root = view.fx;
-  take_dilation_roots(view, root);
-  alignas(64) float square[block];
-  const SpringArrays& s = view.springs[direction];
-  for (int start = 0; start < view.padded_count; start += block) {
-    if (view.active_block[start / block] == 0) continue;
-    square_block(view, s, start, square);
-    creep_block(square, root + start, root + start + s.offset, s.stiffness + start,
-                s.first_rest_length + start, s.crept + start, s.rest_length + start,
-                s.square_difference + start, rule);
-  }
+void damp_further(const LatticeView& view) {
+  over_springs(view, view.fx, view.fy, view.fz, [&](const SpringArrays& s, int start, BlockForces& near) {
+    damp_block(view, s, start, near);
+  });
+  damp_volume_further(view);
 }
 
 void row_sums(const LatticeView& view, float* sum) {
@@ -367,8 +289,19 @@ float power_step(const LatticeView& view, const float* mass) {
 }  // namespace
 
 const LatticeKernels lattice_kernels = {
-    look_ahead, linearise_springs, start_forces, spring_forces, volume_forces, kick,
-    drift,      momentum,          flow,         creep,         row_sums,      measure_rest_volumes,
+    look_ahead,
+    linearise_springs,
+    start_forces,
+    spring_forces,
+    volume_forces,
+    damp_further,
+    kick,
+    drift,
+    momentum,
+    flow,
+    creep,
+    row_sums,
+    measure_rest_volumes,
     power_step,
 };
 

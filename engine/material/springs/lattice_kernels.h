@@ -30,27 +30,43 @@ struct SpringArrays {
   const float* first_rest_length = nullptr;  // as built, m
   float* crept = nullptr;                    // the strain of the rest length that creep() made
   float* tangent = nullptr;                  // see tangent_runs
+  // Of lattices whose springs differ in them; else null. Springs that do not flow have a flow rate of 0,
+  // those that do not creep a share of 0.
+  const float* stiffening = nullptr;
+  const float* further_damping = nullptr;  // N s/m, see damp_further()
+  const float* yield = nullptr;
+  const float* hardening = nullptr;
+  const float* flow_rate = nullptr;  // 1/s
+  const float* relaxing_share = nullptr;
+  const float* relaxation_time = nullptr;  // s
 };
 
 // How rest lengths yield: past a strain e of `yield`, more where a spring has yielded already, by `rate_step`
-// of what is beyond it.
+// of what is beyond it. Where springs differ, each has its own, and `rate_step` is its flow rate times
+// `time_s`.
 struct FlowRule {
   float yield = 0.0f;
   float hardening = 0.0f;  // of the yield strain, by |L0 / first L0 - 1|
-  float rate_step = 0.0f;
+  float rate_step = 0.0f;  // at most largest_flow_step
+  float time_s = 0.0f;
 };
 
-// How rest lengths creep: towards `share` of the strain, by `rate_step` of the way.
+// Of the strain beyond yield that one flow may take away: the rest of it stays for the next.
+inline constexpr double largest_flow_step = 0.5;
+
+// How rest lengths creep: towards `share` of the strain, by `rate_step` of the way. Where springs differ,
+// each has its own, and `rate_step` follows from `time_s`.
 struct CreepRule {
   float share = 0.0f;
-  float rate_step = 0.0f;
+  float rate_step = 0.0f;  // 1 / (1 + relaxation time / time_s)
+  float time_s = 0.0f;
 };
 
 // Views of arrays that SpringLattice owns.
 struct LatticeView {
-  int padded_count = 0;                               // nodes, a whole number of blocks
-  float stiffening = 0.0f;                            // see linearise_springs()
-  bool volume_gives_way = false;                      // whether any K_v is below zero, see volume_forces()
+  int padded_count = 0;           // nodes, a whole number of blocks
+  float stiffening = 0.0f;        // see linearise_springs(); the largest where springs differ
+  bool volume_gives_way = false;  // whether any K_v is below zero, see volume_forces()
   float *dx = nullptr, *dy = nullptr, *dz = nullptr;  // displacement from the rest shape, m
   float *vx = nullptr, *vy = nullptr, *vz = nullptr;  // m/s
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
@@ -79,10 +95,11 @@ struct LatticeView {
   const float* inverse_volume = nullptr;     // 1/V0, 1/m^3
   float* rest_volume_sum = nullptr;  // 12 V0 as volume_forces() computes it, so that rest has no strain at
                                      // all; reforming changes it
-  const float* has_cell = nullptr;   // 1 or 0
-  const float* inverse_cell_count = nullptr;  // of the cells around a node
-  float* node_dilation = nullptr;             // working memory of flow(): J averaged over them
-  float* power_x = nullptr;                   // the vector of the running power iteration
+  const float* further_bulk_damping = nullptr;  // by cell, J s, see damp_further(); null where there is none
+  const float* has_cell = nullptr;              // 1 or 0
+  const float* inverse_cell_count = nullptr;    // of the cells around a node
+  float* node_dilation = nullptr;               // working memory of flow(): J averaged over them
+  float* power_x = nullptr;                     // the vector of the running power iteration
   float* power_y = nullptr;
   float* power_z = nullptr;
   const float* power_noise = nullptr;  // keeps every mode present in it
@@ -120,6 +137,9 @@ struct LatticeKernels {
   // p = K_v x / (1 + (x / 0.1)^2), which the springs outlast. A cell crushed below 0.3 of its volume pushes
   // back by crushed_stiffness beside that: to springs a cell inside out is as good as one that is not.
   void (*volume_forces)(const LatticeView&);
+  // Adds the damping that springs and cells have beyond the time that look_ahead() takes: c ((v' - v).n) n of
+  // a spring along n at the reference, and the pressure c J' of a cell, as rates of its volume now.
+  void (*damp_further)(const LatticeView&);
   // v = (v + h (f/m + g)) * decay, with the forces on a seam's pairs added up.
   void (*kick)(const LatticeView&, float h_s, float decay, float gx, float gy, float gz);
   // Caps speeds relative to the mean, then d += h v, and looks ahead; the second of a seam's pair at the

@@ -5,29 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/material/cells/cell_springs.h"
+#include "engine/material/springs/lattice_assembly.h"
 
 namespace spoonbill {
 namespace {
-
-// The 13 directions of a regular lattice as steps in i, j, k, each with a positive offset in memory.
-constexpr int direction_step[lattice_direction_count][3] = {
-    {0, 1, 0}, {1, 0, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0}, {0, 1, 1},   {0, -1, 1},
-    {1, 0, 1}, {-1, 0, 1}, {1, 1, 1}, {1, -1, 1}, {-1, 1, 1}, {-1, -1, 1},
-};
-
-int direction_of(int di, int dj, int dk) {
-  for (int d = 0; d < lattice_direction_count; ++d) {
-    if (direction_step[d][0] == di && direction_step[d][1] == dj && direction_step[d][2] == dk) return d;
-  }
-  return -1;
-}
-
-// A fixed, well-mixed sequence (Knuth's multiplicative hash), so that no mode is absent from it.
-float mixed(std::uint32_t i) {
-  const std::uint32_t bits = (i * 2654435761u) ^ ((i * 2654435761u) >> 15);
-  return static_cast<float>(bits & 0xffffu) / 32768.0f - 1.0f;
-}
 
 const LatticeKernels& kernels_for(InstructionSet set) {
   switch (set) {
@@ -41,29 +22,32 @@ const LatticeKernels& kernels_for(InstructionSet set) {
   return kernels_baseline::lattice_kernels;
 }
 
+const float* data_or_null(const AlignedVector<float>& values) {
+  return values.empty() ? nullptr : values.data();
+}
+
 constexpr int frequency_steps = 300;
-// Of the shear modulus: what is crushed holds its volume as a material of Poisson's ratio 0.45 does.
-constexpr double crushed_share = 8.0;
-constexpr float noise_share = 1e-4f;
 
 }  // namespace
 
-Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const Material& material,
+Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const LatticeMaterials& materials,
                                           double youngs_modulus_pa, InstructionSet set) {
-  if (const Status status = check_material(material); !status.ok()) return status.error();
+  if (const Status status = check_materials(materials); !status.ok()) return status.error();
   for (int axis = 0; axis < 3; ++axis) {
     if (mesh.count[axis] < 2) return Error{"lattice: node counts must be at least 2 in each direction"};
   }
   if (const Status status = check_cells(mesh); !status.ok()) return status.error();
   SpringLattice lattice;
   lattice.kernels_ = &kernels_for(set);
-  lattice.material_ = material;
+  lattice.materials_ = materials;
+  lattice.youngs_modulus_ = youngs_modulus_pa;
   lattice.lay_out(mesh);
-  lattice.assemble(material, youngs_modulus_pa);
+  Assembly sum(lattice);
+  lattice.assemble(sum);
   lattice.kernels_->measure_rest_volumes(lattice.view());
   lattice.hold(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
-  lattice.measure_fastest_frequency();
-  lattice.damping_time_ = static_cast<float>(2.0 * material.damping_ratio / lattice.fastest_frequency_);
+  lattice.fastest_frequency_ = lattice.measured_frequency();
+  lattice.take_damping(sum);
   return lattice;
 }
 
@@ -126,124 +110,8 @@ void SpringLattice::lay_out(const LatticeMesh& mesh) {
   }
 }
 
-// What the cells add up to, in double, before it is stored in single precision.
-struct SpringLattice::Assembly {
-  double shear_pa, bulk_pa, density_kg_per_m3;
-  std::vector<double> mass, cell_count;  // one a node
-  std::array<std::vector<double>, lattice_direction_count>
-      stiffness;  // one a node: of the spring that starts there
-};
-
-void SpringLattice::assemble(const Material& material, double youngs_modulus_pa) {
-  youngs_modulus_ = youngs_modulus_pa;
-  rest_volume_ = 0.0;
-  report_ = {};
-  report_.worst_jacobian = 1.0;
-  const auto nodes = static_cast<std::size_t>(mesh_.node_count());
-  // Below, a core moves the lattice, and its springs rest.
-  const double poissons_ratio = std::max(material.poissons_ratio, least_spring_poissons_ratio);
-  Assembly sum{shear_modulus(youngs_modulus_pa, poissons_ratio),
-               bulk_stiffness(youngs_modulus_pa, poissons_ratio),
-               material.density_kg_per_m3,
-               std::vector<double>(nodes, 0.0),
-               std::vector<double>(nodes, 0.0),
-               {}};
-  sum.stiffness.fill(std::vector<double>(nodes, 0.0));
-  for (int i = 0; i + 1 < mesh_.count[0]; ++i) {
-    for (int j = 0; j + 1 < mesh_.count[1]; ++j) {
-      for (int k = 0; k + 1 < mesh_.count[2]; ++k) add_cell(i, j, k, sum);
-    }
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    report_.youngs_modulus_ratio[axis] /= rest_volume_;
-    report_.poissons_ratio[axis] /= rest_volume_;
-  }
-  total_mass_ = material.density_kg_per_m3 * rest_volume_;
-  join_nodes(sum);
-  store_nodes(sum);
-  for (int d = 0; d < lattice_direction_count; ++d) store_springs(d, sum);
-}
-
-void SpringLattice::add_cell(int i, int j, int k, Assembly& sum) {
-  const CellCorners corners = mesh_.cell(i, j, k);
-  const CellSprings springs = cell_springs(corners, sum.shear_pa);
-  // Mass and stiffness by the same share: what vibrates in a part of a cell is no faster than the whole.
-  const double share = mesh_.share(i, j, k), volume_m3 = share * springs.volume_m3;
-  const auto node_of = [&](int corner) {
-    return mesh_.index(i + (corner >> 2 & 1), j + (corner >> 1 & 1), k + (corner & 1));
-  };
-  for (int s = 0; s < cell_spring_count; ++s) {
-    int from = cell_spring_corners[s][0], to = cell_spring_corners[s][1];
-    const auto step = [&](int bit) { return (to >> bit & 1) - (from >> bit & 1); };
-    int d = direction_of(step(2), step(1), step(0));
-    if (d < 0) {
-      std::swap(from, to);
-      d = direction_of(step(2), step(1), step(0));
-    }
-    sum.stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(node_of(from))] +=
-        share * springs.stiffness_n_per_m[s];
-  }
-  for (int c = 0; c < 8; ++c) {
-    const auto node = static_cast<std::size_t>(node_of(c));
-    sum.mass[node] += sum.density_kg_per_m3 * volume_m3 / 8.0;
-    sum.cell_count[node] += 1.0;
-  }
-  const int first = node_of(0);
-  bulk_[first] = static_cast<float>(sum.bulk_pa * volume_m3);
-  crushed_[first] = static_cast<float>(crushed_share * sum.shear_pa * volume_m3);
-  inverse_volume_[first] = static_cast<float>(1.0 / springs.volume_m3);
-  has_cell_[first] = 1.0f;
-  rest_volume_ += volume_m3;
-  const AchievedElasticity achieved = achieved_elasticity(corners, springs, sum.bulk_pa);
-  for (int axis = 0; axis < 3; ++axis) {
-    report_.youngs_modulus_ratio[axis] += volume_m3 * achieved.youngs_modulus_pa[axis] / youngs_modulus_;
-    report_.poissons_ratio[axis] += volume_m3 * achieved.poissons_ratio[axis];
-  }
-  report_.worst_cell_misfit = std::max(report_.worst_cell_misfit, springs.misfit);
-  report_.worst_jacobian = std::min(report_.worst_jacobian, smallest_jacobian_ratio(corners));
-}
-
-// The first of a seam's pair has the mass of both.
-void SpringLattice::join_nodes(Assembly& sum) {
-  for (std::size_t s = 0; s < seam_.size(); s += 2) {
-    const auto first = static_cast<std::size_t>(seam_[s]), second = static_cast<std::size_t>(seam_[s + 1]);
-    sum.mass[first] += sum.mass[second];
-    sum.mass[second] = 0.0;
-    sum.cell_count[first] += sum.cell_count[second];
-    sum.cell_count[second] = sum.cell_count[first];
-  }
-}
-
-void SpringLattice::store_nodes(const Assembly& sum) {
-  for (std::size_t n = 0; n < sum.mass.size(); ++n) {
-    node_mass_[n] = static_cast<float>(sum.mass[n]);
-    inverse_cell_count_[n] = static_cast<float>(1.0 / sum.cell_count[n]);
-    power_noise_[n] = noise_share * mixed(static_cast<std::uint32_t>(mesh_.joined(static_cast<int>(n))) + 1) /
-                      std::sqrt(static_cast<float>(total_mass_));
-  }
-}
-
-void SpringLattice::store_springs(int d, const Assembly& sum) {
-  for (int n = 0; n < mesh_.node_count(); ++n) {
-    const std::array<int, 3> at = mesh_.place(n);
-    bool inside = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int to = at[axis] + direction_step[d][axis];
-      inside = inside && to >= 0 && to < mesh_.count[axis];
-    }
-    if (!inside) continue;
-    const Vector3 rest = mesh_.nodes[n + offset_[d]] - mesh_.nodes[n];
-    rest_x_[d][n] = static_cast<float>(rest.x());
-    rest_y_[d][n] = static_cast<float>(rest.y());
-    rest_z_[d][n] = static_cast<float>(rest.z());
-    rest_length_[d][n] = static_cast<float>(rest.norm());
-    first_rest_length_[d][n] = rest_length_[d][n];
-    stiffness_[d][n] =
-        static_cast<float>(sum.stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(n)]);
-  }
-}
-
-void SpringLattice::measure_fastest_frequency() {
+// By power iteration at rest.
+float SpringLattice::measured_frequency() {
   const LatticeView lattice = view();
   for (int n = 0; n < mesh_.node_count(); ++n) {
     const int place = mesh_.joined(n);
@@ -257,14 +125,17 @@ void SpringLattice::measure_fastest_frequency() {
   for (int step = 0; step < frequency_steps; ++step) {
     square = kernels_->power_step(lattice, node_mass_.data());
   }
-  fastest_frequency_ = std::sqrt(square);
+  return std::sqrt(square);
 }
 
 LatticeView SpringLattice::view() {
   LatticeView v;
   v.padded_count = padded_count_;
-  v.stiffening = static_cast<float>(material_.stiffening);
-  v.volume_gives_way = material_.poissons_ratio < 0.25;
+  v.stiffening = static_cast<float>(material().stiffening);
+  for (const Material& each : materials_.materials) {
+    v.stiffening = std::max(v.stiffening, static_cast<float>(each.stiffening));
+  }
+  v.volume_gives_way = least_poissons_ratio(materials_) < 0.25;
   v.dx = dx_.data();
   v.dy = dy_.data();
   v.dz = dz_.data();
@@ -302,7 +173,14 @@ LatticeView SpringLattice::view() {
                     square_difference_[d].data(),
                     first_rest_length_[d].data(),
                     crept_[d].data(),
-                    tangent_[d].data()};
+                    tangent_[d].data(),
+                    data_or_null(stiffening_[d]),
+                    data_or_null(further_damping_[d]),
+                    data_or_null(yield_[d]),
+                    data_or_null(hardening_[d]),
+                    data_or_null(flow_rate_[d]),
+                    data_or_null(relaxing_share_[d]),
+                    data_or_null(relaxation_time_[d])};
   }
   for (int c = 1; c < 8; ++c) {
     v.corner_direction[c] = direction_of(c >> 2 & 1, c >> 1 & 1, c & 1);
@@ -312,6 +190,7 @@ LatticeView SpringLattice::view() {
   v.crushed_stiffness = crushed_.data();
   v.inverse_volume = inverse_volume_.data();
   v.rest_volume_sum = rest_volume_sum_.data();
+  v.further_bulk_damping = data_or_null(further_bulk_damping_);
   v.has_cell = has_cell_.data();
   v.inverse_cell_count = inverse_cell_count_.data();
   v.node_dilation = node_dilation_.data();
@@ -362,9 +241,10 @@ void SpringLattice::set_node_force(int node, const Vector3& force_n) {
 const float* SpringLattice::steady_strained_nodes(float h_s, float share) {
   kernels_->row_sums(view(), row_sum_.data());
   // w^2 (h^2 + 2 tau h) <= 4 is h <= (2 / w) (sqrt(1 + z^2) - z) with z = tau w / 2.
-  const float limit = 4.0f * share * share / (h_s * h_s + 2.0f * damping_time_ * h_s);
+  const float by_all = h_s * h_s + 2.0f * damping_time_ * h_s, limit = 4.0f * share * share / by_all;
   for (int i = 0; i < padded_count_; ++i) {
-    const float stable = limit / std::max(row_sum_[i], 1e-30f);
+    float stable = limit / std::max(row_sum_[i], 1e-30f);
+    if (is_damped_further()) stable *= by_all / (by_all + 2.0f * slowest_damping_[i] * h_s);
     stable_inverse_mass_[i] = std::min(inverse_mass_[i], stable);
     if (!(stable < inverse_mass_[i])) continue;
     // Heavier at the same momentum: otherwise forces that now act on more mass could not stop what they let

@@ -9,25 +9,22 @@
 #include "engine/aligned_vector.h"
 #include "engine/instruction_set.h"
 #include "engine/material/lattice/lattice_mesh.h"
-#include "engine/material/material.h"
+#include "engine/material/lattice_materials.h"
+#include "engine/material/lattice_report.h"
 #include "engine/material/springs/lattice_kernels.h"
 #include "engine/result.h"
 
 namespace spoonbill {
 
-// What a body's lattice achieves of the wanted elasticity, as a mean over its cells by volume.
-struct LatticeReport {
-  double youngs_modulus_ratio[3] = {};  // achieved over wanted, along x, y, z
-  double poissons_ratio[3] = {};
-  double worst_cell_misfit = 0.0;  // see CellSprings::misfit
-  double worst_jacobian = 0.0;     // see smallest_jacobian_ratio()
-};
-
 class SpringLattice {
  public:
-  // `youngs_modulus_pa` replaces the material's own where sculpting softens it. Refused: fewer than 2 nodes a
-  // direction, folded cells, a material outside its ranges.
-  static Result<SpringLattice> make(const LatticeMesh& mesh, const Material& material,
+  // `youngs_modulus_pa` replaces that of the body's own material where sculpting softens it; those of its
+  // regions are softened by the same ratio. Refused: fewer than 2 nodes a direction, folded cells, materials
+  // outside their ranges.
+  //
+  // Cells that share a spring add up its stiffness, damping and stiffening; it flows and creeps as the one
+  // does from which it has most of its stiffness.
+  static Result<SpringLattice> make(const LatticeMesh& mesh, const LatticeMaterials& materials,
                                     double youngs_modulus_pa, InstructionSet set);
 
   const LatticeMesh& mesh() const { return mesh_; }
@@ -40,10 +37,19 @@ class SpringLattice {
   // The fastest angular frequency, rad/s: measured when built and followed as the lattice deforms.
   double fastest_frequency() const { return fastest_frequency_; }
   void set_fastest_frequency(double omega) { fastest_frequency_ = static_cast<float>(omega); }
-  // Voigt damping time of every spring and cell, s.
+  // Voigt damping time of every spring and cell, s. Of a body of several materials, the least of theirs: what
+  // the others are damped by beyond it, LatticeKernels::damp_further() adds. A material's own is 2 z / w with
+  // the fastest frequency w of the lattice, slower as its pressure waves are slower than the fastest.
   float damping_time_s() const { return damping_time_; }
-  // What flows and creeps, and the stiffening.
-  const Material& material() const { return material_; }
+  bool is_damped_further() const { return !slowest_damping_.empty(); }
+  // The damping ratio at the fastest frequency, as far as it bears on the step limit.
+  double damping_ratio() const { return 0.5 * static_cast<double>(step_damping_time_) * fastest_frequency(); }
+  const LatticeMaterials& materials() const { return materials_; }
+  // The body's own.
+  const Material& material() const { return materials_.own(); }
+  double friction(int node) const { return materials_.friction(node); }
+  bool flows() const { return flows_; }
+  bool creeps() const { return creeps_; }
   float cell_size_m() const { return cell_size_; }
 
   // Every free node is this light in contacts, 1/kg: of a lattice that something else moves. 0: each has its
@@ -113,12 +119,17 @@ class SpringLattice {
   SpringLattice() = default;
   void lay_out(const LatticeMesh& mesh);
   struct Assembly;
-  void assemble(const Material& material, double youngs_modulus_pa);
+  void assemble(Assembly& sum);
   void add_cell(int i, int j, int k, Assembly& sum);
   void join_nodes(Assembly& sum);
   void store_nodes(const Assembly& sum);
   void store_springs(int direction, const Assembly& sum);
-  void measure_fastest_frequency();
+  void store_stiffening(const Assembly& sum);
+  void store_flow_and_creep(const Assembly& sum);
+  void take_damping(const Assembly& sum);
+  void take_further_damping(const Assembly& sum, const std::vector<double>& times_s);
+  double damped_square();
+  float measured_frequency();
   void find_active_blocks();
   float free_inverse_mass(int node) const;
   // The springs and cells around a node, and what they become where it moves.
@@ -133,10 +144,10 @@ class SpringLattice {
   LatticeReport report_;
   const LatticeKernels* kernels_ = nullptr;
   double total_mass_ = 0.0, rest_volume_ = 0.0, youngs_modulus_ = 0.0;
-  Material material_;
-  float fastest_frequency_ = 0.0f, damping_time_ = 0.0f, cell_size_ = 0.0f;
+  LatticeMaterials materials_{Material{}};
+  float fastest_frequency_ = 0.0f, damping_time_ = 0.0f, step_damping_time_ = 0.0f, cell_size_ = 0.0f;
   float contact_inverse_mass_ = 0.0f;
-  bool has_applied_force_ = false;
+  bool has_applied_force_ = false, flows_ = false, creeps_ = false;
   int held_count_ = 0, padded_count_ = 0;
   std::vector<int> seam_;  // see LatticeView::seam
   int offset_[lattice_direction_count] = {};
@@ -150,6 +161,13 @@ class SpringLattice {
   Floats stiffness_[lattice_direction_count], rest_length_[lattice_direction_count];
   Floats square_difference_[lattice_direction_count], first_rest_length_[lattice_direction_count];
   Floats crept_[lattice_direction_count], tangent_[lattice_direction_count];
+  // Of a body of several materials, where these differ; else empty.
+  Floats stiffening_[lattice_direction_count], further_damping_[lattice_direction_count];
+  Floats yield_[lattice_direction_count], hardening_[lattice_direction_count];
+  Floats flow_rate_[lattice_direction_count], relaxing_share_[lattice_direction_count];
+  Floats relaxation_time_[lattice_direction_count];
+  Floats further_bulk_damping_;
+  Floats slowest_damping_;  // by node: of the cells around it, beyond the least damping time, s
   Floats bulk_, crushed_, inverse_volume_, rest_volume_sum_, has_cell_, inverse_cell_count_, node_dilation_;
   Floats row_sum_, stable_inverse_mass_;
   Floats power_x_, power_y_, power_z_, power_noise_;

@@ -181,6 +181,21 @@ void volume_forces(const LatticeView& view) {
   }
 }
 
+void damp_volume_further(const LatticeView& view) {
+  BlockCells cells;
+  for (int start = 0; start < view.padded_count; start += block) {
+    if (view.active_block[start / block] == 0) continue;
+    for (int l = 0; l < block; ++l) {
+      const int n = start + l;
+      const FaceDiagonals gradient = volume_gradient(present_diagonals(view, n));
+      const float rate = volume_rate(view, gradient, view.vx, view.vy, view.vz, n);
+      const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
+      cells.set(l, -view.further_bulk_damping[n] * inverse * inverse * rate, gradient);
+    }
+    add_corner_forces(view, start, cells);
+  }
+}
+
 void average_dilations(const LatticeView& view) {
   alignas(64) float dilation[block];
   for (int i = 0; i < view.padded_count; ++i) view.node_dilation[i] = 0.0f;

@@ -14,6 +14,9 @@ namespace spoonbill::SPOONBILL_KERNELS {
 // See LatticeKernels::volume_forces.
 void volume_forces(const LatticeView& view);
 
+// The cells' part of LatticeKernels::damp_further.
+void damp_volume_further(const LatticeView& view);
+
 // J of the cells around each node, averaged into node_dilation.
 void average_dilations(const LatticeView& view);
 

@@ -21,11 +21,15 @@ void hold_node(int node, const Vector3& displacement_m, std::vector<HeldAxis>& h
   for (int axis = 0; axis < 3; ++axis) held.push_back({node, axis, displacement_m[axis]});
 }
 
-Result<StaticBody> StaticBody::make(const LatticeMesh& mesh, const Material& material, CellKind kind) {
-  if (const Status status = check_material(material); !status.ok()) return status.error();
-  if (kind == CellKind::springs && material.poissons_ratio < 0.25) {
-    return Error{"material " + material.name + ": poissons_ratio is " + number_text(material.poissons_ratio) +
-                 ", must be 0.25 or more for springs at rest; use hexahedra"};
+Result<StaticBody> StaticBody::make(const LatticeMesh& mesh, const LatticeMaterials& materials,
+                                    CellKind kind) {
+  for (const Material& material : materials.materials) {
+    if (const Status status = check_material(material); !status.ok()) return status.error();
+    if (kind == CellKind::springs && material.poissons_ratio < 0.25) {
+      return Error{"material " + material.name + ": poissons_ratio is " +
+                   number_text(material.poissons_ratio) +
+                   ", must be 0.25 or more for springs at rest; use hexahedra"};
+    }
   }
   if (const Status status = check_cells(mesh); !status.ok()) return status.error();
   StaticBody body;
@@ -37,6 +41,7 @@ Result<StaticBody> StaticBody::make(const LatticeMesh& mesh, const Material& mat
       for (int j = 0; j + 1 < mesh.count[1]; ++j) {
         const CellCorners corners = mesh.cell(i, j, k);
         const double share = mesh.share(i, j, k);
+        const Material& material = materials.of(mesh.cell_index(i, j, k));
         Cell cell{{}, cell_of(corners, material, kind, share)};
         for (int c = 0; c < 8; ++c) {
           const int node = mesh.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1));

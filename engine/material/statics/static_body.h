@@ -9,7 +9,7 @@
 
 #include "engine/material/cells/corotated_cell.h"
 #include "engine/material/cells/spring_cell.h"
-#include "engine/material/material.h"
+#include "engine/material/lattice_materials.h"
 #include "engine/result.h"
 
 namespace spoonbill {
@@ -50,8 +50,8 @@ void hold_node(int node, const Vector3& displacement_m, std::vector<HeldAxis>& h
 // One owner; immutable. Made for a study, never in the tick.
 class StaticBody {
  public:
-  // Refused: a material outside its ranges, folded cells, springs below a Poisson's ratio of 1/4.
-  static Result<StaticBody> make(const LatticeMesh& mesh, const Material& material, CellKind kind);
+  // Refused: materials outside their ranges, folded cells, springs below a Poisson's ratio of 1/4.
+  static Result<StaticBody> make(const LatticeMesh& mesh, const LatticeMaterials& materials, CellKind kind);
 
   const LatticeMesh& mesh() const { return mesh_; }
   std::size_t cell_count() const { return cells_.size(); }

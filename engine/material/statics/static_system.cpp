@@ -6,7 +6,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr int cell_axes = 24, cell_places = 300;
+constexpr int cell_axes = 24, cell_entries = 300;
 
 Eigen::Index coordinate(const std::array<int, 8>& nodes, int cell_axis) {
   return 3 * static_cast<Eigen::Index>(nodes[static_cast<std::size_t>(cell_axis / 3)]) + cell_axis % 3;
@@ -49,7 +49,7 @@ StaticSystem::StaticSystem(const StaticBody& body, const std::vector<HeldAxis>& 
 
 void StaticSystem::lay_out() {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(body_->cell_count() * cell_places);
+  entries.reserve(body_->cell_count() * cell_entries);
   const auto visit = [&](const auto& take) {
     for (std::size_t cell = 0; cell < body_->cell_count(); ++cell) {
       const std::array<int, 8>& nodes = body_->nodes_of(cell);
@@ -122,7 +122,7 @@ StaticSystem::Forces StaticSystem::respond(const Coordinates& at, Tangent tangen
 }
 
 void StaticSystem::add(std::size_t cell, const CellMatrix& tangent) {
-  const Eigen::Index* place = places_.data() + cell * cell_places;
+  const Eigen::Index* place = places_.data() + cell * cell_entries;
   for (int row = 0; row < cell_axes; ++row) {
     for (int column = 0; column <= row; ++column, ++place) {
       if (*place >= 0) stiffness_.valuePtr()[*place] += tangent(row, column);

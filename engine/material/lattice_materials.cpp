@@ -1,0 +1,117 @@
+#include "engine/material/lattice_materials.h"
+
+#include <algorithm>
+#include <string>
+
+#include "engine/number_text.h"
+
+namespace spoonbill {
+namespace {
+
+Error about(std::size_t region, const std::string& message) {
+  return Error{"regions[" + std::to_string(region) + "]" + message};
+}
+
+// Which of the lattice's cells the region holds become of its material.
+Status take_material(const MaterialRegion& region, const std::vector<BodyPlace>& cells,
+                     LatticeMaterials& materials) {
+  const auto number = static_cast<std::uint8_t>(materials.materials.size());
+  materials.materials.push_back(*region.material);
+  materials.of_cell.resize(cells.size(), 0);
+  bool holds_any = false;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (!contains(region.region, cells[c])) continue;
+    materials.of_cell[c] = number;
+    holds_any = true;
+  }
+  if (holds_any) return {};
+  return Error{": holds the middle of no cell of the lattice; make it larger or give the lattice more nodes"};
+}
+
+Status take_friction(const MaterialRegion& region, const std::vector<BodyPlace>& nodes,
+                     LatticeMaterials& materials) {
+  const auto number = static_cast<std::uint8_t>(materials.frictions.size());
+  materials.frictions.push_back(region.friction ? *region.friction : region.material->friction);
+  materials.friction_of_node.resize(nodes.size(), 0);
+  bool holds_any = false;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (!contains(region.region, nodes[n])) continue;
+    materials.friction_of_node[n] = number;
+    holds_any |= nodes[n].depth_m == 0.0;
+  }
+  if (holds_any || !region.friction) return {};
+  return Error{
+      ".friction: the region holds no node of the surface; make it larger or let its depth begin at 0"};
+}
+
+}  // namespace
+
+Status check_material_region(const MaterialRegion& region) {
+  if (Status status = check_region(region.region); !status.ok()) return status;
+  if (!region.material && !region.friction) return Error{"material or friction must be given"};
+  if (region.friction) {
+    if (Status status = check_range("friction", *region.friction, friction_range); !status.ok()) {
+      return status;
+    }
+  }
+  return region.material ? check_material(*region.material) : Status();
+}
+
+Result<LatticeMaterials> lattice_materials(const LatticeMesh& mesh, const Material& own,
+                                           std::span<const MaterialRegion> regions) {
+  LatticeMaterials materials(own);
+  if (const Status status =
+          check_range("regions", static_cast<int>(regions.size()), material_region_count_range);
+      !status.ok()) {
+    return status.error();
+  }
+  if (regions.empty()) return materials;
+  const std::vector<BodyPlace> nodes = node_places(mesh), cells = cell_places(mesh);
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    if (const Status status = check_material_region(regions[r]); !status.ok()) {
+      return about(r, "." + status.error().message);
+    }
+    if (regions[r].material) {
+      if (const Status status = take_material(regions[r], cells, materials); !status.ok()) {
+        return about(r, status.error().message);
+      }
+    }
+    if (const Status status = take_friction(regions[r], nodes, materials); !status.ok()) {
+      return about(r, status.error().message);
+    }
+  }
+  return materials;
+}
+
+Status check_materials(const LatticeMaterials& materials) {
+  for (const Material& material : materials.materials) {
+    if (Status status = check_material(material); !status.ok()) return status;
+  }
+  if (are_plainly_elastic(materials)) return {};
+  for (const Material& material : materials.materials) {
+    if (material.poissons_ratio >= least_spring_poissons_ratio) continue;
+    return Error{"material " + material.name + ": poissons_ratio is " + number_text(material.poissons_ratio) +
+                 ", must be " + number_text(least_spring_poissons_ratio) +
+                 " or more beside a material that is plastic, creeps or stiffens"};
+  }
+  return {};
+}
+
+bool are_plainly_elastic(const LatticeMaterials& materials) {
+  return std::all_of(materials.materials.begin(), materials.materials.end(), is_plainly_elastic);
+}
+
+double largest_youngs_modulus_pa(const LatticeMaterials& materials) {
+  double largest = 0.0;
+  for (const Material& material : materials.materials)
+    largest = std::max(largest, material.youngs_modulus_pa);
+  return largest;
+}
+
+double least_poissons_ratio(const LatticeMaterials& materials) {
+  double least = poissons_ratio_range.high;
+  for (const Material& material : materials.materials) least = std::min(least, material.poissons_ratio);
+  return least;
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,209 @@
+// Where nodes and cells lie in a body's own coordinates, against closed forms.
+#include "engine/material/lattice/body_region.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/material/lattice/shell_lattice.h"
+#include "engine/material/lattice/tube_lattice.h"
+#include "tests/engine/material/lattice/shells.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double length_m = 0.08, radius_m = 0.006;
+constexpr int around = 16;
+
+// A round bar along x; u turns from +y to +z and its ends are flat poles.
+Surface bar() {
+  const std::vector<double> stations = {0.0, 0.0, 0.0, 0.01, 0.02, 0.04, 0.06, 0.07, 0.08, 0.08, 0.08};
+  const int along = static_cast<int>(stations.size());
+  // The limit curve of a periodic uniform cubic on n points of a circle lies inside by (2 + cos(2 pi / n))
+  // / 3.
+  const double outside = 3.0 / (2.0 + std::cos(2.0 * std::numbers::pi / around));
+  ControlNet net(around, along);
+  for (int i = 0; i < around; ++i) {
+    // So that u = 0 is at +y: B_i begins at knot i, and is at its largest at knot i + 2.
+    const double angle = 2.0 * std::numbers::pi * (i + 2) / around;
+    for (int j = 0; j < along; ++j) {
+      const bool pole = j == 0 || j == along - 1;
+      const double radius = pole ? 0.0 : outside * radius_m;
+      net.set_point(
+          i, j, {stations[static_cast<std::size_t>(j)], radius * std::cos(angle), radius * std::sin(angle)});
+    }
+  }
+  return make_surface(KnotVector::periodic_uniform(3, around).value(),
+                      KnotVector::clamped_uniform(3, along).value(), net)
+      .value();
+}
+
+LatticeMesh bar_lattice(std::array<int, 3> counts) {
+  LatticeRequest request;
+  request.counts = counts;
+  Result<LatticeMesh> mesh = tube_lattice(bar(), request);
+  EXPECT_TRUE(mesh.ok()) << mesh.error().message;
+  return std::move(mesh).value();
+}
+
+// By how much two turns differ, across the seam too.
+double apart(double turn, double other) {
+  const double far = std::abs(turn - other);
+  return std::min(far, 1.0 - far);
+}
+
+// Visits what lies in the middle half of the bar, away from its caps, with its distance from the axis.
+template <class Visit>
+void visit_middle(const std::vector<Vector3>& points, const std::vector<BodyPlace>& places,
+                  const Visit& visit) {
+  ASSERT_EQ(points.size(), places.size());
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const double x = points[n].x();
+    if (x < 0.25 * length_m || x > 0.75 * length_m) continue;
+    visit(points[n], places[n], std::hypot(points[n].y(), points[n].z()));
+  }
+}
+
+std::vector<Vector3> cell_middles(const LatticeMesh& mesh) {
+  std::vector<Vector3> middles(mesh.cell_count(), Vector3::Zero());
+  for (int i = 0; i + 1 < mesh.count[0]; ++i) {
+    for (int j = 0; j + 1 < mesh.count[1]; ++j) {
+      for (int k = 0; k + 1 < mesh.count[2]; ++k) {
+        for (const Vector3& corner : mesh.cell(i, j, k)) middles[mesh.cell_index(i, j, k)] += corner / 8.0;
+      }
+    }
+  }
+  return middles;
+}
+
+void expect_places_of_a_bar(const std::vector<Vector3>& points, const std::vector<BodyPlace>& places,
+                            bool of_cells) {
+  int seen = 0;
+  visit_middle(points, places, [&](const Vector3& point, const BodyPlace& place, double from_axis) {
+    ++seen;
+    // Slices are even along the bar.
+    EXPECT_NEAR(place.along, point.x() / length_m, 0.01);
+    // Rings of 24 chords lie inside the circle by less than 1 % of its radius; depths of a cell are means of
+    // its corners', which bend by as much again.
+    EXPECT_NEAR(place.depth_m, radius_m - from_axis, (of_cells ? 0.05 : 0.012) * radius_m);
+    if (from_axis < 1e-3 * radius_m) return;
+    const double angle = std::atan2(point.z(), point.y()) / (2.0 * std::numbers::pi);
+    // Nodes inside follow the block's lines and not the radii.
+    EXPECT_LT(apart(place.around, angle < 0.0 ? angle + 1.0 : angle), 0.02)
+        << point.transpose() << " turn " << place.around;
+  });
+  EXPECT_GT(seen, 100);
+}
+
+TEST(BodyRegion, NodesOfARoundBarAreWhereTheCylinderHasThem) {
+  const LatticeMesh mesh = bar_lattice({7, 7, 41});
+  expect_places_of_a_bar(mesh.nodes, node_places(mesh), false);
+}
+
+TEST(BodyRegion, CellsOfARoundBarAreWhereTheCylinderHasThem) {
+  for (const int across : {7, 8}) {
+    const LatticeMesh mesh = bar_lattice({across, across, 41});
+    expect_places_of_a_bar(cell_middles(mesh), cell_places(mesh), true);
+  }
+}
+
+// The least distance to six planes.
+TEST(BodyRegion, DepthInABoxIsTheDistanceToItsNearestFace) {
+  const Vector3 size_m(0.012, 0.007, 0.03);
+  const LatticeMesh mesh = box_mesh(size_m, {6, 5, 11});
+  const std::vector<BodyPlace> places = node_places(mesh);
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const Vector3& point = mesh.nodes[n];
+    const double depth = std::min(point.minCoeff(), (size_m - point).minCoeff());
+    EXPECT_NEAR(places[n].depth_m, depth, 1e-15);
+    EXPECT_NEAR(places[n].along, point.z() / size_m.z(), 1e-15);
+    EXPECT_EQ(places[n].around, 0.0);
+  }
+}
+
+// A ring has no faces where it closes: its cells are half its thickness deep all the way around.
+TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
+  LatticeRequest request;
+  request.counts = {25, 2, 3};
+  const Result<LatticeMesh> ring = shell_lattice(open_ring(0.02, 0.006), 0.002, request);
+  ASSERT_TRUE(ring.ok()) << ring.error().message;
+  const std::vector<BodyPlace> places = cell_places(ring.value());
+  BodyRegion across_seam;
+  across_seam.around = {0.9, 0.1};
+  int held = 0;
+  for (int i = 0; i < 24; ++i) {
+    for (int k = 0; k < 2; ++k) {
+      const BodyPlace& place = places[ring->cell_index(i, 0, k)];
+      EXPECT_NEAR(place.around, (i + 0.5) / 24.0, 1e-3);
+      EXPECT_NEAR(place.along, 0.25 + 0.5 * k, 1e-12);
+      // Chords of 15 degrees are less than 1 % of the thickness nearer than arcs.
+      EXPECT_NEAR(place.depth_m, 0.001, 2e-5);
+      held += contains(across_seam, place) ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(held, 8) << "the middles of four of 24 cells around, twice";
+}
+
+TEST(BodyRegion, AroundMayPassTheSeam) {
+  BodyRegion region;
+  region.around = {0.9, 0.2};
+  for (const double inside : {0.9, 0.95, 0.0, 0.1, 0.2})
+    EXPECT_TRUE(contains(region, {0.5, inside, 0.0})) << inside;
+  for (const double outside : {0.21, 0.5, 0.89})
+    EXPECT_FALSE(contains(region, {0.5, outside, 0.0})) << outside;
+  region.around = {0.2, 0.9};
+  EXPECT_TRUE(contains(region, {0.5, 0.5, 0.0}));
+  EXPECT_FALSE(contains(region, {0.5, 0.1, 0.0}));
+}
+
+TEST(BodyRegion, IsCutAlongAndByDepth) {
+  const BodyRegion region{{0.5, 0.8}, {0.0, 1.0}, {0.001, 0.002}};
+  EXPECT_TRUE(contains(region, {0.5, 0.3, 0.002}));
+  EXPECT_FALSE(contains(region, {0.49, 0.3, 0.0015}));
+  EXPECT_FALSE(contains(region, {0.81, 0.3, 0.0015}));
+  EXPECT_FALSE(contains(region, {0.6, 0.3, 0.0009}));
+  EXPECT_FALSE(contains(region, {0.6, 0.3, 0.0021}));
+}
+
+// A share of a region's cells is that share of the bar.
+TEST(BodyRegion, CellsOfAQuarterTurnHoldAQuarterOfTheBar) {
+  const LatticeMesh mesh = bar_lattice({9, 9, 21});
+  BodyRegion region;
+  region.around = {0.875, 0.125};
+  const std::vector<BodyPlace> places = cell_places(mesh);
+  double inside = 0.0, all = 0.0;
+  for (int i = 0; i + 1 < mesh.count[0]; ++i) {
+    for (int j = 0; j + 1 < mesh.count[1]; ++j) {
+      for (int k = 0; k + 1 < mesh.count[2]; ++k) {
+        const double volume = cell_volume(mesh.cell(i, j, k));
+        all += volume;
+        if (contains(region, places[mesh.cell_index(i, j, k)])) inside += volume;
+      }
+    }
+  }
+  // A row of cells on a diagonal of the block is in or out as a whole.
+  EXPECT_NEAR(inside / all, 0.25, 0.04);
+}
+
+TEST(BodyRegion, WrongOnesAreRefusedByField) {
+  const auto refusal = [](const BodyRegion& region) { return check_region(region).error().message; };
+  EXPECT_TRUE(check_region({}).ok());
+  EXPECT_TRUE(check_region({{0.2, 0.4}, {0.9, 0.1}, {0.0, 0.002}}).ok());
+  EXPECT_EQ(refusal({{0.7, 0.2}, {0.0, 1.0}, {0.0, 1.0}}),
+            "along is [0.7, 0.2], must run from the lower to the higher");
+  EXPECT_EQ(refusal({{0.0, 1.5}, {0.0, 1.0}, {0.0, 1.0}}), "along is 1.5, must be 0 to 1");
+  EXPECT_EQ(refusal({{0.0, 1.0}, {0.5, 0.5}, {0.0, 1.0}}),
+            "around is [0.5, 0.5], must run from the lower to the higher");
+  EXPECT_EQ(refusal({{0.0, 1.0}, {0.0, 1.0}, {0.002, 0.001}}),
+            "depth_mm is [2, 1], must run from at least 0 to more");
+  EXPECT_EQ(refusal({{0.0, 1.0}, {0.0, 1.0}, {-0.001, 0.001}}),
+            "depth_mm is [-1, 1], must run from at least 0 to more");
+  const double nothing = std::nan("");
+  EXPECT_FALSE(check_region({{nothing, 1.0}, {0.0, 1.0}, {0.0, 1.0}}).ok());
+  EXPECT_FALSE(check_region({{0.0, 1.0}, {0.0, nothing}, {0.0, 1.0}}).ok());
+  EXPECT_FALSE(check_region({{0.0, 1.0}, {0.0, 1.0}, {nothing, 1.0}}).ok());
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,375 @@
+// Spring lattices of two materials in motion.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "engine/denormals.h"
+#include "engine/material/lattice_solver.h"
+#include "tests/engine/allocations.h"
+#include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/material/block.h"
+#include "tests/engine/material/composite.h"
+
+namespace spoonbill {
+namespace {
+
+SpringLattice lattice_of(const LatticeMesh& mesh, const LatticeMaterials& materials,
+                         InstructionSet set = InstructionSet::baseline) {
+  Result<SpringLattice> lattice =
+      SpringLattice::make(mesh, materials, materials.own().youngs_modulus_pa, set);
+  EXPECT_TRUE(lattice.ok()) << lattice.error().message;
+  return std::move(lattice).value();
+}
+
+// A bar along z of 4 x 4 x 24 cells of 3 mm.
+const LatticeMesh& bar() {
+  static const LatticeMesh mesh = box_mesh({0.012, 0.012, 0.072}, {5, 5, 25});
+  return mesh;
+}
+
+bool in_far_half(const Vector3& at) {
+  return at.z() > 0.036;
+}
+// The middle four of sixteen cells.
+bool in_middle(const Vector3& at) {
+  return std::abs(at.x() - 0.006) < 0.003 && std::abs(at.y() - 0.006) < 0.003;
+}
+
+// Of a slice, along z.
+double mean_displacement_m(const SpringLattice& lattice, int k) {
+  double sum = 0.0;
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) sum += lattice.displacement(lattice.mesh().index(i, j, k)).z() / 25.0;
+  }
+  return sum;
+}
+
+double strain_between(const SpringLattice& lattice, int from, int to) {
+  const double apart_m = 0.003 * (to - from);
+  return (mean_displacement_m(lattice, to) - mean_displacement_m(lattice, from)) / apart_m;
+}
+
+// Held at z = 0 and drawn at the other end by an even stress, until it rests.
+SpringLattice drawn_bar(const LatticeMaterials& materials, double stress_pa) {
+  SpringLattice lattice = lattice_of(bar(), materials);
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(bar().node_count()), 0);
+  std::fill_n(held.begin(), 25, std::uint8_t{1});
+  lattice.hold(held);
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) {
+      const double area = 9e-6 * (i % 4 == 0 ? 0.5 : 1.0) * (j % 4 == 0 ? 0.5 : 1.0);
+      lattice.set_node_force(bar().index(i, j, 24), {0.0, 0.0, stress_pa * area});
+    }
+  }
+  RelaxSettings settings;
+  settings.step_s = 0.7 * stable_step_s(lattice.fastest_frequency(), lattice.damping_ratio());
+  settings.damping_per_s = 60.0;
+  for (; settings.tick < 1.2 / settings.step_s; ++settings.tick) {
+    relax(std::array{RelaxedLattice{&lattice}}, settings, {});
+  }
+  return lattice;
+}
+
+// Away from the ends and from where they meet, each half is strained by the stress over its own modulus.
+TEST(CompositeSprings, InSeriesEachHalfStretchesByItsOwnModulus) {
+  const SpringLattice lattice = drawn_bar(
+      composite(bar(), elastic_material(4e3, 0.3, 1000.0), elastic_material(1.2e4, 0.4, 1000.0), in_far_half),
+      20.0);
+  // Strains of 5e-3 and of the squares that springs add to them.
+  EXPECT_NEAR(strain_between(lattice, 4, 9) / (20.0 / 4e3), 1.0, 0.01);
+  EXPECT_NEAR(strain_between(lattice, 15, 21) / (20.0 / 1.2e4), 1.0, 0.01);
+}
+
+// Of one Poisson's ratio, the mean by area: a quarter of the bar is ten times as stiff.
+TEST(CompositeSprings, InParallelABarStretchesAsVoigtSays) {
+  const SpringLattice lattice = drawn_bar(
+      composite(bar(), elastic_material(3e3, 0.35, 1000.0), elastic_material(3e4, 0.35, 1000.0), in_middle),
+      20.0);
+  const double expected = 20.0 / (0.75 * 3e3 + 0.25 * 3e4);
+  EXPECT_NEAR(strain_between(lattice, 9, 15) / expected, 1.0, 0.01);
+}
+
+struct Momentum {
+  Vector3 sum = Vector3::Zero();
+  double size = 0.0, energy_j = 0.0;
+};
+
+Momentum momentum_of(const SpringLattice& lattice) {
+  Momentum momentum;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const Vector3 own = static_cast<double>(lattice.mass(n)) * lattice.velocity(n);
+    momentum.sum += own;
+    momentum.size += own.norm();
+    momentum.energy_j += 0.5 * own.dot(lattice.velocity(n));
+  }
+  return momentum;
+}
+
+void shake(SpringLattice& lattice, double speed_m_per_s, unsigned seed) {
+  Random random(seed);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    lattice.set_velocity(
+        n, speed_m_per_s * Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+  }
+}
+
+// All that may differ between two materials does.
+LatticeMaterials all_different(const LatticeMesh& mesh) {
+  Material clay = elastic_material(4e3, 0.4, 1500.0), gel = elastic_material(2e3, 0.22, 1000.0);
+  clay.plastic = true;
+  clay.yield_strain = 0.005;
+  clay.flow_rate_per_s = 50.0;
+  clay.hardening = 0.1;
+  clay.damping_ratio = 0.05;
+  clay.stiffening = 2.0;
+  gel.damping_ratio = 0.4;
+  gel.relaxing_share = 0.5;
+  gel.relaxation_time_s = 0.2;
+  gel.stiffening = -3.0;
+  return composite(mesh, clay, gel, [&](const Vector3& at) { return at.z() > 0.5 * mesh.nodes.back().z(); });
+}
+
+const LatticeMesh& small_block() {
+  static const LatticeMesh mesh = box_mesh({0.009, 0.009, 0.015}, {4, 4, 6});
+  return mesh;
+}
+
+TEST(CompositeSprings, KeepTheirMomentum) {
+  const DenormalsFlushed flushed;
+  SpringLattice lattice = lattice_of(small_block(), all_different(small_block()));
+  EXPECT_TRUE(lattice.is_damped_further());
+  shake(lattice, 0.05, 5);
+  const Momentum before = momentum_of(lattice);
+  RelaxSettings settings;
+  for (; settings.tick < 2000; ++settings.tick) relax(std::array{RelaxedLattice{&lattice}}, settings, {});
+  const Momentum after = momentum_of(lattice);
+  EXPECT_LT((after.sum - before.sum).norm(), 1e-5 * before.size);
+  EXPECT_LT(after.energy_j, 0.7 * before.energy_j);
+}
+
+// A body that moves and turns as a whole is not damped.
+TEST(CompositeSprings, RigidMotionsAreNotDampedFurther) {
+  SpringLattice lattice = lattice_of(small_block(), all_different(small_block()));
+  const Vector3 velocity(0.3, -0.2, 0.1), spin(2.0, 1.0, -3.0);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    lattice.set_velocity(n, velocity + spin.cross(lattice.position(n)));
+  }
+  const LatticeView view = lattice.view();
+  lattice.kernels().look_ahead(view, 0.0f);
+  lattice.kernels().linearise_springs(view);
+  const auto largest_force = [&] {
+    double largest = 0.0;
+    for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+      largest = std::max(largest, Vector3(view.fx[n], view.fy[n], view.fz[n]).norm());
+    }
+    return largest;
+  };
+  std::fill_n(view.fx, view.padded_count, 0.0f);
+  std::fill_n(view.fy, view.padded_count, 0.0f);
+  std::fill_n(view.fz, view.padded_count, 0.0f);
+  lattice.kernels().damp_further(view);
+  const double rigid = largest_force();
+  // The same speeds at random, for comparison.
+  shake(lattice, 0.3, 1);
+  std::fill_n(view.fx, view.padded_count, 0.0f);
+  std::fill_n(view.fy, view.padded_count, 0.0f);
+  std::fill_n(view.fz, view.padded_count, 0.0f);
+  lattice.kernels().damp_further(view);
+  EXPECT_GT(largest_force(), 0.0);
+  EXPECT_LT(rigid, 1e-5 * largest_force());  // single precision
+}
+
+// The damping of a material alone is that of a lattice all of it: ringing of a bar's halves dies as each
+// says.
+TEST(CompositeSprings, EachMaterialIsDampedByItsOwnRatio) {
+  // Two bars end to end that hold each other hardly: each rings by itself.
+  const auto energy_left = [&](double first_ratio, double second_ratio, bool of_second) {
+    Material first = elastic_material(4e3, 0.3, 1000.0), second = elastic_material(4e3, 0.3, 1000.0);
+    first.damping_ratio = first_ratio;
+    second.damping_ratio = second_ratio;
+    SpringLattice lattice = lattice_of(bar(), composite(bar(), first, second, in_far_half));
+    Random random(9);
+    for (int n = 0; n < bar().node_count(); ++n) {
+      const double z = bar().nodes[static_cast<std::size_t>(n)].z();
+      const bool in_half = of_second ? z > 0.048 : z < 0.024;
+      const Vector3 v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      if (in_half) lattice.set_velocity(n, 1e-3 * v);
+    }
+    const double before = momentum_of(lattice).energy_j;
+    RelaxSettings settings;
+    settings.step_s = 2e-4;
+    for (; settings.tick < 20; ++settings.tick) relax(std::array{RelaxedLattice{&lattice}}, settings, {});
+    return momentum_of(lattice).energy_j / before;
+  };
+  for (const bool of_second : {false, true}) {
+    const double little = energy_left(0.02, 0.02, of_second), much = energy_left(0.3, 0.3, of_second);
+    EXPECT_LT(much, 0.7 * little);
+    const double mixed = energy_left(0.02, 0.3, of_second);
+    // Waves of neither half have passed the few cells between them by then.
+    EXPECT_NEAR(mixed / (of_second ? much : little), 1.0, 0.05);
+  }
+}
+
+// Stretched beyond yield and let go, clay stays longer and what is elastic does not.
+TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
+  Material clay = elastic_material(4e3, 0.4, 1000.0), rubber = elastic_material(4e3, 0.4, 1000.0);
+  clay.plastic = true;
+  clay.yield_strain = 0.005;
+  clay.flow_rate_per_s = 50.0;
+  clay.damping_ratio = rubber.damping_ratio = 0.1;
+  SpringLattice lattice = lattice_of(bar(), composite(bar(), clay, rubber, in_far_half));
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(bar().node_count()), 0);
+  std::fill_n(held.begin(), 25, std::uint8_t{1});
+  std::fill_n(held.end() - 25, 25, std::uint8_t{1});
+  lattice.hold(held);
+  for (int n = 0; n < bar().node_count(); ++n) {
+    const Vector3& at = bar().nodes[static_cast<std::size_t>(n)];
+    lattice.set_displacement(n, {0.0, 0.0, 0.05 * at.z()});
+  }
+  RelaxSettings settings;
+  settings.damping_per_s = 60.0;
+  const auto run = [&](std::uint64_t ticks) {
+    for (std::uint64_t t = 0; t < ticks; ++t, ++settings.tick) {
+      relax(std::array{RelaxedLattice{&lattice}}, settings, {});
+    }
+  };
+  run(500);
+  std::fill(held.end() - 25, held.end(), std::uint8_t{0});
+  lattice.hold(held);
+  run(1500);
+  EXPECT_GT(strain_between(lattice, 3, 9), 0.03);
+  EXPECT_NEAR(strain_between(lattice, 15, 21), 0.0, 2e-3);
+}
+
+// Held stretched, the half that creeps gives way to the other. At last half of its shear stress is gone and
+// none of its pressure: with K = E / 1.2 and G = E / 5.2 its modulus is 9 K G / (3 K + G) = 0.536 E.
+TEST(CompositeSprings, OnlyTheGelCreeps) {
+  Material gel = elastic_material(4e3, 0.3, 1000.0), rubber = elastic_material(4e3, 0.3, 1000.0);
+  gel.relaxing_share = 0.5;
+  gel.relaxation_time_s = 0.2;
+  gel.damping_ratio = rubber.damping_ratio = 0.1;
+  SpringLattice lattice = lattice_of(bar(), composite(bar(), gel, rubber, in_far_half));
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(bar().node_count()), 0);
+  std::fill_n(held.begin(), 25, std::uint8_t{1});
+  std::fill_n(held.end() - 25, 25, std::uint8_t{1});
+  lattice.hold(held);
+  for (int n = 0; n < bar().node_count(); ++n) {
+    lattice.set_displacement(n, {0.0, 0.0, 0.02 * bar().nodes[static_cast<std::size_t>(n)].z()});
+  }
+  RelaxSettings settings;
+  settings.damping_per_s = 60.0;
+  for (; settings.tick < 4000; ++settings.tick) relax(std::array{RelaxedLattice{&lattice}}, settings, {});
+  const double of_gel = strain_between(lattice, 3, 9), of_rubber = strain_between(lattice, 15, 21);
+  EXPECT_NEAR(of_gel / of_rubber, 1.0 / 0.536, 0.05);
+}
+
+// Whatever the two ratios, a tick's own choice of step is stable.
+TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
+  const DenormalsFlushed flushed;
+  for (const double first_ratio : {0.0, 0.3, 2.0}) {
+    for (const double second_ratio : {0.0, 0.3, 2.0}) {
+      for (const double softer : {1.0, 0.1, 1e-4}) {
+        Material first = elastic_material(2e4, 0.3, 1000.0),
+                 second = elastic_material(2e4 * softer, 0.4, 1000.0);
+        first.damping_ratio = first_ratio;
+        second.damping_ratio = second_ratio;
+        SpringLattice lattice = lattice_of(
+            small_block(),
+            composite(small_block(), first, second, [](const Vector3& at) { return at.x() > 0.006; }));
+        shake(lattice, 1e-3, 3);
+        const double before = momentum_of(lattice).energy_j;
+        RelaxSettings settings;
+        for (; settings.tick < 1000; ++settings.tick)
+          relax(std::array{RelaxedLattice{&lattice}}, settings, {});
+        // Near the limit the energy of symplectic Euler swings by 1 / (1 - w h / 2) without growing.
+        EXPECT_LT(momentum_of(lattice).energy_j, 10.0 * before)
+            << first_ratio << ", " << second_ratio << ", " << softer;
+      }
+    }
+  }
+}
+
+TEST(CompositeSprings, EveryInstructionSetGivesTheSameBits) {
+  const auto shape_after = [&](InstructionSet set) {
+    SpringLattice lattice = lattice_of(small_block(), all_different(small_block()), set);
+    shake(lattice, 0.3, 7);
+    RelaxSettings settings;
+    for (; settings.tick < 100; ++settings.tick) relax(std::array{RelaxedLattice{&lattice}}, settings, {});
+    return lattice.shape();
+  };
+  const std::vector<float> expected = shape_after(InstructionSet::baseline);
+  for (const InstructionSet set : available_instruction_sets()) {
+    EXPECT_EQ(shape_after(set), expected) << name_of(set);
+  }
+}
+
+// A body all of whose cells are of the first of two materials is one of that material.
+TEST(CompositeSprings, OneMaterialBehavesAsByItself) {
+  const Material material = all_different(small_block()).materials[0];
+  LatticeMaterials twice =
+      composite(small_block(), material, material, [](const Vector3& at) { return at.x() > 0.006; });
+  const auto shape_of = [&](const LatticeMaterials& materials) {
+    SpringLattice lattice = lattice_of(small_block(), materials);
+    shake(lattice, 0.1, 7);
+    RelaxSettings settings;
+    for (; settings.tick < 50; ++settings.tick) relax(std::array{RelaxedLattice{&lattice}}, settings, {});
+    return lattice.positions();
+  };
+  const std::vector<Vector3> one = shape_of(material), two = shape_of(twice);
+  // Damping times are computed another way, to the last digits.
+  for (std::size_t n = 0; n < one.size(); ++n) EXPECT_LT((one[n] - two[n]).norm(), 1e-8) << n;
+}
+
+TEST(CompositeSprings, StepsAllocateNothing) {
+  SpringLattice lattice = lattice_of(small_block(), all_different(small_block()));
+  shake(lattice, 0.1, 7);
+  RelaxSettings settings;
+  const std::array lattices{RelaxedLattice{&lattice}};
+  const std::size_t before = allocation_count();
+  for (; settings.tick < 30; ++settings.tick) relax(lattices, settings, {});
+  EXPECT_EQ(allocation_count(), before);
+}
+
+// On an incline, a base whose middle half is rougher slides as the mean of both frictions says: the weight is
+// even.
+TEST(CompositeSprings, ABlockSlidesByTheFrictionsOfItsBase) {
+  constexpr double tilt = 0.35, g = 9.81;
+  const LatticeMesh mesh = box_mesh({0.02, 0.01, 0.024}, {5, 3, 7});
+  Material smooth = elastic_material(2e4, 0.3, 1000.0);
+  smooth.damping_ratio = 0.1;
+  smooth.friction = 0.1;
+  for (const double rough : {0.1, 0.5, 1.2}) {
+    // Of seven rows the middle three, which bear half of the weight.
+    MaterialRegion middle;
+    middle.region.along = {0.3, 0.7};
+    middle.friction = rough;
+    SpringLattice lattice = lattice_of(mesh, lattice_materials(mesh, smooth, {&middle, 1}).value());
+    ContactConstraints contacts(35);
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      if (mesh.nodes[static_cast<std::size_t>(n)].y() > 1e-9) continue;
+      EmbeddedPoint point;
+      point.count = 1;
+      point.node[0] = n;
+      point.weight[0] = 1.0f;
+      contacts.add_plane_push(0, lattice, point, Vector3::UnitY(), 0.0);
+    }
+    ToolState tool;
+    RelaxSettings settings;
+    const ToolMotion ground;
+    const Vector3 gravity{g * std::sin(tilt), -g * std::cos(tilt), 0.0};
+    const auto run = [&](int ticks) {
+      for (int t = 0; t < ticks; ++t) {
+        relax(std::array{RelaxedLattice{&lattice, gravity}}, settings,
+              std::array{TouchingTool{ground, &tool, &contacts}});
+      }
+      return momentum_of(lattice).sum.x() / lattice.mass_kg();
+    };
+    const double before = run(200), gained = (run(400) - before) / 0.4;
+    const double expected = std::max(0.0, g * (std::sin(tilt) - 0.5 * (0.1 + rough) * std::cos(tilt)));
+    EXPECT_NEAR(gained, expected, 0.02 * g) << rough;  // the block still quivers
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill
