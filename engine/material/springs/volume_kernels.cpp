@@ -145,8 +145,8 @@ constexpr float crushed_dilation = -0.7f;
 
 // How a cell's pressure grows with its volume, J.
 inline float tangent_of(const LatticeView& view, const FaceDiagonals& p, int n) {
-  const float crushed = dilation_of(view, p, n) < crushed_dilation ? view.crushed_stiffness[n] : 0.0f;
-  return view.bulk_stiffness[n] + crushed;
+  const float crushed = view.crushed_stiffness[n];  // read for every cell, or lanes cannot run side by side
+  return view.bulk_stiffness[n] + (dilation_of(view, p, n) < crushed_dilation ? crushed : 0.0f);
 }
 
 template <bool gives_way>
