@@ -149,13 +149,13 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
                           answer.refusal);
   changed |= quantity_row(density, material.density_kg_per_m3, density_text(material.density_kg_per_m3),
                           answer.refusal);
-  const bool damped = quantity_row(damping, sculpting.damping_per_s,
-                                   rounded(sculpting.damping_per_s, 1, " /s"), answer.refusal);
-  fact_row("After touch", after_touch_text(material));
+  bool steadied = quantity_row(damping, sculpting.damping_per_s, rounded(sculpting.damping_per_s, 1, " /s"),
+                               answer.refusal);
+  steadied |= switch_row("After touch", after_touch_text(material), "settles", sculpting.settles);
   draw_regions(model.regions);
   fact_row("Mass", grams_text(model.mass_kg));
   if (changed) ask_for(std::move(material), answer);
-  if (damped) answer.requests.emplace_back(Command(SetSculpting{sculpting}));
+  if (steadied) answer.requests.emplace_back(Command(SetSculpting{sculpting}));
 }
 
 // What the control net cannot follow of the lattice.

@@ -61,6 +61,13 @@ bool type_in(const std::string& name, std::array<char, 64>& text, int& entry) {
   return confirmed;
 }
 
+// Of the row just begun, for an item of this width.
+void put_at_right(float width) {
+  ImGui::SameLine();
+  const float room = ImGui::GetContentRegionAvail().x - width;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0F, room));
+}
+
 }  // namespace
 
 RowGroup::RowGroup(const char* heading, const Theme& theme) {
@@ -126,11 +133,14 @@ void fact_row(const char* label, const std::string& text) {
 
 bool deed_row(const char* label, const std::string& text, const char* button) {
   fact_row(label, text);
-  const float width = ImGui::CalcTextSize(button).x + 2.0F * ImGui::GetStyle().FramePadding.x;
-  ImGui::SameLine();
-  const float room = ImGui::GetContentRegionAvail().x - width;
-  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0F, room));
+  put_at_right(ImGui::CalcTextSize(button).x + 2.0F * ImGui::GetStyle().FramePadding.x);
   return ImGui::Button(button);
+}
+
+bool switch_row(const char* label, const std::string& text, const char* name, bool& on) {
+  fact_row(label, text);
+  put_at_right(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize(name).x);
+  return ImGui::Checkbox(name, &on);
 }
 
 void gauge_row(const char* label, double share, const std::string& text) {

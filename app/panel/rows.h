@@ -43,6 +43,9 @@ void fact_row(const char* label, const std::string& text);
 // A fact and what can be done about it: whether the button was pressed.
 bool deed_row(const char* label, const std::string& text, const char* button);
 
+// A fact and what can be switched on about it: whether it was switched.
+bool switch_row(const char* label, const std::string& text, const char* name, bool& on);
+
 // A bar that fills from 0 to 1.
 void gauge_row(const char* label, double share, const std::string& text);
 

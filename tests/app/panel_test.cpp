@@ -111,10 +111,8 @@ TEST(Panel, UndoButtonAsksForUndo) {
   EXPECT_TRUE(std::holds_alternative<UndoStroke>(requests[0]));
 }
 
-// The requests of a click on what stands third in the row of kinds.
-std::vector<Request> click_third_kind(const PanelModel& model) {
+std::vector<Request> click_once(const PanelModel& model, float x, float y) {
   Frame frame(1280, 720);
-  const float x = 241.0F, y = 83.0F;
   frame.draw(model);
   frame.draw(model);
   ImGui::GetIO().MousePos = ImVec2(x, y);
@@ -123,6 +121,11 @@ std::vector<Request> click_third_kind(const PanelModel& model) {
   frame.draw(model);
   frame.release();
   return frame.draw(model);
+}
+
+// The requests of a click on what stands third in the row of kinds.
+std::vector<Request> click_third_kind(const PanelModel& model) {
+  return click_once(model, 241.0F, 83.0F);
 }
 
 TEST(Panel, OffersASolidWhereTheToolHasABody) {
@@ -138,6 +141,21 @@ TEST(Panel, OffersASolidWhereTheToolHasABody) {
   ASSERT_NE(set, nullptr);
   EXPECT_EQ(set->tool.kind, ToolKind::solid);
   EXPECT_EQ(set->tool.body, model.tool.body);
+}
+
+TEST(Panel, LetsBodiesSettleAndSwingAgain) {
+  PanelModel model = full_model();
+  for (const bool settles : {true, false}) {
+    const auto requests = click_once(model, 275.0F, 309.0F);
+    ASSERT_EQ(requests.size(), 1U);
+    const auto* command = std::get_if<Command>(&requests[0]);
+    ASSERT_NE(command, nullptr);
+    const auto* set = std::get_if<SetSculpting>(command);
+    ASSERT_NE(set, nullptr);
+    EXPECT_EQ(set->sculpting.settles, settles);
+    EXPECT_EQ(set->sculpting.damping_per_s, model.sculpting.damping_per_s);
+    model.sculpting = set->sculpting;
+  }
 }
 
 // What the panel answers to a text typed, with Ctrl and a click, over the slider at this height.
