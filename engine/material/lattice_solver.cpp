@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "engine/material/node_motion.h"
 #include "engine/material/settling.h"
-#include "engine/material/support_motion.h"
+#include "engine/material/springs/node_motion.h"
+#include "engine/material/supports/support_motion.h"
 
 namespace spoonbill {
 namespace {

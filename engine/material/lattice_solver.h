@@ -11,7 +11,7 @@
 #include "engine/material/contact/ground_contacts.h"
 #include "engine/material/implicit/implicit_core.h"
 #include "engine/material/springs/spring_lattice.h"
-#include "engine/material/supported_nodes.h"
+#include "engine/material/supports/supported_nodes.h"
 
 namespace spoonbill {
 

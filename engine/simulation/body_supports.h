@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/material/springs/spring_lattice.h"
-#include "engine/material/supported_nodes.h"
+#include "engine/material/supports/supported_nodes.h"
 #include "engine/simulation/loads.h"
 
 namespace spoonbill {

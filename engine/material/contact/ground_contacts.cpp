@@ -1,7 +1,7 @@
 #include "engine/material/contact/ground_contacts.h"
 
 #include "engine/material/contact/contact_push.h"
-#include "engine/material/node_motion.h"
+#include "engine/material/springs/node_motion.h"
 
 namespace spoonbill {
 namespace {

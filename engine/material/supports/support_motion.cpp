@@ -1,8 +1,8 @@
-#include "engine/material/support_motion.h"
+#include "engine/material/supports/support_motion.h"
 
 #include <algorithm>
 
-#include "engine/material/node_motion.h"
+#include "engine/material/springs/node_motion.h"
 
 namespace spoonbill {
 namespace {

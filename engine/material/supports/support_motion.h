@@ -4,7 +4,7 @@
 #include <span>
 
 #include "engine/material/springs/spring_lattice.h"
-#include "engine/material/supported_nodes.h"
+#include "engine/material/supports/supported_nodes.h"
 
 namespace spoonbill {
 
