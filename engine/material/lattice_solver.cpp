@@ -38,9 +38,15 @@ void apply_node_forces(const SpringLattice& lattice, const LatticeView& view) {
   }
 }
 
+void linearise(const SpringLattice& lattice, const LatticeView& view, Linearised kept) {
+  lattice.kernels().look_ahead(view, lattice.damping_time_s());
+  lattice.kernels().linearise_springs(view, kept);
+}
+
 // One step of the power iteration every other tick follows the fastest frequency as the lattice deforms.
-void follow_fastest_frequency(SpringLattice& lattice, const LatticeView& view) {
-  const float square = lattice.kernels().power_step(view, lattice.free_mass());
+void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linearised kept) {
+  lattice.kernels().look_ahead(view, lattice.damping_time_s());
+  const float square = lattice.kernels().linearise_with_power_step(view, kept, lattice.free_mass());
   if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_frequency(std::sqrt(square));
 }
 
@@ -63,17 +69,12 @@ Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, fl
   return lattice.kernels().drift(view, drift);
 }
 
-void linearise(const SpringLattice& lattice, const LatticeView& view) {
-  lattice.kernels().look_ahead(view, lattice.damping_time_s());
-  lattice.kernels().linearise_springs(view);
-}
-
 // `moved_square` is of the node that moved furthest since the springs were linearised.
 void take_forces(const SpringLattice& lattice, const LatticeView& view, float moved_square) {
   const LatticeKernels& kernels = lattice.kernels();
   const float limit = static_cast<float>(linear_cells) * lattice.cell_size_m();
   const bool linear = moved_square <= limit * limit;
-  if (!linear) kernels.linearise_springs(view);
+  if (!linear) kernels.linearise_springs(view, Linearised::tangents);
   kernels.start_forces(view);
   if (linear && moved_square > 0.0f) kernels.spring_forces(view);
   kernels.volume_forces(view);
@@ -224,8 +225,35 @@ void steady_strained_nodes(Relaxation& relaxation, float h) {
     if (!relaxation.has_springs(at)) continue;
     SpringLattice& lattice = relaxation.lattice(at);
     relaxation.view[at].inverse_mass = lattice.steady_strained_nodes(h, static_cast<float>(stability_share));
-    linearise(lattice, relaxation.view[at]);  // velocities changed
+    linearise(lattice, relaxation.view[at], Linearised::tangents);  // velocities changed
   }
+}
+
+// What the tick asks of a lattice's linearisation, as far as can be told before the frequency is followed.
+Linearised kept_of(const SpringLattice& lattice, const RelaxSettings& settings, int substeps) {
+  const bool one = settings.iterations * substeps == 1;
+  return one && !settings.settles && !lattice.is_damped_further() ? Linearised::forces : Linearised::tangents;
+}
+
+// Linearises all springs at the start of a tick, and chooses its substeps.
+Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bool follows) {
+  const int foreseen = choose_substeps(relaxation, settings.step_s).count;
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (!relaxation.has_springs(at)) continue;
+    SpringLattice& lattice = relaxation.lattice(at);
+    const Linearised kept = kept_of(lattice, settings, foreseen);
+    if (follows) {
+      linearise_and_follow(lattice, relaxation.view[at], kept);
+    } else {
+      linearise(lattice, relaxation.view[at], kept);
+    }
+  }
+  const Substeps substeps = choose_substeps(relaxation, settings.step_s);
+  for (std::size_t at = 0; at < relaxation.count() && substeps.count > foreseen; ++at) {
+    if (relaxation.has_springs(at))
+      linearise(relaxation.lattice(at), relaxation.view[at], Linearised::tangents);
+  }
+  return substeps;
 }
 
 void flow(Relaxation& relaxation, double material_time_s) {
@@ -301,15 +329,9 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
                   std::span<const TouchingTool> tools, BodyContacts* between, GroundContacts* ground) {
   Relaxation relaxation{lattices, {}, {}, {}, {}, 0.0};
   const bool flows = settings.tick % 2 == 1;
-  for (std::size_t at = 0; at < lattices.size(); ++at) {
-    SpringLattice& lattice = *lattices[at].lattice;
-    relaxation.view[at] = lattice.view();
-    if (!relaxation.has_springs(at)) continue;
-    linearise(lattice, relaxation.view[at]);
-    if (!flows) follow_fastest_frequency(lattice, relaxation.view[at]);
-  }
+  for (std::size_t at = 0; at < lattices.size(); ++at) relaxation.view[at] = lattices[at].lattice->view();
+  const Substeps substeps = begin_springs(relaxation, settings, !flows);
   choose_damping(relaxation, settings);
-  const Substeps substeps = choose_substeps(relaxation, settings.step_s);
   RelaxReport report;
   report.substeps = substeps.count;
   report.nodes_slowed = substeps.slowed;

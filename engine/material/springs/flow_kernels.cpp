@@ -93,8 +93,7 @@ template <class Rule>
 inline bool may_flow(const float* __restrict square, const float* __restrict root,
                      const float* __restrict root_far, const float* __restrict stiffness,
                      const float* __restrict rest, const Rule& rule) {
-  alignas(64) float beyond[16] = {};
-  bool always = false;
+  alignas(64) float beyond[16] = {}, always[16] = {};
   for (int start = 0; start < block; start += 16) {
     for (int l = 0; l < 16; ++l) {
       const int i = start + l;
@@ -104,11 +103,12 @@ inline bool may_flow(const float* __restrict square, const float* __restrict roo
           max_of(square[i] - over * over * free_square, under * under * free_square - square[i]);
       const float flows = rule.rate_step(i) > 0.0f ? stiffness[i] : 0.0f;
       beyond[l] = max_of(beyond[l], out * flows);
-      always |= margin <= 0.0f;
+      always[l] = max_of(always[l], margin > 0.0f ? 0.0f : 1.0f);
     }
   }
   for (int l = 1; l < 16; ++l) beyond[0] = max_of(beyond[0], beyond[l]);
-  return beyond[0] > 0.0f || always;
+  for (int l = 1; l < 16; ++l) always[0] = max_of(always[0], always[l]);
+  return beyond[0] > 0.0f || always[0] > 0.0f;
 }
 
 void take_dilation_roots(const LatticeView& view, float* __restrict root) {

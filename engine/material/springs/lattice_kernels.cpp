@@ -35,6 +35,10 @@ struct ConstField {
   const float *x, *y, *z;
 };
 
+struct Field {
+  float *x, *y, *z;
+};
+
 void set_to(float* __restrict to, const float* __restrict from, int count) {
   for (int i = 0; i < count; ++i) to[i] = from[i];
 }
@@ -67,7 +71,8 @@ inline Stiffened stiffened(float by) {
 }
 
 template <Springs springs>
-inline void linearise_block(const LatticeView& view, const SpringArrays& s, int start, BlockForces& near) {
+inline void linearise_block(const LatticeView& view, const SpringArrays& s, int start,
+                            float* __restrict tangent, BlockForces& near) {
   const int o = s.offset;
   const float *wx = view.ahead_x + start, *wy = view.ahead_y + start, *wz = view.ahead_z + start;
   const float *rx = s.rest_x + start, *ry = s.rest_y + start, *rz = s.rest_z + start;
@@ -75,7 +80,6 @@ inline void linearise_block(const LatticeView& view, const SpringArrays& s, int 
   float* __restrict far_x = view.spring_x + start + o;
   float* __restrict far_y = view.spring_y + start + o;
   float* __restrict far_z = view.spring_z + start + o;
-  float* __restrict tangent = s.tangent + tangent_runs * start;
   const float* const own_stiffening = springs == Springs::mixed ? s.stiffening + start : nullptr;
 #pragma GCC ivdep
   for (int l = 0; l < block; ++l) {
@@ -110,11 +114,10 @@ inline void linearise_block(const LatticeView& view, const SpringArrays& s, int 
   }
 }
 
-inline void tangent_block(const LatticeView& view, const SpringArrays& s, const ConstField& field, int start,
-                          BlockForces& near) {
-  const int o = s.offset;
+inline void tangent_block(const LatticeView& view, int offset, const ConstField& field, int start,
+                          const float* tangent, BlockForces& near) {
+  const int o = offset;
   const float *ux = field.x + start, *uy = field.y + start, *uz = field.z + start;
-  const float* const tangent = s.tangent + tangent_runs * start;
   float* __restrict far_x = view.fx + start + o;
   float* __restrict far_y = view.fy + start + o;
   float* __restrict far_z = view.fz + start + o;
@@ -137,52 +140,84 @@ inline void tangent_block(const LatticeView& view, const SpringArrays& s, const 
 }
 
 // Calls for_block(springs, start, near) for every active block of every direction, and adds what it leaves in
-// `near` to the forces. A tile of blocks, direction by direction: positions and forces stay in the first
-// cache, and few enough arrays are read at once for the processor to fetch them ahead. Near ends are summed
-// apart, so that no load waits for an overlapping store just before it.
-template <class ForBlock>
-inline void over_springs(const LatticeView& view, float* fx, float* fy, float* fz,
-                         const ForBlock& for_block) {
+// `near` to each of the sums. A tile of blocks, direction by direction: positions and forces stay in the
+// first cache, and few enough arrays are read at once for the processor to fetch them ahead. Near ends are
+// summed apart, so that no load waits for an overlapping store just before it.
+template <int count, class ForBlock>
+inline void over_springs(const LatticeView& view, const Field (&sums)[count], const ForBlock& for_block) {
   constexpr int tile_blocks = 8, tile = tile_blocks * block;
-  BlockForces near[tile_blocks];
+  BlockForces near[tile_blocks][count];
   for (int first = 0; first < view.padded_count; first += tile) {
     const int end = first + tile < view.padded_count ? first + tile : view.padded_count;
-    for (int b = 0; b < tile_blocks; ++b) clear(near[b]);
+    for (int b = 0; b < tile_blocks; ++b) {
+      for (int i = 0; i < count; ++i) clear(near[b][i]);
+    }
     for (const SpringArrays& s : view.springs) {
       for (int start = first; start < end; start += block) {
         if (view.active_block[start / block] != 0) for_block(s, start, near[(start - first) / block]);
       }
     }
     for (int start = first; start < end; start += block) {
-      add(near[(start - first) / block], fx + start, fy + start, fz + start);
+      for (int i = 0; i < count; ++i) {
+        add(near[(start - first) / block][i], sums[i].x + start, sums[i].y + start, sums[i].z + start);
+      }
     }
   }
 }
 
+// Where a block's tangents go: kept, or forgotten once they were used, which spares most of the memory that a
+// linearisation writes.
+struct Tangents {
+  Linearised kept;
+  alignas(64) float forgotten[tangent_runs * block];
+
+  float* of(const SpringArrays& s, int start) {
+    return kept == Linearised::tangents ? s.tangent + tangent_runs * start : forgotten;
+  }
+};
+
 template <Springs springs>
-void linearise_all(const LatticeView& view) {
-  over_springs(view, view.spring_x, view.spring_y, view.spring_z,
-               [&](const SpringArrays& s, int start, BlockForces& near) {
-                 linearise_block<springs>(view, s, start, near);
-               });
+void linearise_all(const LatticeView& view, Tangents& tangents, bool powers) {
+  const Field forces[2] = {{view.spring_x, view.spring_y, view.spring_z}, {view.fx, view.fy, view.fz}};
+  const ConstField power = {view.power_x, view.power_y, view.power_z};
+  if (!powers) {
+    const Field springs_alone[1] = {forces[0]};
+    over_springs(view, springs_alone, [&](const SpringArrays& s, int start, BlockForces(&near)[1]) {
+      linearise_block<springs>(view, s, start, tangents.of(s, start), near[0]);
+    });
+    return;
+  }
+  over_springs(view, forces, [&](const SpringArrays& s, int start, BlockForces(&near)[2]) {
+    float* const tangent = tangents.of(s, start);
+    linearise_block<springs>(view, s, start, tangent, near[0]);
+    tangent_block(view, s.offset, power, start, tangent, near[1]);
+  });
 }
 
-void linearise_springs(const LatticeView& view) {
+// And, where it powers, sets the forces to what the springs' derivative makes of the iteration's vector.
+void linearise(const LatticeView& view, Linearised kept, bool powers) {
   const int count = view.padded_count;
   set_to(view.reference_x, view.ahead_x, count);
   set_to(view.reference_y, view.ahead_y, count);
   set_to(view.reference_z, view.ahead_z, count);
   clear(view.moved_x, view.moved_y, view.moved_z, count);
   clear(view.spring_x, view.spring_y, view.spring_z, count);
+  if (powers) clear(view.fx, view.fy, view.fz, count);
+  Tangents tangents;
+  tangents.kept = kept;
   if (view.springs[0].stiffening) {
-    linearise_all<Springs::mixed>(view);
+    linearise_all<Springs::mixed>(view, tangents, powers);
   } else if (view.stiffening > 0.0f) {
-    linearise_all<Springs::stiffening>(view);
+    linearise_all<Springs::stiffening>(view, tangents, powers);
   } else if (view.stiffening < 0.0f) {
-    linearise_all<Springs::softening>(view);
+    linearise_all<Springs::softening>(view, tangents, powers);
   } else {
-    linearise_all<Springs::linear>(view);
+    linearise_all<Springs::linear>(view, tangents, powers);
   }
+}
+
+void linearise_springs(const LatticeView& view, Linearised kept) {
+  linearise(view, kept, false);
 }
 
 void start_forces(const LatticeView& view) {
@@ -192,8 +227,9 @@ void start_forces(const LatticeView& view) {
 }
 
 void add_spring_tangent(const LatticeView& view, const ConstField& field) {
-  over_springs(view, view.fx, view.fy, view.fz, [&](const SpringArrays& s, int start, BlockForces& near) {
-    tangent_block(view, s, field, start, near);
+  const Field forces[1] = {{view.fx, view.fy, view.fz}};
+  over_springs(view, forces, [&](const SpringArrays& s, int start, BlockForces(&near)[1]) {
+    tangent_block(view, s.offset, field, start, s.tangent + tangent_runs * start, near[0]);
   });
 }
 
@@ -224,8 +260,9 @@ inline void damp_block(const LatticeView& view, const SpringArrays& s, int start
 }
 
 void damp_further(const LatticeView& view) {
-  over_springs(view, view.fx, view.fy, view.fz, [&](const SpringArrays& s, int start, BlockForces& near) {
-    damp_block(view, s, start, near);
+  const Field forces[1] = {{view.fx, view.fy, view.fz}};
+  over_springs(view, forces, [&](const SpringArrays& s, int start, BlockForces(&near)[1]) {
+    damp_block(view, s, start, near[0]);
   });
   damp_volume_further(view);
 }
@@ -268,10 +305,9 @@ inline void divide_by_mass(float* __restrict f, const float* __restrict inverse_
   for (int i = 0; i < count; ++i) f[i] *= inverse_mass[i];
 }
 
-float power_step(const LatticeView& view, const float* mass) {
+// With the springs' part of -K w in the forces.
+float end_power_step(const LatticeView& view, const float* mass) {
   const int count = view.padded_count;
-  clear(view.fx, view.fy, view.fz, count);
-  add_spring_tangent(view, {view.power_x, view.power_y, view.power_z});
   take_volume_stiffness(view);
   join_seam_forces(view);
   const float before = mass_norm(mass, view.power_x, view.power_y, view.power_z, count);
@@ -284,6 +320,17 @@ float power_step(const LatticeView& view, const float* mass) {
   take_power_step(view.power_y, view.fy, view.power_noise, view.free_node, scale, -1.0f, count);
   take_power_step(view.power_z, view.fz, view.power_noise, view.free_node, scale, 1.0f, count);
   return before > 0.0f ? after / before : 0.0f;
+}
+
+float power_step(const LatticeView& view, const float* mass) {
+  clear(view.fx, view.fy, view.fz, view.padded_count);
+  add_spring_tangent(view, {view.power_x, view.power_y, view.power_z});
+  return end_power_step(view, mass);
+}
+
+float linearise_with_power_step(const LatticeView& view, Linearised kept, const float* mass) {
+  linearise(view, kept, true);
+  return end_power_step(view, mass);
 }
 
 }  // namespace
@@ -303,6 +350,7 @@ const LatticeKernels lattice_kernels = {
     row_sums,
     measure_rest_volumes,
     power_step,
+    linearise_with_power_step,
 };
 
 }  // namespace spoonbill::SPOONBILL_KERNELS

@@ -118,6 +118,10 @@ struct Drifted {
   float moved_square = 0.0f;  // the largest since the springs were linearised, m^2
 };
 
+// What a linearisation keeps: the springs' forces alone, for where no substep follows on it, or their
+// derivatives beside them.
+enum class Linearised { forces, tangents };
+
 struct LatticeKernels {
   // Places nodes ahead by the damping time tau.
   void (*look_ahead)(const LatticeView&, float tau_s);
@@ -127,10 +131,10 @@ struct LatticeKernels {
   // still the more the longer they are, so that no lattice of them snaps.
   // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, and so a rotation; ahead of a rotating body there
   // is the same body turned further, so that this does not.
-  void (*linearise_springs)(const LatticeView&);
+  void (*linearise_springs)(const LatticeView&, Linearised kept);
   // Sets the forces to the springs' at the reference.
   void (*start_forces)(const LatticeView&);
-  // Adds what the springs' forces changed by since, to first order.
+  // Adds what the springs' forces changed by since, to first order; with the tangents kept, as what follows.
   void (*spring_forces)(const LatticeView&);
   // f = -p dV/dx, p = K_v x, x = J - 1, ahead in time, with the exact volume of each trilinear cell. Below
   // Poisson's ratios of 1/4 K_v is negative, and this energy unbounded below: there
@@ -162,6 +166,8 @@ struct LatticeKernels {
   // One step w <- M^-1 K w of the power iteration, normalised, K linearised. Returns |M^-1 K w| / |w| in the
   // mass norm, an estimate of the largest omega^2. Uses the force arrays as working memory.
   float (*power_step)(const LatticeView&, const float* mass);
+  // linearise_springs() and then power_step(), with the same results, in one passage over the springs.
+  float (*linearise_with_power_step)(const LatticeView&, Linearised kept, const float* mass);
 };
 
 namespace kernels_baseline {

@@ -120,7 +120,7 @@ float SpringLattice::measured_frequency() {
     power_z_[n] = mixed(static_cast<std::uint32_t>(3 * place + 3));
   }
   kernels_->look_ahead(lattice, 0.0f);
-  kernels_->linearise_springs(lattice);
+  kernels_->linearise_springs(lattice, Linearised::tangents);
   float square = 0.0f;
   for (int step = 0; step < frequency_steps; ++step) {
     square = kernels_->power_step(lattice, node_mass_.data());

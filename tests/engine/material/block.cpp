@@ -27,7 +27,7 @@ void take_forces(SpringLattice& lattice, float tau_s) {
   const LatticeView view = lattice.view();
   const LatticeKernels& kernels = lattice.kernels();
   kernels.look_ahead(view, tau_s);
-  kernels.linearise_springs(view);
+  kernels.linearise_springs(view, Linearised::tangents);
   kernels.start_forces(view);
   kernels.volume_forces(view);
 }

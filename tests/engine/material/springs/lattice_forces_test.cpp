@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "engine/material/cells/cell_springs.h"
 #include "engine/material/lattice_solver.h"
@@ -103,6 +105,47 @@ TEST(LatticeForces, RigidRotationProducesNoDamping) {
   EXPECT_LT(std::abs(power), 1e-3 * whole_damper);  // single precision of positions; (tau w)^2 / 2 is 2e-5
 }
 
+// One passage gives what a linearisation and a step of the power iteration give one after the other, bit for
+// bit, and leaves the derivatives of before where they are not to be kept.
+TEST(LatticeForces, PowerStepsAlongWithALinearisation) {
+  for (const double stiffening : {0.0, 20.0, -20.0}) {
+    Material material = elastic_material(5000.0, 0.3, 1000.0);
+    material.stiffening = stiffening;
+    const SpringLattice at_rest = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, material);
+    const auto followed = [&](const auto& step) {
+      SpringLattice lattice = at_rest;
+      displace_at_random(lattice, 2e-4, 5);
+      const LatticeView view = lattice.view();
+      lattice.kernels().look_ahead(view, 0.0f);
+      std::vector<float> out = {step(lattice, view)};
+      for (const float* field : {view.spring_x, view.spring_y, view.spring_z, view.power_x, view.power_y,
+                                 view.power_z, view.reference_x, view.moved_x}) {
+        out.insert(out.end(), field, field + view.padded_count);
+      }
+      for (const SpringArrays& s : view.springs) {
+        out.insert(out.end(), s.tangent, s.tangent + tangent_runs * view.padded_count);
+      }
+      return out;
+    };
+    const auto one_by_one = followed([](SpringLattice& lattice, const LatticeView& view) {
+      lattice.kernels().linearise_springs(view, Linearised::tangents);
+      return lattice.kernels().power_step(view, lattice.free_mass());
+    });
+    const auto at_once = followed([](SpringLattice& lattice, const LatticeView& view) {
+      return lattice.kernels().linearise_with_power_step(view, Linearised::tangents, lattice.free_mass());
+    });
+    const auto forgetting = followed([](SpringLattice& lattice, const LatticeView& view) {
+      return lattice.kernels().linearise_with_power_step(view, Linearised::forces, lattice.free_mass());
+    });
+    EXPECT_GT(one_by_one[0], 0.0f);
+    EXPECT_EQ(one_by_one, at_once);
+    const std::size_t kept = 1 + 8 * static_cast<std::size_t>(SpringLattice(at_rest).view().padded_count);
+    EXPECT_TRUE(
+        std::equal(at_once.begin(), at_once.begin() + static_cast<std::ptrdiff_t>(kept), forgetting.begin()));
+    EXPECT_NE(at_once, forgetting);
+  }
+}
+
 // What springs change by from a strained reference is right to first order: half the step, a quarter of the
 // error.
 TEST(LatticeForces, LinearisedSpringsFollowToFirstOrder) {
@@ -124,7 +167,7 @@ TEST(LatticeForces, LinearisedSpringsFollowToFirstOrder) {
     lattice.kernels().start_forces(view);
     lattice.kernels().spring_forces(view);
     const std::vector<float> linear(view.fx, view.fx + lattice.mesh().node_count());
-    lattice.kernels().linearise_springs(view);
+    lattice.kernels().linearise_springs(view, Linearised::tangents);
     lattice.kernels().start_forces(view);
     double sum = 0.0, magnitude = 0.0;
     for (int n = 0; n < lattice.mesh().node_count(); ++n) {
