@@ -8,7 +8,6 @@
 
 #include "app/panel/rows.h"
 #include "app/report/quantity_text.h"
-#include "app/report/region_text.h"
 #include "app/view/stage_choice.h"
 #include "app/view/view_choice.h"
 
@@ -128,12 +127,12 @@ void ask_for(Material material, PanelAnswer& answer) {
   answer.requests.emplace_back(Command(SetMaterial{std::move(material)}));
 }
 
-// In two rows at most: more would push the last ones out of a small window.
-void draw_regions(const std::vector<MaterialRegion>& regions) {
-  if (regions.empty()) return;
-  fact_row("Region 1", made_of_text(regions[0]));
-  if (regions.size() == 2) fact_row("Region 2", made_of_text(regions[1]));
-  if (regions.size() > 2) fact_row("Others", std::to_string(regions.size() - 1) + " regions");
+// And of how many regions beside the body's own: in one row, so that a small window shows them all.
+std::string mass_text(const PanelModel& model) {
+  const std::string mass = grams_text(model.mass_kg);
+  if (model.region_count == 0) return mass;
+  return mass + ", " + std::to_string(model.region_count) +
+         (model.region_count == 1 ? " region" : " regions");
 }
 
 void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
@@ -152,8 +151,7 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
   bool steadied = quantity_row(damping, sculpting.damping_per_s, rounded(sculpting.damping_per_s, 1, " /s"),
                                answer.refusal);
   steadied |= switch_row("After touch", after_touch_text(material), "settles", sculpting.settles);
-  draw_regions(model.regions);
-  fact_row("Mass", grams_text(model.mass_kg));
+  fact_row("Mass", mass_text(model));
   if (changed) ask_for(std::move(material), answer);
   if (steadied) answer.requests.emplace_back(Command(SetSculpting{sculpting}));
 }

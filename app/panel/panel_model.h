@@ -20,8 +20,8 @@ struct PanelModel {
   Tool tool;
   Sculpting sculpting;
   Material material;
-  std::vector<MaterialRegion> regions;  // of what is not of that material
-  std::vector<Material> presets;        // to choose from
+  int region_count = 0;           // of what is not of that material
+  std::vector<Material> presets;  // to choose from
 
   double felt_youngs_modulus_pa = 0.0;
   int implicit_nodes = 0;  // 0: springs, stepped explicitly

@@ -14,7 +14,7 @@ PanelModel panel_of(const SessionFacts& facts, const Snapshot& snapshot, const V
   model.tool = facts.tool;
   model.sculpting = facts.sculpting;
   model.material = facts.material;
-  model.regions = facts.regions;
+  model.region_count = facts.region_count;
   model.felt_youngs_modulus_pa = snapshot.bodies.front().material.felt_youngs_modulus_pa;
   model.implicit_nodes = snapshot.bodies.front().material.implicit_nodes;
   for (const BodySnapshot& body : snapshot.bodies) {

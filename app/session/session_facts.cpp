@@ -7,7 +7,7 @@ void write_facts(const Session& session, SessionFacts& facts) {
   facts.title = session.title;
   facts.tool = scene.tool;
   facts.material = scene.bodies[0].material;
-  facts.regions = scene.bodies[0].regions;
+  facts.region_count = static_cast<int>(scene.bodies[0].regions.size());
   facts.sculpting = scene.sculpting;
   facts.symmetry = scene.symmetry;
   facts.can_undo = session.history.can_undo();

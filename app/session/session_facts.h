@@ -14,7 +14,7 @@ struct SessionFacts {
   std::string title;
   Tool tool;
   Material material;
-  std::vector<MaterialRegion> regions;  // of the first body, as the material is
+  int region_count = 0;  // of the first body, as the material is
   Sculpting sculpting;
   Symmetry symmetry;
   bool can_undo = false;

@@ -78,7 +78,7 @@ TEST(Panel, ClipsNothingAtTheUsualSizes) {
     Frame frame(width, height);
     PanelModel model = full_model();
     model.tool.body = std::make_shared<ToolBody>();
-    model.regions.assign(16, MaterialRegion{{}, model.material, 0.875});
+    model.region_count = 16;
     frame.draw(model);
     frame.draw(model);
     const ImGuiWindow* window = ImGui::FindWindowByName("Panel");
