@@ -116,6 +116,7 @@ void ScenePasses::draw(const FrameView& view, const Snapshot& snapshot, const Vi
   passes_.background.draw(target);
   draw_ground(view, settings);
   passes_.resolve.draw(target, areas);
+  draw_scale_bar(view, settings);
 }
 
 void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
@@ -153,12 +154,15 @@ void ScenePasses::draw_ground(const FrameView& view, const ViewSettings& setting
   }
   passes_.line.draw(view, lines_, 0.0f);
   if (settings.shadow) passes_.ground.draw_shadow(view, passes_.shadow);
+}
+
+// After the bodies, which would hide it where they stand before the ground.
+void ScenePasses::draw_scale_bar(const FrameView& view, const ViewSettings& settings) {
+  if (!settings.overlays.scale_bar) return;
+  const auto bar = ground_scale_bar(settings.camera, view.viewport, settings.ground_y_m);
+  if (!bar) return;
   lines_.clear();
-  if (settings.overlays.scale_bar) {
-    if (const auto bar = ground_scale_bar(settings.camera, view.viewport, settings.ground_y_m)) {
-      append_scale_bar(*bar, settings.camera, lines_);
-    }
-  }
+  append_scale_bar(*bar, settings.camera, lines_);
   passes_.line.draw(view, lines_, 0.0f);
 }
 
