@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -15,6 +17,7 @@
 #include "render/image/compare.h"
 #include "render/image/png.h"
 #include "render/interface_fonts.h"
+#include "render/overlay/ground_grid.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/render/sample_scene.h"
 
@@ -131,6 +134,39 @@ TEST_F(Rendering, EveryOverlayShows) {
     EXPECT_GT(change([&](ViewSettings& s) { s.overlays.*overlay = !(s.overlays.*overlay); }), tolerance)
         << name;
   }
+}
+
+// A bar on ground that the body hides is drawn all the same.
+TEST_F(Rendering, TheScaleBarShowsBeforeABody) {
+  const Viewport viewport = make_viewport(width_px, height_px, {});
+  settings_.overlays = Overlays{};
+  settings_.overlays.scale_bar = false;
+  const auto covered_bar = [&]() -> std::optional<Eigen::Vector2d> {
+    const auto bar = ground_scale_bar(settings_.camera, viewport, settings_.ground_y_m);
+    if (!bar) return std::nullopt;
+    const auto at = project(settings_.camera, viewport, 0.7 * bar->start_m + 0.3 * bar->end_m);
+    if (!at) return std::nullopt;
+    const Image image = picture();
+    const std::uint8_t* p = image.pixel(static_cast<int>(at->x()), static_cast<int>(at->y()));
+    return p[0] > p[2] + 25 ? at : std::nullopt;
+  };
+  std::optional<Eigen::Vector2d> at;
+  for (int step = 0; step < 40 && !at; ++step) {
+    settings_.camera.target_m.y() += 2e-3;
+    at = covered_bar();
+  }
+  ASSERT_TRUE(at) << "no view has the body before the bar";
+  const auto darkest = [&] {
+    const Image image = picture();
+    int least = 255;
+    for (int y = -3; y <= 3; ++y) {
+      least = std::min<int>(least, image.pixel(static_cast<int>(at->x()), static_cast<int>(at->y()) + y)[0]);
+    }
+    return least;
+  };
+  const int of_the_body = darkest();
+  settings_.overlays.scale_bar = true;
+  EXPECT_LT(darkest(), of_the_body - 40);
 }
 
 TEST_F(Rendering, EveryStageOfAContactShows) {
