@@ -103,8 +103,9 @@ bool are_plainly_elastic(const LatticeMaterials& materials) {
 
 double largest_youngs_modulus_pa(const LatticeMaterials& materials) {
   double largest = 0.0;
-  for (const Material& material : materials.materials)
+  for (const Material& material : materials.materials) {
     largest = std::max(largest, material.youngs_modulus_pa);
+  }
   return largest;
 }
 

@@ -41,8 +41,8 @@ StaticSystem::StaticSystem(const StaticBody& body, const std::vector<HeldAxis>& 
   for (const HeldAxis& axis : held_) free_[static_cast<std::size_t>(3 * axis.node + axis.axis)] = -1;
   for (std::size_t c = 0; c < free_.size(); ++c) {
     const int node = static_cast<int>(c / 3), joined = mesh.joined(node);  // not after the node
-    if (free_[c] == 0)
-      free_[c] = joined == node ? free_count_++ : free_[3 * static_cast<std::size_t>(joined) + c % 3];
+    if (free_[c] != 0) continue;
+    free_[c] = joined == node ? free_count_++ : free_[3 * static_cast<std::size_t>(joined) + c % 3];
   }
   lay_out();
 }
