@@ -309,7 +309,8 @@ void begin_core_steps(const Relaxation& relaxation) {
     }
     relaxed.core->begin_step(step, *relaxed.lattice);
     for (SupportedNodes& support : relaxed.supports) {
-      support.impulse_ns -= time_s * relaxed.core->force_on_held(support.nodes, relaxed.gravity_m_per_s2);
+      support.impulse_ns -=
+          time_s * relaxed.core->force_on_held(*relaxed.lattice, support.nodes, relaxed.gravity_m_per_s2);
     }
   }
 }

@@ -67,9 +67,19 @@ GridPoint weighted(const LatticeMesh& of, int node, const LatticeMesh& by) {
   return result;
 }
 
+std::size_t most_followed(const GridPoint& follower) {
+  const auto most =
+      std::max_element(follower.weight.begin(), follower.weight.end()) - follower.weight.begin();
+  return static_cast<std::size_t>(follower.node[static_cast<std::size_t>(most)]);
+}
+
 // Entries of the band: what a solution multiplies.
 double band_size(const LatticeMesh& block) {
   return 9.0 * block.node_count() * (node_reach(block) + 1);
+}
+
+Vector3 applied_force_n(const SpringLattice& lattice, int node) {
+  return {lattice.applied_force(0)[node], lattice.applied_force(1)[node], lattice.applied_force(2)[node]};
 }
 
 // As many as fit the budget and the band, and no more than the lattice has.
@@ -135,10 +145,10 @@ Result<ImplicitCore> ImplicitCore::make(const LatticeMesh& mesh, const std::vect
   double mass_kg = 0.0;
   for (int n = 0; n < coarse->node_count(); ++n) {
     const GridPoint at = weighted(coarse.value(), n, mesh);
-    const auto most = std::max_element(at.weight.begin(), at.weight.end()) - at.weight.begin();
-    core.nearest_.push_back(at.node[static_cast<std::size_t>(most)]);
+    core.nearest_.push_back(static_cast<int>(most_followed(at)));
     mass_kg += core.body_.mass_kg(n);
   }
+  core.holder_.assign(core.nearest_.size(), -1);
   core.velocity_.assign(rest_m.size(), {});
   core.impulse_.assign(3 * static_cast<std::size_t>(coarse->node_count()), 0.0);
   core.least_inverse_mass_ = 1.0 / mass_kg;
@@ -147,10 +157,24 @@ Result<ImplicitCore> ImplicitCore::make(const LatticeMesh& mesh, const std::vect
 }
 
 void ImplicitCore::hold(std::span<const std::uint8_t> held) {
+  for (std::size_t b = 0; b < nearest_.size(); ++b) {
+    holder_[b] = held[static_cast<std::size_t>(nearest_[b])] != 0 ? nearest_[b] : -1;
+  }
+  for (std::size_t n = 0; n < held.size(); ++n) {
+    if (held[n] != 0 && !follows_held(followers_[n]))
+      holder_[most_followed(followers_[n])] = static_cast<int>(n);
+  }
   std::vector<std::uint8_t> of_block;
-  of_block.reserve(nearest_.size());
-  for (const int node : nearest_) of_block.push_back(held[static_cast<std::size_t>(node)]);
+  of_block.reserve(holder_.size());
+  for (const int node : holder_) of_block.push_back(node >= 0 ? 1 : 0);
   body_.hold(of_block);
+}
+
+bool ImplicitCore::follows_held(const GridPoint& follower) const {
+  for (std::size_t c = 0; c < 8; ++c) {
+    if (follower.weight[c] > 0.0 && holder_[static_cast<std::size_t>(follower.node[c])] >= 0) return true;
+  }
+  return false;
 }
 
 void ImplicitCore::take_shape(const SpringLattice& lattice) {
@@ -179,8 +203,7 @@ void ImplicitCore::take_node_forces(const SpringLattice& lattice, std::span<cons
   body_.clear_node_forces();
   for (const int n : nodes) {
     if (lattice.is_held(n)) continue;
-    const Vector3 force_n(lattice.applied_force(0)[n], lattice.applied_force(1)[n],
-                          lattice.applied_force(2)[n]);
+    const Vector3 force_n = applied_force_n(lattice, n);
     const GridPoint& follower = followers_[static_cast<std::size_t>(n)];
     for (std::size_t c = 0; c < 8; ++c) body_.add_node_force(follower.node[c], follower.weight[c] * force_n);
   }
@@ -188,19 +211,22 @@ void ImplicitCore::take_node_forces(const SpringLattice& lattice, std::span<cons
 
 void ImplicitCore::move_held(std::span<const int> nodes, const Vector3& velocity_m_per_s) {
   for (int n = 0; n < body_.node_count(); ++n) {
-    if (std::binary_search(nodes.begin(), nodes.end(), nearest_[static_cast<std::size_t>(n)])) {
-      body_.move_held(n, velocity_m_per_s);
-    }
+    if (is_held_by(n, nodes)) body_.move_held(n, velocity_m_per_s);
   }
 }
 
-Vector3 ImplicitCore::force_on_held(std::span<const int> nodes, const Vector3& gravity_m_per_s2) const {
+bool ImplicitCore::is_held_by(int node, std::span<const int> nodes) const {
+  return std::binary_search(nodes.begin(), nodes.end(), holder_[static_cast<std::size_t>(node)]);
+}
+
+Vector3 ImplicitCore::force_on_held(const SpringLattice& lattice, std::span<const int> nodes,
+                                    const Vector3& gravity_m_per_s2) const {
   Vector3 sum = Vector3::Zero();
   for (int n = 0; n < body_.node_count(); ++n) {
-    if (std::binary_search(nodes.begin(), nodes.end(), nearest_[static_cast<std::size_t>(n)])) {
-      sum += body_.force_on_held(n) + body_.mass_kg(n) * gravity_m_per_s2;
-    }
+    if (mesh().joined(n) != n || !is_held_by(n, nodes)) continue;
+    sum += body_.force_on_held(n) + body_.mass_kg(n) * gravity_m_per_s2;
   }
+  for (const int n : nodes) sum += applied_force_n(lattice, n);
   return sum;
 }
 

@@ -38,7 +38,8 @@ class ImplicitCore {
   // What an impulse on a node of the lattice gives it of velocity in contacts, 1/kg.
   double contact_inverse_mass() const { return contact_inverse_mass_; }
 
-  // One byte a node of the lattice, 1 = held.
+  // One byte a node of the lattice, 1 = held: holds each node of the block whose nearest one of the lattice
+  // is held, and for those that then follow nothing held, what they follow most.
   void hold(std::span<const std::uint8_t> held);
   // Takes displacements and velocities from the lattice.
   void take_shape(const SpringLattice& lattice);
@@ -53,8 +54,10 @@ class ImplicitCore {
   // What follows these held nodes of the lattice, which are in order, moves at this velocity in the coming
   // step.
   void move_held(std::span<const int> nodes, const Vector3& velocity_m_per_s);
-  // The force on what follows them as the last step began, N: of the cells, of loads and of gravity.
-  Vector3 force_on_held(std::span<const int> nodes, const Vector3& gravity_m_per_s2) const;
+  // The force on them and on what follows them as the last step began, N: of the cells, of loads and of
+  // gravity.
+  Vector3 force_on_held(const SpringLattice& lattice, std::span<const int> nodes,
+                        const Vector3& gravity_m_per_s2) const;
 
   // The lattice's velocities at the end of a step without contacts; contacts then change them.
   ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice);
@@ -73,6 +76,9 @@ class ImplicitCore {
   void write_velocities(SpringLattice& lattice);
   double take_impulses(const SpringLattice& lattice);
   void take_lightness(double answered, SpringLattice& lattice);
+  bool follows_held(const GridPoint& follower) const;
+  // Of a node of the block.
+  bool is_held_by(int node, std::span<const int> nodes) const;
   template <class Of>
   Vector3 sum_over(const GridPoint& follower, const Of& of) const {
     Vector3 sum = Vector3::Zero();
@@ -84,6 +90,7 @@ class ImplicitCore {
   std::vector<Vector3> rest_m_;       // of the lattice's nodes
   std::vector<GridPoint> followers_;  // by node of the lattice
   std::vector<int> nearest_;          // by node of the block: the lattice's node nearest to it in the grid
+  std::vector<int> holder_;  // by node of the block: the held one of the lattice that holds it, or -1
   std::vector<std::array<float, 3>> velocity_;  // of the lattice's nodes, before contacts
   std::vector<double> impulse_;                 // by coordinate of the block, N s: working memory
   double step_s_ = 0.0;

@@ -101,6 +101,23 @@ TEST(BodySupports, MovesItsNodesExactly) {
   }
 }
 
+// One slice of the lattice, wherever it lies between those of the coarser block that steps it. Let go, it
+// would fall by 8 mm.
+TEST(BodySupports, HoldWhatTheBlockHasNoNodeFor) {
+  const Vector3 size_m(0.012, 0.012, 0.08), gravity_m_per_s2(0, 0, 9.81);
+  const Material material = elastic_material(5e6, 0.3, 1000.0);
+  for (int k = 30; k <= 34; ++k) {
+    LoadedBlock bar(size_m, {5, 5, 65}, material, Stepping::implicitly);
+    ASSERT_LT(bar.core->mesh().count[2], 33);
+    bar.support({{{{k / 64.0, k / 64.0}}, {}}});
+    for (int tick = 0; tick < 400; ++tick) bar.tick(50.0, gravity_m_per_s2);
+    EXPECT_LT(bar.slice_m(0).norm(), 1e-4) << k;
+    EXPECT_LT(bar.slice_m(64).norm(), 1e-4) << k;
+    const double weight_n = gravity_m_per_s2.z() * bar.lattice.mass_kg();
+    EXPECT_NEAR(bar.support_force_n(0).z() / -weight_n, 1.0, 1e-3) << k;
+  }
+}
+
 // Faster than the lattice's waves it would leave cells inside out: it lags.
 TEST(BodySupports, WaitsForALatticeThatItWouldOutrun) {
   LoadedBlock body({0.012, 0.012, 0.04}, {4, 4, 11}, elastic_material(2e3, 0.3, 1000.0), Stepping::springs);

@@ -208,6 +208,26 @@ TEST(Shell, BearsAnotherBody) {
   }
 }
 
+// Where it closes, too: what holds a ring bears its weight.
+TEST(Shell, RingWeighsOnItsSupportOnce) {
+  Scene scene = small_handle();
+  Body& body = scene.bodies[0];
+  body.surface = open_ring(0.02, 0.02);
+  body.shell_thickness_m = thickness_m;
+  body.lattice.counts = {25, 2, 5};
+  body.supports = {{{{0.0, 0.3}}, {}}};
+  scene.sculpting.gravity_m_per_s2 = Vector3(0.0, -9.81, 0.0);
+  scene.sculpting.damping_per_s = 100.0;
+  for (const double youngs_modulus_pa : {1e5, 2e9}) {
+    body.material = elastic(youngs_modulus_pa);
+    Simulation simulation = simulate(scene);
+    for (int tick = 0; tick < 800; ++tick) simulation.advance(at_height(0.1));
+    const double weight_n = 9.81 * simulation.lattice().mass_kg();
+    // What is left of the motion.
+    EXPECT_NEAR(simulation.support_force_n(0).y() / weight_n, 1.0, 0.005) << youngs_modulus_pa;
+  }
+}
+
 TEST(Shell, TickAllocatesNothing) {
   Simulation simulation = simulate(clay_bowl());
   for (int tick = 0; tick < 5; ++tick) simulation.advance(at_height(-radius_m - tool_radius_m + 1e-4 * tick));
