@@ -169,7 +169,7 @@ void draw_fixtures(const PanelModel& model, const Theme& theme, PanelAnswer& ans
                               (model.plane_count == 1 ? " plane" : " planes"));
   ImGui::BeginDisabled(!(model.residual_m > 0.0));
   if (deed_row("Surface", behind_text(model.residual_m), "Add knots")) {
-    answer.requests.emplace_back(Command(RefineKnots{}));
+    answer.requests.emplace_back(Command(RefineKnots{model.residual_body}));
   }
   ImGui::EndDisabled();
 }

@@ -30,7 +30,8 @@ struct PanelModel {
   int fixed_node_count = 0;
   int node_count = 0;
 
-  double residual_m = 0.0;  // how far the surface stays behind its lattice
+  double residual_m = 0.0;  // how far the surface stays behind its lattice, of the body that does so most
+  int residual_body = 0;    // which it is, in the scene
 
   Overlays overlays;
   bool see_through_body = false;

@@ -17,8 +17,11 @@ PanelModel panel_of(const SessionFacts& facts, const Snapshot& snapshot, const V
   model.region_count = facts.region_count;
   model.felt_youngs_modulus_pa = snapshot.bodies.front().material.felt_youngs_modulus_pa;
   model.implicit_nodes = snapshot.bodies.front().material.implicit_nodes;
-  for (const BodySnapshot& body : snapshot.bodies) {
-    model.residual_m = std::max(model.residual_m, body.residual.largest_m);
+  for (std::size_t b = 0; b < snapshot.bodies.size(); ++b) {
+    const double residual_m = snapshot.bodies[b].residual.largest_m;
+    if (residual_m <= model.residual_m) continue;
+    model.residual_m = residual_m;
+    model.residual_body = static_cast<int>(b);
   }
   model.plane_count = static_cast<int>(snapshot.planes.size());
   for (const BodySnapshot& body : snapshot.bodies) {

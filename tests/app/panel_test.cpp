@@ -7,6 +7,7 @@
 
 #include "app/panel/font_file.h"
 #include "app/panel/interface_context.h"
+#include "app/panel/session_panel.h"
 #include "app/report/quantity_text.h"
 #include "app/view/stage_choice.h"
 #include "app/view/view_choice.h"
@@ -214,6 +215,34 @@ TEST(Panel, RefusesWrongMaterialsWithTheRange) {
   EXPECT_EQ(refusal(poisson_y, "0.1"),
             "material modelling-clay: poissons_ratio is 0.1, must be 0.2 or more for a material that is "
             "plastic, creeps or stiffens");
+}
+
+// The button is somewhere at the right edge; what else is clicked on the way asks for something else.
+TEST(Panel, AddsKnotsToTheBodyThatLagsMost) {
+  Snapshot snapshot;
+  snapshot.bodies.resize(3);
+  snapshot.bodies[0].residual.largest_m = 1e-5;
+  snapshot.bodies[1].residual.largest_m = 3e-5;
+  snapshot.bodies[2].residual.largest_m = 2e-5;
+  const PanelModel model = panel_of({}, snapshot, {});
+  EXPECT_EQ(model.residual_m, 3e-5);
+  Frame frame(1280, 720);
+  frame.draw(model);
+  std::vector<int> refined;
+  for (float y = 300.0F; y < 450.0F; y += 8.0F) {
+    ImGui::GetIO().MousePos = ImVec2(270.0F, y);
+    frame.draw(model);
+    frame.press_at(270.0F, y);
+    frame.draw(model);
+    frame.release();
+    for (const Request& request : frame.draw(model)) {
+      const auto* command = std::get_if<Command>(&request);
+      const auto* refine = command != nullptr ? std::get_if<RefineKnots>(command) : nullptr;
+      if (refine != nullptr) refined.push_back(refine->body);
+    }
+  }
+  ASSERT_FALSE(refined.empty());
+  EXPECT_EQ(refined.front(), 1);
 }
 
 // Opens the list of stages, which stands over the last rows, and clicks what is second in it.
