@@ -102,6 +102,7 @@ Result<Material> read_material(const std::filesystem::path& file);
 //     "settles" may be left out}
 //   {"command": "set_symmetry", "on", "point_mm", "normal"}     {"command": "reset_proxy"}
 //   {"command": "lift_tool"}
+//   {"command": "refine_knots"} and, but for the first body, "body"
 Result<Command> command_from_json(const Json& json, const std::string& source);
 Json command_to_json(const Command& command);
 
