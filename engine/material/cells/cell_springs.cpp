@@ -1,7 +1,6 @@
 #include "engine/material/cells/cell_springs.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <cmath>
 
 namespace spoonbill {
@@ -173,17 +172,6 @@ AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellSpr
     }
   }
   return elasticity_of(normal);
-}
-
-AchievedElasticity elasticity_of(const Eigen::Matrix3d& normal_stiffness_pa) {
-  const Eigen::Matrix3d compliance = normal_stiffness_pa.inverse();
-  AchievedElasticity result;
-  for (int axis = 0; axis < 3; ++axis) {
-    result.youngs_modulus_pa[axis] = 1.0 / compliance(axis, axis);
-    const double lateral = compliance.col(axis).sum() - compliance(axis, axis);
-    result.poissons_ratio[axis] = -0.5 * lateral / compliance(axis, axis);
-  }
-  return result;
 }
 
 }  // namespace spoonbill
