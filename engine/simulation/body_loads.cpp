@@ -36,7 +36,7 @@ struct BodyLoads::Making {
   BodyLoads result{};
 
   Status operator()(const PressureLoad& load) {
-    const std::vector<ShellFace> within = faces_in(load.region, faces, places);
+    const std::vector<ShellFace> within = faces_in(load.region, mesh, faces, places);
     if (within.empty()) return no_face();
     for (const ShellFace& face : within) result.pressures_.push_back({face, load.pressure_pa});
     return {};
@@ -45,7 +45,7 @@ struct BodyLoads::Making {
   Status operator()(const ForceLoad& load) {
     std::vector<double> shares(mesh.nodes.size(), 0.0);
     if (load.shared_by == ForceShare::surface) {
-      const std::vector<ShellFace> within = faces_in(load.region, faces, places);
+      const std::vector<ShellFace> within = faces_in(load.region, mesh, faces, places);
       if (within.empty()) return no_face();
       for (const ShellFace& face : within) {
         const auto at = [&](std::size_t c) { return mesh.nodes[static_cast<std::size_t>(face[c])]; };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -85,9 +84,10 @@ class Hull {
 };
 
 // How far out of the block's middle line a node lies, 0 to 1, counted in nodes. A shell has no middle line.
-double out_of_middle(const LatticeMesh& mesh, int i, int j) {
+double out_of_middle(const LatticeMesh& mesh, int node) {
   if (mesh.thin) return 1.0;
-  const double s = 2.0 * i / (mesh.count[0] - 1) - 1.0, t = 2.0 * j / (mesh.count[1] - 1) - 1.0;
+  const std::array<int, 3> at = mesh.place(node);
+  const double s = 2.0 * at[0] / (mesh.count[0] - 1) - 1.0, t = 2.0 * at[1] / (mesh.count[1] - 1) - 1.0;
   return std::max(std::abs(s), std::abs(t));
 }
 
@@ -109,23 +109,20 @@ std::vector<BodyPlace> places_on_block(const LatticeMesh& mesh) {
   return places;
 }
 
-// Without its depth.
-BodyPlace middle_place(const LatticeMesh& mesh, const std::vector<BodyPlace>& nodes, int i, int j, int k) {
-  BodyPlace place;
-  double cosines = 0.0, sines = 0.0;
+const BodyPlace& at(const std::vector<BodyPlace>& nodes, int node) {
+  return nodes[static_cast<std::size_t>(node)];
+}
+
+// Nodes further apart than half a turn lie about the axis; between there and three quarters, which are four
+// of them about it, there is none.
+constexpr double around_the_axis = 0.6;
+
+std::array<int, 8> corners_of(const LatticeMesh& mesh, int i, int j, int k) {
+  std::array<int, 8> corners{};
   for (int c = 0; c < 8; ++c) {
-    const int ci = i + (c >> 2 & 1), cj = j + (c >> 1 & 1);
-    const BodyPlace& corner = nodes[static_cast<std::size_t>(mesh.index(ci, cj, k + (c & 1)))];
-    place.along += corner.along / 8.0;
-    const double out = out_of_middle(mesh, ci, cj), angle = 2.0 * std::numbers::pi * corner.around;
-    cosines += out * std::cos(angle);
-    sines += out * std::sin(angle);
+    corners[static_cast<std::size_t>(c)] = mesh.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1));
   }
-  constexpr double on_axis = 1e-9;
-  if (std::hypot(cosines, sines) < on_axis) return place;
-  const double turn = std::atan2(sines, cosines) / (2.0 * std::numbers::pi);
-  place.around = turn < 0.0 ? turn + 1.0 : turn;
-  return place;
+  return corners;
 }
 
 Status check_shares(const char* field, const Range<double>& shares, bool may_pass_seam) {
@@ -160,6 +157,31 @@ std::vector<BodyPlace> node_places(const LatticeMesh& mesh) {
   return places;
 }
 
+BodyPlace mean_place(const LatticeMesh& mesh, const std::vector<BodyPlace>& nodes, std::span<const int> of) {
+  BodyPlace place;
+  double weights = 0.0, heaviest = 0.0, from = 0.0;
+  for (const int node : of) {
+    const double weight = out_of_middle(mesh, node);
+    place.along += at(nodes, node).along / static_cast<double>(of.size());
+    weights += weight;
+    if (weight <= heaviest) continue;
+    heaviest = weight;
+    from = at(nodes, node).around;
+  }
+  double sum = 0.0, low = 0.0, high = 0.0;
+  for (const int node : of) {
+    const double weight = out_of_middle(mesh, node), apart = at(nodes, node).around - from;
+    if (!(weight > 0.0)) continue;
+    const double turn = apart - std::round(apart);
+    sum += weight * turn;
+    low = std::min(low, turn);
+    high = std::max(high, turn);
+  }
+  const double mean = from + sum / weights;
+  if (high - low < around_the_axis) place.around = mean - std::floor(mean);
+  return place;
+}
+
 std::vector<BodyPlace> cell_places(const LatticeMesh& mesh) {
   Hull hull = hull_of(mesh);
   const std::vector<BodyPlace> nodes = places_on_block(mesh);
@@ -168,7 +190,7 @@ std::vector<BodyPlace> cell_places(const LatticeMesh& mesh) {
     for (int i = 0; i + 1 < mesh.count[0]; ++i) {
       for (int j = 0; j + 1 < mesh.count[1]; ++j) {
         BodyPlace& place = places[mesh.cell_index(i, j, k)];
-        place = middle_place(mesh, nodes, i, j, k);
+        place = mean_place(mesh, nodes, corners_of(mesh, i, j, k));
         place.depth_m = hull.distance(trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5));
       }
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "engine/material/lattice/lattice_mesh.h"
@@ -31,8 +32,14 @@ bool contains(const BodyRegion& region, const BodyPlace& place);
 // no tube, shares count along the block, and around is 0.
 std::vector<BodyPlace> node_places(const LatticeMesh& mesh);
 
-// One of each cell, of its middle, by LatticeMesh::cell_index(): its own depth, the mean of its corners'
-// shares along, and the mean direction around, to which a corner counts the more the further out it is.
+// Of some of the nodes, of which all places are given: the mean of their shares along, and of their turns, of
+// which one counts the more the further out it is; around is 0 where they lie about the axis. Without a
+// depth. By sums alone: the C library's directions differ with the processor, and what holds a cell enters
+// the state.
+BodyPlace mean_place(const LatticeMesh& mesh, const std::vector<BodyPlace>& nodes, std::span<const int> of);
+
+// One of each cell, of its middle, by LatticeMesh::cell_index(): its own depth, and the mean_place() of its
+// corners.
 std::vector<BodyPlace> cell_places(const LatticeMesh& mesh);
 
 // The shares within 0 to 1 and in order, the depths at least 0 and in order; the message names the field.

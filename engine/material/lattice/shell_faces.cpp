@@ -1,7 +1,5 @@
 #include "engine/material/lattice/shell_faces.h"
 
-#include <cmath>
-
 namespace spoonbill {
 namespace {
 
@@ -24,19 +22,6 @@ void add_side(const LatticeMesh& mesh, std::size_t axis, int end, std::vector<Sh
   }
 }
 
-// The mean of the corners, which are all within half a turn of the first.
-BodyPlace middle_of(const ShellFace& face, const std::vector<BodyPlace>& places) {
-  BodyPlace middle;
-  const double first = places[static_cast<std::size_t>(face[0])].around;
-  for (const int node : face) {
-    const BodyPlace& place = places[static_cast<std::size_t>(node)];
-    middle.along += 0.25 * place.along;
-    middle.around += 0.25 * (place.around - std::round(place.around - first));
-  }
-  middle.around -= std::floor(middle.around);
-  return middle;
-}
-
 }  // namespace
 
 std::vector<ShellFace> shell_faces(const LatticeMesh& mesh) {
@@ -48,11 +33,11 @@ std::vector<ShellFace> shell_faces(const LatticeMesh& mesh) {
   return faces;
 }
 
-std::vector<ShellFace> faces_in(const BodyRegion& region, const std::vector<ShellFace>& faces,
-                                const std::vector<BodyPlace>& places) {
+std::vector<ShellFace> faces_in(const BodyRegion& region, const LatticeMesh& mesh,
+                                const std::vector<ShellFace>& faces, const std::vector<BodyPlace>& places) {
   std::vector<ShellFace> within;
   for (const ShellFace& face : faces) {
-    if (contains(region, middle_of(face, places))) within.push_back(face);
+    if (contains(region, mean_place(mesh, places, face))) within.push_back(face);
   }
   return within;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/material/lattice/shell_faces.h"
 #include "engine/material/lattice/shell_lattice.h"
 #include "engine/material/lattice/tube_lattice.h"
 #include "tests/engine/material/lattice/shells.h"
@@ -143,6 +144,24 @@ TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
     }
   }
   EXPECT_EQ(held, 8) << "the middles of four of 24 cells around, twice";
+}
+
+// Also those of the caps that meet on the axis, which lies in no direction.
+TEST(BodyRegion, FacesOfARoundBarAreWhereTheCylinderHasThem) {
+  const LatticeMesh mesh = bar_lattice({7, 7, 41});
+  const std::vector<BodyPlace> places = node_places(mesh);
+  int seen = 0;
+  for (const ShellFace& face : shell_faces(mesh)) {
+    Vector3 middle = Vector3::Zero();
+    for (const int node : face) middle += 0.25 * mesh.nodes[static_cast<std::size_t>(node)];
+    const double turn = std::atan2(middle.z(), middle.y()) / (2.0 * std::numbers::pi);
+    const double low = turn - 0.03, high = turn + 0.03;
+    BodyRegion region;
+    region.around = {low - std::floor(low), high - std::floor(high)};
+    EXPECT_EQ(faces_in(region, mesh, {face}, places).size(), 1u) << middle.transpose() << " turn " << turn;
+    ++seen;
+  }
+  EXPECT_EQ(seen, 2 * 36 + 4 * 6 * 40);
 }
 
 TEST(BodyRegion, AroundMayPassTheSeam) {
