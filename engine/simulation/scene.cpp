@@ -3,6 +3,22 @@
 #include "engine/simulation/checks.h"
 
 namespace spoonbill {
+namespace {
+
+Status check_in_domain(const std::string& field, double parameter, const KnotVector& knots) {
+  return check_range(field, parameter, Range<double>{knots.domain_start(), knots.domain_end()});
+}
+
+// Points are on the surface. What else is wrong with a load is said where it is put on the lattice.
+Status check_point(const Load& load, std::size_t place, const Surface& surface) {
+  const auto* point = std::get_if<PointLoad>(&load);
+  if (point == nullptr) return {};
+  const std::string name = "loads[" + std::to_string(place) + "]: ";
+  if (Status status = check_in_domain(name + "u", point->u, surface.u); !status.ok()) return status;
+  return check_in_domain(name + "v", point->v, surface.v);
+}
+
+}  // namespace
 
 Result<LatticeMesh> lattice_of(const Body& body, const FeatureMapWatch& watch) {
   if (body.shell_thickness_m) return shell_lattice(body.surface, *body.shell_thickness_m, body.lattice);
@@ -38,7 +54,9 @@ Status check_loads(const Body& body) {
       !status.ok()) {
     return status;
   }
-  // What is wrong with one of them is said where it is put on the lattice.
+  for (std::size_t l = 0; l < body.loads.size(); ++l) {
+    if (Status status = check_point(body.loads[l], l, body.surface); !status.ok()) return status;
+  }
   return check_range("supports", static_cast<int>(body.supports.size()), support_count_range);
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/material/statics/static_solver.h"
 #include "tests/engine/material/block.h"
+#include "tests/engine/simulation/handle.h"
 #include "tests/engine/simulation/loaded_block.h"
 
 namespace spoonbill {
@@ -75,6 +76,19 @@ TEST(BodyLoads, AForceSharedByVolumeIsAWeight) {
   EXPECT_NEAR(loaded.slice_m(12).z() / hanging.slice_m(12).z(), 1.0, 1e-4);
 }
 
+// Of a load on all of a body, what falls on the held nodes too.
+TEST(BodyLoads, ASupportBearsWhatIsPutOnItsOwnNodes) {
+  for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
+    const double youngs = stepping == Stepping::springs ? 2e4 : 5e6, force_n = 1e-8 * youngs;
+    LoadedBlock bar({0.01, 0.01, 0.04}, {4, 4, 13}, rubber(youngs, 0.3), stepping);
+    bar.support({still({{0.0, 0.25}})});
+    bar.load({ForceLoad{{}, Vector3(0, 0, force_n), ForceShare::volume}});
+    for (int tick = 0; tick < 800; ++tick) bar.tick(60.0);
+    // What is left of the motion.
+    EXPECT_NEAR(bar.support_force_n(0).z() / -force_n, 1.0, 2e-3);
+  }
+}
+
 StaticResult at_rest(const LatticeMesh& mesh, const Material& material, CellKind kind,
                      const std::vector<Load>& list, const Vector3& gravity_m_per_s2) {
   const BodyLoads made = BodyLoads::make(list, mesh, [](double, double) { return EmbeddedPoint(); }).value();
@@ -128,6 +142,18 @@ TEST(BodyLoads, RefuseARegionWithoutNodes) {
             "loads[0]: its region holds no node of the lattice; make it larger");
   EXPECT_EQ(refused(PressureLoad{{{0.5, 1.0}}, std::nan("")}).substr(0, 23), "loads[0]: pressure_pa i");
   EXPECT_EQ(refused(PressureLoad{{{0.5, 1.5}}, 1.0}).substr(0, 15), "loads[0]: along");
+}
+
+TEST(BodyLoads, RefuseAPointBesideTheSurface) {
+  const auto refused = [](double u, double v) {
+    Scene scene = small_handle();
+    scene.bodies[0].loads = {PressureLoad{{}, 1.0}, PointLoad{u, v, Vector3(0, 1, 0)}};
+    const auto made = Simulation::make(scene, InstructionSet::baseline);
+    return made.ok() ? "" : made.error().message;
+  };
+  EXPECT_EQ(refused(0.5, 0.03), "");
+  EXPECT_EQ(refused(0.5, 0.07), "loads[1]: v is 0.07, must be 0 to 0.06");
+  EXPECT_EQ(refused(std::nan(""), 0.03).substr(0, 13), "loads[1]: u i");
 }
 
 }  // namespace
