@@ -22,8 +22,9 @@ Surface box_like_tube() {
     const double angle = 2.0 * std::numbers::pi * i / around;
     const double c = std::cos(angle), s = std::sin(angle);
     const double radius = 0.5 * edge_m / std::pow(std::pow(c, 4) + std::pow(s, 4), 0.25);
-    for (int j = 0; j < along; ++j)
+    for (int j = 0; j < along; ++j) {
       net.set_point(i, j, {edge_m * stations[j], -scale[j] * radius * s, scale[j] * radius * c});
+    }
   }
   return make_surface(KnotVector::periodic_uniform(3, around).value(),
                       KnotVector::clamped_uniform(3, along).value(), std::move(net))

@@ -56,8 +56,9 @@ bool play(const Press& press, Times& times) {
   std::size_t next = 0;
   for (std::uint64_t t = 0; t < press.readings.size(); ++t) {
     for (; next < press.commands.size() && press.commands[next].tick <= t; ++next) {
-      if (const auto command = command_from_json(press.commands[next].command, "recording"))
+      if (const auto command = command_from_json(press.commands[next].command, "recording")) {
         (void)simulation.apply(command.value());
+      }
     }
     const double wall = steady_time_us(), thread = thread_time_us();
     const TickResult result = tick(simulation, coupling, press.device, press.readings[t]);
@@ -71,8 +72,9 @@ bool play(const Press& press, Times& times) {
 
 Result<Press> press_of(const std::string& name) {
   int count = 0, iterations = 0;
-  if (std::sscanf(name.c_str(), "block:%d:%d", &count, &iterations) == 2)
+  if (std::sscanf(name.c_str(), "block:%d:%d", &count, &iterations) == 2) {
     return block_press(count, iterations);
+  }
   constexpr std::string_view stiff = "stiff:";
   if (name.starts_with(stiff)) return stiff_press(name.substr(stiff.size()));
   return recorded_press(name);
@@ -82,8 +84,10 @@ Result<Press> press_of(const std::string& name) {
 // costs, without what the host did meanwhile.
 std::vector<double> medians_of_ticks(const std::vector<std::vector<double>>& rounds) {
   std::vector<double> medians;
+  medians.reserve(rounds[0].size());
   for (std::size_t t = 0; t < rounds[0].size(); ++t) {
     std::vector<double> same;
+    same.reserve(rounds.size());
     for (const std::vector<double>& round : rounds) same.push_back(round[t]);
     medians.push_back(quantile(same, 0.5));
   }
@@ -92,6 +96,7 @@ std::vector<double> medians_of_ticks(const std::vector<std::vector<double>>& rou
 
 double median_p99(const std::vector<std::vector<double>>& rounds) {
   std::vector<double> each;
+  each.reserve(rounds.size());
   for (const std::vector<double>& round : rounds) each.push_back(quantile(round, 0.99));
   return quantile(each, 0.5);
 }

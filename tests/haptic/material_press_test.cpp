@@ -54,10 +54,10 @@ class Press {
 
   double mean_force_n(double from_s, double to_s) {
     run_to(from_s);
+    const int count = static_cast<int>(std::lround((to_s - from_s) / tick_s));
     double sum = 0.0;
-    int count = 0;
-    for (double t = from_s; t < to_s; t += tick_s, ++count) {
-      run_to(t + tick_s);
+    for (int t = 1; t <= count; ++t) {
+      run_to(from_s + t * tick_s);
       sum += force_n();
     }
     return sum / count;

@@ -47,6 +47,7 @@ std::vector<Material> bundled_materials() {
   }
   std::sort(files.begin(), files.end());
   std::vector<Material> materials;
+  materials.reserve(files.size());
   for (const auto& file : files) materials.push_back(read_material(file).value());
   return materials;
 }

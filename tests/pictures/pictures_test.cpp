@@ -136,6 +136,7 @@ class MomentPictures : public ::testing::Test {
     Stage stage = stage_of(moment);
     const Image unchanged = paint(stage, {});
     std::vector<double> result;
+    result.reserve(edits.size());
     for (const Edit& edit : edits) {
       result.push_back(worst_block_difference(unchanged, paint(stage, edit)).value().worst);
     }

@@ -118,8 +118,9 @@ TEST(Document, NamesEveryMissingField) {
     const Json::json_pointer pointer(item.key());
     const std::string field = pointer.back();
     if (field == "hardening" || field == "stiffening" || field == "friction") continue;  // 0 without
-    if (item.key().starts_with("/view") || field.find_first_not_of("0123456789") == std::string::npos)
+    if (item.key().starts_with("/view") || field.find_first_not_of("0123456789") == std::string::npos) {
       continue;
+    }
     const std::string message = refusal([&](Json& j) { j[pointer.parent_pointer()].erase(field); });
     EXPECT_NE(message.find(field), std::string::npos) << item.key() << ": " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);

@@ -287,8 +287,9 @@ TEST(MaterialRegions, EveryInstructionSetGivesTheSameBits) {
         return simulation.state_hash();
       };
       const std::uint64_t expected = hash_of(InstructionSet::baseline);
-      for (const InstructionSet set : available_instruction_sets())
+      for (const InstructionSet set : available_instruction_sets()) {
         EXPECT_EQ(hash_of(set), expected) << name_of(set);
+      }
     }
   }
 }

@@ -232,16 +232,18 @@ TEST(Shell, TickAllocatesNothing) {
   Simulation simulation = simulate(clay_bowl());
   for (int tick = 0; tick < 5; ++tick) simulation.advance(at_height(-radius_m - tool_radius_m + 1e-4 * tick));
   const std::size_t before = allocation_count();
-  for (int tick = 0; tick < 20; ++tick)
+  for (int tick = 0; tick < 20; ++tick) {
     simulation.advance(at_height(-radius_m - tool_radius_m + 1e-4 * tick));
+  }
   EXPECT_EQ(allocation_count(), before);
 }
 
 TEST(Shell, KeepsItsKindThroughCommands) {
   Simulation simulation = simulate(clay_bowl());
   ASSERT_TRUE(simulation.apply(SetMaterial{elastic(2e9), 0}).ok());
-  for (int tick = 0; tick < 20; ++tick)
+  for (int tick = 0; tick < 20; ++tick) {
     simulation.advance(at_height(-radius_m - tool_radius_m + 1e-4 * tick));
+  }
   ASSERT_TRUE(simulation.apply(KeepShape{}).ok());
   ASSERT_TRUE(simulation.apply(RemovePlanes{}).ok());
   for (int tick = 0; tick < 20; ++tick) simulation.advance(at_height(-radius_m - tool_radius_m));

@@ -132,8 +132,9 @@ TEST(StiffBodies, NoHandBlowsThemUp) {
     }
     const LatticeMesh& mesh = simulation.lattice().mesh();
     Vector3 middle = Vector3::Zero();
-    for (int n = 0; n < mesh.node_count(); ++n)
+    for (int n = 0; n < mesh.node_count(); ++n) {
       middle += simulation.lattice().position(n) / mesh.node_count();
+    }
     for (int n = 0; n < mesh.node_count(); ++n) {
       ASSERT_TRUE(simulation.lattice().position(n).allFinite()) << youngs;
       EXPECT_LT((simulation.lattice().position(n) - middle).norm(), 0.05) << youngs;

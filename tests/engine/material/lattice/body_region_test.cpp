@@ -167,10 +167,12 @@ TEST(BodyRegion, FacesOfARoundBarAreWhereTheCylinderHasThem) {
 TEST(BodyRegion, AroundMayPassTheSeam) {
   BodyRegion region;
   region.around = {0.9, 0.2};
-  for (const double inside : {0.9, 0.95, 0.0, 0.1, 0.2})
+  for (const double inside : {0.9, 0.95, 0.0, 0.1, 0.2}) {
     EXPECT_TRUE(contains(region, {0.5, inside, 0.0})) << inside;
-  for (const double outside : {0.21, 0.5, 0.89})
+  }
+  for (const double outside : {0.21, 0.5, 0.89}) {
     EXPECT_FALSE(contains(region, {0.5, outside, 0.0})) << outside;
+  }
   region.around = {0.2, 0.9};
   EXPECT_TRUE(contains(region, {0.5, 0.5, 0.0}));
   EXPECT_FALSE(contains(region, {0.5, 0.1, 0.0}));

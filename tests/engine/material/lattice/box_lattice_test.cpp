@@ -55,8 +55,9 @@ TEST(BoxLattice, WeighsWhatTheSolidWeighsAndIsNoFasterForItsParts) {
   EXPECT_LT((middle / sum).norm(), 1e-3 * 0.02) << "in its middle";
   // m r^2 / 5 each way. Mass at the corners of cells, a quarter of the radius wide, lies farther out: by a
   // sixth of the cell's square, a twentieth here, and where a cell is filled in part as much again.
-  for (int axis = 0; axis < 3; ++axis)
+  for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(inertia(axis, axis) / (sum * 0.02 * 0.02 / 5.0), 1.0, 0.15);
+  }
   EXPECT_LT(lattice.fastest_frequency(), 1.001 * whole.fastest_frequency());
   // A cell in the very middle is whole but for what slivers at the surface add.
   EXPECT_NEAR(mesh.share(4, 4, 4), 1.0, 0.05);

@@ -22,8 +22,9 @@ LatticeMesh crowded_bend() {
   LatticeMesh mesh = box_mesh({1.0, 1.0, 1.0}, {7, 7, 19});
   for (int n = 0; n < mesh.node_count(); ++n) {
     const Vector3 jitter(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    if (is_inside(mesh, n))
+    if (is_inside(mesh, n)) {
       mesh.nodes[static_cast<std::size_t>(n)] += 0.04 * jitter.cwiseProduct(Vector3(1, 1, 0.3));
+    }
   }
   for (Vector3& node : mesh.nodes) {
     const double radius = 0.03 + 0.012 * node.x() * (0.4 + 0.6 * node.x()), angle = 1.5 * node.z();

@@ -203,8 +203,9 @@ TEST(ShellLattice, RingUnderPressureHasNoSeam) {
       const Vector3 a = mesh.nodes[static_cast<std::size_t>(face.nodes[0])];
       const Vector3 along_i = mesh.nodes[static_cast<std::size_t>(face.nodes[1])] - a,
                     along_k = mesh.nodes[static_cast<std::size_t>(face.nodes[3])] - a;
-      if (along_i.cross(along_k).dot(Vector3(a.x(), 0.0, a.z())) > 0.0)
+      if (along_i.cross(along_k).dot(Vector3(a.x(), 0.0, a.z())) > 0.0) {
         std::swap(face.nodes[1], face.nodes[3]);
+      }
       loads.pressures.push_back(face);
     }
   }

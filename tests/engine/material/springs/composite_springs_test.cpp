@@ -280,8 +280,9 @@ TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
         shake(lattice, 1e-3, 3);
         const double before = momentum_of(lattice).energy_j;
         RelaxSettings settings;
-        for (; settings.tick < 1000; ++settings.tick)
+        for (; settings.tick < 1000; ++settings.tick) {
           relax(std::array{RelaxedLattice{&lattice}}, settings, {});
+        }
         // Near the limit the energy of symplectic Euler swings by 1 / (1 - w h / 2) without growing.
         EXPECT_LT(momentum_of(lattice).energy_j, 10.0 * before)
             << first_ratio << ", " << second_ratio << ", " << softer;

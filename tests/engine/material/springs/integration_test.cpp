@@ -155,9 +155,10 @@ TEST(Integration, SelfWeightOnASlippingBase) {
       settings.step_s = 2e-4;
       settings.damping_per_s = 300.0;
       const Vector3 gravity_m_per_s2{0.0, -gravity, 0.0};
-      for (int tick = 0; tick < 1500; ++tick)
+      for (int tick = 0; tick < 1500; ++tick) {
         relax(std::array{RelaxedLattice{&lattice, gravity_m_per_s2}}, settings,
               std::array{TouchingTool{ToolMotion{}, &tool, &contacts}});
+      }
       double drop = 0.0;
       const LatticeMesh& mesh = lattice.mesh();
       for (int i = 0; i < count; ++i) {
@@ -197,8 +198,9 @@ TEST(Integration, HangingWeight) {
   settings.damping_per_s = 60.0;
   ToolMotion at_top;
   at_top.start_m = at_top.end_m = {0.0, length, 0.0};
-  for (int tick = 0; tick < 4000; ++tick)
+  for (int tick = 0; tick < 4000; ++tick) {
     relax(std::array{RelaxedLattice{&lattice}}, settings, std::array{TouchingTool{at_top, &tool, &contacts}});
+  }
   EXPECT_NEAR(lattice.displacement(mesh.index(0, 0, 0)).y(), -1.962e-3,
               0.01e-3);  // 0.2 % strain, squared terms
 }
@@ -225,13 +227,15 @@ TEST(Integration, BlockSlidesDownAnIncline) {
       }
       return sum / mass;
     };
-    for (int tick = 0; tick < 200; ++tick)
+    for (int tick = 0; tick < 200; ++tick) {
       relax(std::array{RelaxedLattice{&lattice, gravity_m_per_s2}}, settings,
             std::array{TouchingTool{ground, &tool, &contacts}});
+    }
     const double before = speed();
-    for (int tick = 0; tick < 500; ++tick)
+    for (int tick = 0; tick < 500; ++tick) {
       relax(std::array{RelaxedLattice{&lattice, gravity_m_per_s2}}, settings,
             std::array{TouchingTool{ground, &tool, &contacts}});
+    }
     const double expected = g * (std::sin(tilt) - friction * std::cos(tilt));
     EXPECT_NEAR((speed() - before) / 0.5, expected, 0.02 * g)
         << "friction " << friction;  // the block still quivers
@@ -247,9 +251,10 @@ TEST(Integration, HeldNodesDoNotMoveAtAll) {
   ToolState tool;
   RelaxSettings settings;
   const Vector3 gravity_m_per_s2{3.0, -9.81, 2.0};
-  for (int tick = 0; tick < 500; ++tick)
+  for (int tick = 0; tick < 500; ++tick) {
     relax(std::array{RelaxedLattice{&lattice, gravity_m_per_s2}}, settings,
           std::array{TouchingTool{ToolMotion{}, &tool, &none}});
+  }
   for (int n = 0; n < 15; ++n) EXPECT_EQ(lattice.displacement(n), Vector3::Zero());
   EXPECT_LT(lattice.displacement(74).y(), -1e-5);
 }

@@ -157,8 +157,9 @@ TEST(CompositeStatics, OneCellOfABlockBendsAsItsLayersDo) {
   std::vector<std::uint8_t> held(static_cast<std::size_t>(block.node_count()), 0);
   for (int n = 0; n < 4; ++n) held[static_cast<std::size_t>(n)] = 1;
   body.hold(held);
-  for (int n = 0; n < 4; ++n)
+  for (int n = 0; n < 4; ++n) {
     body.set_node_force(block.node_count() - 1 - n, {0.0, -Sandwich::load_n / 4.0, 0.0});
+  }
   ImplicitStep step;
   step.damping_per_s = 40.0;
   for (int tick = 0; tick < 1500; ++tick) body.step(step);
