@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/material/lattice/shell_faces.h"
+
 namespace spoonbill {
 namespace {
 
@@ -16,13 +18,13 @@ Vector3 at_node(const Eigen::VectorXd& all, int node) {
   return all.segment<3>(3 * static_cast<Eigen::Index>(node));
 }
 
-// A quarter of the pressure on the face's vector area for each corner, area = 1/2 of the diagonals' product.
+// A quarter of the pressure on the face's vector area for each corner.
 void add_pressure(const PressedFace& face, const LatticeMesh& mesh, const Eigen::VectorXd& at,
                   Eigen::VectorXd& forces) {
   const auto corner = [&](std::size_t c) -> Vector3 {
     return mesh.nodes[static_cast<std::size_t>(face.nodes[c])] + at_node(at, face.nodes[c]);
   };
-  const Vector3 area = 0.5 * (corner(2) - corner(0)).cross(corner(3) - corner(1));
+  const Vector3 area = vector_area(corner(0), corner(1), corner(2), corner(3));
   for (const int node : face.nodes) {
     forces.segment<3>(3 * static_cast<Eigen::Index>(node)) -= 0.25 * face.pressure_pa * area;
   }
