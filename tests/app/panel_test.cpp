@@ -229,7 +229,8 @@ TEST(Panel, AddsKnotsToTheBodyThatLagsMost) {
   Frame frame(1280, 720);
   frame.draw(model);
   std::vector<int> refined;
-  for (float y = 300.0F; y < 450.0F; y += 8.0F) {
+  for (int row = 0; row < 20; ++row) {
+    const float y = 300.0F + 8.0F * static_cast<float>(row);
     ImGui::GetIO().MousePos = ImVec2(270.0F, y);
     frame.draw(model);
     frame.press_at(270.0F, y);

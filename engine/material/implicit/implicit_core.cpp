@@ -161,8 +161,8 @@ void ImplicitCore::hold(std::span<const std::uint8_t> held) {
     holder_[b] = held[static_cast<std::size_t>(nearest_[b])] != 0 ? nearest_[b] : -1;
   }
   for (std::size_t n = 0; n < held.size(); ++n) {
-    if (held[n] != 0 && !follows_held(followers_[n]))
-      holder_[most_followed(followers_[n])] = static_cast<int>(n);
+    if (held[n] == 0 || follows_held(followers_[n])) continue;
+    holder_[most_followed(followers_[n])] = static_cast<int>(n);
   }
   std::vector<std::uint8_t> of_block;
   of_block.reserve(holder_.size());
