@@ -250,8 +250,8 @@ Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bo
   }
   const Substeps substeps = choose_substeps(relaxation, settings.step_s);
   for (std::size_t at = 0; at < relaxation.count() && substeps.count > foreseen; ++at) {
-    if (relaxation.has_springs(at))
-      linearise(relaxation.lattice(at), relaxation.view[at], Linearised::tangents);
+    if (!relaxation.has_springs(at)) continue;
+    linearise(relaxation.lattice(at), relaxation.view[at], Linearised::tangents);
   }
   return substeps;
 }
