@@ -129,7 +129,7 @@ void ask_for(Material material, PanelAnswer& answer) {
 
 // And of how many regions beside the body's own: in one row, so that a small window shows them all.
 std::string mass_text(const PanelModel& model) {
-  const std::string mass = grams_text(model.mass_kg);
+  std::string mass = grams_text(model.mass_kg);
   if (model.region_count == 0) return mass;
   return mass + ", " + std::to_string(model.region_count) +
          (model.region_count == 1 ? " region" : " regions");

@@ -131,7 +131,9 @@ TEST_F(Rendering, EveryOverlayShows) {
       {"ground grid", &Overlays::ground_grid},
       {"scale bar", &Overlays::scale_bar}};
   for (const auto& [name, overlay] : switches) {
-    EXPECT_GT(change([&](ViewSettings& s) { s.overlays.*overlay = !(s.overlays.*overlay); }), tolerance)
+    EXPECT_GT(
+        change([&, overlay = overlay](ViewSettings& s) { s.overlays.*overlay = !(s.overlays.*overlay); }),
+        tolerance)
         << name;
   }
 }
