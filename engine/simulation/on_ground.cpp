@@ -63,7 +63,7 @@ OnGround::OnGround(std::span<const BodyState> bodies) : contacts_(capacity_for(b
 
 void OnGround::find(std::span<const BodyState> bodies, const Ground& ground, const Vector3& gravity_m_per_s2,
                     double time_s) {
-  contacts_.clear();
+  contacts_.begin(ground.normal, time_s);
   const double fall_m = time_s * time_s * gravity_m_per_s2.norm();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyState& body = bodies[b];
@@ -74,7 +74,6 @@ void OnGround::find(std::span<const BodyState> bodies, const Ground& ground, con
     const double margin_m = margin_cells * static_cast<double>(body.lattice.cell_size_m());
     find(static_cast<int>(b), body, ground, fastest * time_s + fall_m + margin_m);
   }
-  contacts_.begin(ground.normal);
 }
 
 void OnGround::find(int number, const BodyState& body, const Ground& ground, double reach_m) {
