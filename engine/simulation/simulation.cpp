@@ -64,7 +64,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   if (model->soft) bodies.push_back(*std::move(model->soft));
   std::vector<BodyPairContact> pairs = make_pairs(bodies);
   std::vector<BodySelfContact> self = make_self(bodies);
-  OnGround on_ground({bodies.data(), scene.bodies.size()});
+  OnGround on_ground({bodies.data(), scene.ground ? scene.bodies.size() : 0});
   std::vector<std::shared_ptr<const ToolBody>> kept = {modelled_body(scene.tool)};
   return Simulation(std::make_unique<State>(State{std::move(scene),
                                                   set,

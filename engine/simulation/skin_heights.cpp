@@ -8,6 +8,7 @@
 namespace spoonbill {
 namespace {
 
+// Elements are cut into 2 to the power of it.
 constexpr int height_levels = 2;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 

@@ -170,6 +170,17 @@ Scene falling_handle(double youngs_modulus_pa) {
 
 const ToolInput far_away = above(0.03, 0.2);
 
+double highest_of_skin(const Simulation& simulation) {
+  const Surface& surface = simulation.surface();
+  double highest = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 240; ++i) {
+    const double u =
+        surface.u.domain_start() + (surface.u.domain_end() - surface.u.domain_start()) * i / 240.0;
+    highest = std::max(highest, evaluate(surface, u, 0.03).position_m.y());
+  }
+  return highest;
+}
+
 double depth_cells(const Simulation& simulation) {
   const double ground_m = simulation.scene().ground->point_m.y();
   return (ground_m - lowest_of_skin(simulation)) / static_cast<double>(simulation.lattice().cell_size_m());
@@ -255,9 +266,33 @@ TEST(OnGround, NoFallIsTooFast) {
   Simulation simulation = simulate(scene);
   for (int tick = 0; tick < 400; ++tick) {
     simulation.advance(far_away);
-    ASSERT_LT(depth_cells(simulation), 0.5) << tick;
+    ASSERT_LT(depth_cells(simulation), 0.03) << tick;
   }
   EXPECT_LT(depth_cells(simulation), ground_depth_limit_cells);
+}
+
+// A hand that presses a body on the ground feels what the ground bears beyond its weight. The tool's spring
+// is far softer than the body: it gives almost all of the way.
+TEST(OnGround, AStiffHandlePassesOnWhatTheToolPresses) {
+  Simulation simulation = simulate(falling_handle(2e9));
+  for (int tick = 0; tick < 400; ++tick) simulation.advance(far_away);
+  const double weight = g_m_per_s2 * simulation.lattice().mass_kg();
+  const double tool_radius = simulation.scene().tool.radius_m, top = highest_of_skin(simulation);
+  const auto press = [&](double way_m) {
+    ToolInput input = above(0.03, top + tool_radius - way_m);
+    input.coupling_n_per_m = 200.0;
+    return simulation.advance(input);
+  };
+  for (int tick = 0; tick < 300; ++tick) press(-2e-4 + 1e-5 * tick);
+  for (int tick = 0; tick < 300; ++tick) press(2.8e-3);
+  double felt = 0.0, borne = 0.0;
+  for (int tick = 0; tick < 200; ++tick) {
+    felt += press(2.8e-3).force_n.y() / 200.0;
+    borne += simulation.ground_force_n().y() / 200.0;
+    ASSERT_LT(depth_cells(simulation), ground_depth_limit_cells) << tick;
+  }
+  EXPECT_NEAR(felt, 200.0 * 2.8e-3, 0.05 * 200.0 * 2.8e-3);
+  EXPECT_NEAR((borne - weight) / felt, 1.0, 0.02);
 }
 
 // What the contacts remember belongs to the state.
