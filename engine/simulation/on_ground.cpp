@@ -117,7 +117,11 @@ void OnGround::find(int number, const BodyState& body, const Ground& ground, dou
   const double cell_m = static_cast<double>(body.lattice.cell_size_m());
   // Of a shell the skin is the middle, and the nodes are where its faces are.
   const bool thin = body.lattice.mesh().thin;
-  if (!thin) of_body.heights.take(body.mapping().current(), ground.point_m, ground.normal, reach_m + cell_m);
+  if (!thin &&
+      !of_body.heights.take(body.mapping().current(), ground.point_m, ground.normal, reach_m + cell_m)) {
+    for (Footing& footing : of_body.footings) footing.is_near = false;
+    return;
+  }
   for (Footing& footing : of_body.footings) {
     double gap_m = ground.normal.dot(body.lattice.position(footing.node) - ground.point_m);
     if (gap_m > reach_m + cell_m) {
