@@ -20,12 +20,15 @@ namespace spoonbill {
 // 1988), each shortened where it would pass the least of the energy along its way (Birgin, Martinez and
 // Raydan 2000). A body at rest is at the fixed point and stays there: it does not creep.
 //
+// `points` are by node of the lattice that the contacts are of; those of held nodes answer nothing.
+//
 // One owner, the core of the body; allocates only when made.
 class BlockOnGround {
  public:
   BlockOnGround(int points, double mass_kg);
 
-  // The impulses of the last tick, in these: what the step begins with.
+  // Gives contacts the impulses of the last tick, and sums them up by coordinate of the body, N s: what the
+  // step begins with.
   void take_last(std::span<GroundContact> contacts, std::span<const GridPoint> points, double time_s,
                  std::vector<double>& impulses_ns);
   // After all else that pushes the body: changes the impulses, and the body's velocities by what they do.

@@ -21,8 +21,7 @@ inline constexpr int implicit_node_budget = 500;
 
 // Contacts push the lattice's nodes as if each were free, and as light as makes all of them together answer
 // as the block did when it was last pushed; the block then answers as a whole. The ground comes last, and
-// pushes the block itself. One owner, the body; built
-// outside the tick, allocates nothing afterwards.
+// pushes the block itself. One owner, the body; built outside the tick, allocates nothing afterwards.
 class ImplicitCore {
  public:
   // Unstrained where the lattice's nodes are at `rest_m`.
@@ -82,6 +81,7 @@ class ImplicitCore {
   void write_velocities(SpringLattice& lattice);
   double take_impulses(const SpringLattice& lattice);
   void take_lightness(double answered, SpringLattice& lattice);
+
   ImplicitBody body_;
   std::vector<Vector3> rest_m_;       // of the lattice's nodes
   std::vector<GridPoint> followers_;  // by node of the lattice
