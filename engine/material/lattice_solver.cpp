@@ -119,12 +119,11 @@ void solve_contacts(const Relaxation& relaxation, float h, double fraction,
   for (const TouchingTool& tool : tools) tool.contacts->solve(views, *tool.state, h, fraction, push_caps);
   if (between) between->solve(views, h, push_caps);
   if (!ground) return;
-  // A core moves once, at the end of the tick.
-  std::array<double, lattice_capacity> times_s{};
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
-    times_s[at] = relaxation.has_springs(at) ? static_cast<double>(h) : relaxation.time_s;
+    if (!relaxation.has_springs(at)) continue;
+    ground->solve(static_cast<int>(at), relaxation.view[at], static_cast<double>(h),
+                  static_cast<double>(push_caps[at]));
   }
-  ground->solve(views, times_s, push_caps);
 }
 
 // What carried nodes pull at the tool with, and their velocity, which the kick has taken.
@@ -298,7 +297,11 @@ void choose_damping(Relaxation& relaxation, const RelaxSettings& settings) {
   }
 }
 
-void begin_core_steps(const Relaxation& relaxation) {
+std::span<GroundContact> on_ground(GroundContacts* ground, std::size_t at) {
+  return ground ? ground->of_body(static_cast<int>(at)) : std::span<GroundContact>();
+}
+
+void begin_core_steps(const Relaxation& relaxation, GroundContacts* ground) {
   const double time_s = relaxation.time_s;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const RelaxedLattice& relaxed = relaxation.lattices[at];
@@ -307,11 +310,20 @@ void begin_core_steps(const Relaxation& relaxation) {
     for (const SupportedNodes& support : relaxed.supports) {
       if (support.moves) relaxed.core->move_held(support.nodes, (support.end_m - support.start_m) / time_s);
     }
-    relaxed.core->begin_step(step, *relaxed.lattice);
+    relaxed.core->begin_step(step, *relaxed.lattice, on_ground(ground, at));
     for (SupportedNodes& support : relaxed.supports) {
       support.impulse_ns -=
           time_s * relaxed.core->force_on_held(*relaxed.lattice, support.nodes, relaxed.gravity_m_per_s2);
     }
+  }
+}
+
+void end_core_steps(const Relaxation& relaxation, GroundContacts* ground) {
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    const RelaxedLattice& relaxed = relaxation.lattices[at];
+    if (!relaxed.core) continue;
+    const double cap = 0.5 * static_cast<double>(relaxation.cap[at]);
+    relaxed.core->end_step(*relaxed.lattice, {ground, on_ground(ground, at), cap});
   }
 }
 
@@ -343,7 +355,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     relaxation.cap[at] = speed_cap(relaxation.lattice(at), h);
   }
   report.speed_capped = begin_supports(relaxation);
-  begin_core_steps(relaxation);
+  begin_core_steps(relaxation, ground);
   for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, report.material_time_s);
   if (substeps.slowed) steady_strained_nodes(relaxation, h);
   const int total = settings.iterations * substeps.count;
@@ -355,9 +367,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     carry(relaxation, tools);
     place_supported(relaxation, static_cast<double>(s + 1) / total);
   }
-  for (const RelaxedLattice& relaxed : lattices) {
-    if (relaxed.core) relaxed.core->end_step(*relaxed.lattice);
-  }
+  end_core_steps(relaxation, ground);
   if (flows) flow(relaxation, report.material_time_s);
   if (settings.tick % creep_pause == 0) {
     creep(relaxation, settings.tick / creep_pause, settings.step_s);

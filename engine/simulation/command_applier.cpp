@@ -217,7 +217,7 @@ void CommandApplier::make_contacts() {
   state.pairs = make_pairs(state.bodies);
   state.self = make_self(state.bodies);
   state.between = make_between();
-  state.on_ground = OnGround(state.scene_bodies());
+  state.on_ground = OnGround(state.scene_bodies().first(state.scene.ground ? state.scene.bodies.size() : 0));
 }
 
 }  // namespace spoonbill

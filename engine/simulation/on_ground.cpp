@@ -1,12 +1,18 @@
 #include "engine/simulation/on_ground.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace spoonbill {
 namespace {
 
 // Beyond what a tick moves, in lattice cells.
 constexpr double margin_cells = 0.25;
+
+// How fast a node learns how high its skin is. Slower than a body rolls about: a node that the skin pushed at
+// once would push the skin of its neighbours, and so set round bodies rolling for ever.
+constexpr double skin_memory_s = 0.3;
 
 bool on_shell(const LatticeMesh& mesh, int node) {
   const std::array<int, 3> at = mesh.place(node);
@@ -42,28 +48,46 @@ int capacity_for(std::span<const BodyState> bodies) {
 }  // namespace
 
 OnGround::OnGround(std::span<const BodyState> bodies) : contacts_(capacity_for(bodies)) {
-  for (const BodyState& body : bodies) {
-    BodyFootings& of_body = bodies_.emplace_back();
-    const LatticeMesh& mesh = body.lattice.mesh();
-    const Grid& grid = body.mapping().nested().grid;
-    std::vector<std::vector<int>> hanging(mesh.nodes.size());
-    for (int s = 0; s < grid.rows() * grid.columns(); ++s) {
-      const int node = node_of(mesh, body.mapping().sample(s));
-      if (node >= 0) hanging[static_cast<std::size_t>(node)].push_back(s);
-    }
-    for (int n = 0; n < mesh.node_count(); ++n) {
-      const std::vector<int>& samples = hanging[static_cast<std::size_t>(n)];
-      if (!on_shell(mesh, n) || mesh.joined(n) != n) continue;
-      of_body.footings.push_back(
-          {n, static_cast<int>(of_body.samples.size()), static_cast<int>(samples.size())});
-      of_body.samples.insert(of_body.samples.end(), samples.begin(), samples.end());
+  for (const BodyState& body : bodies) bodies_.push_back(footings_of(body));
+}
+
+OnGround::BodyFootings OnGround::footings_of(const BodyState& body) {
+  const LatticeMesh& mesh = body.lattice.mesh();
+  const Surface& skin = body.mapping().current();
+  // The mapping has a grid of these knots, and so have the heights.
+  BodyFootings of_body{SkinHeights::make(skin.u, skin.v).value(), {}, {}, {}};
+  std::vector<std::vector<Sample>> hanging(mesh.nodes.size());
+  std::vector<std::vector<int>> followed(mesh.nodes.size());
+  const Grid& grid = body.mapping().nested().grid;
+  for (int s = 0; s < grid.rows() * grid.columns(); ++s) {
+    const int node = node_of(mesh, body.mapping().sample(s));
+    if (node >= 0) followed[static_cast<std::size_t>(mesh.joined(node))].push_back(s);
+  }
+  for (int i = 0; i < of_body.heights.rows(); ++i) {
+    for (int j = 0; j < of_body.heights.columns(); ++j) {
+      const int node = node_of(mesh, body.mapping().at(of_body.heights.u(i), of_body.heights.v(j)));
+      if (node >= 0) hanging[static_cast<std::size_t>(mesh.joined(node))].push_back({i, j});
     }
   }
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    if (!on_shell(mesh, n) || mesh.joined(n) != n) continue;
+    const std::vector<Sample>& samples = hanging[static_cast<std::size_t>(n)];
+    const std::vector<int>& follow = followed[static_cast<std::size_t>(n)];
+    Footing& footing = of_body.footings.emplace_back();
+    footing.node = n;
+    footing.first = static_cast<int>(of_body.samples.size());
+    footing.count = static_cast<int>(samples.size());
+    footing.first_followed = static_cast<int>(of_body.followed.size());
+    footing.followed_count = static_cast<int>(follow.size());
+    of_body.samples.insert(of_body.samples.end(), samples.begin(), samples.end());
+    of_body.followed.insert(of_body.followed.end(), follow.begin(), follow.end());
+  }
+  return of_body;
 }
 
 void OnGround::find(std::span<const BodyState> bodies, const Ground& ground, const Vector3& gravity_m_per_s2,
                     double time_s) {
-  contacts_.clear();
+  contacts_.begin(ground.normal, time_s);
   const double fall_m = time_s * time_s * gravity_m_per_s2.norm();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyState& body = bodies[b];
@@ -72,21 +96,45 @@ void OnGround::find(std::span<const BodyState> bodies, const Ground& ground, con
       fastest = std::max(fastest, -ground.normal.dot(body.lattice.velocity(footing.node)));
     }
     const double margin_m = margin_cells * static_cast<double>(body.lattice.cell_size_m());
-    find(static_cast<int>(b), body, ground, fastest * time_s + fall_m + margin_m);
+    find(static_cast<int>(b), body, ground, fastest * time_s + fall_m + margin_m, time_s);
   }
-  contacts_.begin(ground.normal);
 }
 
-void OnGround::find(int number, const BodyState& body, const Ground& ground, double reach_m) {
-  const BodyFootings& of_body = bodies_[static_cast<std::size_t>(number)];
+void OnGround::take_skin(const BodyFootings& of_body, double followed_m, double time_s,
+                         Footing& footing) const {
+  double skin_m = std::numeric_limits<double>::infinity();
+  for (int s = footing.first; s < footing.first + footing.count; ++s) {
+    const Sample& sample = of_body.samples[static_cast<std::size_t>(s)];
+    skin_m = std::min(skin_m, of_body.heights.lowest_m(sample.row, sample.column));
+  }
+  if (!std::isfinite(skin_m)) skin_m = followed_m;
+  const double share = footing.is_near ? time_s / (skin_memory_s + time_s) : 1.0;
+  footing.skin_m += share * (skin_m - followed_m - footing.skin_m);
+}
+
+void OnGround::find(int number, const BodyState& body, const Ground& ground, double reach_m, double time_s) {
+  BodyFootings& of_body = bodies_[static_cast<std::size_t>(number)];
   const double cell_m = static_cast<double>(body.lattice.cell_size_m());
-  for (const Footing& footing : of_body.footings) {
+  // Of a shell the skin is the middle, and the nodes are where its faces are.
+  const bool thin = body.lattice.mesh().thin;
+  if (!thin &&
+      !of_body.heights.take(body.mapping().current(), ground.point_m, ground.normal, reach_m + cell_m)) {
+    for (Footing& footing : of_body.footings) footing.is_near = false;
+    return;
+  }
+  for (Footing& footing : of_body.footings) {
     double gap_m = ground.normal.dot(body.lattice.position(footing.node) - ground.point_m);
-    if (gap_m > reach_m + cell_m) continue;
-    for (int s = footing.first; s < footing.first + footing.count; ++s) {
-      const EmbeddedPoint& sample = body.mapping().sample(of_body.samples[static_cast<std::size_t>(s)]);
+    if (gap_m > reach_m + cell_m) {
+      footing.is_near = false;
+      continue;
+    }
+    for (int s = footing.first_followed; s < footing.first_followed + footing.followed_count; ++s) {
+      const EmbeddedPoint& sample = body.mapping().sample(of_body.followed[static_cast<std::size_t>(s)]);
       gap_m = std::min(gap_m, ground.normal.dot(place_of(body.lattice, sample) - ground.point_m));
     }
+    if (!thin) take_skin(of_body, gap_m, time_s, footing);
+    footing.is_near = true;
+    gap_m += footing.skin_m;
     if (gap_m > reach_m) continue;
     const double friction = std::min(ground.friction, body.lattice.friction(footing.node));
     contacts_.add(number, body.lattice, footing.node, gap_m, friction);

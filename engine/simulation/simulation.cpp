@@ -64,7 +64,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   if (model->soft) bodies.push_back(*std::move(model->soft));
   std::vector<BodyPairContact> pairs = make_pairs(bodies);
   std::vector<BodySelfContact> self = make_self(bodies);
-  OnGround on_ground({bodies.data(), scene.bodies.size()});
+  OnGround on_ground({bodies.data(), scene.ground ? scene.bodies.size() : 0});
   std::vector<std::shared_ptr<const ToolBody>> kept = {modelled_body(scene.tool)};
   return Simulation(std::make_unique<State>(State{std::move(scene),
                                                   set,
@@ -302,11 +302,17 @@ std::uint64_t Simulation::state_hash() const {
     if (body.core) {
       body.core->visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
     }
+    if (s.scene.ground && body.core) {
+      body.core->visit_state_on_ground([&](const double* data, std::size_t count) { hash.add(data, count); });
+    }
     if (body.mesh()) continue;  // its vertices are where the nodes have them
     const ControlNet& net = body.mapping().current().net;
     for (const std::vector<double>* coordinate : {&net.x, &net.y, &net.z}) {
       for (const double value : *coordinate) hash.add(value);
     }
+  }
+  if (s.scene.ground) {
+    s.on_ground.contacts().visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
   }
   add_to_hash(s.tool, hash);
   if (s.scene.symmetry.on) add_to_hash(s.mirrored, hash);
@@ -339,6 +345,7 @@ Status Simulation::restore(const ShapeState& shape) {
     if (body.mover()) body.mover()->take_shape(body.lattice);
     body.update_skin();
   }
+  state_->on_ground.contacts().forget();
   state_->tool.contact.release();
   state_->mirrored.contact.release();
   return {};

@@ -44,7 +44,7 @@ struct Simulation::State {
   BodyContacts between;
   std::vector<BodyPairContact> pairs;  // 0 and 1, 0 and 2, 1 and 2, ...: see make_pairs()
   std::vector<BodySelfContact> self;   // of each body
-  OnGround on_ground;                  // the bodies of the scene
+  OnGround on_ground;                  // the bodies of the scene, where it has a ground
   bool pairs_overflow = false;
   double tool_gap_m = 0.0;  // of a soft tool to the bodies; infinite where it is not near
   // Of tools that were replaced: snapshots share them, and no tick must free the last of one.

@@ -1,66 +1,94 @@
 #include "engine/material/contact/ground_contacts.h"
 
+#include <algorithm>
+#include <tuple>
+
 #include "engine/material/contact/contact_push.h"
 #include "engine/material/springs/node_motion.h"
 
 namespace spoonbill {
 namespace {
 
-constexpr ContactPace pace{1.0, 0.7};
+auto place_of(const GroundContact& contact) {
+  return std::make_tuple(contact.body, contact.node);
+}
+
+// The mean since the node came, and from friction_memory_s on one that forgets.
+void remember(GroundContact& contact, double push_n, double h_s) {
+  contact.time_s = std::min(contact.time_s + h_s, friction_memory_s + h_s);
+  contact.mean_push_n += h_s / contact.time_s * (push_n - contact.mean_push_n);
+}
 
 }  // namespace
 
-GroundContacts::GroundContacts(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {}
-
-void GroundContacts::clear() {
-  count_ = 0;
+GroundContacts::GroundContacts(int capacity) : capacity_(static_cast<std::size_t>(capacity)) {
+  contacts_.reserve(capacity_);
+  last_.reserve(capacity_);
 }
 
-bool GroundContacts::add(int body, const SpringLattice& lattice, int node, double gap_m, double friction) {
-  if (count_ == static_cast<int>(constraints_.size())) return false;
-  constraints_[static_cast<std::size_t>(count_++)] = {
-      body, node, gap_m, lattice.displacement(node), friction, Vector3::Zero()};
-  return true;
-}
-
-void GroundContacts::begin(const Vector3& normal) {
+void GroundContacts::begin(const Vector3& normal, double material_time_s) {
+  std::swap(contacts_, last_);
+  contacts_.clear();
+  looked_at_ = 0;
+  last_time_s_ = time_s_;
+  time_s_ = material_time_s;
   normal_ = normal;
 }
 
-void GroundContacts::solve(std::span<const LatticeView> lattices, std::span<const double> times_s,
-                           std::span<const float> caps) {
-  for (int c = 0; c < count_; ++c) {
-    Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
-    const auto body = static_cast<std::size_t>(constraint.body);
-    const LatticeView& view = lattices[body];
-    const int n = constraint.node;
+void GroundContacts::forget() {
+  contacts_.clear();
+}
+
+bool GroundContacts::add(int body, const SpringLattice& lattice, int node, double gap_m, double friction) {
+  if (lattice.is_held(node)) return true;
+  if (contacts_.size() == capacity_) return false;
+  GroundContact contact{body, node, gap_m, lattice.displacement(node), friction};
+  while (looked_at_ < last_.size() && place_of(last_[looked_at_]) < place_of(contact)) ++looked_at_;
+  if (looked_at_ < last_.size() && place_of(last_[looked_at_]) == place_of(contact)) {
+    const GroundContact& before = last_[looked_at_];
+    contact.force_n = before.impulse_ns / last_time_s_;
+    contact.mean_push_n = before.mean_push_n;
+    contact.time_s = before.time_s;
+  }
+  contacts_.push_back(contact);
+  return true;
+}
+
+std::span<GroundContact> GroundContacts::of_body(int body) {
+  const auto [first, last] =
+      std::equal_range(contacts_.begin(), contacts_.end(), GroundContact{body},
+                       [](const GroundContact& a, const GroundContact& b) { return a.body < b.body; });
+  return {first, last};
+}
+
+void GroundContacts::solve(int body, const LatticeView& view, double h_s, double cap_m_per_s) {
+  for (GroundContact& contact : of_body(body)) {
+    const int n = contact.node;
     const double inverse_mass = static_cast<double>(view.inverse_mass[n]);
-    if (inverse_mass == 0.0) continue;
     const Vector3 displacement(view.dx[n], view.dy[n], view.dz[n]);
     const Vector3 velocity(view.vx[n], view.vy[n], view.vz[n]);
-    const double gap_m = constraint.gap_m + normal_.dot(displacement - constraint.at_m);
-    const ContactPush push{gap_m, normal_, velocity, 1.0 / inverse_mass};
-    const auto impulse =
-        push.impulse(times_s[body], pace, static_cast<double>(caps[body]), constraint.friction);
-    if (!impulse) continue;
-    set_velocity(view, n, velocity + inverse_mass * *impulse);
-    constraint.impulse_ns += *impulse;
+    const ContactPush push{contact.gap_m + normal_.dot(displacement - contact.at_m), normal_, velocity,
+                           1.0 / inverse_mass};
+    const double pushed_ns = push.normal_impulse(h_s, ground_pace, cap_m_per_s);
+    remember(contact, pushed_ns / h_s, h_s);
+    if (pushed_ns == 0.0) continue;
+    const Vector3 impulse = pushed_ns * normal_ - push.drag(contact.friction * contact.mean_push_n * h_s);
+    set_velocity(view, n, velocity + inverse_mass * impulse);
+    contact.impulse_ns += impulse;
   }
 }
 
 Vector3 GroundContacts::impulse_ns(int body) const {
   Vector3 sum = Vector3::Zero();
-  for (int c = 0; c < count_; ++c) {
-    const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
-    if (constraint.body == body) sum += constraint.impulse_ns;
+  for (const GroundContact& contact : contacts_) {
+    if (contact.body == body) sum += contact.impulse_ns;
   }
   return sum;
 }
 
 void GroundContacts::mark_touched(int body, std::uint8_t* touched) const {
-  for (int c = 0; c < count_; ++c) {
-    const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
-    if (constraint.body == body && !constraint.impulse_ns.isZero(0.0)) touched[constraint.node] = 1;
+  for (const GroundContact& contact : contacts_) {
+    if (contact.body == body && !contact.impulse_ns.isZero(0.0)) touched[contact.node] = 1;
   }
 }
 

@@ -334,11 +334,12 @@ double ImplicitBody::rayleigh_quotient() {
   return moved > 0.0 ? strained / moved : 0.0;
 }
 
-ImplicitReport ImplicitBody::solve_velocities(const ImplicitStep& step) {
+ImplicitReport ImplicitBody::solve_velocities(const ImplicitStep& step, std::span<const double> known_ns) {
   const double h = step.step_s, inertia = 1.0 + h * step.damping_per_s, stiffness = h * (h + damping_time_);
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {
     force_[n] = applied_[n] + mass3_[n] * step.gravity_m_per_s2[static_cast<Eigen::Index>(n % 3)];
   }
+  for (std::size_t n = 0; n < known_ns.size(); ++n) force_[n] += known_ns[n] / h;
   cells_->take_forces(block_.batches.data(), static_cast<int>(block_.batches.size()), moved_.data(),
                       force_.data());
   factor_.take_piece({&block_, mass_.data(), free_.data(), inertia, stiffness});
@@ -352,12 +353,15 @@ ImplicitReport ImplicitBody::solve_velocities(const ImplicitStep& step) {
   return report;
 }
 
-double ImplicitBody::push(const std::vector<double>& impulses) {
+double ImplicitBody::answer(const std::vector<double>& impulses) {
   std::copy(impulses.begin(), impulses.end(), image_.begin());
   free_only(image_);
   factor_.solve(image_.data(), free_.data(), conditioned_.data());
-  for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) velocity_[n] += conditioned_[n];
   return band_->dot(image_.data(), conditioned_.data(), rounded_up(size_, band_block));
+}
+
+void ImplicitBody::take_answer(double share) {
+  for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) velocity_[n] += share * conditioned_[n];
 }
 
 bool ImplicitBody::move(double step_s) {

@@ -65,6 +65,7 @@ class ImplicitBody {
 
   // One byte a node, 1 = held. Takes the factor anew.
   void hold(std::span<const std::uint8_t> held);
+  bool is_held(int node) const { return free_[3 * static_cast<std::size_t>(mesh_.joined(node))] == 0.0; }
 
   // Of either node of a place.
   Vector3 displacement(int node) const { return at(moved_, mesh_.joined(node)); }
@@ -89,11 +90,19 @@ class ImplicitBody {
   // Of the free nodes' velocities, with the tangent of the last step: (v.Kv) / (v.Mv); 0 at rest.
   double rayleigh_quotient();
 
-  // A step in its parts: the velocities at its end; what contacts push, by coordinate (of the first node of
-  // each place), N s, as far as the whole body answers at once, with the work that they do on what they
-  // change, J; and the move, which says whether a node met the speed cap.
-  ImplicitReport solve_velocities(const ImplicitStep& step);
-  double push(const std::vector<double>& impulses);
+  // A step in its parts: the velocities at its end, with what is known of the contacts' impulses, by
+  // coordinate (of the first node of each place), N s; what contacts push further, as far as the whole body
+  // answers at once, with the work that they do on what they change, J; and the move, which says whether a
+  // node met the speed cap.
+  ImplicitReport solve_velocities(const ImplicitStep& step, std::span<const double> known_ns = {});
+  double push(const std::vector<double>& impulses) {
+    const double work = answer(impulses);
+    take_answer(1.0);
+    return work;
+  }
+  // The same before it is done, and a share of it done.
+  double answer(const std::vector<double>& impulses);
+  void take_answer(double share);
   bool move(double step_s);
   // All of it without contacts.
   ImplicitReport step(const ImplicitStep& step) {

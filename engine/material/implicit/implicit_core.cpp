@@ -130,6 +130,14 @@ Result<LatticeMesh> coarser(const LatticeMesh& mesh, const std::vector<Vector3>&
 
 }  // namespace
 
+ImplicitCore::ImplicitCore(ImplicitBody body, int nodes, double mass_kg)
+    : body_(std::move(body)),
+      velocity_(static_cast<std::size_t>(nodes)),
+      impulse_(3 * static_cast<std::size_t>(body_.node_count()), 0.0),
+      on_ground_(nodes, mass_kg),
+      contact_inverse_mass_(first_lightness / mass_kg),
+      least_inverse_mass_(1.0 / mass_kg) {}
+
 Result<ImplicitCore> ImplicitCore::make(const LatticeMesh& mesh, const std::vector<Vector3>& rest_m,
                                         const LatticeMaterials& materials, InstructionSet set) {
   const Result<LatticeMesh> coarse = coarser(mesh, rest_m);
@@ -137,22 +145,18 @@ Result<ImplicitCore> ImplicitCore::make(const LatticeMesh& mesh, const std::vect
   Result<ImplicitBody> body =
       ImplicitBody::make(coarse.value(), block_materials(materials, mesh.count, coarse->count), set);
   if (!body.ok()) return body.error();
-  ImplicitCore core(std::move(body).value());
+  double mass_kg = 0.0;
+  for (int n = 0; n < coarse->node_count(); ++n) mass_kg += body->mass_kg(n);
+  ImplicitCore core(std::move(body).value(), mesh.node_count(), mass_kg);
   core.rest_m_ = rest_m;
   for (int n = 0; n < mesh.node_count(); ++n) {
     core.followers_.push_back(weighted(mesh, n, coarse.value()));
   }
-  double mass_kg = 0.0;
   for (int n = 0; n < coarse->node_count(); ++n) {
     const GridPoint at = weighted(coarse.value(), n, mesh);
     core.nearest_.push_back(static_cast<int>(most_followed(at)));
-    mass_kg += core.body_.mass_kg(n);
   }
   core.holder_.assign(core.nearest_.size(), -1);
-  core.velocity_.assign(rest_m.size(), {});
-  core.impulse_.assign(3 * static_cast<std::size_t>(coarse->node_count()), 0.0);
-  core.least_inverse_mass_ = 1.0 / mass_kg;
-  core.contact_inverse_mass_ = first_lightness / mass_kg;
   return core;
 }
 
@@ -195,7 +199,7 @@ void ImplicitCore::take_moved_nodes(const SpringLattice& lattice) {
     const auto at = static_cast<std::size_t>(n);
     if (lattice.is_held(n)) continue;
     rest_m_[at] =
-        lattice.position(n) - sum_over(followers_[at], [&](int node) { return body_.displacement(node); });
+        lattice.position(n) - followers_[at].sum_over([&](int node) { return body_.displacement(node); });
   }
 }
 
@@ -230,9 +234,15 @@ Vector3 ImplicitCore::force_on_held(const SpringLattice& lattice, std::span<cons
   return sum;
 }
 
-ImplicitReport ImplicitCore::begin_step(const ImplicitStep& step, SpringLattice& lattice) {
+ImplicitReport ImplicitCore::begin_step(const ImplicitStep& step, SpringLattice& lattice,
+                                        std::span<GroundContact> on_ground) {
   step_s_ = step.step_s;
-  const ImplicitReport report = body_.solve_velocities(step);
+  std::span<const double> known_ns;
+  if (!on_ground.empty()) {
+    on_ground_.take_last(on_ground, followers_, step_s_, impulse_);
+    known_ns = impulse_;
+  }
+  const ImplicitReport report = body_.solve_velocities(step, known_ns);
   write_velocities(lattice);
   return report;
 }
@@ -241,7 +251,7 @@ void ImplicitCore::write_velocities(SpringLattice& lattice) {
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
     if (lattice.is_held(n)) continue;
     const auto at = static_cast<std::size_t>(n);
-    lattice.set_velocity(n, sum_over(followers_[at], [&](int node) { return body_.velocity(node); }));
+    lattice.set_velocity(n, followers_[at].sum_over([&](int node) { return body_.velocity(node); }));
     const Vector3 rounded = lattice.velocity(n);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       velocity_[at][axis] = static_cast<float>(rounded[static_cast<Eigen::Index>(axis)]);
@@ -260,12 +270,7 @@ double ImplicitCore::take_impulses(const SpringLattice& lattice) {
     const Vector3 impulse = (lattice.velocity(n) - before) / contact_inverse_mass_;
     if (impulse.isZero(0.0)) continue;
     squares += impulse.squaredNorm();
-    for (std::size_t c = 0; c < 8; ++c) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        impulse_[3 * static_cast<std::size_t>(followers_[at].node[c]) + axis] +=
-            followers_[at].weight[c] * impulse[static_cast<Eigen::Index>(axis)];
-      }
-    }
+    followers_[at].share_out(impulse, impulse_);
   }
   return squares;
 }
@@ -278,16 +283,20 @@ void ImplicitCore::take_lightness(double answered, SpringLattice& lattice) {
   lattice.set_contact_inverse_mass(contact_inverse_mass_);
 }
 
-void ImplicitCore::end_step(SpringLattice& lattice) {
+void ImplicitCore::end_step(SpringLattice& lattice, const OnGround& on_ground) {
   // The contacts gave each node its impulse over its mass; the block gives all of them together what it does.
   const double squares = take_impulses(lattice);
   if (squares > 0.0) take_lightness(body_.push(impulse_) / squares, lattice);
+  if (!on_ground.contacts.empty()) {
+    on_ground_.solve(*on_ground.ground, on_ground.contacts, followers_, step_s_,
+                     on_ground.push_speed_cap_m_per_s, body_, impulse_);
+  }
   body_.move(step_s_);
   write_velocities(lattice);
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
     if (lattice.is_held(n)) continue;
     const auto at = static_cast<std::size_t>(n);
-    const Vector3 moved = sum_over(followers_[at], [&](int node) { return body_.displacement(node); });
+    const Vector3 moved = followers_[at].sum_over([&](int node) { return body_.displacement(node); });
     lattice.set_displacement(n, rest_m_[at] - lattice.mesh().nodes[at] + moved);
   }
 }

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/material/implicit/block_on_ground.h"
+#include "engine/material/implicit/grid_point.h"
 #include "engine/material/implicit/implicit_body.h"
 #include "engine/material/springs/spring_lattice.h"
 
@@ -17,15 +19,9 @@ namespace spoonbill {
 // Hexahedra need few of them, since each can bend.
 inline constexpr int implicit_node_budget = 500;
 
-// A node of one grid as a weighted sum of another's.
-struct GridPoint {
-  std::array<int, 8> node{};
-  std::array<double, 8> weight{};
-};
-
 // Contacts push the lattice's nodes as if each were free, and as light as makes all of them together answer
-// as the block did when it was last pushed; the block then answers as a whole. One owner, the body; built
-// outside the tick, allocates nothing afterwards.
+// as the block did when it was last pushed; the block then answers as a whole. The ground comes last, and
+// pushes the block itself. One owner, the body; built outside the tick, allocates nothing afterwards.
 class ImplicitCore {
  public:
   // Unstrained where the lattice's nodes are at `rest_m`.
@@ -59,10 +55,17 @@ class ImplicitCore {
   Vector3 force_on_held(const SpringLattice& lattice, std::span<const int> nodes,
                         const Vector3& gravity_m_per_s2) const;
 
-  // The lattice's velocities at the end of a step without contacts; contacts then change them.
-  ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice);
-  // Gives the block what contacts changed, and takes the lattice along.
-  void end_step(SpringLattice& lattice);
+  // The lattice's velocities at the end of a step without contacts, but for what the ground did in the last
+  // tick to those that are here; contacts then change them.
+  ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice,
+                            std::span<GroundContact> on_ground = {});
+  // Gives the block what contacts changed, lets the ground push it, and takes the lattice along.
+  struct OnGround {
+    const GroundContacts* ground = nullptr;
+    std::span<GroundContact> contacts;
+    double push_speed_cap_m_per_s = 0.0;
+  };
+  void end_step(SpringLattice& lattice, const OnGround& on_ground);
 
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
@@ -70,21 +73,20 @@ class ImplicitCore {
     visit(&contact_inverse_mass_, 1);
     for (const Vector3& rest : rest_m_) visit(rest.data(), 3);
   }
+  // And on a ground.
+  template <class Visitor>
+  void visit_state_on_ground(Visitor&& visit) const {
+    on_ground_.visit_state(visit);
+  }
 
  private:
-  explicit ImplicitCore(ImplicitBody body) : body_(std::move(body)) {}
+  ImplicitCore(ImplicitBody body, int nodes, double mass_kg);
   void write_velocities(SpringLattice& lattice);
   double take_impulses(const SpringLattice& lattice);
   void take_lightness(double answered, SpringLattice& lattice);
   bool follows_held(const GridPoint& follower) const;
   // Of a node of the block.
   bool is_held_by(int node, std::span<const int> nodes) const;
-  template <class Of>
-  Vector3 sum_over(const GridPoint& follower, const Of& of) const {
-    Vector3 sum = Vector3::Zero();
-    for (std::size_t c = 0; c < 8; ++c) sum += follower.weight[c] * of(follower.node[c]);
-    return sum;
-  }
 
   ImplicitBody body_;
   std::vector<Vector3> rest_m_;       // of the lattice's nodes
@@ -93,6 +95,7 @@ class ImplicitCore {
   std::vector<int> holder_;  // by node of the block: the held one of the lattice that holds it, or -1
   std::vector<std::array<float, 3>> velocity_;  // of the lattice's nodes, before contacts
   std::vector<double> impulse_;                 // by coordinate of the block, N s: working memory
+  BlockOnGround on_ground_;
   double step_s_ = 0.0;
   double contact_inverse_mass_ = 0.0, least_inverse_mass_ = 0.0;
 };
