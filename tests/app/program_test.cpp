@@ -25,18 +25,24 @@ std::string hash_of(const std::string& of_program, const std::string& recording,
   return outcome.code == exit_done ? json_of(outcome.out)["state_hash"].get<std::string>() : "none";
 }
 
-TEST(StateHash, IsTheSameWithEveryInstructionSet) {
-  const Workplace place;
-  const std::string recording = place.record("bend.jsonl").string();
+void expect_one_hash(const std::string& recording) {
   const std::string hash = hash_of(program, recording, {"--no-frames"});
   for (const InstructionSet set : available_instruction_sets()) {
     EXPECT_EQ(hash_of(program, recording, {"--no-frames", "--instruction-set", std::string(name_of(set))}),
               hash);
-    for (const std::string& bundled : {bend_recording, press_recording}) {
-      EXPECT_EQ(hash_of(program, bundled, {"--no-frames", "--instruction-set", std::string(name_of(set))}),
-                hash_of(program, bundled, {"--no-frames"}));
-    }
   }
+}
+
+TEST(StateHash, IsTheSameWithEveryInstructionSet) {
+  const Workplace place;
+  expect_one_hash(place.record("bend.jsonl").string());
+}
+
+TEST(StateHash, OfBundledRecordingsIsTheSameWithEveryInstructionSet) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer learns nothing from them that the short recording does not tell";
+#endif
+  for (const std::string& bundled : {bend_recording, press_recording}) expect_one_hash(bundled);
 }
 
 TEST(StateHash, AndTheFramesAreTheSameWithOneAndFourDrawingThreads) {

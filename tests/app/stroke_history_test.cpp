@@ -36,7 +36,7 @@ struct Touched {
     ShapeState before = simulation.shape();
     double height_m = 0.011;
     while (height_m > -0.05 && !hold(height_m, 1)) {
-      height_m -= 1e-4;
+      height_m -= 4e-4;
       before = simulation.shape();
     }
     EXPECT_GT(height_m, -0.05);
@@ -46,7 +46,7 @@ struct Touched {
 
   ShapeState stroke() {
     ShapeState before = press();
-    hold(0.03, 200);
+    hold(0.03, StrokeHistory::release_ticks + 10);
     return before;
   }
 };
