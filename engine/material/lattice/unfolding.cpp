@@ -156,10 +156,13 @@ class Around {
 
 // Newton's, made definite where it is not.
 Vector3 step_of(const Sum& sum) {
+  constexpr int tries = 7;
   const double size = sum.second.diagonal().cwiseAbs().sum();
-  for (double added = 0.0; added <= 16.0; added = added > 0.0 ? 4.0 * added : 1e-2) {
+  double added = 0.0;
+  for (int attempt = 0; attempt < tries; ++attempt) {
     const Eigen::LLT<Eigen::Matrix3d> factor(sum.second + added * size * Eigen::Matrix3d::Identity());
     if (factor.info() == Eigen::Success) return -factor.solve(sum.gradient);
+    added = attempt == 0 ? 1e-2 : 4.0 * added;
   }
   return -sum.gradient / size;
 }
