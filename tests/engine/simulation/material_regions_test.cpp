@@ -66,7 +66,8 @@ TEST(MaterialRegions, AreSoftenedAlike) {
   simulation.write_snapshot(snapshot);
   EXPECT_EQ(snapshot.substeps, 1);
   EXPECT_EQ(snapshot.flags & tick_flag_nodes_slowed, 0u);
-  // Wood has a fifth of a percent more or less than a tick holds of it alone; clay a hundredth of that.
+  // Wood has what a tick holds of it alone, but for the cells at the join, where it hangs on what is lighter
+  // and softer; clay has a hundredth of that.
   const double felt_wood = 100.0 * simulation.lattice().youngs_modulus_pa();
   EXPECT_NEAR(felt_wood / alone.lattice().youngs_modulus_pa(), 1.0, 0.35);
 }
@@ -140,18 +141,21 @@ TEST(MaterialRegions, ADraggedToolFeelsTheFrictionOfTheRegion) {
   rough.friction = 0.5;
   Simulation simulation = simulate(held_handle(elastic("rubber", 1e5, 0.1), {rough}));
   for (int tick = 0; tick < 200; ++tick) simulation.advance(above(0.015, 0.0095 - 1e-5 * tick));
+  // There and back over the same places: what the bent surface leans by counts once each way.
   double drag[2] = {}, push[2] = {};
-  for (int tick = 0; tick < 1500; ++tick) {
-    const double x = 0.015 + 2e-5 * tick;
+  constexpr int way = 1500;
+  for (int tick = 0; tick < 2 * way; ++tick) {
+    const bool back = tick >= way;
+    const double x = 0.015 + 2e-5 * (back ? 2 * way - tick : tick);
     const Reaction reaction = simulation.advance(above(x, 0.0075));
-    const bool on_smooth = x > 0.018 && x<0.026, on_rough = x> 0.034 && x < 0.042;
+    const bool on_smooth = x > 0.018 && x < 0.026;
+    const bool on_rough = x > 0.034 && x < 0.042;
     if (!on_smooth && !on_rough) continue;
-    drag[on_rough] -= reaction.force_n.x();
+    drag[on_rough] += (back ? 1.0 : -1.0) * reaction.force_n.x();
     push[on_rough] += reaction.force_n.y();
   }
-  // Down to the middle of the span and up from it the surface leans, by up to 2 mm in 20.
-  EXPECT_NEAR(drag[0] / push[0], 0.1, 0.1);
-  EXPECT_NEAR(drag[1] / push[1], 0.5, 0.1);
+  EXPECT_NEAR(drag[0] / push[0], 0.1, 0.03);
+  EXPECT_NEAR(drag[1] / push[1], 0.5, 0.05);
 }
 
 TEST(MaterialRegions, ANewMaterialIsOfTheRestOfTheBody) {
