@@ -124,6 +124,27 @@ struct BlockCells {
   }
 };
 
+// Of one block of cells, between two loops over it: one loop of both has more numbers at once than a
+// processor has registers.
+struct BlockGradients {
+  alignas(64) float number[18][block];
+
+  void set(int l, const FaceDiagonals& g) {
+    const Vector all[6] = {g.a, g.b, g.c, g.d, g.e, g.f};
+    for (int k = 0; k < 6; ++k) {
+      number[3 * k][l] = all[k].x;
+      number[3 * k + 1][l] = all[k].y;
+      number[3 * k + 2][l] = all[k].z;
+    }
+  }
+  FaceDiagonals at(int l) const {
+    const auto vector = [&](int k) {
+      return Vector{number[3 * k][l], number[3 * k + 1][l], number[3 * k + 2][l]};
+    };
+    return {vector(0), vector(1), vector(2), vector(3), vector(4), vector(5)};
+  }
+};
+
 inline void add_corner_forces(const LatticeView& view, int start, const BlockCells& cells) {
   for (int c = 0; c < 8; ++c) {
     float* __restrict fx = view.fx + start + view.corner_offset[c];
@@ -239,14 +260,21 @@ void add_volume_row_sums(const LatticeView& view, float* sum) {
 
 void take_volume_stiffness(const LatticeView& view) {
   BlockCells cells;
+  BlockGradients gradients;
+  alignas(64) float factor[block];
   for (int start = 0; start < view.padded_count; start += block) {
     if (view.active_block[start / block] == 0) continue;
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
-      const FaceDiagonals p = diagonals_ahead(view, n), gradient = volume_gradient(p);
-      const float rate = volume_rate(view, gradient, view.power_x, view.power_y, view.power_z, n);
+      const FaceDiagonals p = diagonals_ahead(view, n);
       const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
-      cells.set(l, -tangent_of(view, p, n) * inverse * inverse * rate, gradient);
+      factor[l] = -tangent_of(view, p, n) * inverse * inverse;
+      gradients.set(l, volume_gradient(p));
+    }
+    for (int l = 0; l < block; ++l) {
+      const FaceDiagonals gradient = gradients.at(l);
+      const float rate = volume_rate(view, gradient, view.power_x, view.power_y, view.power_z, start + l);
+      cells.set(l, factor[l] * rate, gradient);
     }
     add_corner_forces(view, start, cells);
   }
