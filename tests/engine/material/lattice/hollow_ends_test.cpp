@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 
@@ -75,11 +76,11 @@ double smallest_determinant(const CellCorners& cell) {
   return smallest;
 }
 
-TEST(HollowEnds, HavePositiveCells) {
+void expect_positive_cells(std::initializer_list<int> budgets) {
   for (const Fruit& fruit :
        {apple, apple_of_narrow_hollows, apple_of_wide_hollows, flat_apple, pear, leaning_pear}) {
     const Surface surface = surface_of(fruit);
-    for (const int budget : {500, 2000, 8000}) {
+    for (const int budget : budgets) {
       const Result<LatticeMesh> made = tube_lattice(surface, {budget, {}});
       ASSERT_TRUE(made.ok()) << fruit.name << ", " << budget << ": " << made.error().message;
       const LatticeMesh& mesh = made.value();
@@ -95,6 +96,17 @@ TEST(HollowEnds, HavePositiveCells) {
       EXPECT_GT(quality_of(mesh).worst_jacobian, 0.05) << fruit.name << ", " << budget;
     }
   }
+}
+
+TEST(HollowEnds, HavePositiveCells) {
+  expect_positive_cells({500, 2000});
+}
+
+TEST(HollowEnds, HaveManyPositiveCells) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "minutes under this sanitizer, which fewer cells tell as much";
+#endif
+  expect_positive_cells({8000});
 }
 
 TEST(HollowEnds, AreAsHollowAsTheyAreSaidToBe) {
