@@ -1,4 +1,4 @@
-// Regions of a body as the panel and reports show them.
+// Regions of a body as reports show them.
 #pragma once
 
 #include <string>

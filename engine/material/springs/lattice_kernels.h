@@ -134,7 +134,8 @@ struct LatticeKernels {
   void (*linearise_springs)(const LatticeView&, Linearised kept);
   // Sets the forces to the springs' at the reference.
   void (*start_forces)(const LatticeView&);
-  // Adds what the springs' forces changed by since, to first order; with the tangents kept, as what follows.
+  // Adds what the springs' forces changed by since, to first order. This, damp_further() and power_step()
+  // want the tangents kept.
   void (*spring_forces)(const LatticeView&);
   // f = -p dV/dx, p = K_v x, x = J - 1, ahead in time, with the exact volume of each trilinear cell. Below
   // Poisson's ratios of 1/4 K_v is negative, and this energy unbounded below: there

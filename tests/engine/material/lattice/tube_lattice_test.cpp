@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/engine/material/lattice/revolved.h"
+
 namespace spoonbill {
 namespace {
 
@@ -30,16 +32,6 @@ Surface coil(double turn_rad) {
   return make_surface(KnotVector::periodic_uniform(3, around).value(),
                       KnotVector::clamped_uniform(3, along).value(), net)
       .value();
-}
-
-double volume_of(const LatticeMesh& mesh) {
-  double volume = 0.0;
-  for (int k = 0; k + 1 < mesh.count[2]; ++k) {
-    for (int i = 0; i + 1 < mesh.count[0]; ++i) {
-      for (int j = 0; j + 1 < mesh.count[1]; ++j) volume += cell_volume(mesh.cell(i, j, k));
-    }
-  }
-  return volume;
 }
 
 // Whatever way the rims lie from each other: apart, beside each other, above each other.
