@@ -8,6 +8,7 @@
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/collision/surfaces/random_pairs.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
@@ -78,8 +79,9 @@ TEST(Coherence, ASurfaceThatDidNotMoveIsNotEvaluatedAgain) {
 // Two random surfaces that drift through each other: the same answer whether they touch.
 TEST(Coherence, SurfacesThatDriftTouchAsForAColliderThatKnowsNothing) {
   Random random(303);
+  constexpr int rounds = effort(6);
   int touching = 0, apart = 0;
-  for (int round = 0; round < 6; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     Surface first = random_surface(random), second = random_surface(random);
     const NestedGrid a = make_nested_grid(first.u, first.v, 2).value();
     const NestedGrid b = make_nested_grid(second.u, second.v, 2).value();
@@ -102,8 +104,8 @@ TEST(Coherence, SurfacesThatDriftTouchAsForAColliderThatKnowsNothing) {
       EXPECT_NEAR(one.distance_m, other.distance_m, nearest_m) << round << ' ' << step;
     }
   }
-  EXPECT_GT(touching, 20);
-  EXPECT_GT(apart, 20);
+  EXPECT_GT(touching, 3 * rounds);
+  EXPECT_GT(apart, 3 * rounds);
 }
 
 }  // namespace

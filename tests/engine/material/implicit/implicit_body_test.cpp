@@ -10,6 +10,7 @@
 #include "engine/material/statics/static_solver.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/material/block.h"
 
 namespace spoonbill {
@@ -151,7 +152,7 @@ TEST(ImplicitBody, KeepsItsMomentum) {
 // Nodes thrown about at up to 20 m/s, at any stiffness that needs the method and any damping: what comes of
 // it is finite, and a body again within a second.
 TEST(ImplicitBody, NothingBlowsItUp) {
-  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 100 : 8;
+  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 100 : effort(8);
   Random random(11);
   for (int trial = 0; trial < trials; ++trial) {
     const Material material =

@@ -9,6 +9,7 @@
 
 #include "engine/material/lattice/feature_map.h"
 #include "engine/material/lattice/tube_lattice.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/material/lattice/revolved.h"
 
 namespace spoonbill {
@@ -99,13 +100,12 @@ void expect_positive_cells(std::initializer_list<int> budgets) {
 }
 
 TEST(HollowEnds, HavePositiveCells) {
+  if (sanitized) return expect_positive_cells({500});
   expect_positive_cells({500, 2000});
 }
 
 TEST(HollowEnds, HaveManyPositiveCells) {
-#if defined(__SANITIZE_ADDRESS__)
-  GTEST_SKIP() << "minutes under this sanitizer, which fewer cells tell as much";
-#endif
+  if (sanitized) GTEST_SKIP() << "minutes under a sanitizer, which fewer cells tell as much";
   expect_positive_cells({8000});
 }
 
@@ -125,8 +125,9 @@ TEST(HollowEnds, HoldTheirVolume) {
   for (const Fruit& fruit :
        {apple, apple_of_narrow_hollows, apple_of_wide_hollows, flat_apple, pear, leaning_pear}) {
     const Surface surface = surface_of(fruit);
-    const LatticeMesh mesh = tube_lattice(surface, {2000, {}}).value();
-    EXPECT_NEAR(volume_of(mesh) / enclosed_volume_m3(surface), 1.0, 0.03) << fruit.name;
+    // Chords of fewer cells miss more.
+    const LatticeMesh mesh = tube_lattice(surface, {sanitized ? 500 : 2000, {}}).value();
+    EXPECT_NEAR(volume_of(mesh) / enclosed_volume_m3(surface), 1.0, sanitized ? 0.08 : 0.03) << fruit.name;
   }
 }
 

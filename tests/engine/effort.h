@@ -1,0 +1,17 @@
+// How much a test tries. Under a sanitizer, ten times slower, a part of it meets the same code.
+#pragma once
+
+namespace spoonbill {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool sanitized = true;
+#else
+inline constexpr bool sanitized = false;
+#endif
+
+// A quarter of the trials under a sanitizer.
+constexpr int effort(int trials) {
+  return sanitized ? (trials + 3) / 4 : trials;
+}
+
+}  // namespace spoonbill
