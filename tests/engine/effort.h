@@ -14,4 +14,8 @@ constexpr int effort(int trials) {
   return sanitized ? (trials + 3) / 4 : trials;
 }
 
+// Said of tests that take a sanitizer a minute, and of which shorter ones meet the same code.
+inline constexpr const char* long_when_sanitized =
+    "a minute under a sanitizer, which shorter tests tell as much";
+
 }  // namespace spoonbill

@@ -6,6 +6,7 @@
 
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
@@ -232,7 +233,7 @@ Material random_material(Random& random, bool plainly_elastic) {
 
 // Random materials in random regions, and strokes at up to 5 m/s: everything stays finite and near.
 TEST(MaterialRegions, NoStrokeBlowsThemUp) {
-  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 200 : 12;
+  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 200 : effort(12);
   Random random(31);
   for (int trial = 0; trial < trials; ++trial) {
     const bool plainly_elastic = random.integer(0, 2) == 0;
@@ -279,6 +280,7 @@ TEST(MaterialRegions, TicksAllocateNothing) {
 }
 
 TEST(MaterialRegions, EveryInstructionSetGivesTheSameBits) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const Material clay = small_handle().bodies[0].material;
   MaterialRegion rough;
   rough.region.along = {0.3, 0.6};

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "tests/engine/allocations.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/material/block.h"
 #include "tests/engine/simulation/handle.h"
 #include "tests/engine/simulation/loaded_block.h"
@@ -204,6 +205,7 @@ double least_volume_share(const SpringLattice& lattice) {
 
 // Soft, softened by sculpting, and stiff.
 TEST(OnGround, AHandleThatFallsComesToRestOnItsSkin) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs : {1e4, 2e5, 2e9}) {
     Simulation simulation = simulate(falling_handle(youngs));
     for (int tick = 0; tick < 1500; ++tick) {
@@ -243,6 +245,7 @@ TEST(OnGround, ASoftHandleAtRestStaysThere) {
 // Of 50 cm, through no air, of silicones as soft as gels and of one as hard as a plastic: the softest comes
 // at its true speed of 3 m/s, what sculpting softens is as much lighter.
 TEST(OnGround, AFallOfHalfAMetreLeavesNoCellInsideOut) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs : {4e2, 1e3, 1e9}) {
     Scene scene = falling_handle(youngs);
     scene.ground->point_m.y() = -0.5;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/engine/allocations.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/material/block.h"
 #include "tests/engine/simulation/handle.h"
 #include "tests/engine/simulation/loaded_block.h"
@@ -62,6 +63,7 @@ TEST(Settling, IsCriticalForTheMotionThatABodyIsIn) {
 // An oscillator at 1.1 of its critical damping has at most 0.11 of its energy in motion; 0.15 leaves a little
 // for the modes beside the first.
 TEST(Settling, AReleasedBodyComesBackWithoutSwinging) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     LoadedBlock bar = pushed_bar(stepping), swinging = pushed_bar(stepping);
     bar.settles = true;

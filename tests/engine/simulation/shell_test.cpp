@@ -6,6 +6,7 @@
 
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/tube.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/material/lattice/shells.h"
 #include "tests/engine/simulation/handle.h"
 
@@ -80,6 +81,7 @@ TEST(Shell, IsTouchedOnTheFaceThatIsMet) {
 }
 
 TEST(Shell, OfClayIsDentedFromEitherSideAndStaysSo) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const bool from_below : {true, false}) {
     Simulation simulation = simulate(clay_bowl());
     const double sign = from_below ? 1.0 : -1.0;
@@ -100,6 +102,7 @@ TEST(Shell, OfClayIsDentedFromEitherSideAndStaysSo) {
 }
 
 TEST(Shell, OfASteadierMaterialBendsAndComesBack) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs : {2e5, 2e9}) {
     Scene scene = clay_bowl();
     scene.bodies[0].material = elastic(youngs);

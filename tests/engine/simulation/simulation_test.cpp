@@ -7,6 +7,7 @@
 
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
@@ -228,7 +229,7 @@ struct RandomStroke {
 
 // Random materials, tools and strokes at up to 5 m/s: everything stays finite and near.
 TEST(Simulation, NoSettingBlowsItUp) {
-  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 200 : 12;
+  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 200 : effort(12);
   Random random(77);
   for (int trial = 0; trial < trials; ++trial) {
     Scene scene = small_handle();
@@ -273,7 +274,7 @@ TEST(Simulation, NoSettingBlowsItUp) {
 
 // The worst that random settings rarely meet: nothing damps, a rigid oversized sphere at 5 m/s hits a gel.
 TEST(Simulation, AnUndampedGelStaysNearWhateverHitsIt) {
-  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 40 : 8;
+  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 40 : effort(8);
   Random random(9);
   for (int trial = 0; trial < trials; ++trial) {
     Scene scene = small_handle();

@@ -105,7 +105,7 @@ TEST(HollowEnds, HavePositiveCells) {
 }
 
 TEST(HollowEnds, HaveManyPositiveCells) {
-  if (sanitized) GTEST_SKIP() << "minutes under a sanitizer, which fewer cells tell as much";
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   expect_positive_cells({8000});
 }
 
@@ -132,6 +132,7 @@ TEST(HollowEnds, HoldTheirVolume) {
 }
 
 TEST(HollowEnds, HaveTheSameNodesEachTime) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const Fruit& fruit : {apple, leaning_pear}) {
     const Surface surface = surface_of(fruit);
     EXPECT_EQ(tube_lattice(surface, {2000, {}}).value().nodes,

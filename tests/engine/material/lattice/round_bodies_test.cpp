@@ -10,6 +10,7 @@
 #include "engine/material/lattice/feature_map.h"
 #include "engine/material/lattice/tube_lattice.h"
 #include "engine/material/springs/spring_lattice.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/material/block.h"
 
 namespace spoonbill {
@@ -94,6 +95,7 @@ TEST(RoundBodies, HavePositiveCells) {
   for (const Case& of : {Case{"sphere", sphere(), 0.05}, Case{"egg", egg(), 0.05}, Case{"pear", pear(), 0.01},
                          Case{"rounded box", rounded_box(), 0.3}, Case{"spoon", spoon(), 0.05}}) {
     for (const int budget : {2000, 4000, 8000}) {
+      if (sanitized && budget > 2000) continue;
       const Result<LatticeMesh> mesh = tube_lattice(tube_of(of.profile), {budget, {}});
       ASSERT_TRUE(mesh.ok()) << of.name << ", " << budget << ": " << mesh.error().message;
       const CellQuality quality = quality_of(mesh.value());
