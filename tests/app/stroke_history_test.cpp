@@ -5,6 +5,7 @@
 #include "haptic/tick.h"
 #include "haptic/virtual_device.h"
 #include "tests/engine/allocations.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
@@ -141,6 +142,7 @@ TEST(StrokeHistory, CancelWithoutAStrokeDoesNothing) {
 }
 
 TEST(StrokeHistory, KeepsTheNewestWhenItIsFull) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Touched touched;
   touched.history.clear(touched.simulation);
   const int strokes = static_cast<int>(StrokeHistory::shape_limit) + 6;

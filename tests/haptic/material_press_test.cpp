@@ -9,6 +9,7 @@
 #include "engine/exchange/document.h"
 #include "haptic/script.h"
 #include "haptic/tick.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
@@ -83,6 +84,7 @@ class Press {
 };
 
 TEST(MaterialPress, ClayKeepsItsDentAndItsVolume) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Press press("clay-press");
   EXPECT_DOUBLE_EQ(press.radius_m(), 0.005);
   press.run_to(press.end_s());
@@ -93,6 +95,7 @@ TEST(MaterialPress, ClayKeepsItsDentAndItsVolume) {
 }
 
 TEST(MaterialPress, SiliconeSpringsBack) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Press press("silicone-press");
   press.run_to(2.0);
   const double held_m = press.dent_m(), felt_n = press.force_n();
@@ -112,6 +115,7 @@ TEST(MaterialPress, SiliconeSpringsBack) {
 // Held at a depth, a standard linear solid loses its relaxing share of force with its relaxation time; let
 // go, it comes back with that time divided by the share that does not relax.
 TEST(MaterialPress, GelatinCreepsAsItsRelaxationTimeSays) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Press press("gelatin-press");
   const double relaxation_time_s = press.material().relaxation_time_s;
   const double retardation_time_s = relaxation_time_s / (1.0 - press.material().relaxing_share);

@@ -12,6 +12,7 @@
 #include "engine/simulation/simulation.h"
 #include "haptic/tick.h"
 #include "haptic/virtual_device.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
@@ -136,6 +137,7 @@ int simulated_runs() {
 }
 
 TEST(Passivity, TheHeldPartGivesBackNoMoreThanItTook) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   expect_simulation_passive(0.01, simulated_runs(), 22);
 }
 

@@ -11,6 +11,7 @@
 #include "haptic/safety.h"
 #include "haptic/tick.h"
 #include "haptic/virtual_device.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
@@ -224,7 +225,7 @@ Watched sculpt(Random& random, int ticks) {
 }
 
 TEST(SafetyAtRandom, LimitsHoldWhileSculpting) {
-  const int scenes = std::getenv("SPOONBILL_FULL") != nullptr ? 60 : 6;
+  const int scenes = std::getenv("SPOONBILL_FULL") != nullptr ? 60 : effort(6);
   Random random(12);
   std::uint64_t with_force = 0;
   for (int scene = 0; scene < scenes; ++scene) {

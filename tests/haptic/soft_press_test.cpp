@@ -8,6 +8,7 @@
 #include "engine/simulation/body_pair_contact.h"
 #include "haptic/script.h"
 #include "haptic/tick.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/simulation/soft_bodies.h"
 
 namespace spoonbill {
@@ -26,6 +27,7 @@ double top_in_the_middle(const Surface& surface) {
 }
 
 TEST(SoftPress, BothGiveWayStayApartAndComeBack) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const Script script = read_script(scripts / "soft-press.script.json").value();
   const Document document = read_document(script.model_file).value();
   Simulation simulation = Simulation::make(document.scene, best_instruction_set()).value();

@@ -9,6 +9,7 @@
 #include "engine/exchange/document.h"
 #include "haptic/script.h"
 #include "haptic/tick.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
@@ -61,6 +62,7 @@ Bend play() {
 }
 
 TEST(SpoonHandleBend, TheSettledShapeIsThePapers) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const Bend bend = play();
   const double pushed = turned(bend.pushed, bend.sphere_v - 2.0, bend.sphere_v + 2.0);
   const double kept = turned(bend.settled, bend.sphere_v - 2.0, bend.sphere_v + 2.0);

@@ -9,6 +9,7 @@
 #include "engine/exchange/document.h"
 #include "engine/material/lattice/tube_lattice.h"
 #include "engine/material/statics/static_solver.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
@@ -83,6 +84,7 @@ Measured tension_test(const LatticeMesh& mesh, const StaticBody& body) {
 }
 
 TEST(HandleElasticity, IsTheMaterialsAtAnyResolution) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const auto document =
       read_document(std::filesystem::path(SPOONBILL_ASSETS) / "models" / "spoon-handle.json");
   ASSERT_TRUE(document.ok());

@@ -55,7 +55,8 @@ TEST(LoadJson, ReadsBackTheSameBits) {
   ASSERT_TRUE(read.ok()) << read.error().message;
   EXPECT_EQ(json_to_page(document_to_json(read.value())), json_to_page(json));
   const Body& body = read->scene.bodies[0];
-  const Body& was = loaded_document().scene.bodies[0];
+  const Document document = loaded_document();
+  const Body& was = document.scene.bodies[0];
   ASSERT_EQ(body.loads.size(), 4u);
   EXPECT_EQ(std::get<PointLoad>(body.loads[3]).force_n, std::get<PointLoad>(was.loads[3]).force_n);
   EXPECT_EQ(std::get<ForceLoad>(body.loads[2]).region.depth_m.high, std::numeric_limits<double>::infinity());

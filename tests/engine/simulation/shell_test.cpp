@@ -186,6 +186,7 @@ TEST(Shell, RingGivesWayAtItsSeamAsElsewhere) {
 
 // A pillow of jelly falls into the bowl, or, where down is up, onto its outside, and lies on it.
 TEST(Shell, BearsAnotherBody) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const bool upside_down : {false, true}) {
     Scene scene = clay_bowl();
     scene.bodies[0].material = elastic(2e9);

@@ -8,6 +8,7 @@
 
 #include "engine/material/lattice_solver.h"
 #include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
@@ -78,6 +79,7 @@ ToolInput resting(double x_m, double y_m) {
 }
 
 TEST(Smoothing, TakesADentOutAndLeavesTheRestInPlace) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const double v = 0.03, radius = 0.008;
   Simulation simulation = dented(v);
   const double before = dent_m(simulation, v);
