@@ -58,6 +58,7 @@ TEST(SoftPress, BothGiveWayStayApartAndComeBack) {
 
 // The same with the bundled egg, which is a mesh.
 TEST(SoftPress, AMeshGivesWayTooAndComesBack) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const Script script = read_script(scripts / "soft-egg.script.json").value();
   const Document document = read_document(script.model_file).value();
   Simulation simulation = Simulation::make(document.scene, best_instruction_set()).value();
