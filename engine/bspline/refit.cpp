@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 
-#include "engine/bspline/least_squares.h"
+#include "engine/bspline/constrained_inverse.h"
 #include "engine/bspline/refit_kernels.h"
 
 namespace spoonbill {
@@ -27,46 +26,6 @@ int whole_lanes(int count) {
   return (count + product_lanes - 1) / product_lanes * product_lanes;
 }
 
-// Control points (rows) from samples (columns): held rows are zero, kept ends copy their sample, and the free
-// rows are A_free^+ (1 - A_ends S), S picking the end samples.
-Result<Eigen::MatrixXd> constrained_inverse(const GridDirection& direction,
-                                            const RefitConstraints& constraints) {
-  const Eigen::MatrixXd a = direction.values.dense();
-  const Eigen::Index samples = a.rows(), controls = a.cols();
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(controls, samples);
-  Eigen::MatrixXd left_over = Eigen::MatrixXd::Identity(samples, samples);
-  std::vector<Eigen::Index> free;
-  for (Eigen::Index c = 0; c < controls; ++c) {
-    const bool held =
-        !constraints.held_columns.empty() && constraints.held_columns[static_cast<std::size_t>(c)] != 0;
-    if (held) continue;
-    if ((constraints.keep_first && c == 0) || (constraints.keep_last && c == controls - 1)) {
-      const Eigen::Index sample = c == 0 ? 0 : samples - 1;
-      inverse(c, sample) = 1.0;
-      left_over.col(sample) -= a.col(c);
-    } else {
-      free.push_back(c);
-    }
-  }
-  if (free.empty()) return inverse;
-  Eigen::MatrixXd free_columns(samples, static_cast<Eigen::Index>(free.size()));
-  for (std::size_t f = 0; f < free.size(); ++f) {
-    free_columns.col(static_cast<Eigen::Index>(f)) = a.col(free[f]);
-  }
-  const std::optional<Eigen::MatrixXd> fit = least_squares_inverse(free_columns);
-  if (!fit) return Error{"the samples do not determine the free control points; take more samples"};
-  for (std::size_t f = 0; f < free.size(); ++f) {
-    for (Eigen::Index sample = 0; sample < samples; ++sample) {
-      double sum = 0.0;
-      for (Eigen::Index k = 0; k < samples; ++k) {
-        sum += (*fit)(static_cast<Eigen::Index>(f), k) * left_over(k, sample);
-      }
-      inverse(free[f], sample) = sum;
-    }
-  }
-  return inverse;
-}
-
 }  // namespace
 
 Result<DisplacementRefit> DisplacementRefit::make(const Grid& grid, InstructionSet set) {
@@ -77,10 +36,7 @@ Result<DisplacementRefit> DisplacementRefit::make(const Grid& grid, const RefitC
                                                   InstructionSet set) {
   const auto u_inverse = pseudo_inverse(grid.u.knots, grid.u.parameters);
   if (!u_inverse) return Error{"direction u: " + u_inverse.error().message};
-  const bool constrained =
-      constraints.keep_first || constraints.keep_last || !constraints.held_columns.empty();
-  const auto v_inverse = constrained ? constrained_inverse(grid.v, constraints)
-                                     : pseudo_inverse(grid.v.knots, grid.v.parameters);
+  const auto v_inverse = constrained_inverse(grid.v.knots, grid.v.parameters, constraints);
   if (!v_inverse) return Error{"direction v: " + v_inverse.error().message};
 
   DisplacementRefit refit;

@@ -3,22 +3,15 @@
 // positions by Eq. 5 of Pungotra et al. 2013 would smooth it.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "engine/aligned_vector.h"
+#include "engine/bspline/constrained_inverse.h"
 #include "engine/bspline/grid.h"
 #include "engine/instruction_set.h"
 #include "engine/result.h"
 
 namespace spoonbill {
-
-// What a refit must keep in direction v, besides fitting.
-struct RefitConstraints {
-  std::vector<std::uint8_t> held_columns;  // one a control column: 1 = never moves; empty = none
-  // The first or the last sample is met exactly, so that a pole stays a pole; needs a clamped v.
-  bool keep_first = false, keep_last = false;
-};
 
 // Holds both pseudo-inverses in single precision and the working memory; no allocation after make(). One
 // owner, one thread.

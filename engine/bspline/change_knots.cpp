@@ -1,0 +1,326 @@
+#include "engine/bspline/change_knots.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/bspline/blending_matrix.h"
+#include "engine/bspline/constrained_inverse.h"
+#include "engine/number_text.h"
+
+namespace spoonbill {
+
+namespace {
+
+using Weights = std::array<double, max_degree + 1>;
+
+// Of the control points of `span`, for the blossom of its polynomial at as many arguments as the degree.
+Weights blossom(const KnotVector& knots, int span, std::span<const double> arguments) {
+  const int degree = knots.degree();
+  const auto& t = knots.extended_knots();
+  std::array<Weights, max_degree + 1> points{};
+  for (int j = 0; j <= degree; ++j) points[j][j] = 1.0;
+  for (int r = 1; r <= degree; ++r) {
+    for (int j = degree; j >= r; --j) {
+      const double low = t[span - degree + j], high = t[span + 1 + j - r];
+      const double share = (arguments[r - 1] - low) / (high - low);
+      for (int k = 0; k <= degree; ++k) {
+        points[j][k] = (1.0 - share) * points[j - 1][k] + share * points[j][k];
+      }
+    }
+  }
+  return points[degree];
+}
+
+// The same of the polynomial as one of a higher degree, whose blossom has more arguments.
+Weights elevated_blossom(const KnotVector& knots, int span, std::span<const double> arguments) {
+  const int degree = knots.degree(), count = static_cast<int>(arguments.size());
+  Weights mean{};
+  int choices = 0;
+  for (unsigned choice = 0; choice < 1u << count; ++choice) {
+    if (std::popcount(choice) != degree) continue;
+    std::array<double, max_degree> chosen{};
+    int next = 0;
+    for (int k = 0; k < count; ++k) {
+      if ((choice >> k & 1u) != 0) chosen[next++] = arguments[k];
+    }
+    const Weights weights = blossom(knots, span, std::span(chosen).first(degree));
+    for (int j = 0; j <= degree; ++j) mean[j] += weights[j];
+    ++choices;
+  }
+  for (double& weight : mean) weight /= choices;
+  return mean;
+}
+
+// For each control point the longest piece in its support: blossoms lose digits with the arguments' distance
+// from the piece.
+struct Piece {
+  double length = 0.0;
+  int span = 0;
+  int place = 0;  // which of the span's basis functions
+};
+
+std::vector<Piece> longest_pieces(const KnotVector& knots) {
+  const auto& t = knots.extended_knots();
+  std::vector<Piece> longest(static_cast<std::size_t>(knots.control_point_count()));
+  const int last = static_cast<int>(t.size()) - 1 - knots.degree();
+  for (int span = knots.degree(); span < last; ++span) {
+    for (int j = 0; j <= knots.degree(); ++j) {
+      Piece& piece = longest[knots.control_index(span, j)];
+      if (t[span + 1] - t[span] > piece.length) piece = {t[span + 1] - t[span], span, j};
+    }
+  }
+  return longest;
+}
+
+// New control points (rows) from old ones (columns).
+Eigen::MatrixXd exact_conversion(const KnotVector& from, const KnotVector& to) {
+  Eigen::MatrixXd conversion = Eigen::MatrixXd::Zero(to.control_point_count(), from.control_point_count());
+  const auto& t = to.extended_knots();
+  const std::vector<Piece> pieces = longest_pieces(to);
+  for (int i = 0; i < to.control_point_count(); ++i) {
+    const Piece& piece = pieces[i];
+    const double middle = 0.5 * (t[piece.span] + t[piece.span + 1]);
+    const double inside = from.into_domain(middle);
+    const int first = piece.span - to.degree() + piece.place;
+    std::array<double, max_degree> arguments{};
+    for (int k = 0; k < to.degree(); ++k) arguments[k] = t[first + 1 + k] + (inside - middle);
+    const int span = from.find_span(inside);
+    const Weights weights = elevated_blossom(from, span, std::span(arguments).first(to.degree()));
+    for (int j = 0; j <= from.degree(); ++j) conversion(i, from.control_index(span, j)) += weights[j];
+  }
+  return conversion;
+}
+
+Surface converted(const Surface& surface, Direction direction, const Eigen::MatrixXd& conversion,
+                  const KnotVector& knots) {
+  const bool along_u = direction == Direction::u;
+  const int count = static_cast<int>(conversion.rows());
+  ControlNet net(along_u ? count : surface.net.rows, along_u ? surface.net.columns : count);
+  const int across = along_u ? net.columns : net.rows;
+  for (int i = 0; i < count; ++i) {
+    for (int b = 0; b < across; ++b) {
+      Vector3 sum = Vector3::Zero();
+      for (int k = 0; k < conversion.cols(); ++k) {
+        const double weight = conversion(i, k);
+        if (weight != 0.0) sum += weight * (along_u ? surface.net.point(k, b) : surface.net.point(b, k));
+      }
+      net.set_point(along_u ? i : b, along_u ? b : i, sum);
+    }
+  }
+  return along_u ? Surface{knots, surface.v, std::move(net)} : Surface{surface.u, knots, std::move(net)};
+}
+
+int multiplicity_at(const std::vector<KnotMultiplicity>& all, double knot, double nearness) {
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const auto& k) { return std::abs(k.knot - knot) <= nearness; });
+  return found == all.end() ? 0 : found->multiplicity;
+}
+
+Status check_holds_all(const KnotVector& from, const KnotVector& to) {
+  const double length = from.domain_end() - from.domain_start(), nearness = same_knot_share * length;
+  const double start = to.domain_start(), end = to.domain_end();
+  if (to.degree() < from.degree()) return Error{"the degree to change to is lower; use a fit instead"};
+  const bool same_domain =
+      std::abs(start - from.domain_start()) <= nearness && std::abs(end - from.domain_end()) <= nearness;
+  const bool within = from.is_periodic()
+                          ? end - start <= length + nearness
+                          : start >= from.domain_start() - nearness && end <= from.domain_end() + nearness;
+  if (to.is_periodic() ? !(from.is_periodic() && same_domain) : !within) {
+    return Error{"the knots to change to have another domain; take a part of the surface's own"};
+  }
+  const std::vector<KnotMultiplicity> there = knot_multiplicities(to);
+  for (const auto& [knot, multiplicity] : knot_multiplicities(from)) {
+    const double turns = from.is_periodic() ? std::ceil((start - nearness - knot) / length) : 0.0;
+    for (double place = knot + turns * length; place < end - nearness; place += length) {
+      const bool at_end = !to.is_periodic() && place <= start + nearness;
+      if (at_end || multiplicity_at(there, place, nearness) >= multiplicity + to.degree() - from.degree()) {
+        continue;
+      }
+      return Error{"the knots to change to lack the surface's knot " + number_text(knot) + "; insert it"};
+    }
+  }
+  return {};
+}
+
+std::string name_of(Direction direction) {
+  return direction == Direction::u ? "direction u: " : "direction v: ";
+}
+
+// Enough in each piece of either to tell their polynomials apart.
+std::vector<double> telling_parameters(const KnotVector& a, const KnotVector& b) {
+  std::vector<double> ends = a.breakpoints();
+  for (const double end : b.breakpoints()) ends.push_back(std::clamp(end, ends.front(), a.domain_end()));
+  std::sort(ends.begin(), ends.end());
+  const int inside = std::max(a.degree(), b.degree()) + 2;
+  std::vector<double> parameters;
+  for (std::size_t piece = 0; piece + 1 < ends.size(); ++piece) {
+    if (ends[piece + 1] - ends[piece] <= same_knot_share * (a.domain_end() - a.domain_start())) continue;
+    for (int k = 0; k < inside; ++k) {
+      parameters.push_back(ends[piece] + (ends[piece + 1] - ends[piece]) * k / inside);
+    }
+  }
+  parameters.push_back(a.domain_end());
+  return parameters;
+}
+
+// How far two surfaces, over their common knots, are apart at each control point of a line along the
+// direction.
+struct Difference {
+  KnotVector knots;
+  std::vector<double> largest_m;
+};
+
+Result<Difference> difference(const Surface& a, const Surface& b, Direction direction) {
+  const KnotVector &ka = knots_along(a, direction), &kb = knots_along(b, direction);
+  const bool open = !ka.is_periodic() || !kb.is_periodic();
+  const int degree = std::max(ka.degree(), kb.degree());
+  const auto prepared = [&](const KnotVector& knots) {
+    const auto part = open ? clamped_part(knots, ka.domain_start(), ka.domain_end()) : Result(knots);
+    return part ? elevated(part.value(), degree) : part;
+  };
+  const auto of_a = prepared(ka), of_b = prepared(kb);
+  if (!of_a) return of_a.error();
+  if (!of_b) return of_b.error();
+  auto common = knot_union(of_a.value(), of_b.value());
+  if (!common) return common.error();
+  const auto fine_a = over_finer_knots(a, direction, common.value());
+  const auto fine_b = over_finer_knots(b, direction, common.value());
+  if (!fine_a) return fine_a.error();
+  if (!fine_b) return fine_b.error();
+  std::vector<double> largest(static_cast<std::size_t>(common->control_point_count()));
+  for (int i = 0; i < fine_a->net.rows; ++i) {
+    for (int j = 0; j < fine_a->net.columns; ++j) {
+      double& there = largest[direction == Direction::u ? i : j];
+      there = std::max(there, (fine_a->net.point(i, j) - fine_b->net.point(i, j)).norm());
+    }
+  }
+  return Difference{std::move(common).value(), std::move(largest)};
+}
+
+std::vector<double> places_above(const Difference& difference, double tolerance_m) {
+  const KnotVector& knots = difference.knots;
+  const auto& t = knots.extended_knots();
+  std::vector<double> places;
+  for (int span = knots.degree(); span + 1 + knots.degree() < static_cast<int>(t.size()); ++span) {
+    if (t[span] >= t[span + 1]) continue;
+    double largest = 0.0;
+    for (int j = 0; j <= knots.degree(); ++j) {
+      largest = std::max(largest, difference.largest_m[knots.control_index(span, j)]);
+    }
+    if (largest > tolerance_m) places.push_back(0.5 * (t[span] + t[span + 1]));
+  }
+  return places;
+}
+
+struct Fitted {
+  Surface surface;
+  Difference difference;
+};
+
+Result<Fitted> fitted(const Surface& surface, Direction direction, const KnotVector& knots) {
+  const KnotVector& from = knots_along(surface, direction);
+  const double nearness = same_knot_share * (from.domain_end() - from.domain_start());
+  if ((knots.is_periodic() && !from.is_periodic()) ||
+      std::abs(knots.domain_start() - from.domain_start()) > nearness ||
+      std::abs(knots.domain_end() - from.domain_end()) > nearness) {
+    return Error{name_of(direction) + "the knots to fit to have another domain or periodicity"};
+  }
+  std::vector<double> parameters = telling_parameters(from, knots);
+  if (knots.is_periodic()) parameters.pop_back();
+  const bool ends = !knots.is_periodic();
+  const auto inverse = constrained_inverse(knots, parameters, {{}, ends, ends});
+  if (!inverse) return Error{name_of(direction) + inverse.error().message};
+  const Eigen::MatrixXd conversion =
+      inverse.value().lazyProduct(blending_matrix(from, parameters, 0).dense());
+  Surface fit = converted(surface, direction, conversion, knots);
+  auto apart = difference(surface, fit, direction);
+  if (!apart) return apart.error();
+  return Fitted{std::move(fit), std::move(apart).value()};
+}
+
+double largest_of(const Difference& difference) {
+  return *std::max_element(difference.largest_m.begin(), difference.largest_m.end());
+}
+
+Result<KnotVector> without_knot(const KnotVector& knots, double knot) {
+  std::vector<double> fewer = knots.knots();
+  fewer.erase(std::find(fewer.begin(), fewer.end(), knot));
+  return knots.is_periodic() ? KnotVector::periodic(knots.degree(), std::move(fewer))
+                             : KnotVector::open(knots.degree(), std::move(fewer));
+}
+
+}  // namespace
+
+const KnotVector& knots_along(const Surface& surface, Direction direction) {
+  return direction == Direction::u ? surface.u : surface.v;
+}
+
+Result<Surface> over_finer_knots(const Surface& surface, Direction direction, const KnotVector& finer) {
+  const KnotVector& from = knots_along(surface, direction);
+  if (from == finer) return surface;
+  if (Status status = check_holds_all(from, finer); !status) {
+    return Error{name_of(direction) + status.error().message};
+  }
+  return converted(surface, direction, exact_conversion(from, finer), finer);
+}
+
+Result<Approximation> over_coarser_knots(const Surface& surface, Direction direction,
+                                         const KnotVector& coarser) {
+  auto fit = fitted(surface, direction, coarser);
+  if (!fit) return fit.error();
+  return Approximation{std::move(fit->surface), largest_of(fit->difference)};
+}
+
+Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
+                                   double tolerance_m, int largest_count) {
+  KnotVector knots = first;
+  for (;;) {
+    auto fit = fitted(surface, direction, knots);
+    if (!fit) return fit.error();
+    const double deviation_m = largest_of(fit->difference);
+    if (deviation_m <= tolerance_m) return Approximation{std::move(fit->surface), deviation_m};
+    auto finer = with_pieces_halved(knots, places_above(fit->difference, tolerance_m));
+    if (!finer) return finer.error();
+    if (finer->control_point_count() > largest_count || finer.value() == knots) {
+      return Error{name_of(direction) + std::to_string(knots.control_point_count()) +
+                   " control points leave a deviation of " + millimetres_text(deviation_m) +
+                   "; allow a larger one than " + millimetres_text(tolerance_m)};
+    }
+    knots = std::move(finer).value();
+  }
+}
+
+Result<Approximation> without_spare_knots(const Surface& surface, Direction direction, double tolerance_m) {
+  const KnotVector& knots = knots_along(surface, direction);
+  struct Candidate {
+    double knot, deviation_m;
+  };
+  std::vector<Candidate> candidates;
+  for (const auto& [knot, multiplicity] : knot_multiplicities(knots)) {
+    if (knot == knots.domain_start()) continue;
+    for (int copy = 0; copy < multiplicity; ++copy) {
+      const auto fewer = without_knot(knots, knot);
+      const auto fit = fewer ? over_coarser_knots(surface, direction, fewer.value()) : fewer.error();
+      if (fit && fit->deviation_m <= tolerance_m) candidates.push_back({knot, fit->deviation_m});
+    }
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.deviation_m < b.deviation_m; });
+  Approximation best{surface, 0.0};
+  for (const Candidate& candidate : candidates) {
+    const auto fewer = without_knot(knots_along(best.surface, direction), candidate.knot);
+    if (!fewer) continue;
+    auto fit = over_coarser_knots(surface, direction, fewer.value());
+    if (fit && fit->deviation_m <= tolerance_m) best = std::move(fit).value();
+  }
+  return best;
+}
+
+}  // namespace spoonbill
