@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <span>
 #include <string>
@@ -11,52 +10,13 @@
 #include <vector>
 
 #include "engine/bspline/blending_matrix.h"
+#include "engine/bspline/blossom.h"
 #include "engine/bspline/constrained_inverse.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
 
 namespace {
-
-using Weights = std::array<double, max_degree + 1>;
-
-// Of the control points of `span`, for the blossom of its polynomial at as many arguments as the degree.
-Weights blossom(const KnotVector& knots, int span, std::span<const double> arguments) {
-  const int degree = knots.degree();
-  const auto& t = knots.extended_knots();
-  std::array<Weights, max_degree + 1> points{};
-  for (int j = 0; j <= degree; ++j) points[j][j] = 1.0;
-  for (int r = 1; r <= degree; ++r) {
-    for (int j = degree; j >= r; --j) {
-      const double low = t[span - degree + j], high = t[span + 1 + j - r];
-      const double share = (arguments[r - 1] - low) / (high - low);
-      for (int k = 0; k <= degree; ++k) {
-        points[j][k] = (1.0 - share) * points[j - 1][k] + share * points[j][k];
-      }
-    }
-  }
-  return points[degree];
-}
-
-// The same of the polynomial as one of a higher degree, whose blossom has more arguments.
-Weights elevated_blossom(const KnotVector& knots, int span, std::span<const double> arguments) {
-  const int degree = knots.degree(), count = static_cast<int>(arguments.size());
-  Weights mean{};
-  int choices = 0;
-  for (unsigned choice = 0; choice < 1u << count; ++choice) {
-    if (std::popcount(choice) != degree) continue;
-    std::array<double, max_degree> chosen{};
-    int next = 0;
-    for (int k = 0; k < count; ++k) {
-      if ((choice >> k & 1u) != 0) chosen[next++] = arguments[k];
-    }
-    const Weights weights = blossom(knots, span, std::span(chosen).first(degree));
-    for (int j = 0; j <= degree; ++j) mean[j] += weights[j];
-    ++choices;
-  }
-  for (double& weight : mean) weight /= choices;
-  return mean;
-}
 
 // For each control point the longest piece in its support: blossoms lose digits with the arguments' distance
 // from the piece.
@@ -92,29 +52,10 @@ Eigen::MatrixXd exact_conversion(const KnotVector& from, const KnotVector& to) {
     std::array<double, max_degree> arguments{};
     for (int k = 0; k < to.degree(); ++k) arguments[k] = t[first + 1 + k] + (inside - middle);
     const int span = from.find_span(inside);
-    const Weights weights = elevated_blossom(from, span, std::span(arguments).first(to.degree()));
+    const BlossomWeights weights = blossom(from, span, std::span(arguments).first(to.degree()));
     for (int j = 0; j <= from.degree(); ++j) conversion(i, from.control_index(span, j)) += weights[j];
   }
   return conversion;
-}
-
-Surface converted(const Surface& surface, Direction direction, const Eigen::MatrixXd& conversion,
-                  const KnotVector& knots) {
-  const bool along_u = direction == Direction::u;
-  const int count = static_cast<int>(conversion.rows());
-  ControlNet net(along_u ? count : surface.net.rows, along_u ? surface.net.columns : count);
-  const int across = along_u ? net.columns : net.rows;
-  for (int i = 0; i < count; ++i) {
-    for (int b = 0; b < across; ++b) {
-      Vector3 sum = Vector3::Zero();
-      for (int k = 0; k < conversion.cols(); ++k) {
-        const double weight = conversion(i, k);
-        if (weight != 0.0) sum += weight * (along_u ? surface.net.point(k, b) : surface.net.point(b, k));
-      }
-      net.set_point(along_u ? i : b, along_u ? b : i, sum);
-    }
-  }
-  return along_u ? Surface{knots, surface.v, std::move(net)} : Surface{surface.u, knots, std::move(net)};
 }
 
 int multiplicity_at(const std::vector<KnotMultiplicity>& all, double knot, double nearness) {
@@ -239,7 +180,7 @@ Result<Fitted> fitted(const Surface& surface, Direction direction, const KnotVec
   if (!inverse) return Error{name_of(direction) + inverse.error().message};
   const Eigen::MatrixXd conversion =
       inverse.value().lazyProduct(blending_matrix(from, parameters, 0).dense());
-  Surface fit = converted(surface, direction, conversion, knots);
+  Surface fit = mixed_along(surface, direction, conversion, knots);
   auto apart = difference(surface, fit, direction);
   if (!apart) return apart.error();
   return Fitted{std::move(fit), std::move(apart).value()};
@@ -262,13 +203,32 @@ const KnotVector& knots_along(const Surface& surface, Direction direction) {
   return direction == Direction::u ? surface.u : surface.v;
 }
 
+Surface mixed_along(const Surface& surface, Direction direction, const Eigen::MatrixXd& weights,
+                    const KnotVector& knots) {
+  const bool along_u = direction == Direction::u;
+  const int count = static_cast<int>(weights.rows());
+  ControlNet net(along_u ? count : surface.net.rows, along_u ? surface.net.columns : count);
+  const int across = along_u ? net.columns : net.rows;
+  for (int i = 0; i < count; ++i) {
+    for (int b = 0; b < across; ++b) {
+      Vector3 sum = Vector3::Zero();
+      for (int k = 0; k < weights.cols(); ++k) {
+        const double weight = weights(i, k);
+        if (weight != 0.0) sum += weight * (along_u ? surface.net.point(k, b) : surface.net.point(b, k));
+      }
+      net.set_point(along_u ? i : b, along_u ? b : i, sum);
+    }
+  }
+  return along_u ? Surface{knots, surface.v, std::move(net)} : Surface{surface.u, knots, std::move(net)};
+}
+
 Result<Surface> over_finer_knots(const Surface& surface, Direction direction, const KnotVector& finer) {
   const KnotVector& from = knots_along(surface, direction);
   if (from == finer) return surface;
   if (Status status = check_holds_all(from, finer); !status) {
     return Error{name_of(direction) + status.error().message};
   }
-  return converted(surface, direction, exact_conversion(from, finer), finer);
+  return mixed_along(surface, direction, exact_conversion(from, finer), finer);
 }
 
 Result<Approximation> over_coarser_knots(const Surface& surface, Direction direction,

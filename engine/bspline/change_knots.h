@@ -3,6 +3,8 @@
 // tick; any thread.
 #pragma once
 
+#include <Eigen/Core>
+
 #include "engine/bspline/knot_insertion.h"
 #include "engine/bspline/knot_vectors.h"
 #include "engine/bspline/surface.h"
@@ -39,5 +41,10 @@ Result<Approximation> without_spare_knots(const Surface& surface, Direction dire
 
 // The knot vector of a direction.
 const KnotVector& knots_along(const Surface& surface, Direction direction);
+
+// Over `knots`, with control points along the direction that are weighted sums of the old ones: a row of
+// weights for each new one, a column for each old one. Summed in order, for the same bits everywhere.
+Surface mixed_along(const Surface& surface, Direction direction, const Eigen::MatrixXd& weights,
+                    const KnotVector& knots);
 
 }  // namespace spoonbill
