@@ -15,7 +15,7 @@ inline std::string number_text(double number) {
 }
 
 // Metres as millimetres with three significant digits.
-inline std::string millimetres_text(double length_m) {
+inline std::string short_length_text(double length_m) {
   std::array<char, 32> text{};
   const auto end =
       std::to_chars(text.data(), text.data() + text.size(), 1e3 * length_m, std::chars_format::general, 3)

@@ -250,8 +250,8 @@ Result<Approximation> approximated(const Surface& surface, Direction direction, 
     if (!finer) return finer.error();
     if (finer->control_point_count() > largest_count || finer.value() == knots) {
       return Error{name_of(direction) + std::to_string(knots.control_point_count()) +
-                   " control points leave a deviation of " + millimetres_text(deviation_m) +
-                   "; allow a larger one than " + millimetres_text(tolerance_m)};
+                   " control points leave a deviation of " + short_length_text(deviation_m) +
+                   "; allow a larger one than " + short_length_text(tolerance_m)};
     }
     knots = std::move(finer).value();
   }

@@ -1,0 +1,117 @@
+#include "engine/merging/arrangement.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "engine/bspline/reparameterise.h"
+
+namespace spoonbill {
+
+namespace {
+
+struct Place {
+  int a = 0, b = 0;
+  Orientation orientation;
+};
+
+constexpr bool both[] = {false, true};
+
+// The one way to turn a patch so that its side faces a given one and runs along with it.
+std::optional<Orientation> facing(Side side, Side wanted, bool reversed) {
+  for (const bool exchange : both) {
+    for (const bool reverse_u : both) {
+      for (const bool reverse_v : both) {
+        const Orientation orientation{exchange, reverse_u, reverse_v};
+        const TurnedSide result = turned(side, orientation);
+        if (result.side == wanted && result.reversed == reversed) return orientation;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+Place neighbour(const Place& place, Side own, Side other, bool against) {
+  const TurnedSide here = turned(own, place.orientation);
+  Place there = place;
+  int& moved = across(here.side) == Direction::u ? there.a : there.b;
+  moved += is_start(here.side) ? -1 : 1;
+  there.orientation = *facing(other, opposite(here.side), here.reversed != against);
+  return there;
+}
+
+std::vector<std::optional<Place>> places_of(std::size_t count, const std::vector<EdgeMatch>& matches) {
+  std::vector<std::optional<Place>> places(count);
+  places[0] = Place{};
+  for (bool more = true; more;) {
+    more = false;
+    for (const EdgeMatch& match : matches) {
+      auto &a = places[match.a.patch], &b = places[match.b.patch];
+      if (a.has_value() == b.has_value()) continue;
+      if (a) {
+        b = neighbour(*a, match.a.side, match.b.side, match.reversed);
+      } else {
+        a = neighbour(*b, match.b.side, match.a.side, match.reversed);
+      }
+      more = true;
+    }
+  }
+  return places;
+}
+
+Error layout_error(int patch, const char* what) {
+  return Error{"patch " + std::to_string(patch + 1) + " " + what +
+               "; merge patches that make a row or a full grid, or name the edges"};
+}
+
+}  // namespace
+
+Surface oriented(const Surface& surface, const Orientation& orientation) {
+  Surface result = orientation.exchanged ? exchanged(surface) : surface;
+  if (orientation.reversed_u) result = reversed(result, Direction::u);
+  if (orientation.reversed_v) result = reversed(result, Direction::v);
+  return result;
+}
+
+TurnedSide turned(Side side, const Orientation& orientation) {
+  Direction direction = across(side);
+  bool start = is_start(side);
+  if (orientation.exchanged) direction = direction == Direction::u ? Direction::v : Direction::u;
+  const bool across_reversed = direction == Direction::u ? orientation.reversed_u : orientation.reversed_v;
+  const bool along_reversed = direction == Direction::u ? orientation.reversed_v : orientation.reversed_u;
+  if (across_reversed) start = !start;
+  const Side result = direction == Direction::u ? (start ? Side::u_start : Side::u_end)
+                                                : (start ? Side::v_start : Side::v_end);
+  return {result, along_reversed};
+}
+
+Result<Arrangement> arrange(const std::vector<Surface>& patches, const std::vector<EdgeMatch>& matches) {
+  const auto places = places_of(patches.size(), matches);
+  int low_a = 0, low_b = 0, high_a = 0, high_b = 0;
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    if (!places[p]) return layout_error(static_cast<int>(p), "hangs on no other");
+    low_a = std::min(low_a, places[p]->a);
+    high_a = std::max(high_a, places[p]->a);
+    low_b = std::min(low_b, places[p]->b);
+    high_b = std::max(high_b, places[p]->b);
+  }
+  Arrangement arrangement{high_a - low_a + 1, high_b - low_b + 1, {}, {}};
+  const std::size_t cells = static_cast<std::size_t>(arrangement.rows) * arrangement.columns;
+  arrangement.patches.assign(cells, -1);
+  arrangement.orientations.resize(cells);
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    const int cell = arrangement.cell(places[p]->a - low_a, places[p]->b - low_b);
+    if (arrangement.patches[cell] >= 0)
+      return layout_error(static_cast<int>(p), "lies where another one does");
+    arrangement.patches[cell] = static_cast<int>(p);
+    arrangement.orientations[cell] = places[p]->orientation;
+  }
+  for (const int patch : arrangement.patches) {
+    if (patch < 0) return layout_error(static_cast<int>(places.size()) - 1, "leaves a gap in the grid");
+  }
+  return arrangement;
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,72 @@
+#include "engine/merging/bridge.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "engine/bspline/basis.h"
+#include "engine/bspline/blossom.h"
+#include "engine/bspline/grid.h"
+
+namespace spoonbill {
+
+namespace {
+
+// Clamped, of `degree`, with `count` control points and pieces of equal length.
+Result<KnotVector> strip_knots(int degree, int count, double start, double end) {
+  std::vector<double> knots(static_cast<std::size_t>(degree) + 1, start);
+  const int pieces = count - degree;
+  for (int k = 1; k < pieces; ++k) knots.push_back(start + (end - start) * k / pieces);
+  knots.insert(knots.end(), static_cast<std::size_t>(degree) + 1, end);
+  return KnotVector::open(degree, std::move(knots));
+}
+
+// Control point j of the strip as that of the patch's first or last piece.
+void continue_into(const Surface& patch, bool from_end, const KnotVector& strip, int j, ControlNet& net) {
+  const double at = from_end ? patch.v.domain_end() : patch.v.domain_start();
+  const int span = patch.v.find_span(at);
+  std::array<double, max_degree> arguments{};
+  for (int k = 0; k < strip.degree(); ++k) arguments[k] = strip.knots()[j + 1 + k];
+  const BlossomWeights weights = blossom(patch.v, span, std::span(arguments).first(strip.degree()));
+  for (int i = 0; i < net.rows; ++i) {
+    Vector3 sum = Vector3::Zero();
+    for (int k = 0; k <= patch.v.degree(); ++k) {
+      sum += weights[k] * patch.net.point(i, patch.v.control_index(span, k));
+    }
+    net.set_point(i, j, sum);
+  }
+}
+
+}  // namespace
+
+BridgeLength bridge_length(const Surface& before, const Surface& after) {
+  double chord = 0.0, speed_before = 0.0, speed_after = 0.0;
+  const std::vector<double> along = uniform_parameters_without_seam(before.u, 64);
+  for (const double u : along) {
+    const SurfacePoint a = evaluate(before, u, before.v.domain_end());
+    const SurfacePoint b = evaluate(after, u, after.v.domain_start());
+    chord += (a.position_m - b.position_m).norm() / static_cast<double>(along.size());
+    speed_before += a.dv.norm() / static_cast<double>(along.size());
+    speed_after += b.dv.norm() / static_cast<double>(along.size());
+  }
+  if (!(speed_before > 0.0) || !(speed_after > 0.0)) return {};
+  return {chord / speed_before, speed_after / speed_before, chord};
+}
+
+Result<Surface> bridge(const Surface& before, const Surface& after, int continuity) {
+  const int degree = before.v.degree();
+  // More continuity than asked where the degree gives it without further pieces.
+  const int order = std::max(continuity, degree / 2);
+  const int count = std::max(2 * (order + 1), degree + 1);
+  auto knots = strip_knots(degree, count, before.v.domain_end(), after.v.domain_start());
+  if (!knots) return Error{"the gap to bridge has no length; merge without a bridge"};
+  ControlNet net(before.net.rows, count);
+  for (int j = 0; j <= order; ++j) {
+    continue_into(before, true, knots.value(), j, net);
+    continue_into(after, false, knots.value(), count - 1 - j, net);
+  }
+  return make_surface(before.u, std::move(knots).value(), std::move(net));
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,25 @@
+// The strip that leads from one patch to the next where they do not meet: it continues both with the
+// continuity that is asked. Pure functions, outside the tick; any thread.
+#pragma once
+
+#include "engine/bspline/surface.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+// How long the strip's parameter along v must be, and by what factor `after`'s domain must be stretched, for
+// both patches to run across the gap at the speed of `before`: derived from the chords from edge to edge and
+// the mean derivatives there.
+struct BridgeLength {
+  double parameter = 0.0;
+  double stretch_of_after = 1.0;
+  double chord_m = 0.0;  // the mean distance of the edges
+};
+BridgeLength bridge_length(const Surface& before, const Surface& after);
+
+// From before's end along v to after's start, over [before's end, after's start] as its domain; both of one
+// degree and one knot vector along u. Of the patches' degree along v: as many pieces as the continuity needs,
+// whose outer control points are those of the patches' last pieces continued. Refused: a gap that is empty.
+Result<Surface> bridge(const Surface& before, const Surface& after, int continuity);
+
+}  // namespace spoonbill

@@ -1,0 +1,28 @@
+// Which edges of which patches belong together, found by where they lie. Pure functions, outside the tick;
+// any thread.
+#pragma once
+
+#include <vector>
+
+#include "engine/merging/patch_edge.h"
+
+namespace spoonbill {
+
+// Two edges and how they run beside each other.
+struct EdgeMatch {
+  PatchEdge a, b;
+  bool reversed = false;  // b runs against a
+  double seam = 0.0;      // of periodic edges: b's parameter beside a's seam
+  double gap_m = 0.0;     // the largest distance between points at equal shares of the way along
+  double mean_gap_m = 0.0;
+};
+
+// How two edges lie beside each other at best. Refused: a ring beside an open edge.
+Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b);
+
+// The matches that hold the patches together: all pairs of edges that are at most `together_m` apart, then,
+// as long as something is loose, the pair of free edges with the smallest mean gap. Refused where the patches
+// cannot be held together so; the message names a loose one.
+Result<std::vector<EdgeMatch>> matches_of(const std::vector<Surface>& patches, double together_m);
+
+}  // namespace spoonbill

@@ -1,0 +1,35 @@
+// Merges patches into one surface: finds how they lie beside each other, then joins them along v and along u.
+// Pure functions, outside the tick; any thread.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "engine/merging/arrangement.h"
+#include "engine/merging/join_row.h"
+
+namespace spoonbill {
+
+struct MergeRequest {
+  JoinRequest join;
+  // Pairs of edges to join, in place of those that are found; `reversed` and the seam are found.
+  std::vector<std::pair<PatchEdge, PatchEdge>> chosen;
+};
+
+struct MergedJoint {
+  PatchEdge a, b;   // of the patches as they were given
+  Direction along;  // the direction of the merged surface across the joint
+  Joint joint;
+};
+
+struct Merged {
+  Surface surface;
+  double deviation_m = 0.0;  // the largest distance to the patches, outside blends
+  std::vector<MergedJoint> joints;
+};
+
+// Refused: no patch, patches that do not make a row or a grid, what join_row() refuses. One patch is given
+// back as it is.
+Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request);
+
+}  // namespace spoonbill

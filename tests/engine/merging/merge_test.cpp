@@ -1,0 +1,283 @@
+#include "engine/merging/merge.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/bspline/grid.h"
+#include "engine/bspline/grid_fit.h"
+#include "engine/bspline/reparameterise.h"
+#include "tests/engine/bspline/random_surface.h"
+
+namespace spoonbill {
+namespace {
+
+MergeRequest request_of(int continuity, double tolerance_m = 5e-5) {
+  MergeRequest request;
+  request.join.continuity = continuity;
+  request.join.tolerance_m = tolerance_m;
+  return request;
+}
+
+double largest_difference(const Surface& a, const Surface& b) {
+  const PointGrid points = point_grid(b, uniform_parameters(b.u, 41), uniform_parameters(b.v, 41));
+  return largest_deviation_m(a, points);
+}
+
+Surface smooth_sheet(Random& random, int degree, int rows, int columns) {
+  return random_surface(random, KnotVector::clamped_uniform(degree, rows).value(),
+                        KnotVector::clamped_uniform(degree, columns).value());
+}
+
+Orientation any_orientation(Random& random) {
+  return {random.integer(0, 1) == 1, random.integer(0, 1) == 1, random.integer(0, 1) == 1};
+}
+
+TEST(Merge, GivesASplitSurfaceBackAtEveryDegree) {
+  Random random(71);
+  for (int degree = 2; degree <= 5; ++degree) {
+    for (int repeat = 0; repeat < 25; ++repeat) {
+      const Surface whole = smooth_sheet(random, degree, 8, 9);
+      const double cut = random.uniform(0.05, 0.95);
+      const Direction along = random.integer(0, 1) == 0 ? Direction::u : Direction::v;
+      const std::vector<Surface> parts{part_of(whole, along, 0.0, cut).value(),
+                                       part_of(whole, along, cut, 1.0).value()};
+      const auto merged = merge(parts, request_of(degree - 1));
+      ASSERT_TRUE(merged.ok()) << merged.error().message;
+      EXPECT_LT(merged->deviation_m, 1e-12);
+      EXPECT_LT(largest_difference(whole, merged->surface), 1e-12) << degree << " " << cut;
+      const KnotVector& knots = knots_along(merged->surface, along);
+      EXPECT_EQ(knots.control_point_count(), knots_along(whole, along).control_point_count() + 1);
+    }
+  }
+}
+
+// A C2 cubic of 2 x 5 control points becomes 7, 8 or 9 of them (r1 + r2 + m - p - 1).
+TEST(Merge, CountsControlPointsByContinuity) {
+  Random random(72);
+  const auto knots = KnotVector::open(3, {0, 0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1, 1}).value();
+  const Surface whole = random_surface(random, KnotVector::clamped_uniform(3, 6).value(), knots);
+  const std::vector<Surface> parts{part_of(whole, Direction::v, 0.0, 0.5).value(),
+                                   part_of(whole, Direction::v, 0.5, 1.0).value()};
+  for (const auto& [continuity, count] : {std::pair(0, 9), std::pair(1, 8), std::pair(2, 7)}) {
+    const auto merged = merge(parts, request_of(continuity));
+    ASSERT_TRUE(merged.ok()) << merged.error().message;
+    EXPECT_EQ(merged->surface.v.control_point_count(), count);
+    EXPECT_LT(largest_difference(whole, merged->surface), 1e-14);
+  }
+}
+
+TEST(Merge, GridsInAnyOrderAndHeldInAnyWay) {
+  Random random(73);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    const Surface whole = smooth_sheet(random, 3, 10, 11);
+    const double cuts[] = {0.0, random.uniform(0.2, 0.4), random.uniform(0.5, 0.8), 1.0};
+    std::vector<Surface> parts;
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        const Surface strip = part_of(whole, Direction::u, cuts[a], cuts[a + 1]).value();
+        const Surface cell = part_of(strip, Direction::v, cuts[b], cuts[b + 1]).value();
+        parts.push_back(parts.empty() ? cell : oriented(cell, any_orientation(random)));
+      }
+    }
+    for (std::size_t k = parts.size() - 1; k > 1; --k) {
+      std::swap(parts[k], parts[static_cast<std::size_t>(random.integer(1, static_cast<int>(k)))]);
+    }
+    const auto merged = merge(parts, request_of(2));
+    ASSERT_TRUE(merged.ok()) << merged.error().message;
+    EXPECT_LT(largest_difference(whole, merged->surface), 1e-11);
+    EXPECT_EQ(merged->joints.size(), 8u);  // six along v, two along u
+  }
+}
+
+// Edges at z = 0 of degrees and counts that have nothing in common.
+TEST(Merge, PatchesOfOtherDegreesAndCounts) {
+  const auto sheet = [](int degree, int count, double start, double end) {
+    const auto u = KnotVector::clamped_uniform(degree, count).value();
+    const auto v = KnotVector::clamped_uniform(degree, count).value();
+    PointGrid points{uniform_parameters(u, 80), uniform_parameters(v, 80), {}};
+    for (const double a : points.u) {
+      for (const double b : points.v) {
+        const double y = start + (end - start) * b;
+        points.points_m.emplace_back(0.1 * a, y, 0.01 * std::sin(2.0 * a) * y / 0.05);
+      }
+    }
+    return fit_grid(u, v, points).value();
+  };
+  const std::vector<Surface> parts{sheet(2, 7, -0.05, 0.0), sheet(4, 19, 0.0, 0.08)};
+  const auto merged = merge(parts, request_of(2));
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_LE(merged->deviation_m, 5e-5);
+  // The sheet is one analytic surface; the quadratic misses it most.
+  for (double u = 0.0; u <= 1.0; u += 0.05) {
+    const KnotVector& v = merged->surface.v;
+    for (double share = 0.0; share <= 1.0; share += 0.02) {
+      const Vector3 p =
+          position(merged->surface, u, v.domain_start() + share * (v.domain_end() - v.domain_start()));
+      EXPECT_NEAR(p.z(), 0.01 * std::sin(20.0 * p.x()) * p.y() / 0.05, 1e-4);
+    }
+  }
+}
+
+// |u - 1/2| over four equal pieces, 41 samples: C0 leaves nothing, C1 and C2 3.52e-2, before knots are added.
+TEST(Merge, TheKinkOfTheLiterature) {
+  const auto u = KnotVector::clamped_uniform(1, 2).value();
+  for (const auto& [multiplicity, residual] :
+       {std::pair(3, 0.0), std::pair(2, 3.52e-2), std::pair(1, 3.52e-2)}) {
+    std::vector<double> knots{0, 0, 0, 0, 0.25};
+    knots.insert(knots.end(), static_cast<std::size_t>(multiplicity), 0.5);
+    for (const double knot : {0.75, 1.0, 1.0, 1.0, 1.0}) knots.push_back(knot);
+    const auto v = KnotVector::open(3, knots).value();
+    PointGrid points{{0.0, 0.5, 1.0}, uniform_parameters(v, 41), {}};
+    for (const double a : points.u) {
+      for (const double b : points.v) points.points_m.emplace_back(a, b, std::abs(b - 0.5));
+    }
+    // The table gives three digits; no residual is rounding.
+    EXPECT_NEAR(largest_deviation_m(fit_grid(u, v, points).value(), points), residual,
+                residual > 0 ? 5e-5 : 1e-14);
+  }
+}
+
+// Two planes that meet at a right angle.
+std::vector<Surface> roof() {
+  const auto knots = KnotVector::clamped_uniform(3, 6).value();
+  const auto plane = [&](const Vector3& from, const Vector3& across, const Vector3& along) {
+    PointGrid points{uniform_parameters(knots, 20), uniform_parameters(knots, 20), {}};
+    for (const double a : points.u) {
+      for (const double b : points.v) points.points_m.push_back(from + a * across + b * along);
+    }
+    return fit_grid(knots, knots, points).value();
+  };
+  const Vector3 width(0.04, 0, 0);
+  return {plane({0, 0, 0}, width, {0, 0.03, 0.03}), plane({0, 0.03, 0.03}, width, {0, 0.03, -0.03})};
+}
+
+TEST(Merge, AKinkBecomesC2WithinTheTolerance) {
+  const auto merged = merge(roof(), request_of(2, 5e-5));
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_LE(merged->deviation_m, 5e-5);
+  EXPECT_GT(merged->deviation_m, 1e-9);  // nothing smooth is a kink
+  for (const auto& [knot, multiplicity] : knot_multiplicities(merged->surface.v)) {
+    if (knot > merged->surface.v.domain_start()) {
+      EXPECT_EQ(multiplicity, 1) << knot;
+    }
+  }
+}
+
+TEST(Merge, AKinkIsBlendedOverTheLengthAsked) {
+  MergeRequest request = request_of(2);
+  request.join.blend_m = 0.01;
+  const auto merged = merge(roof(), request);
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  ASSERT_EQ(merged->joints.size(), 1u);
+  const Joint& joint = merged->joints[0].joint;
+  EXPECT_TRUE(joint.bridged);
+  EXPECT_LT(merged->deviation_m, 1e-12);
+  // From 5 mm before the ridge to 5 mm behind it: not longer than around the corner, nor shorter than the
+  // chord.
+  EXPECT_LT(joint.blend_length_m, 0.01);
+  EXPECT_GT(joint.blend_length_m, 0.005 * std::numbers::sqrt2);
+  const Vector3 start = position(merged->surface, 0.5, joint.blend_start);
+  EXPECT_NEAR((start - Vector3(0.02, 0.03, 0.03)).norm(), 0.005, 1e-9);
+}
+
+// Rings of a cone's frustum, cut at a third and taken apart by a gap.
+Surface ring_strip(double from, double to, int count, double seam) {
+  const auto u = KnotVector::periodic_uniform(3, count).value();
+  const auto v = KnotVector::clamped_uniform(3, 5).value();
+  PointGrid points{uniform_parameters_without_seam(u, 4 * count), uniform_parameters(v, 20), {}};
+  for (const double a : points.u) {
+    for (const double b : points.v) {
+      const double angle = 2.0 * std::numbers::pi * (a + seam), along = from + (to - from) * b;
+      const double radius = 0.01 + 0.1 * along;
+      points.points_m.emplace_back(radius * std::cos(angle), radius * std::sin(angle), along);
+    }
+  }
+  return fit_grid(u, v, points).value();
+}
+
+TEST(Merge, RingsAreTurnedUntilTheirSeamsMeet) {
+  for (const bool backwards : {false, true}) {
+    Surface after = ring_strip(0.03, 0.08, 20, 0.37);
+    if (backwards) after = reversed(after, Direction::u);
+    const auto merged = merge({ring_strip(0.0, 0.03, 16, 0.0), after}, request_of(2));
+    ASSERT_TRUE(merged.ok()) << merged.error().message;
+    EXPECT_LE(merged->deviation_m, 5e-5);
+    const Surface& surface = merged->surface;
+    for (double v = 0.0; v <= 1.0; v += 0.05) {
+      const double at = v * surface.v.domain_end();
+      // The seam stays in the plane of the first ring's.
+      EXPECT_NEAR(position(surface, 0.0, at).y(), 0.0, 5e-5);
+      const Vector3 p = position(surface, 0.3, at);
+      EXPECT_NEAR(p.head<2>().norm(), 0.01 + 0.1 * p.z(), 5e-5);
+    }
+  }
+}
+
+TEST(Merge, AGapIsBridgedSmoothly) {
+  const auto merged = merge({ring_strip(0.0, 0.03, 16, 0.0), ring_strip(0.04, 0.08, 20, 0.2)}, request_of(2));
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  ASSERT_EQ(merged->joints.size(), 1u);
+  EXPECT_TRUE(merged->joints[0].joint.bridged);
+  // The chords of a gap of 10 mm on a slope of 0.1.
+  EXPECT_NEAR(merged->joints[0].joint.gap_m, 0.01 * std::hypot(1.0, 0.1), 1e-5);
+  EXPECT_LT(merged->deviation_m, 1e-9);
+  // A straight continuation of both is the cone itself.
+  const Surface& surface = merged->surface;
+  for (double share = 0.0; share <= 1.0; share += 0.02) {
+    const Vector3 p = position(surface, 0.7, share * surface.v.domain_end());
+    EXPECT_NEAR(p.head<2>().norm(), 0.01 + 0.1 * p.z(), 2e-5);
+  }
+}
+
+TEST(Merge, EdgesWhoseParametersDifferAreMatched) {
+  const auto knots = KnotVector::clamped_uniform(3, 12).value();
+  const auto sheet = [&](double start, double end, double bend) {
+    PointGrid points{uniform_parameters(knots, 60), uniform_parameters(knots, 60), {}};
+    for (const double a : points.u) {
+      for (const double b : points.v) {
+        const double t = a + bend * a * (1.0 - a);
+        points.points_m.emplace_back(0.1 * t, start + (end - start) * b, 0.01 * std::sin(3.0 * t));
+      }
+    }
+    return fit_grid(knots, knots, points).value();
+  };
+  const auto merged = merge({sheet(0.0, 0.04, 0.0), sheet(0.04, 0.09, 0.4)}, request_of(2));
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_LE(merged->deviation_m, 5e-5);
+  for (double u = 0.0; u <= 1.0; u += 0.1) {
+    const Vector3 p = position(merged->surface, u, 0.9 * merged->surface.v.domain_end());
+    EXPECT_NEAR(p.x(), 0.1 * u, 1e-4);  // the first patch's parameters, all along
+  }
+}
+
+TEST(Merge, EdgesAreChosenByHand) {
+  Random random(74);
+  const Surface whole = smooth_sheet(random, 3, 8, 9);
+  const std::vector<Surface> parts{part_of(whole, Direction::v, 0.0, 0.4).value(),
+                                   part_of(whole, Direction::v, 0.6, 1.0).value()};
+  MergeRequest request = request_of(1);
+  request.chosen = {{{0, Side::v_end}, {1, Side::v_start}}};
+  const auto merged = merge(parts, request);
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_EQ(merged->joints[0].a, (PatchEdge{0, Side::v_end}));
+  request.chosen = {{{0, Side::v_end}, {2, Side::v_start}}};
+  EXPECT_EQ(merge(parts, request).error().message, "patch 3 of a chosen edge does not exist");
+}
+
+TEST(Merge, RefusesWhatMakesNoGrid) {
+  Random random(75);
+  const Surface whole = smooth_sheet(random, 3, 8, 9);
+  const Surface left = part_of(whole, Direction::u, 0.0, 0.5).value();
+  const Surface right = part_of(whole, Direction::u, 0.5, 1.0).value();
+  const Surface corner = part_of(left, Direction::v, 0.0, 0.5).value();
+  EXPECT_FALSE(merge({}, request_of(2)).ok());
+  EXPECT_FALSE(merge({corner, right, part_of(right, Direction::v, 0.0, 0.5).value()}, request_of(2)).ok());
+  const auto mixed = merge({ring_strip(0, 0.02, 12, 0), left}, request_of(2));
+  ASSERT_FALSE(mixed.ok());
+}
+
+}  // namespace
+}  // namespace spoonbill
