@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/number_text.h"
 #include "engine/simulation/scene.h"
 
 namespace spoonbill {
@@ -69,6 +70,17 @@ Result<Extent> parse_extent(std::string_view text, Range<int> range) {
                  std::to_string(range.low) + " to " + std::to_string(range.high)};
   }
   return Extent{*width, *height};
+}
+
+Result<double> parse_length(std::string_view text, Range<double> range_m) {
+  const auto length = length_m(text);
+  if (!length || !range_m.contains(*length)) {
+    return Error{"'" + std::string(text.substr(0, 40)) +
+                 "' is not a length with a unit, like 5mm (mm, cm, m or "
+                 "in), from " +
+                 number_text(range_m.low * 1e3) + " to " + number_text(range_m.high * 1e3) + " mm"};
+  }
+  return *length;
 }
 
 Result<Pose> parse_pose(std::string_view text) {

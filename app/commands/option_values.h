@@ -23,6 +23,9 @@ Result<Extent> parse_extent(std::string_view text, Range<int> range);
 // as a quaternion w,x,y,z of any length but 0.
 Result<Pose> parse_pose(std::string_view text);
 
+// "5mm", "0.2in": a length with its unit, unless it is 0, within the range.
+Result<double> parse_length(std::string_view text, Range<double> range_m);
+
 // "mm", "cm", "m" or "in".
 Result<LengthUnit> parse_unit(std::string_view text);
 
