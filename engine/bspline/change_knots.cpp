@@ -168,10 +168,9 @@ struct Fitted {
 Result<Fitted> fitted(const Surface& surface, Direction direction, const KnotVector& knots) {
   const KnotVector& from = knots_along(surface, direction);
   const double nearness = same_knot_share * (from.domain_end() - from.domain_start());
-  if ((knots.is_periodic() && !from.is_periodic()) ||
-      std::abs(knots.domain_start() - from.domain_start()) > nearness ||
+  if (std::abs(knots.domain_start() - from.domain_start()) > nearness ||
       std::abs(knots.domain_end() - from.domain_end()) > nearness) {
-    return Error{name_of(direction) + "the knots to fit to have another domain or periodicity"};
+    return Error{name_of(direction) + "the knots to fit to have another domain"};
   }
   std::vector<double> parameters = telling_parameters(from, knots);
   if (knots.is_periodic()) parameters.pop_back();

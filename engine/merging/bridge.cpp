@@ -8,6 +8,7 @@
 #include "engine/bspline/basis.h"
 #include "engine/bspline/blossom.h"
 #include "engine/bspline/grid.h"
+#include "engine/bspline/reparameterise.h"
 
 namespace spoonbill {
 
@@ -38,9 +39,43 @@ void continue_into(const Surface& patch, bool from_end, const KnotVector& strip,
   }
 }
 
+constexpr double tightening = 0.75;
+constexpr int tightenings = 5;
+
+double mean_radius_m(const Surface& tube, double v) {
+  const std::vector<double> around = uniform_parameters_without_seam(tube.u, 32);
+  std::vector<Vector3> points;
+  Vector3 middle = Vector3::Zero();
+  for (const double u : around) {
+    points.push_back(position(tube, u, v));
+    middle += points.back() / static_cast<double>(around.size());
+  }
+  double radius = 0.0;
+  for (const Vector3& point : points) radius += (point - middle).norm() / static_cast<double>(around.size());
+  return radius;
+}
+
+Result<bool> has_waist(const Surface& before, const Surface& after, const BridgeLength& length,
+                       int continuity) {
+  const double start = before.v.domain_end() + length.parameter;
+  const double of_after = after.v.domain_end() - after.v.domain_start();
+  const auto moved = with_domain(after, Direction::v, start, start + length.stretch_of_after * of_after);
+  if (!moved) return moved.error();
+  const auto strip = bridge(before, moved.value(), continuity);
+  if (!strip) return strip.error();
+  const double first = strip->v.domain_start(), last = strip->v.domain_end();
+  const double narrowest = std::min(mean_radius_m(strip.value(), first), mean_radius_m(strip.value(), last));
+  constexpr int steps = 16;
+  constexpr double unseen = 0.99;
+  for (int k = 1; k < steps; ++k) {
+    if (mean_radius_m(strip.value(), first + (last - first) * k / steps) < unseen * narrowest) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
-BridgeLength bridge_length(const Surface& before, const Surface& after) {
+Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, int continuity) {
   double chord = 0.0, speed_before = 0.0, speed_after = 0.0;
   const std::vector<double> along = uniform_parameters_without_seam(before.u, 64);
   for (const double u : along) {
@@ -50,8 +85,17 @@ BridgeLength bridge_length(const Surface& before, const Surface& after) {
     speed_before += a.dv.norm() / static_cast<double>(along.size());
     speed_after += b.dv.norm() / static_cast<double>(along.size());
   }
-  if (!(speed_before > 0.0) || !(speed_after > 0.0)) return {};
-  return {chord / speed_before, speed_after / speed_before, chord};
+  if (!(speed_before > 0.0) || !(speed_after > 0.0)) {
+    return Error{"a patch has no direction at the edge to bridge from; cut a piece off there"};
+  }
+  BridgeLength length{chord / speed_before, speed_after / speed_before, chord};
+  for (int attempt = 0; before.u.is_periodic() && attempt < tightenings; ++attempt) {
+    const auto waisted = has_waist(before, after, length, continuity);
+    if (!waisted) return waisted.error();
+    if (!waisted.value()) return length;
+    length.parameter *= tightening;
+  }
+  return length;
 }
 
 Result<Surface> bridge(const Surface& before, const Surface& after, int continuity) {

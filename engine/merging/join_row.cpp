@@ -82,12 +82,14 @@ Result<Surface> cut_back(const Surface& patch, bool at_end, double parameter) {
                 : part_of(patch, Direction::v, start + parameter, end);
 }
 
-JointMeasure measure(const Surface& before, const Surface& after, double tolerance_m) {
+Result<JointMeasure> measure(const Surface& before, const Surface& after, const JoinRequest& request) {
   const EdgePoints points = edge_points(before, after);
-  if (largest_gap_m(points) <= tolerance_m)
-    return {false, largest_gap_m(points), 0.0, stretch_at_edge(points)};
-  const BridgeLength length = bridge_length(before, after);
-  return {true, length.chord_m, length.parameter, length.stretch_of_after};
+  if (largest_gap_m(points) <= request.tolerance_m) {
+    return JointMeasure{false, largest_gap_m(points), 0.0, stretch_at_edge(points)};
+  }
+  const auto length = bridge_length(before, after, request.continuity);
+  if (!length) return length.error();
+  return JointMeasure{true, length->chord_m, length->parameter, length->stretch_of_after};
 }
 
 Status cut_for_blend(Surface& before, Surface& after, const JointMeasure& joint, const JoinRequest& request) {
@@ -223,14 +225,15 @@ Result<PreparedRow> prepare_row(std::vector<Surface> patches, const JoinRequest&
   if (!compatible) return compatible.error();
   PreparedRow row{std::move(compatible->patches), {}, compatible->deviation_m};
   for (std::size_t p = 1; p < row.patches.size(); ++p) {
-    JointMeasure joint = measure(row.patches[p - 1], row.patches[p], request.tolerance_m);
-    if (request.blend_m > 0.0) {
-      if (Status status = cut_for_blend(row.patches[p - 1], row.patches[p], joint, request); !status) {
+    Surface &before = row.patches[p - 1], &after = row.patches[p];
+    auto joint = measure(before, after, request);
+    if (joint && request.blend_m > 0.0) {
+      if (Status status = cut_for_blend(before, after, joint.value(), request); !status)
         return status.error();
-      }
-      joint = measure(row.patches[p - 1], row.patches[p], request.tolerance_m);
+      joint = measure(before, after, request);
     }
-    row.joints.push_back(joint);
+    if (!joint) return joint.error();
+    row.joints.push_back(joint.value());
   }
   return row;
 }

@@ -1,9 +1,12 @@
 #include "engine/merging/merge.h"
 
 #include <algorithm>
+#include <limits>
+#include <string>
 #include <utility>
 
 #include "engine/bspline/reparameterise.h"
+#include "engine/merging/tube_ends.h"
 
 namespace spoonbill {
 
@@ -105,11 +108,47 @@ Result<Merged> merge_grid(const Grid& grid, const JoinRequest& request) {
   return merged;
 }
 
-Result<std::vector<EdgeMatch>> chosen_matches(const std::vector<Surface>& patches,
-                                              const MergeRequest& request) {
-  if (request.chosen.empty()) return matches_of(patches, request.join.tolerance_m);
+using EdgePairs = std::vector<std::pair<PatchEdge, PatchEdge>>;
+
+// The wider of two tubes is opened no wider than a little beyond the other, so that the bridge has no step.
+constexpr double wider = 1.25;
+
+// Opens both poles of a pair; a ring stays as it is.
+Status open_poles(std::vector<Surface>& patches, const std::pair<PatchEdge, PatchEdge>& pair) {
+  const auto opened = [&](const PatchEdge& end, double wide_enough_m) -> Result<Surface> {
+    const Surface& patch = patches[end.patch];
+    if (!is_pole(patch, end.side)) return patch;
+    return opened_pole(patch, end.side, wide_enough_m);
+  };
+  constexpr double any = std::numeric_limits<double>::infinity();
+  const auto& [a, b] = pair;
+  auto first = opened(a, any), second = opened(b, any);
+  if (!first && !second) return first.error();
+  const double of_first = first ? tube_end(first.value(), a.side).radius_m : any;
+  const double of_second = second ? tube_end(second.value(), b.side).radius_m : any;
+  if (of_first > wider * of_second) first = opened(a, wider * of_second);
+  if (of_second > wider * of_first) second = opened(b, wider * of_first);
+  if (!first) return Error{"patch " + std::to_string(a.patch + 1) + ": " + first.error().message};
+  if (!second) return Error{"patch " + std::to_string(b.patch + 1) + ": " + second.error().message};
+  patches[a.patch] = std::move(first).value();
+  patches[b.patch] = std::move(second).value();
+  return {};
+}
+
+// The edges to join: those chosen, the nearest ends of tubes, or none, which lets them be found.
+EdgePairs wanted_edges(const std::vector<Surface>& patches, const MergeRequest& request) {
+  if (!request.chosen.empty()) return request.chosen;
+  return std::all_of(patches.begin(), patches.end(), is_tube) ? nearest_ends(patches) : EdgePairs();
+}
+
+Result<std::vector<EdgeMatch>> matches_for(std::vector<Surface>& patches, const MergeRequest& request) {
+  const EdgePairs wanted = wanted_edges(patches, request);
+  if (wanted.empty()) return matches_of(patches, request.join.tolerance_m);
+  for (const auto& pair : wanted) {
+    if (Status status = open_poles(patches, pair); !status) return status.error();
+  }
   std::vector<EdgeMatch> matches;
-  for (const auto& [a, b] : request.chosen) {
+  for (const auto& [a, b] : wanted) {
     auto match = match_edges(patches, a, b);
     if (!match) return match.error();
     matches.push_back(match.value());
@@ -124,9 +163,9 @@ Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
     for (const PatchEdge& edge : {a, b}) {
       const std::string name = "patch " + std::to_string(edge.patch + 1);
       if (edge.patch < 0 || edge.patch >= count) return Error{name + " of a chosen edge does not exist"};
-      if (!is_joinable(patches[edge.patch], edge.side)) {
+      if (knots_along(patches[edge.patch], across(edge.side)).is_periodic()) {
         return Error{name + " has no edge at its " + side_name(edge.side) +
-                     ": it is closed there or a pole; choose another or open it"};
+                     ": it is closed around there; choose another"};
       }
     }
   }
@@ -138,11 +177,12 @@ Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request) {
   if (Status status = check(patches, request); !status) return status.error();
   if (patches.size() == 1) return Merged{patches[0], 0.0, {}};
-  const auto matches = chosen_matches(patches, request);
+  std::vector<Surface> ready = patches;
+  const auto matches = matches_for(ready, request);
   if (!matches) return matches.error();
-  const auto arrangement = arrange(patches, matches.value());
+  const auto arrangement = arrange(ready, matches.value());
   if (!arrangement) return arrangement.error();
-  return merge_grid({patches, arrangement.value()}, request.join);
+  return merge_grid({ready, arrangement.value()}, request.join);
 }
 
 }  // namespace spoonbill

@@ -28,8 +28,9 @@ struct Merged {
   std::vector<MergedJoint> joints;
 };
 
-// Refused: no patch, patches that do not make a row or a grid, what join_row() refuses. One patch is given
-// back as it is.
+// Poles that are chosen, or the nearest of tubes that do not touch, are cut off and the tubes bridged; what
+// is cut off belongs to the blend. Refused: no patch, patches that do not make a row or a grid, what
+// join_row() refuses. One patch is given back as it is.
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request);
 
 }  // namespace spoonbill

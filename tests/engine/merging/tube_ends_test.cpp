@@ -1,0 +1,161 @@
+#include "engine/merging/tube_ends.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "engine/bspline/grid.h"
+#include "engine/bspline/grid_fit.h"
+#include "engine/bspline/reparameterise.h"
+#include "engine/merging/merge.h"
+
+namespace spoonbill {
+namespace {
+
+using std::numbers::pi;
+
+struct Profile {
+  double radius, along;
+};
+
+// A profile turned about the z axis; it meets the axis at both ends where its radius is zero there.
+Surface turned_profile(const std::function<Profile(double)>& profile, int along, double shift_z = 0.0) {
+  const auto u = KnotVector::periodic_uniform(3, 24).value();
+  const auto v = KnotVector::clamped_uniform(3, along).value();
+  PointGrid points{uniform_parameters_without_seam(u, 72), uniform_parameters(v, 4 * along), {}};
+  for (const double a : points.u) {
+    for (const double b : points.v) {
+      const Profile at = profile(b);
+      points.points_m.emplace_back(at.radius * std::cos(2 * pi * a), at.radius * std::sin(2 * pi * a),
+                                   at.along + shift_z);
+    }
+  }
+  return fit_grid(u, v, points, {false, false, true, true}).value();
+}
+
+Surface ball(double radius, double z) {
+  return turned_profile(
+      [&](double t) {
+        return Profile{radius * std::sin(pi * t), -radius * std::cos(pi * t)};
+      },
+      24, z);
+}
+
+// Ends in half balls.
+Surface capsule(double radius, double half_length, double z) {
+  const double quarter = 0.5 * pi * radius, whole = 2 * (quarter + half_length);
+  return turned_profile(
+      [&](double t) {
+        const double way = t * whole;
+        if (way < quarter) {
+          return Profile{radius * std::sin(way / radius), -half_length - radius * std::cos(way / radius)};
+        }
+        if (way > whole - quarter) {
+          const double left = (whole - way) / radius;
+          return Profile{radius * std::sin(left), half_length + radius * std::cos(left)};
+        }
+        return Profile{radius, way - quarter - half_length};
+      },
+      40, z);
+}
+
+Surface pipe(double radius, double length) {
+  return turned_profile([&](double t) { return Profile{radius, t * length}; }, 8);
+}
+
+double volume_m3(const Surface& surface) {
+  // By the divergence theorem, over the cells of a fine grid.
+  double six = 0.0;
+  const auto u = uniform_parameters(surface.u, 161), v = uniform_parameters(surface.v, 161);
+  const PointGrid grid = point_grid(surface, u, v);
+  const auto at = [&](std::size_t i, std::size_t j) { return grid.points_m[i * v.size() + j]; };
+  for (std::size_t i = 0; i + 1 < u.size(); ++i) {
+    for (std::size_t j = 0; j + 1 < v.size(); ++j) {
+      six += at(i, j).dot(at(i + 1, j).cross(at(i + 1, j + 1)));
+      six += at(i, j).dot(at(i + 1, j + 1).cross(at(i, j + 1)));
+    }
+  }
+  return std::abs(six) / 6.0;
+}
+
+JoinRequest c2() {
+  return {};
+}
+
+TEST(TubeEnds, KnowsRingsFromPoles) {
+  const Surface closed = ball(0.02, 0.0), open = pipe(0.01, 0.05);
+  EXPECT_TRUE(is_tube(closed));
+  EXPECT_TRUE(is_pole(closed, Side::v_start));
+  EXPECT_TRUE(is_pole(closed, Side::v_end));
+  EXPECT_FALSE(is_pole(open, Side::v_end));
+  const TubeEnd end = tube_end(open, Side::v_end);
+  EXPECT_NEAR(end.radius_m, 0.01, 1e-5);
+  EXPECT_NEAR((end.middle_m - Vector3(0, 0, 0.05)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((end.outward - Vector3(0, 0, 1)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((tube_end(closed, Side::v_start).outward - Vector3(0, 0, -1)).norm(), 0.0, 1e-6);
+}
+
+TEST(TubeEnds, ARoundCapIsHalfAnEllipsoid) {
+  for (const Side side : {Side::v_start, Side::v_end}) {
+    const auto capped = with_cap(pipe(0.01, 0.05), side, 0.006, c2());
+    ASSERT_TRUE(capped.ok()) << capped.error().message;
+    EXPECT_LE(capped->deviation_m, 5e-5);
+    EXPECT_TRUE(is_pole(capped->surface, side));
+    const TubeEnd pole = tube_end(capped->surface, side);
+    EXPECT_NEAR(pole.middle_m.z(), side == Side::v_end ? 0.056 : -0.006, 1e-9);
+    // The cubic quarter of an ellipse lies within 3e-4 of its size.
+    const double whole = pi * 1e-4 * 0.05 + 2.0 / 3.0 * pi * 1e-4 * 0.006;
+    const Side other = opposite(side);
+    const auto closed = with_cap(capped->surface, other, 0.0, c2());
+    ASSERT_TRUE(closed.ok()) << closed.error().message;
+    EXPECT_NEAR(volume_m3(closed->surface), whole, 4e-3 * whole);  // the ring is a cubic spline's circle
+  }
+}
+
+TEST(TubeEnds, AFlatCapMeetsTheSidesAtAnEdge) {
+  const auto capped = with_cap(pipe(0.01, 0.05), Side::v_end, 0.0, c2());
+  ASSERT_TRUE(capped.ok()) << capped.error().message;
+  EXPECT_LT(capped->deviation_m, 1e-12);
+  const Surface& surface = capped->surface;
+  EXPECT_NEAR(position(surface, 0.3, surface.v.domain_end()).head<2>().norm(), 0.0, 1e-12);
+  const Vector3 near_rim = position(surface, 0.3, capped->joints[0].blend_end * 1.0001);
+  EXPECT_NEAR(near_rim.z(), 0.05, 1e-9);
+}
+
+TEST(TubeEnds, OpensAPoleWhereTheSidesRunStraight) {
+  const auto opened = opened_pole(capsule(0.01, 0.03, 0.0), Side::v_end, 1.0);
+  ASSERT_TRUE(opened.ok()) << opened.error().message;
+  const TubeEnd ring = tube_end(opened.value(), Side::v_end);
+  // On the half ball the radius grows by 0.1 of the way along where its angle to the axis has the tangent
+  // 1 / 0.1.
+  EXPECT_NEAR(ring.radius_m, 0.01 * std::sin(std::atan(1.0 / 0.1)), 2e-4);
+  EXPECT_TRUE(is_pole(opened.value(), Side::v_start));
+  const auto narrow = opened_pole(capsule(0.01, 0.03, 0.0), Side::v_end, 0.005);
+  EXPECT_NEAR(tube_end(narrow.value(), Side::v_end).radius_m, 0.005, 3e-4);
+  EXPECT_FALSE(opened_pole(pipe(0.01, 0.05), Side::v_end, 1.0).ok());
+}
+
+TEST(TubeEnds, ClosedBodiesAreBridgedAtTheirNearestPoles) {
+  const Surface rod = capsule(0.008, 0.03, 0.0), head = ball(0.02, 0.07);
+  const auto merged = merge({rod, head}, {});
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  ASSERT_EQ(merged->joints.size(), 1u);
+  EXPECT_EQ(merged->joints[0].a, (PatchEdge{0, Side::v_end}));
+  EXPECT_EQ(merged->joints[0].b, (PatchEdge{1, Side::v_start}));
+  EXPECT_TRUE(merged->joints[0].joint.bridged);
+  EXPECT_LT(merged->deviation_m, 1e-9);
+  EXPECT_TRUE(is_pole(merged->surface, Side::v_start));
+  EXPECT_TRUE(is_pole(merged->surface, Side::v_end));
+  // No waist: the bridge is nowhere narrower than the rod where it begins.
+  const Joint& joint = merged->joints[0].joint;
+  const double at_rod = position(merged->surface, 0.0, joint.blend_start).head<2>().norm();
+  for (int k = 0; k <= 50; ++k) {
+    const double v = joint.blend_start + (joint.blend_end - joint.blend_start) * k / 50;
+    EXPECT_GT(position(merged->surface, 0.0, v).head<2>().norm(), 0.97 * at_rod) << k;
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill
