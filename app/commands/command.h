@@ -25,6 +25,8 @@ CommandEntry add_info(CLI::App& root);
 CommandEntry add_sample(CLI::App& root);
 CommandEntry add_collide(CLI::App& root);
 CommandEntry add_rest(CLI::App& root);
+CommandEntry add_merge(CLI::App& root);
+CommandEntry add_change(CLI::App& root);
 CommandEntry add_read_mesh(CLI::App& root);  // the program's own, not shown
 
 }  // namespace spoonbill

@@ -1,9 +1,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -14,6 +12,7 @@
 #include "app/report/progress_bar.h"
 #include "app/report/quantity_text.h"
 #include "engine/exchange/document.h"
+#include "engine/number_text.h"
 #include "engine/simulation/rest_shape.h"
 
 namespace spoonbill {
@@ -36,13 +35,6 @@ std::string place_text(const Vector3& point_m) {
   return "(" + text(point_m.x()) + ", " + text(point_m.y()) + ", " + text(point_m.z()) + ") mm";
 }
 
-// As 0.0123 mm: sags are smaller than bodies.
-std::string small_length_text(double metres) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g mm", metres * 1e3);
-  return text.data();
-}
-
 void add_if_not_elastic(const Material& material, FactSheet& facts) {
   if (is_plainly_elastic(material)) return;
   facts.add("  Material", material.name + ", as if it were elastic", "", nullptr);
@@ -54,7 +46,7 @@ void add_body(FactSheet& facts, const Body& body, const RestShape& shape, Json& 
   facts.add("Body", body.name, "", nullptr);
   facts.add("  Held nodes",
             std::to_string(shape.held_nodes) + " of " + std::to_string(shape.mesh.node_count()), "", nullptr);
-  facts.add("  Displaced", "at most " + small_length_text(displacement.norm()) + ", at " + place_text(place),
+  facts.add("  Displaced", "at most " + short_length_text(displacement.norm()) + ", at " + place_text(place),
             "", nullptr);
   facts.add("  Loads", newtons_text(shape.load_n.norm()) + " together", "", nullptr);
   facts.add("  Reactions", newtons_text(shape.reaction_n.norm()) + " together", "", nullptr);

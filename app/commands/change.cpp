@@ -1,0 +1,119 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/commands/command.h"
+#include "app/commands/common_options.h"
+#include "app/commands/option_values.h"
+#include "app/commands/surface_change.h"
+#include "app/report/fact_sheet.h"
+#include "engine/exchange/document.h"
+#include "engine/number_text.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr Range<double> tolerance_range_m{1e-9, 0.1};
+
+struct ChangeOptions {
+  std::filesystem::path model, out;
+  std::vector<std::string> words;
+  int body = 1;
+  double tolerance_m = 1e-5;
+  bool json = false;
+};
+
+void replace_body(std::vector<Body>& bodies, std::size_t place, ChangedSurfaces changed) {
+  Body body = bodies[place];
+  if (!changed.keeps_parameters) {
+    // Told as shares of the surface as it was.
+    body.regions.clear();
+    body.loads.clear();
+    body.supports.clear();
+  }
+  bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(place));
+  for (std::size_t k = 0; k < changed.surfaces.size(); ++k) {
+    Body part = body;
+    if (changed.surfaces.size() > 1) part.name += " " + std::to_string(k + 1);
+    part.surface = std::move(changed.surfaces[k]);
+    bodies.insert(bodies.begin() + static_cast<std::ptrdiff_t>(place + k), std::move(part));
+  }
+}
+
+void report(const ChangeOptions& options, const std::vector<Body>& bodies, double deviation_m,
+            Console& console) {
+  FactSheet facts;
+  facts.add("File", options.out.string(), "file", options.out.string());
+  facts.add("Deviation", deviation_m == 0.0 ? "none" : "at most " + short_length_text(deviation_m),
+            "deviation_m", deviation_m);
+  Json list = Json::array();
+  for (const Body& body : bodies) {
+    const KnotVector &u = body.surface.u, &v = body.surface.v;
+    const std::string counts =
+        std::to_string(u.control_point_count()) + " x " + std::to_string(v.control_point_count());
+    facts.add("Body",
+              body.name + ": " + counts + " control points, degrees " + std::to_string(u.degree()) + " and " +
+                  std::to_string(v.degree()),
+              "", nullptr);
+    list.push_back({{"name", body.name},
+                    {"control_points", {u.control_point_count(), v.control_point_count()}},
+                    {"degrees", {u.degree(), v.degree()}},
+                    {"periodic", {u.is_periodic(), v.is_periodic()}}});
+  }
+  facts.add("", "", "bodies", list);
+  facts.print(console.out, options.json);
+}
+
+Status change(const ChangeOptions& options, Console& console) {
+  auto document = read_document(options.model);
+  if (!document) return document.error();
+  std::vector<Body>& bodies = document->scene.bodies;
+  if (Status status = check_range("--body", options.body, {1, static_cast<int>(bodies.size())}); !status) {
+    return status;
+  }
+  const std::size_t place = static_cast<std::size_t>(options.body) - 1;
+  auto result = changed(bodies[place].surface, options.words, options.tolerance_m);
+  if (!result) {
+    return Error{options.model.string() + ": body \"" + bodies[place].name + "\": " + result.error().message};
+  }
+  const double deviation_m = result->deviation_m;
+  replace_body(bodies, place, std::move(result).value());
+  if (Status written = write_document(document.value(), options.out); !written) return written;
+  report(options, bodies, deviation_m, console);
+  return {};
+}
+
+}  // namespace
+
+CommandEntry add_change(CLI::App& root) {
+  auto options = std::make_shared<ChangeOptions>();
+  CLI::App* parser = root.add_subcommand("change", "Split, close, reverse or refine a body's surface");
+  parser->footer(
+      "Changes:\n" + changes_text() +
+      "Places are parameters in the knots' domain, as `spoonbill info` tells it. Regions, loads and\n"
+      "supports stay where the change keeps the parameters, and are left out where it does not.\n"
+      "Example: spoonbill change assets/models/spoon-handle.json split v=50 --out halves.json");
+  parser->add_option("MODEL", options->model, "A document (.json)")->required();
+  parser->add_option("CHANGE", options->words, "What to do, as below")->required()->expected(1, 3);
+  parser->add_option("--out", options->out, "The changed document")->required();
+  parser->add_option("--body", options->body, "Which body, counted from 1; the first unless told");
+  parser
+      ->add_option_function<std::string>(
+          "--tolerance",
+          [options](const std::string& text) {
+            const auto length_m = parse_length(text, tolerance_range_m);
+            if (!length_m) throw CLI::ValidationError("--tolerance", length_m.error().message);
+            options->tolerance_m = length_m.value();
+          },
+          "For changes that are not exact, " + short_length_text(options->tolerance_m) + " unless told")
+      ->type_name("LENGTH");
+  add_json_option(*parser, options->json);
+  return {parser, [options](Console& console) { return change(*options, console); }};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,211 @@
+#include "engine/merging/merge.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/commands/command.h"
+#include "app/commands/common_options.h"
+#include "app/commands/option_values.h"
+#include "app/report/fact_sheet.h"
+#include "engine/exchange/document.h"
+#include "engine/number_text.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr Range<double> tolerance_range_m{1e-9, 0.1};
+constexpr Range<double> blend_range_m{0.0, 1.0};
+constexpr int highest_continuity = max_degree - 1;
+
+struct MergeOptions {
+  std::vector<std::filesystem::path> models;
+  std::filesystem::path out;
+  MergeRequest request;
+  bool json = false;
+};
+
+// "C2"
+Result<int> parse_continuity(const std::string& text) {
+  if (text.size() == 2 && (text[0] == 'C' || text[0] == 'c') && text[1] >= '0' &&
+      text[1] <= '0' + highest_continuity) {
+    return text[1] - '0';
+  }
+  return Error{"'" + text.substr(0, 20) + "' is not a continuity from C0 to C" +
+               std::to_string(highest_continuity)};
+}
+
+// "2.v_start": the second patch's edge.
+Result<PatchEdge> parse_edge(const std::string& text) {
+  const std::size_t dot = text.find('.');
+  if (dot == 0 || dot == std::string::npos || dot > 3 || text.find_first_not_of("0123456789") != dot) {
+    return Error{"'" + text.substr(0, 40) + "' is not an edge like 2.v_start, the second patch's"};
+  }
+  const auto side = side_of_name(text.substr(dot + 1));
+  if (!side) return side.error();
+  return PatchEdge{std::stoi(text.substr(0, dot)) - 1, side.value()};
+}
+
+Result<std::pair<PatchEdge, PatchEdge>> parse_edges(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) {
+    return Error{"'" + text.substr(0, 40) + "' is not a pair of edges like 1.v_end:2.v_start"};
+  }
+  const auto a = parse_edge(text.substr(0, colon)), b = parse_edge(text.substr(colon + 1));
+  if (!a) return a.error();
+  if (!b) return b.error();
+  if (a->patch == b->patch)
+    return Error{"'" + text.substr(0, 40) + "' joins a patch to itself; name two patches"};
+  return std::pair(a.value(), b.value());
+}
+
+std::string edge_text(const PatchEdge& edge) {
+  return std::to_string(edge.patch + 1) + "." + side_name(edge.side);
+}
+
+void add_joint(FactSheet& facts, const MergedJoint& merged, Json& list) {
+  const Joint& joint = merged.joint;
+  const std::string edges = edge_text(merged.a) + " and " + edge_text(merged.b);
+  facts.add("Joint",
+            joint.bridged ? edges + ", bridged over a gap of " + short_length_text(joint.gap_m) +
+                                " by a blend of " + short_length_text(joint.blend_length_m)
+                          : edges + ", edge to edge",
+            "", nullptr);
+  list.push_back({{"a", edge_text(merged.a)},
+                  {"b", edge_text(merged.b)},
+                  {"along", merged.along == Direction::u ? "u" : "v"},
+                  {"bridged", joint.bridged},
+                  {"gap_m", joint.gap_m},
+                  {"blend_start", joint.blend_start},
+                  {"blend_end", joint.blend_end},
+                  {"blend_length_m", joint.blend_length_m}});
+}
+
+void report(const MergeOptions& options, const std::vector<Body>& patches, const Merged& merged,
+            Console& console) {
+  FactSheet facts;
+  facts.add("File", options.out.string(), "file", options.out.string());
+  Json names = Json::array();
+  for (const Body& patch : patches) names.push_back(patch.name);
+  facts.add("Patches", std::to_string(patches.size()), "patches", names);
+  const KnotVector &u = merged.surface.u, &v = merged.surface.v;
+  facts.add("Control points",
+            std::to_string(u.control_point_count()) + " x " + std::to_string(v.control_point_count()) +
+                ", degrees " + std::to_string(u.degree()) + " and " + std::to_string(v.degree()),
+            "control_points", {u.control_point_count(), v.control_point_count()});
+  facts.add("", "", "degrees", {u.degree(), v.degree()});
+  const int continuity = options.request.join.continuity;
+  facts.add("Continuity", "C" + std::to_string(continuity), "continuity", continuity);
+  facts.add("Deviation", "at most " + short_length_text(merged.deviation_m) + " outside blends",
+            "deviation_m", merged.deviation_m);
+  Json joints = Json::array();
+  for (const MergedJoint& joint : merged.joints) add_joint(facts, joint, joints);
+  facts.add("", "", "joints", joints);
+  facts.print(console.out, options.json);
+}
+
+Result<Document> merged_document(const Document& first, const std::vector<Body>& patches, Surface surface) {
+  Document document = first;
+  Body body = patches[0];
+  body.surface = std::move(surface);
+  // Told as shares of surfaces that are no more.
+  body.regions.clear();
+  body.loads.clear();
+  body.supports.clear();
+  if (patches.size() > 1) body.name = first.name.empty() ? body.name : body.name + " merged";
+  document.scene.bodies = {std::move(body)};
+  return document;
+}
+
+Status merge_models(const MergeOptions& options, Console& console) {
+  std::optional<Document> first;
+  std::vector<Body> bodies;
+  std::vector<Surface> patches;
+  for (const auto& model : options.models) {
+    auto document = read_document(model);
+    if (!document) return document.error();
+    for (const Body& body : document->scene.bodies) {
+      bodies.push_back(body);
+      patches.push_back(body.surface);
+    }
+    if (!first) first = std::move(document).value();
+  }
+  const auto merged = merge(patches, options.request);
+  if (!merged) return merged.error();
+  const auto document = merged_document(*first, bodies, merged->surface);
+  if (!document) return document.error();
+  if (Status written = write_document(document.value(), options.out); !written) return written;
+  report(options, bodies, merged.value(), console);
+  return {};
+}
+
+template <class Parse, class Take>
+void add_parsed_option(CLI::App& parser, const std::string& name, const std::string& help, const char* form,
+                       const Parse& parse, const Take& take) {
+  parser
+      .add_option_function<std::string>(
+          name,
+          [=](const std::string& text) {
+            const auto parsed = parse(text);
+            if (!parsed) throw CLI::ValidationError(name, parsed.error().message);
+            take(parsed.value());
+          },
+          help)
+      ->type_name(form);
+}
+
+}  // namespace
+
+CommandEntry add_merge(CLI::App& root) {
+  auto options = std::make_shared<MergeOptions>();
+  CLI::App* parser = root.add_subcommand("merge", "Make one surface of several patches");
+  parser->footer(
+      "The patches are the bodies of all models, counted from 1, and make a row or a full grid; which edges\n"
+      "belong together is found by where they lie. Closed bodies that do not touch are opened at their "
+      "nearest\n"
+      "ends and bridged. Where the continuity is there already the result is exact; elsewhere control "
+      "points\n"
+      "are added beside the joint until the tolerance holds. Material, tool and view are the first model's;\n"
+      "regions, loads and supports of the patches are left out.\n"
+      "Example: spoonbill merge bowl.json handle.json --continuity C2 --out spoon.json");
+  parser->add_option("MODEL", options->models, "Documents (.json)")->required()->expected(1, 64);
+  parser->add_option("--out", options->out, "The merged document")->required();
+  JoinRequest& join = options->request.join;
+  add_parsed_option(*parser, "--continuity", "Of the joints, C2 unless told", "C0..C8", parse_continuity,
+                    [options](int order) { options->request.join.continuity = order; });
+  const auto length_in = [](Range<double> range) {
+    return [range](const std::string& text) { return parse_length(text, range); };
+  };
+  add_parsed_option(*parser, "--tolerance",
+                    "How far the result may leave the patches outside blends, " +
+                        short_length_text(join.tolerance_m) + " unless told",
+                    "LENGTH", length_in(tolerance_range_m),
+                    [options](double length_m) { options->request.join.tolerance_m = length_m; });
+  add_parsed_option(
+      *parser, "--blend",
+      "Round joints that are not as smooth as asked over this length, instead of within the tolerance",
+      "LENGTH", length_in(blend_range_m),
+      [options](double length_m) { options->request.join.blend_m = length_m; });
+  parser
+      ->add_option_function<std::vector<std::string>>(
+          "--edges",
+          [options](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+              const auto pair = parse_edges(text);
+              if (!pair) throw CLI::ValidationError("--edges", pair.error().message);
+              options->request.chosen.push_back(pair.value());
+            }
+          },
+          "Join these edges, instead of those found: 1.v_end:2.v_start; once for each joint")
+      ->type_name("EDGE:EDGE");
+  add_json_option(*parser, options->json);
+  return {parser, [options](Console& console) { return merge_models(*options, console); }};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,16 @@
+// Closes a patch around whose first and last edge meet. Pure function, outside the tick; any thread.
+#pragma once
+
+#include "engine/bspline/change_knots.h"
+#include "engine/bspline/surface.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+// A periodic direction with the continuity asked at its seam: exact where derivatives agree there, else
+// fitted with knots added beside the seam until the tolerance holds. Refused: a direction that is closed
+// already, edges that are more than the tolerance apart.
+Result<Approximation> closed_around(const Surface& surface, Direction direction, int continuity,
+                                    double tolerance_m);
+
+}  // namespace spoonbill

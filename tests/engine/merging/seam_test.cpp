@@ -1,0 +1,41 @@
+#include "engine/merging/seam.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/bspline/reparameterise.h"
+#include "tests/engine/bspline/random_surface.h"
+
+namespace spoonbill {
+namespace {
+
+TEST(Seam, AnOpenedSurfaceIsClosedAgainExactly) {
+  Random random(81);
+  for (int repeat = 0; repeat < 50; ++repeat) {
+    const int degree = random.integer(2, 4);
+    const Surface whole = random_surface(random, KnotVector::periodic_uniform(degree, 9).value(),
+                                         KnotVector::clamped_uniform(3, 6).value());
+    const double start = random.uniform(0.0, 1.0);
+    const Surface opened = part_of(whole, Direction::u, start, start + 1.0).value();
+    const auto closed = closed_around(opened, Direction::u, degree - 1, 1e-6);
+    ASSERT_TRUE(closed.ok()) << closed.error().message;
+    EXPECT_LT(closed->deviation_m, 1e-10);
+    EXPECT_TRUE(closed->surface.u.is_periodic());
+    for (int k = 0; k < 40; ++k) {
+      const double u = random.uniform(0.0, 1.0), v = random.uniform(0.0, 1.0);
+      const Vector3 there = position(whole, whole.u.into_domain(start + u), v);
+      EXPECT_LT((position(closed->surface, start + u, v) - there).norm(), 1e-11);
+    }
+  }
+}
+
+TEST(Seam, EdgesThatDoNotMeetAreRefused) {
+  Random random(82);
+  const Surface sheet = random_surface(random, KnotVector::clamped_uniform(3, 6).value(),
+                                       KnotVector::periodic_uniform(3, 6).value());
+  EXPECT_FALSE(closed_around(sheet, Direction::u, 2, 1e-5).ok());
+  EXPECT_EQ(closed_around(sheet, Direction::v, 2, 1e-5).error().message,
+            "the direction is closed already; choose the other one");
+}
+
+}  // namespace
+}  // namespace spoonbill
