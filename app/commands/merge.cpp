@@ -27,6 +27,7 @@ constexpr int highest_continuity = max_degree - 1;
 struct MergeOptions {
   std::vector<std::filesystem::path> models;
   std::filesystem::path out;
+  std::string name;
   MergeRequest request;
   bool json = false;
 };
@@ -110,15 +111,17 @@ void report(const MergeOptions& options, const std::vector<Body>& patches, const
   facts.print(console.out, options.json);
 }
 
-Result<Document> merged_document(const Document& first, const std::vector<Body>& patches, Surface surface) {
+Document merged_document(const Document& first, const std::vector<Body>& patches, const MergeOptions& options,
+                         Surface surface) {
   Document document = first;
+  document.name = options.name.empty() ? options.out.stem().string() : options.name;
   Body body = patches[0];
   body.surface = std::move(surface);
   // Told as shares of surfaces that are no more.
   body.regions.clear();
   body.loads.clear();
   body.supports.clear();
-  if (patches.size() > 1) body.name = first.name.empty() ? body.name : body.name + " merged";
+  if (patches.size() > 1) body.name = document.name;
   document.scene.bodies = {std::move(body)};
   return document;
 }
@@ -138,9 +141,8 @@ Status merge_models(const MergeOptions& options, Console& console) {
   }
   const auto merged = merge(patches, options.request);
   if (!merged) return merged.error();
-  const auto document = merged_document(*first, bodies, merged->surface);
-  if (!document) return document.error();
-  if (Status written = write_document(document.value(), options.out); !written) return written;
+  const Document document = merged_document(*first, bodies, options, merged->surface);
+  if (Status written = write_document(document, options.out); !written) return written;
   report(options, bodies, merged.value(), console);
   return {};
 }
@@ -176,6 +178,7 @@ CommandEntry add_merge(CLI::App& root) {
       "Example: spoonbill merge bowl.json handle.json --continuity C2 --out spoon.json");
   parser->add_option("MODEL", options->models, "Documents (.json)")->required()->expected(1, 64);
   parser->add_option("--out", options->out, "The merged document")->required();
+  parser->add_option("--name", options->name, "Of the result; the file's unless told");
   JoinRequest& join = options->request.join;
   add_parsed_option(*parser, "--continuity", "Of the joints, C2 unless told", "C0..C8", parse_continuity,
                     [options](int order) { options->request.join.continuity = order; });

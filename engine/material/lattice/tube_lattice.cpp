@@ -39,16 +39,24 @@ Outward outward_of(const Surface& surface, const RingParameters& ring, const Lat
   return {ring_parameter_at(surface, ring, ring_position(on_s, on_t, ni, nj)), radius};
 }
 
+// How far into a slice its narrow sides make themselves felt: evenly, or where sections are bent, and a
+// side's middle lies above its corners, near it alone.
+double felt_inside(double share, bool bent) {
+  const double rest = 1.0 - share;
+  return bent ? rest * rest * rest * rest : rest;
+}
+
 // Transfinite (Coons) interpolation of a slice from its ring.
-void fill_slice(LatticeMesh& mesh, int k) {
+void fill_slice(LatticeMesh& mesh, int k, bool bent) {
   const int ni = mesh.count[0], nj = mesh.count[1];
   const auto at = [&](int i, int j) -> const Vector3& { return mesh.nodes[mesh.index(i, j, k)]; };
   for (int i = 1; i + 1 < ni; ++i) {
     for (int j = 1; j + 1 < nj; ++j) {
       const double a = static_cast<double>(i) / (ni - 1), b = static_cast<double>(j) / (nj - 1);
-      const Vector3 sides = (1 - a) * at(0, j) + a * at(ni - 1, j) + (1 - b) * at(i, 0) + b * at(i, nj - 1);
-      const Vector3 corners = (1 - a) * ((1 - b) * at(0, 0) + b * at(0, nj - 1)) +
-                              a * ((1 - b) * at(ni - 1, 0) + b * at(ni - 1, nj - 1));
+      const double low = felt_inside(a, bent), high = bent ? felt_inside(1.0 - a, bent) : a;
+      const Vector3 sides = low * at(0, j) + high * at(ni - 1, j) + (1 - b) * at(i, 0) + b * at(i, nj - 1);
+      const Vector3 corners = low * ((1 - b) * at(0, 0) + b * at(0, nj - 1)) +
+                              high * ((1 - b) * at(ni - 1, 0) + b * at(ni - 1, nj - 1));
       mesh.nodes[mesh.index(i, j, k)] = sides - corners;
     }
   }
@@ -139,7 +147,7 @@ Result<TubeBlock> lay_block(const Surface& surface, const Profile& profile, cons
   for (int k = 1; k < last; ++k) {
     fill_ring(surface, block.ring, mesh, k,
               distance_to_v.at(first_distance + (last_distance - first_distance) * k / last));
-    fill_slice(mesh, k);
+    fill_slice(mesh, k, extents.bent);
   }
   fill_cap(surface, block.ring, mesh, 0, surface.v.domain_start(), profile.v[rims.first]);
   fill_cap(surface, block.ring, mesh, last, surface.v.domain_end(), profile.v[rims.last]);

@@ -51,6 +51,61 @@ std::size_t shoulder(const Profile& profile, bool from_end) {
   return station(s);
 }
 
+// Of half the width: an axis through the middle of a section that is not bent meets it at its ends.
+constexpr double bent_share = 0.9;
+
+// The ring's points that lie farthest along e1 and against it.
+struct Tips {
+  int high = 0, low = 0;
+};
+
+Tips tips_of(const Ring& ring, const Vector3& e1) {
+  Tips tips;
+  for (int s = 0; s < ring_samples; ++s) {
+    if (e1.dot(ring.points[s] - ring.points[tips.high]) > 0.0) tips.high = s;
+    if (e1.dot(ring.points[s] - ring.points[tips.low]) < 0.0) tips.low = s;
+  }
+  return tips;
+}
+
+// A bent section, as of a spoon's bowl, has its middle beside it or near one side, and the wide axis through
+// the middle leaves it before its ends.
+bool is_bent(const Ring& ring, const Vector3& e1, const Vector3& e2) {
+  const Tips tips = tips_of(ring, e1);
+  const auto reach = [&](int s) { return e1.dot(ring.points[s] - ring.centre); };
+  int crossings = 0;
+  bool at_ends = true;
+  for (int s = 0; s < ring_samples; ++s) {
+    const int next = (s + 1) % ring_samples;
+    const double a = e2.dot(ring.points[s] - ring.centre), b = e2.dot(ring.points[next] - ring.centre);
+    if ((a < 0.0) == (b < 0.0)) continue;
+    ++crossings;
+    const double farthest = reach(s) > 0.0 ? reach(tips.high) : reach(tips.low);
+    at_ends = at_ends && reach(s) / farthest > bent_share;
+  }
+  return crossings > 0 && !(crossings == 2 && at_ends);
+}
+
+// Along the section and across it, where it is bent: from the sides' points at equal shares of the way from
+// tip to tip.
+void measure_bent(const Ring& ring, CrossSection& section) {
+  const Tips tips = tips_of(ring, section.e1);
+  const auto samples = [](int from, int to) { return (to - from + ring_samples) % ring_samples; };
+  const int upper = samples(tips.high, tips.low), lower = ring_samples - upper;
+  constexpr int stations = 32;
+  double across = 0.0, along = 0.0;
+  Vector3 last = ring.points[tips.high];
+  for (int k = 1; k < stations; ++k) {
+    const Vector3& a = ring.points[(tips.high + upper * k / stations) % ring_samples];
+    const Vector3& b = ring.points[(tips.high + ring_samples - lower * k / stations) % ring_samples];
+    across += (a - b).norm() / (stations - 1);
+    along += (0.5 * (a + b) - last).norm();
+    last = 0.5 * (a + b);
+  }
+  section.width = along + (ring.points[tips.low] - last).norm();
+  section.thickness = across;
+}
+
 // The ring's arc length as a table to u (unwrapped past the seam), and the arc lengths at which the ring
 // crosses +e1, +e2, -e1, -e2 and +e1 again. Found by signs alone: no library function whose bits differ among
 // processors.
@@ -84,6 +139,25 @@ RingArc ring_arc(const Surface& surface, const Ring& ring, const CrossSection& s
     }
     arc += step;
   }
+  result.perimeter = ring.perimeter;
+  return result;
+}
+
+// The same of a bent section: its tips stand for the crossings of the wide axis, the middles of its sides
+// between them for those of the narrow one.
+RingArc bent_arc(const Surface& surface, const Ring& ring, const CrossSection& section) {
+  const Tips tips = tips_of(ring, section.e1);
+  RingArc result;
+  double arc = 0.0;
+  for (int s = tips.high; s <= tips.high + 2 * ring_samples; ++s) {
+    result.arc_to_u.from.push_back(arc);
+    result.arc_to_u.to.push_back(parameter_at(surface.u, static_cast<double>(s) / ring_samples));
+    if (s % ring_samples == tips.low && result.crossing[2] == 0.0) result.crossing[2] = arc;
+    arc += (ring.points[(s + 1) % ring_samples] - ring.points[s % ring_samples]).norm();
+  }
+  result.crossing[1] = 0.5 * result.crossing[2];
+  result.crossing[3] = 0.5 * (result.crossing[2] + ring.perimeter);
+  result.crossing[4] = ring.perimeter;
   result.perimeter = ring.perimeter;
   return result;
 }
@@ -161,6 +235,8 @@ CrossSection principal_axes(const Ring& ring, const Vector3& axis) {
   }
   section.width = high1 - low1;
   section.thickness = high2 - low2;
+  section.bent = is_bent(ring, section.e1, section.e2);
+  if (section.bent) measure_bent(ring, section);
   return section;
 }
 
@@ -169,23 +245,25 @@ Extents extents_to_fill(const Surface& surface, const Profile& profile, const Ri
   constexpr double much = 2.5;
   constexpr std::size_t stations = 24;
   Extents least{middle.width, middle.thickness}, most = least;
+  bool bent = middle.bent;
   for (std::size_t s = 0; s <= stations; ++s) {
     const Ring ring = sample_ring(surface, profile.v[rims.first + (rims.last - rims.first) * s / stations]);
     if (!(ring.along.norm() > 0.0)) continue;
     const CrossSection section = principal_axes(ring, ring.along.normalized());
     least = {std::min(least.width, section.width), std::min(least.thickness, section.thickness)};
     most = {std::max(most.width, section.width), std::max(most.thickness, section.thickness)};
+    bent = bent || section.bent;
   }
   const auto between = [](double low, double high, double usual) {
     return low > 0.0 && high > much * low ? std::sqrt(low * high) : usual;
   };
   return {between(least.width, most.width, middle.width),
-          between(least.thickness, most.thickness, middle.thickness)};
+          between(least.thickness, most.thickness, middle.thickness), bent};
 }
 
 RingParameters ring_parameters(const Surface& surface, const Ring& ring, const CrossSection& section, int ni,
                                int nj) {
-  const RingArc arc = ring_arc(surface, ring, section);
+  const RingArc arc = section.bent ? bent_arc(surface, ring, section) : ring_arc(surface, ring, section);
   const double along_narrow = nj - 1, along_wide = ni - 1;
   std::array<double, 5> corner{};
   for (int q = 0; q < 4; ++q) {

@@ -47,8 +47,9 @@ Rims shoulder_rims(const Profile& profile);
 Rims further_rims(const Rims& a, const Rims& b);
 
 struct CrossSection {
-  Vector3 e1, e2;  // the wide and the narrow axis
-  double width = 0.0, thickness = 0.0;
+  Vector3 e1, e2;                       // the wide and the narrow axis
+  double width = 0.0, thickness = 0.0;  // of a bent one along its bend and across it
+  bool bent = false;                    // as of a spoon's bowl
 };
 
 CrossSection principal_axes(const Ring& ring, const Vector3& axis);
@@ -57,6 +58,7 @@ CrossSection principal_axes(const Ring& ring, const Vector3& axis);
 // a spoon: then the one between its least and its greatest.
 struct Extents {
   double width, thickness;
+  bool bent = false;  // whether any section between the rims is
 };
 
 Extents extents_to_fill(const Surface& surface, const Profile& profile, const Rims& rims,
