@@ -121,7 +121,10 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   body.regions.clear();
   body.loads.clear();
   body.supports.clear();
-  if (patches.size() > 1) body.name = document.name;
+  if (patches.size() > 1) {
+    body.name = document.name;
+    document.view = Json::object();  // so that the whole of it is framed
+  }
   document.scene.bodies = {std::move(body)};
   return document;
 }
@@ -173,7 +176,7 @@ CommandEntry add_merge(CLI::App& root) {
       "nearest\n"
       "ends and bridged. Where the continuity is there already the result is exact; elsewhere control "
       "points\n"
-      "are added beside the joint until the tolerance holds. Material, tool and view are the first model's;\n"
+      "are added beside the joint until the tolerance holds. Material and tool are the first model's;\n"
       "regions, loads and supports of the patches are left out.\n"
       "Example: spoonbill merge bowl.json handle.json --continuity C2 --out spoon.json");
   parser->add_option("MODEL", options->models, "Documents (.json)")->required()->expected(1, 64);

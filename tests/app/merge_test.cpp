@@ -1,0 +1,192 @@
+// The commands that merge and change surfaces.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "app/program.h"
+#include "engine/bspline/change_knots.h"
+#include "engine/exchange/document.h"
+#include "tests/app/workplace.h"
+
+namespace spoonbill {
+namespace {
+
+const std::string handle = SPOONBILL_ASSETS "/models/spoon-handle.json";
+const std::string bowl = SPOONBILL_ASSETS "/models/spoon-bowl.json";
+
+Surface surface_of(const std::filesystem::path& file, std::size_t body = 0) {
+  return read_document(file).value().scene.bodies[body].surface;
+}
+
+TEST(MergeCommand, BowlAndHandleBecomeASpoon) {
+  const Workplace place;
+  const Outcome outcome =
+      run({"merge", handle, bowl, "--continuity", "C2", "--out", place.text("spoon.json"), "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const Json facts = json_of(outcome.out);
+  EXPECT_LE(facts["deviation_m"].get<double>(), 5e-5);
+  ASSERT_EQ(facts["joints"].size(), 1u);
+  const Json joint = facts["joints"][0];
+  EXPECT_EQ(joint["a"], "1.v_end");
+  EXPECT_EQ(joint["b"], "2.v_start");
+  EXPECT_TRUE(joint["bridged"]);
+
+  const Surface spoon = surface_of(place.path("spoon.json"));
+  // C2: no knot inside is more than once there.
+  for (const auto& [knot, multiplicity] : knot_multiplicities(spoon.v)) {
+    EXPECT_TRUE(knot == spoon.v.domain_start() || multiplicity == 1) << knot;
+  }
+  // Outside the blend the spoon is the handle: v is its own parameter there, u that of the handle.
+  const Surface part = surface_of(handle);
+  const double end = joint["blend_start"];
+  EXPECT_GT(end, 90.0);
+  for (double v = 0.0; v <= end; v += 0.7) {
+    for (double u = 0.0; u < 1.0; u += 0.05) {
+      EXPECT_LT((position(spoon, u, v) - position(part, u, v)).norm(), 5e-5);
+    }
+  }
+  const Outcome info = run({"info", place.text("spoon.json"), "--json"});
+  EXPECT_EQ(info.code, exit_done) << info.err;  // it holds a lattice
+}
+
+TEST(MergeCommand, ASplitHandleIsWholeAgain) {
+  const Workplace place;
+  ASSERT_EQ(run({"change", handle, "split", "v=50", "--out", place.text("halves.json")}).code, exit_done);
+  EXPECT_EQ(read_document(place.path("halves.json")).value().scene.bodies.size(), 2u);
+  const Outcome outcome =
+      run({"merge", place.text("halves.json"), "--out", place.text("whole.json"), "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_LT(json_of(outcome.out)["deviation_m"].get<double>(), 1e-12);
+  const Surface before = surface_of(handle), after = surface_of(place.path("whole.json"));
+  for (double v = 0.0; v <= 100.0; v += 1.3) {
+    EXPECT_LT((position(before, 0.3, v) - position(after, 0.3, v)).norm(), 1e-12);
+  }
+}
+
+TEST(MergeCommand, RefusesInOneLine) {
+  const Workplace place;
+  const std::string out = place.text("out.json");
+  place.write("out.json", "mine");
+  struct Case {
+    std::vector<std::string> arguments;
+    int code;
+    const char* told;
+  };
+  const std::vector<Case> cases{
+      {{"merge", handle, bowl, "--continuity", "G2", "--out", out},
+       exit_wrong_use,
+       "not a continuity from C0 to C8"},
+      {{"merge", handle, bowl, "--tolerance", "5", "--out", out}, exit_wrong_use, "not a length with a unit"},
+      {{"merge", handle, bowl, "--tolerance", "nanmm", "--out", out},
+       exit_wrong_use,
+       "not a length with a unit"},
+      {{"merge", handle, bowl, "--edges", "1.v_end", "--out", out}, exit_wrong_use, "not a pair of edges"},
+      {{"merge", handle, bowl, "--edges", "1.top:2.v_end", "--out", out},
+       exit_wrong_use,
+       "edge 'top' is unknown"},
+      {{"merge", handle, bowl, "--edges", "1.v_end:9.v_end", "--out", out},
+       exit_failed,
+       "patch 9 of a chosen edge"},
+      {{"merge", handle, bowl, "--edges", "1.u_end:2.v_end", "--out", out},
+       exit_failed,
+       "closed around there"},
+      {{"merge", place.text("none.json"), "--out", out}, exit_failed, "none.json"},
+      {{"merge", "--out", out}, exit_wrong_use, "MODEL"}};
+  for (const Case& one : cases) {
+    const Outcome outcome = run(one.arguments);
+    EXPECT_EQ(outcome.code, one.code) << one.told;
+    EXPECT_NE(outcome.err.find(one.told), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(std::filesystem::file_size(out), 4u);  // as it was
+  }
+}
+
+TEST(ChangeCommand, EachChangeDoesWhatItSays) {
+  const Workplace place;
+  const auto change = [&](std::vector<std::string> words) {
+    std::vector<std::string> arguments{"change", handle};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    for (const char* more : {"--out", "", "--json"}) arguments.emplace_back(more);
+    arguments[arguments.size() - 2] = place.text("out.json");
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, exit_done) << outcome.err;
+    return outcome.code == exit_done ? json_of(outcome.out) : Json();
+  };
+  const Surface before = surface_of(handle);
+  const auto after = [&] { return surface_of(place.path("out.json")); };
+  const auto expect_same_surface = [&](double tolerance) {
+    const Surface changed = after();
+    for (double v = 0.0; v <= 100.0; v += 2.3) {
+      for (double u = 0.0; u < 1.0; u += 0.11) {
+        EXPECT_LT((position(before, u, v) - position(changed, u, v)).norm(), tolerance);
+      }
+    }
+  };
+  change({"insert", "v=33", "2"});
+  expect_same_surface(1e-15);
+  EXPECT_EQ(after().v.control_point_count(), before.v.control_point_count() + 2);
+  EXPECT_EQ(change({"degree", "u", "5"})["deviation_m"], 0.0);
+  expect_same_surface(1e-15);
+  EXPECT_EQ(after().u.degree(), 5);
+  EXPECT_LE(change({"degree", "v", "2"})["deviation_m"].get<double>(), 1e-5);
+  expect_same_surface(1e-5);
+  change({"simplify"});
+  expect_same_surface(1e-5);
+  EXPECT_LT(after().v.control_point_count(), before.v.control_point_count());
+  change({"reverse", "v"});
+  EXPECT_LT((position(after(), 0.2, 10.0) - position(before, 0.2, 90.0)).norm(), 1e-15);
+  change({"exchange"});
+  EXPECT_LT((position(after(), 10.0, 0.2) - position(before, 0.2, 10.0)).norm(), 1e-15);
+  change({"seam", "u=0.25"});
+  EXPECT_LT((position(after(), 0.0, 10.0) - position(before, 0.25, 10.0)).norm(), 1e-15);
+  change({"open", "v_end"});
+  EXPECT_LT(after().v.domain_end(), 100.0);
+  EXPECT_FALSE(read_document(place.path("out.json")).value().scene.bodies.empty());
+  change({"split", "u=0.5"});
+  EXPECT_FALSE(after().u.is_periodic());
+  EXPECT_LT((position(after(), 0.5, 10.0) - position(after(), 1.5, 10.0)).norm(), 1e-15);
+}
+
+TEST(ChangeCommand, OpenedAndCappedAndClosed) {
+  const Workplace place;
+  const std::string opened = place.text("opened.json"), capped = place.text("capped.json");
+  ASSERT_EQ(run({"change", handle, "open", "v_end", "--out", opened}).code, exit_done);
+  const Outcome outcome =
+      run({"change", opened, "cap", "v_end", "2mm", "--out", capped, "--tolerance", "0.05mm"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_EQ(run({"info", capped}).code, exit_done);  // closed again: it holds a lattice
+  const std::string slit = place.text("slit.json"), closed = place.text("closed.json");
+  ASSERT_EQ(run({"change", handle, "split", "u=0.5", "--out", slit}).code, exit_done);
+  ASSERT_EQ(run({"change", slit, "close", "u", "--out", closed}).code, exit_done);
+  EXPECT_TRUE(surface_of(place.path("closed.json")).u.is_periodic());
+}
+
+TEST(ChangeCommand, RefusesInOneLine) {
+  const Workplace place;
+  const std::string out = place.text("out.json");
+  const std::vector<std::pair<std::vector<std::string>, const char*>> cases{
+      {{"split", "v=500"}, "empty or not within the domain"},
+      {{"split", "w=0.5"}, "not a place like v=0.3"},
+      {{"split", "v=nan"}, "not a place like v=0.3"},
+      {{"split"}, "is asked for as: split v=0.5"},
+      {{"degree", "v", "12"}, "degree 12"},
+      {{"degree", "v", "2.5"}, "not a whole number"},
+      {{"insert", "v=50", "9"}, "multiplicity 9"},
+      {{"close", "u"}, "closed already"},
+      {{"close", "v"}, "apart"},
+      {{"cap", "v_end"}, "not the open end of a tube"},
+      {{"melt"}, "'melt' is no change; choose from split"}};
+  for (const auto& [words, told] : cases) {
+    std::vector<std::string> arguments{"change", handle};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    arguments.insert(arguments.end(), {"--out", out});
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, exit_failed) << told;
+    EXPECT_NE(outcome.err.find(told), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+  }
+  EXPECT_EQ(run({"change", handle, "exchange", "--body", "2", "--out", out}).code, exit_failed);
+}
+
+}  // namespace
+}  // namespace spoonbill
