@@ -1,0 +1,263 @@
+#include "engine/bspline/trim_loop.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "engine/bspline/basis.h"
+#include "engine/bspline/knot_vectors.h"
+#include "engine/bspline/polygon_crossing.h"
+#include "engine/number_text.h"
+
+namespace spoonbill {
+
+namespace {
+
+// Of one piece: what a curve of max_degree whose control points fill three domains may ask for. Only those
+// with control points far from the curve ask for more.
+constexpr double largest_piece_chord_count = 8000.0;
+
+double length_of(const KnotVector& knots) {
+  return knots.domain_end() - knots.domain_start();
+}
+
+std::string point_text(const Eigen::Vector2d& point) {
+  return "(" + number_text(point.x()) + ", " + number_text(point.y()) + ")";
+}
+
+Status check_coordinates(const KnotVector& knots, const std::vector<double>& values, char coordinate) {
+  if (values.size() != static_cast<std::size_t>(knots.control_point_count())) {
+    return Error{"a trim loop's knots ask for " + std::to_string(knots.control_point_count()) +
+                 " control points, it has " + std::to_string(values.size()) +
+                 "; change the knots or the points"};
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i])) continue;
+    return Error{std::string("a trim loop's control point ") + std::to_string(i) + " has no finite " +
+                 coordinate + " (" + number_text(values[i]) + "); replace it"};
+  }
+  return {};
+}
+
+Status check_closed(const TrimLoop& loop, const KnotVector& along_u, const KnotVector& along_v) {
+  if (loop.knots.is_periodic()) return {};
+  const Eigen::Vector2d start = position(loop, loop.knots.domain_start());
+  const Eigen::Vector2d end = position(loop, loop.knots.domain_end());
+  const Eigen::Vector2d gap = end - start;
+  const double share_u = std::abs(gap.x()) / length_of(along_u);
+  const double share_v = std::abs(gap.y()) / length_of(along_v);
+  if (share_u <= trim_rounding_share && share_v <= trim_rounding_share) return {};
+  const std::string what =
+      "a trim loop starts at " + point_text(start) + " and ends at " + point_text(end) + ", ";
+  const auto goes_around = [](const KnotVector& knots, double share) {
+    return knots.is_periodic() && std::abs(share - 1.0) <= trim_rounding_share;
+  };
+  if (goes_around(along_u, share_u) || goes_around(along_v, share_v)) {
+    return Error{what + "once around; lead it back along the seam"};
+  }
+  return Error{what + "which is not closed; let it end where it starts"};
+}
+
+Status check_within(const std::vector<double>& values, const KnotVector& knots, const char* name) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double length = length_of(knots), slack = trim_rounding_share * length;
+  const double beyond = knots.is_periodic() ? length : 0.0;
+  if (!(*low >= knots.domain_start() - beyond - slack) || !(*high <= knots.domain_end() + beyond + slack)) {
+    return Error{std::string("a trim loop runs from ") + name + " = " + number_text(*low) + " to " +
+                 number_text(*high) + ", outside the surface's domain of " +
+                 number_text(knots.domain_start()) + " to " + number_text(knots.domain_end()) +
+                 "; bring it inside"};
+  }
+  if (knots.is_periodic() && *high - *low > length + slack) {
+    return Error{std::string("a trim loop is longer than one period in ") + name + ", from " +
+                 number_text(*low) + " to " + number_text(*high) + "; shorten it"};
+  }
+  return {};
+}
+
+// Of piece `span`, the largest norm of the second derivative in domain lengths.
+double second_derivative_bound(const TrimLoop& loop, int span, const Eigen::Vector2d& lengths) {
+  const int degree = loop.knots.degree();
+  if (degree < 2) return 0.0;
+  const std::vector<double>& knots = loop.knots.extended_knots();
+  std::array<Eigen::Vector2d, max_degree + 1> points;
+  for (int j = 0; j <= degree; ++j) {
+    const int index = loop.knots.control_index(span, j);
+    points[j] = Eigen::Vector2d(loop.u[index], loop.v[index]).cwiseQuotient(lengths);
+  }
+  for (int derivative = 1; derivative <= 2; ++derivative) {
+    const int order = degree - derivative + 1;
+    for (int j = 0; j < order; ++j) {
+      const int first = span - order + 1 + j;
+      points[j] = (points[j + 1] - points[j]) * (order / (knots[first + order] - knots[first]));
+    }
+  }
+  double largest = 0.0;
+  for (int j = 0; j <= degree - 2; ++j) largest = std::max(largest, points[j].norm());
+  return largest;
+}
+
+// The curve itself at the ends of chords, unclamped; none where it asks for too many.
+std::optional<std::vector<Eigen::Vector2d>> corners_of(const TrimLoop& loop, const Eigen::Vector2d& lengths) {
+  std::vector<Eigen::Vector2d> corners;
+  const std::vector<double> ends = loop.knots.breakpoints();
+  for (std::size_t piece = 0; piece + 1 < ends.size(); ++piece) {
+    const double length = ends[piece + 1] - ends[piece];
+    const double bound = second_derivative_bound(loop, loop.knots.find_span(ends[piece]), lengths);
+    const double wanted = std::ceil(length * std::sqrt(bound / (8.0 * trim_chord_share)));
+    const int chords = wanted > 1.0 ? static_cast<int>(std::min(wanted, largest_piece_chord_count)) : 1;
+    if (corners.size() + static_cast<std::size_t>(chords) > trim_chord_count_limit) return std::nullopt;
+    for (int c = 0; c < chords; ++c) corners.push_back(position(loop, ends[piece] + length * c / chords));
+  }
+  return corners;
+}
+
+double within(const KnotVector& knots, double parameter) {
+  return knots.is_periodic() ? parameter : knots.into_domain(parameter);
+}
+
+std::vector<double>& along(TrimLoop& loop, Direction direction) {
+  return direction == Direction::u ? loop.u : loop.v;
+}
+
+TrimLoop run_backwards(TrimLoop loop) {
+  // A periodic basis function ends degree + 1 knots after it starts, and so becomes another one.
+  const int count = loop.knots.control_point_count();
+  const int first = loop.knots.is_periodic() ? 2 * count - 1 - loop.knots.degree() % count : count - 1;
+  const TrimLoop forwards = loop;
+  for (int i = 0; i < count; ++i) {
+    const int from = (first - i) % count;
+    loop.u[i] = forwards.u[from];
+    loop.v[i] = forwards.v[from];
+  }
+  loop.knots = reversed(forwards.knots);
+  return loop;
+}
+
+}  // namespace
+
+Result<TrimLoop> make_trim_loop(const KnotVector& along_u, const KnotVector& along_v, KnotVector knots,
+                                std::vector<double> u, std::vector<double> v) {
+  if (Status count = check_range("a trim loop's number of control points", knots.control_point_count(),
+                                 trim_control_point_count_range);
+      !count) {
+    return count.error();
+  }
+  if (Status status = check_coordinates(knots, u, 'u'); !status) return status.error();
+  if (Status status = check_coordinates(knots, v, 'v'); !status) return status.error();
+  TrimLoop loop{std::move(knots), std::move(u), std::move(v)};
+  if (Status status = check_closed(loop, along_u, along_v); !status) return status.error();
+  const Eigen::Vector2d lengths(length_of(along_u), length_of(along_v));
+  const auto corners = corners_of(loop, lengths);
+  if (!corners) {
+    return Error{"a trim loop near " + point_text(position(loop, loop.knots.domain_start())) +
+                 " takes more than " + std::to_string(trim_chord_count_limit) + " chords; simplify it"};
+  }
+  std::vector<double> corners_u, corners_v;
+  for (const Eigen::Vector2d& corner : *corners) {
+    corners_u.push_back(corner.x());
+    corners_v.push_back(corner.y());
+  }
+  if (Status status = check_within(corners_u, along_u, "u"); !status) return status.error();
+  if (Status status = check_within(corners_v, along_v, "v"); !status) return status.error();
+  const std::vector<Eigen::Vector2d> polygon = polygon_of(loop, along_u, along_v);
+  const double share = std::abs(signed_area(polygon)) / lengths.prod();
+  if (polygon.size() < 3 || !(share > trim_rounding_share * trim_rounding_share)) {
+    return Error{"a trim loop near " + point_text(position(loop, loop.knots.domain_start())) +
+                 " encloses nothing; leave it out"};
+  }
+  if (const auto crossing = find_crossing({polygon}, trim_rounding_share * lengths)) {
+    return Error{"a trim loop crosses itself near " + point_text(crossing->near) + "; part it into loops"};
+  }
+  return loop;
+}
+
+Result<TrimLoop> make_polygon_loop(const KnotVector& along_u, const KnotVector& along_v,
+                                   const std::vector<Eigen::Vector2d>& points) {
+  const int count = static_cast<int>(points.size());
+  if (count < 3) return Error{"a trim loop of " + std::to_string(count) + " points encloses nothing; give 3"};
+  std::vector<double> u, v, ends{0.0};
+  for (int i = 0; i <= count; ++i) {
+    u.push_back(points[i % count].x());
+    v.push_back(points[i % count].y());
+    ends.push_back(i);
+  }
+  ends.push_back(count);
+  auto knots = KnotVector::open(1, std::move(ends));
+  if (!knots) return knots.error();
+  return make_trim_loop(along_u, along_v, std::move(knots).value(), std::move(u), std::move(v));
+}
+
+Eigen::Vector2d position(const TrimLoop& loop, double parameter) {
+  const BasisFunctions basis = basis_functions(loop.knots, loop.knots.into_domain(parameter));
+  Eigen::Vector2d point = Eigen::Vector2d::Zero();
+  for (int j = 0; j <= loop.knots.degree(); ++j) {
+    const int index = loop.knots.control_index(basis.span, j);
+    point += basis.values[0][j] * Eigen::Vector2d(loop.u[index], loop.v[index]);
+  }
+  return point;
+}
+
+std::vector<Eigen::Vector2d> polygon_of(const TrimLoop& loop, const KnotVector& along_u,
+                                        const KnotVector& along_v) {
+  const Eigen::Vector2d lengths(length_of(along_u), length_of(along_v));
+  std::vector<Eigen::Vector2d> polygon;
+  const auto corners = corners_of(loop, lengths);
+  if (!corners) return polygon;
+  for (const Eigen::Vector2d& corner : *corners) {
+    const Eigen::Vector2d kept(within(along_u, corner.x()), within(along_v, corner.y()));
+    if (polygon.empty() || kept != polygon.back()) polygon.push_back(kept);
+  }
+  if (polygon.size() > 1 && polygon.front() == polygon.back()) polygon.pop_back();
+  return polygon;
+}
+
+double signed_area(const std::vector<Eigen::Vector2d>& polygon) {
+  double twice = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d a = polygon[i] - polygon[0];
+    const Eigen::Vector2d b = polygon[(i + 1) % polygon.size()] - polygon[0];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return 0.5 * twice;
+}
+
+TrimLoop reversed(const TrimLoop& loop, Direction direction, const KnotVector& knots) {
+  TrimLoop mirrored = loop;
+  for (double& value : along(mirrored, direction)) {
+    value = knots.domain_end() - (value - knots.domain_start());
+  }
+  return run_backwards(std::move(mirrored));
+}
+
+TrimLoop exchanged(const TrimLoop& loop) {
+  TrimLoop mirrored = loop;
+  std::swap(mirrored.u, mirrored.v);
+  return run_backwards(std::move(mirrored));
+}
+
+TrimLoop with_domain(const TrimLoop& loop, Direction direction, const KnotVector& knots, double start,
+                     double end) {
+  TrimLoop stretched = loop;
+  const double scale = (end - start) / length_of(knots);
+  for (double& value : along(stretched, direction)) value = start + (value - knots.domain_start()) * scale;
+  return stretched;
+}
+
+TrimLoop with_seam_at(const TrimLoop& loop, Direction direction, const KnotVector& knots, double seam) {
+  TrimLoop moved = loop;
+  std::vector<double>& values = along(moved, direction);
+  const double start = knots.domain_start(), length = length_of(knots);
+  double shift = start - knots.into_domain(seam);
+  // Where it starts is brought into the domain, so that the rest stays within a period of it.
+  const Eigen::Vector2d first = position(loop, loop.knots.domain_start());
+  const double moved_first = (direction == Direction::u ? first.x() : first.y()) + shift;
+  shift -= length * std::floor((moved_first - start) / length);
+  for (double& value : values) value += shift;
+  return moved;
+}
+
+}  // namespace spoonbill

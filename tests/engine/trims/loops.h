@@ -1,0 +1,30 @@
+// Trim loops of known area.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "engine/bspline/knot_vector.h"
+#include "engine/bspline/trim_loop.h"
+
+namespace spoonbill {
+
+KnotVector open_domain(double start, double end);
+KnotVector periodic_domain(double start, double end);
+
+// Counter-clockwise; run backwards it bounds a hole.
+std::vector<Eigen::Vector2d> rectangle(double low_u, double low_v, double high_u, double high_v);
+std::vector<Eigen::Vector2d> backwards(std::vector<Eigen::Vector2d> points);
+
+TrimLoop polygon_loop(const KnotVector& u, const KnotVector& v, const std::vector<Eigen::Vector2d>& points);
+
+// A periodic cubic over equal knots, its `count` control points evenly on a circle. Clockwise for a hole.
+TrimLoop round_loop(const KnotVector& u, const KnotVector& v, const Eigen::Vector2d& middle, double radius,
+                    int count, bool clockwise);
+
+// What it encloses: half the sum of the control points' cross products, each times the integral of one
+// uniform cubic basis function times another's derivative, 245/720, 56/720 and 1/720 for neighbours one, two
+// and three away (the derivative of the B-spline of degree 7 at its knots).
+double round_loop_area(double radius, int count);
+
+}  // namespace spoonbill
