@@ -83,6 +83,28 @@ Result<double> parse_length(std::string_view text, Range<double> range_m) {
   return *length;
 }
 
+Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t count, Range<double> range_m) {
+  const Error refusal{"'" + std::string(text.substr(0, 40)) + "' is not " + std::to_string(count) +
+                      " lengths with a unit, like " + (count == 2 ? "60x40mm" : "60x40x20mm") +
+                      " (mm, cm, m or in)"};
+  std::vector<double> lengths(count);
+  double unit = 0.0;
+  for (std::size_t k = count; k-- > 0;) {
+    const std::size_t cross = text.rfind('x');
+    if ((cross == std::string_view::npos) != (k == 0)) return refusal;
+    const auto length = leading_number(k == 0 ? text : text.substr(cross + 1));
+    if (!length) return refusal;
+    for (const LengthUnit& known : length_units) {
+      if (length->rest == known.name) unit = known.metres;
+    }
+    const bool known_unit = length->rest.empty() || parse_unit(length->rest).ok();
+    lengths[k] = length->number * unit;
+    if (!known_unit || !(unit > 0.0) || !range_m.contains(lengths[k])) return refusal;
+    text = text.substr(0, cross);
+  }
+  return lengths;
+}
+
 Result<Pose> parse_pose(std::string_view text) {
   const Error refusal{
       "'" + std::string(text.substr(0, 80)) +

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "app/files/length_unit.h"
 #include "engine/pose.h"
@@ -25,6 +26,10 @@ Result<Pose> parse_pose(std::string_view text);
 
 // "5mm", "0.2in": a length with its unit, unless it is 0, within the range.
 Result<double> parse_length(std::string_view text, Range<double> range_m);
+
+// "60x40x20mm", "6cmx40mmx20mm": so many lengths within the range, the last with its unit, which is that of
+// those before it that have none.
+Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t count, Range<double> range_m);
 
 // "mm", "cm", "m" or "in".
 Result<LengthUnit> parse_unit(std::string_view text);

@@ -74,10 +74,9 @@ std::string three_text(const double (&values)[3], double scale, int decimals) {
 
 void add_document_facts(FactSheet& facts, const Document& document) {
   const Body& body = document.scene.bodies[0];
-  const Vector3 size = size_of(body.surface);
   facts.add("Name", document.name, "name", document.name);
   facts.add("Unit", "mm (of the file's lengths)", "unit", "mm");
-  facts.add("Size", size_text(size), "size_mm", {1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z()});
+  add_size_fact(facts, body.surface);
   const std::string kind =
       body.shell_thickness_m ? ", a shell of " + number_text(1e3 * *body.shell_thickness_m) + " mm" : "";
   facts.add("Body", body.name + kind, "body", body.name);
@@ -90,6 +89,11 @@ void add_document_facts(FactSheet& facts, const Document& document) {
   add_region_facts(facts, body);
   facts.add("Fixing planes", std::to_string(document.scene.planes.size()), "fixing_planes",
             document.scene.planes.size());
+}
+
+void add_size_fact(FactSheet& facts, const Surface& surface) {
+  const Vector3 size = size_of(surface);
+  facts.add("Size", size_text(size), "size_mm", {1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z()});
 }
 
 void add_material_facts(FactSheet& facts, const Material& material) {

@@ -13,6 +13,9 @@ namespace spoonbill {
 // Names the unit of the file's lengths and the size found.
 void add_document_facts(FactSheet& facts, const Document& document);
 
+// The surface's extents along x, y and z.
+void add_size_fact(FactSheet& facts, const Surface& surface);
+
 void add_material_facts(FactSheet& facts, const Material& material);
 
 // What the body's regions are made of, where it has any.

@@ -37,6 +37,14 @@ std::string millimetres_text(double metres) {
   return with_decimals(1e3 * metres, 1, "mm");
 }
 
+std::string area_text(double square_metres) {
+  return with_digits(1e4 * square_metres, "cm\u00b2");
+}
+
+std::string volume_text(double cubic_metres) {
+  return with_digits(1e6 * cubic_metres, "cm\u00b3");
+}
+
 std::string grams_text(double kilograms) {
   return with_digits(1e3 * kilograms, "g");
 }

@@ -12,6 +12,8 @@ namespace spoonbill {
 std::string modulus_text(double pascals);           // "1.20 MPa"
 std::string millimetres_text(double metres);        // "8.0 mm"
 std::string size_text(const Vector3& size_m);       // "100.0 x 12.0 x 5.0 mm"
+std::string area_text(double square_metres);        // "7.54 cm²"
+std::string volume_text(double cubic_metres);       // "48.0 cm³"
 std::string grams_text(double kilograms);           // "34.2 g"
 std::string density_text(double kilograms_per_m3);  // "1.80 g/cm³"
 std::string newtons_text(double newtons);           // "1.23 N"

@@ -1,0 +1,136 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "app/commands/command.h"
+#include "app/commands/common_options.h"
+#include "app/commands/new_kinds.h"
+#include "app/commands/option_values.h"
+#include "app/report/document_facts.h"
+#include "app/report/quantity_text.h"
+#include "app/start/shipped_materials.h"
+#include "app/start/starting_document.h"
+#include "engine/number_text.h"
+#include "engine/shapes/fit_shape.h"
+#include "engine/shapes/lump.h"
+#include "engine/study/enclosed_mass.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr Range<int> control_range{4, control_point_count_range.high};
+constexpr Range<double> tolerance_range_m{1e-8, 1e-2};
+
+struct NewOptions {
+  std::optional<Extent> control;
+  std::optional<double> tolerance_m;
+  std::string material = "modelling-clay", name;
+  std::filesystem::path out;
+  bool json = false;
+};
+
+bool is_closed(const ExactShape& shape) {
+  return shape.u.periodic && (shape.v.periodic || (shape.pole_at_start && shape.pole_at_end));
+}
+
+void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShape& fitted,
+                     double tolerance_m) {
+  const int rows = fitted.surface.net.rows, columns = fitted.surface.net.columns;
+  facts.add("Control points", std::to_string(rows) + " x " + std::to_string(columns), "control_points",
+            {rows, columns});
+  facts.add("Deviation", "at most " + short_length_text(fitted.deviation_m), "deviation_m",
+            fitted.deviation_m);
+  facts.add("", "", "tolerance_m", tolerance_m);
+  const EnclosedMass mass = enclosed_mass(fitted.surface);
+  const bool closed = is_closed(shape);
+  facts.add("", "", "closed", closed);
+  facts.add("Area", area_text(mass.area_m2), "area_m2", mass.area_m2);
+  if (closed) facts.add("Volume", volume_text(mass.volume_m3), "volume_m3", mass.volume_m3);
+}
+
+Status make_new(const NewOptions& options, const NewKind& kind, Console& console) {
+  const auto material = shipped_material(options.material);
+  if (!material) return material.error();
+  auto made = kind.make();
+  if (!made) return made.error();
+  ShapeFit fit;
+  fit.tolerance_m = options.tolerance_m.value_or(usual_tolerance_m(made->shape));
+  if (options.control) fit.control_counts = {{options.control->width, options.control->height}};
+  auto fitted = fit_shape(made->shape, fit);
+  if (!fitted) return fitted.error();
+  const std::string name = options.name.empty() ? kind.parser->get_name() : options.name;
+  const Document document =
+      starting_document(name, fitted->surface, material.value(), made->shell_thickness_m);
+  if (Status written = write_document(document, options.out); !written) return written;
+
+  FactSheet facts;
+  facts.add("File", options.out.string(), "file", options.out.string());
+  facts.add("Kind", kind.parser->get_name(), "kind", kind.parser->get_name());
+  add_size_fact(facts, fitted->surface);
+  add_shape_facts(facts, made->shape, fitted.value(), fit.tolerance_m);
+  if (is_closed(made->shape) && made->shape.v.periodic) {
+    facts.add("Note", "closed both ways, which no lattice fills: to look at, merge and export, not to press",
+              "", nullptr);
+  }
+  facts.print(console.out, options.json);
+  return {};
+}
+
+void add_fit_options(CLI::App& parser, NewOptions& options) {
+  parser
+      .add_option_function<std::string>(
+          "--control",
+          [&options](const std::string& text) {
+            const auto control = parse_extent(text, control_range);
+            if (!control) throw CLI::ValidationError("--control", control.error().message);
+            options.control = control.value();
+          },
+          "So many control points along u and v; as many as the tolerance needs unless told")
+      ->type_name("UxV");
+  parser
+      .add_option_function<std::string>(
+          "--tolerance",
+          [&options](const std::string& text) {
+            const auto tolerance = parse_length(text, tolerance_range_m);
+            if (!tolerance) throw CLI::ValidationError("--tolerance", tolerance.error().message);
+            options.tolerance_m = tolerance.value();
+          },
+          "How far the surface may be from the exact shape; 0.01mm unless told, less below 10mm")
+      ->type_name("LENGTH");
+}
+
+}  // namespace
+
+CommandEntry add_new(CLI::App& root) {
+  auto options = std::make_shared<NewOptions>();
+  CLI::App* parser = root.add_subcommand("new", "Make a shape to start from");
+  parser->footer(
+      "Each shape is one B-spline surface of real size, about the origin, y up, fitted to the exact shape.\n"
+      "`spoonbill new KIND --help` tells the sizes of a kind; each has a unit: mm, cm, m or in.\n"
+      "Example: spoonbill new box --size 60x40x20mm --rounding 3mm --out box.json");
+  parser->require_subcommand(1);
+  const std::vector<NewKind> kinds = add_new_kinds(*parser);
+  for (const NewKind& kind : kinds) {
+    add_fit_options(*kind.parser, *options);
+    kind.parser->add_option("--material", options->material,
+                            "One that comes with the program, or a part of its name; modelling-clay unless "
+                            "told");
+    kind.parser->add_option("--name", options->name, "Of the body and the document; its kind unless told");
+    kind.parser->add_option("--out", options->out, "The document to write (.json)")->required();
+    add_json_option(*kind.parser, options->json);
+  }
+  return {parser, [options, kinds](Console& console) {
+            const auto chosen = std::find_if(kinds.begin(), kinds.end(),
+                                             [](const NewKind& kind) { return kind.parser->parsed(); });
+            return make_new(*options, *chosen, console);
+          }};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,158 @@
+#include "app/commands/new_kinds.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <memory>
+#include <string>
+
+#include "app/commands/option_values.h"
+#include "engine/material/lattice/shell_lattice.h"
+#include "engine/shapes/lump.h"
+
+namespace spoonbill {
+namespace {
+
+// Wider than any shape may be: those say themselves what they need.
+constexpr Range<double> length_range_m{-1e3, 1e3};
+
+using Length = std::shared_ptr<std::optional<double>>;
+
+Length add_length(CLI::App& parser, const std::string& name, const std::string& help) {
+  auto length = std::make_shared<std::optional<double>>();
+  parser
+      .add_option_function<std::string>(
+          name,
+          [length, name](const std::string& text) {
+            const auto value = parse_length(text, length_range_m);
+            if (!value) throw CLI::ValidationError(name, value.error().message);
+            *length = value.value();
+          },
+          help)
+      ->type_name("LENGTH");
+  return length;
+}
+
+std::shared_ptr<std::vector<double>> add_size(CLI::App& parser, std::size_t count, const std::string& help) {
+  auto size = std::make_shared<std::vector<double>>();
+  parser
+      .add_option_function<std::string>(
+          "--size",
+          [size, count](const std::string& text) {
+            auto lengths = parse_lengths(text, count, length_range_m);
+            if (!lengths) throw CLI::ValidationError("--size", lengths.error().message);
+            *size = std::move(lengths).value();
+          },
+          help)
+      ->required()
+      ->type_name(count == 2 ? "XxZ" : "XxYxZ");
+  return size;
+}
+
+Result<NewShape> new_shape(const LumpSize& size) {
+  auto shape = lump_shape(size);
+  if (!shape) return shape.error();
+  return NewShape{std::move(shape).value()};
+}
+
+NewKind add_sphere(CLI::App& root) {
+  CLI::App* parser = root.add_subcommand("sphere", "A ball, its poles up and down");
+  const Length radius = add_length(*parser, "--radius", "Its radius; 30mm unless told");
+  return {parser, [radius] { return new_shape(SphereSize{radius->value_or(SphereSize().radius_m)}); }};
+}
+
+NewKind add_box(CLI::App& root) {
+  CLI::App* parser = root.add_subcommand("box", "A box with rounded edges");
+  const auto sides = add_size(*parser, 3, "Along x, y and z, like 60x40x20mm");
+  const Length rounding =
+      add_length(*parser, "--rounding",
+                 "Of the edges about its end faces, those of its longest side unless they are slender; the "
+                 "four edges between have twice that. A tenth of the shortest side unless told, at most two "
+                 "fifths of it");
+  return {parser, [=] {
+            BoxSize size{{(*sides)[0], (*sides)[1], (*sides)[2]}};
+            size.rounding_m = rounding->value_or(usual_rounding_m(size));
+            return new_shape(size);
+          }};
+}
+
+NewKind add_cylinder(CLI::App& root) {
+  CLI::App* parser = root.add_subcommand("cylinder", "A cylinder with rounded edges, upright");
+  const Length radius = add_length(*parser, "--radius", "Its radius; 20mm unless told");
+  const Length height = add_length(*parser, "--height", "From face to face; 60mm unless told");
+  const Length rounding = add_length(*parser, "--rounding",
+                                     "Of both edges: a tenth of the shorter of diameter and height unless "
+                                     "told, at most half of it");
+  return {parser, [=] {
+            CylinderSize size;
+            size.radius_m = radius->value_or(size.radius_m);
+            size.height_m = height->value_or(size.height_m);
+            size.rounding_m = rounding->value_or(usual_rounding_m(size));
+            return new_shape(size);
+          }};
+}
+
+NewKind add_cone(CLI::App& root) {
+  CLI::App* parser = root.add_subcommand("cone", "A cone, or a part of one, rounded within the sharp one");
+  const Length radius = add_length(*parser, "--radius", "Of its base; 30mm unless told");
+  const Length height = add_length(*parser, "--height", "To the sharp tip or the top; 60mm unless told");
+  const Length top = add_length(*parser, "--top", "The radius of its top; none unless told: a tip");
+  const Length rounding = add_length(*parser, "--rounding",
+                                     "Of edges and tip; a tenth of the shortest of its diameters and its "
+                                     "height unless told");
+  return {parser, [=] {
+            ConeSize size;
+            size.radius_m = radius->value_or(size.radius_m);
+            size.height_m = height->value_or(size.height_m);
+            size.top_radius_m = top->value_or(0.0);
+            size.rounding_m = rounding->value_or(usual_rounding_m(size));
+            return new_shape(size);
+          }};
+}
+
+NewKind add_plate(CLI::App& root) {
+  CLI::App* parser = root.add_subcommand(
+      "plate", "A level plate: a closed slab with a half round rim, or an open sheet with a thickness");
+  const auto sides = add_size(*parser, 2, "Along x and z, like 100x60mm");
+  const Length thickness = add_length(*parser, "--thickness", "3mm unless told");
+  const Length corner = add_length(*parser, "--corner",
+                                   "The radius of its four corners, seen from above, at least the thickness; "
+                                   "a tenth of its width unless told");
+  auto sheet = std::make_shared<bool>(false);
+  parser->add_flag("--sheet", *sheet, "An open surface, whose body is a shell of the thickness below it");
+  return {parser, [=]() -> Result<NewShape> {
+            PlateSize size{(*sides)[0], (*sides)[1]};
+            size.thickness_m = thickness->value_or(size.thickness_m);
+            size.corner_m = corner->value_or(usual_corner_m(size));
+            if (!*sheet) return new_shape(size);
+            if (*corner) return Error{"--corner is of a closed plate; leave it out with --sheet"};
+            if (Status status = check_range("thickness in m", size.thickness_m, shell_thickness_range_m);
+                !status) {
+              return status.error();
+            }
+            auto open = new_shape(SheetSize{size.x_size_m, size.z_size_m});
+            if (open) open->shell_thickness_m = size.thickness_m;
+            return open;
+          }};
+}
+
+NewKind add_torus(CLI::App& root) {
+  CLI::App* parser = root.add_subcommand("torus", "A ring, lying level, closed both ways");
+  const Length ring = add_length(*parser, "--ring", "The radius of the ring's middle line; 40mm unless told");
+  const Length tube = add_length(*parser, "--tube", "The radius of its tube; 10mm unless told");
+  return {parser, [=] {
+            TorusSize size;
+            size.ring_radius_m = ring->value_or(size.ring_radius_m);
+            size.tube_radius_m = tube->value_or(size.tube_radius_m);
+            return new_shape(size);
+          }};
+}
+
+}  // namespace
+
+std::vector<NewKind> add_new_kinds(CLI::App& parser) {
+  return {add_sphere(parser), add_box(parser),   add_cylinder(parser),
+          add_cone(parser),   add_plate(parser), add_torus(parser)};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,48 @@
+#include "app/start/starting_document.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "app/session/control_net_box.h"
+
+namespace spoonbill {
+namespace {
+
+// Of the body's mean size: a thumb on a lump of clay.
+constexpr double tool_share = 0.15;
+// What the hand feels where the tool is pressed in by half its radius, by Hertz (1881): about E r^2 / 2.
+constexpr double wanted_force_n = 1.5;
+
+// One or two digits that a person would have written.
+double rounded_down(double number) {
+  const double unit = std::pow(10.0, std::floor(std::log10(number)) - 1.0);
+  return std::floor(number / unit) * unit;
+}
+
+}  // namespace
+
+Document starting_document(const std::string& name, Surface surface, const Material& material,
+                           std::optional<double> shell_thickness_m) {
+  const BoundingBox box = control_net_box(surface);
+  const Vector3 size = box.high_m - box.low_m;
+  // The middle one: neither the length of a rod nor the thickness of a plate.
+  const double middle = size.sum() - size.maxCoeff() - size.minCoeff();
+  Document document;
+  document.name = name;
+  Body body;
+  body.name = name;
+  body.surface = std::move(surface);
+  body.material = material;
+  body.shell_thickness_m = shell_thickness_m;
+  Scene& scene = document.scene;
+  scene.bodies.push_back(std::move(body));
+  scene.tool.radius_m =
+      std::clamp(rounded_down(tool_share * std::max(middle, 1e-4)), 1e-5, tool_radius_range_m.high);
+  const double pressed_n = 0.5 * material.youngs_modulus_pa * scene.tool.radius_m * scene.tool.radius_m;
+  scene.sculpting.force_scale =
+      std::clamp(rounded_down(wanted_force_n / pressed_n), 1e-6, force_scale_range.high);
+  return document;
+}
+
+}  // namespace spoonbill
