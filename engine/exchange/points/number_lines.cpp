@@ -1,0 +1,104 @@
+#include "engine/exchange/points/number_lines.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <limits>
+
+namespace spoonbill {
+namespace {
+
+constexpr std::string_view separators = " \t\r\v\f\n,;";
+
+template <class Number>
+double read_as(const char* bytes, bool swapped) {
+  std::array<char, sizeof(Number)> copy;
+  std::memcpy(copy.data(), bytes, copy.size());
+  if (swapped) std::reverse(copy.begin(), copy.end());
+  Number number;
+  std::memcpy(&number, copy.data(), copy.size());
+  return static_cast<double>(number);
+}
+
+}  // namespace
+
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return line;
+}
+
+std::string_view take_word(std::string_view& text) {
+  const auto is_separator = [](char letter) { return separators.find(letter) != std::string_view::npos; };
+  const char* begin = std::find_if_not(text.data(), text.data() + text.size(), is_separator);
+  const char* end = std::find_if(begin, text.data() + text.size(), is_separator);
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return {begin, static_cast<std::size_t>(end - begin)};
+}
+
+std::optional<double> number_of(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (end != word.data() + word.size() || word.empty()) return {};
+  if (error == std::errc::result_out_of_range) {
+    // Too small counts as zero; too large shows its exponent.
+    return word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos
+               ? 0.0
+               : std::numeric_limits<double>::infinity();
+  }
+  return error == std::errc() ? std::optional(number) : std::nullopt;
+}
+
+std::optional<std::uint64_t> count_of(std::string_view word) {
+  std::uint64_t count = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
+  if (error != std::errc() || end != word.data() + word.size()) return {};
+  return count;
+}
+
+std::size_t bytes_of(NumberType type) {
+  switch (type) {
+    case NumberType::int8:
+    case NumberType::uint8:
+      return 1;
+    case NumberType::int16:
+    case NumberType::uint16:
+      return 2;
+    case NumberType::int32:
+    case NumberType::uint32:
+    case NumberType::float32:
+      return 4;
+    default:
+      return 8;
+  }
+}
+
+double number_at(const char* bytes, NumberType type, bool swapped) {
+  switch (type) {
+    case NumberType::int8:
+      return read_as<std::int8_t>(bytes, swapped);
+    case NumberType::uint8:
+      return read_as<std::uint8_t>(bytes, swapped);
+    case NumberType::int16:
+      return read_as<std::int16_t>(bytes, swapped);
+    case NumberType::uint16:
+      return read_as<std::uint16_t>(bytes, swapped);
+    case NumberType::int32:
+      return read_as<std::int32_t>(bytes, swapped);
+    case NumberType::uint32:
+      return read_as<std::uint32_t>(bytes, swapped);
+    case NumberType::int64:
+      return read_as<std::int64_t>(bytes, swapped);
+    case NumberType::uint64:
+      return read_as<std::uint64_t>(bytes, swapped);
+    case NumberType::float32:
+      return read_as<float>(bytes, swapped);
+    default:
+      return read_as<double>(bytes, swapped);
+  }
+}
+
+}  // namespace spoonbill

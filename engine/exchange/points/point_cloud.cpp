@@ -1,0 +1,73 @@
+#include "engine/exchange/points/point_cloud.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+namespace spoonbill {
+namespace {
+
+Error too_many(std::uint64_t count) {
+  return Error{"has " + std::to_string(count) + " points, more than the " + std::to_string(point_limit) +
+               " that are read; thin it out"};
+}
+
+std::string ending_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return ending;
+}
+
+}  // namespace
+
+Status PointGatherer::expect(std::uint64_t count, bool with_normals) {
+  if (count > point_limit) return too_many(count);
+  with_normals_ = with_normals;
+  cloud_.points.reserve(count);
+  if (with_normals) cloud_.normals.reserve(count);
+  return {};
+}
+
+Status PointGatherer::add(const Vector3& point, const Vector3& normal) {
+  ++seen_;
+  if (point.hasNaN()) {
+    ++cloud_.skipped;
+    return {};
+  }
+  if (!point.allFinite()) {
+    return Error{"point " + std::to_string(seen_) + " lies at infinity; remove it or export the scan anew"};
+  }
+  if (cloud_.points.size() == point_limit) return too_many(seen_);
+  cloud_.points.push_back(point);
+  if (with_normals_) cloud_.normals.push_back(normal.allFinite() ? normal : Vector3::Zero());
+  return {};
+}
+
+Result<PointCloud> PointGatherer::done() && {
+  if (!cloud_.points.empty()) return std::move(cloud_);
+  if (cloud_.skipped > 0) {
+    return Error{"all of its " + std::to_string(cloud_.skipped) +
+                 " points have a coordinate that is no number; scan it anew"};
+  }
+  return Error{"has no points"};
+}
+
+bool is_point_name(const std::filesystem::path& file) {
+  static constexpr std::array<std::string_view, 8> endings{".ply", ".pcd", ".xyz", ".txt",
+                                                           ".csv", ".asc", ".pts", ".obj"};
+  return std::find(endings.begin(), endings.end(), ending_of(file)) != endings.end();
+}
+
+Result<PointCloud> points_of(std::string_view bytes, const std::filesystem::path& file) {
+  const std::string ending = ending_of(file);
+  auto cloud = ending == ".ply"   ? ply_points(bytes)
+               : ending == ".pcd" ? pcd_points(bytes)
+               : ending == ".obj" ? obj_points(bytes)
+                                  : text_points(bytes);
+  if (!cloud) return Error{file.string() + ": " + cloud.error().message};
+  return cloud;
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,107 @@
+#include "engine/fitting/fit_errors.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/fitting/closest_parameters.h"
+#include "engine/fitting/nearest_points.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr int projection_steps = 4;
+constexpr int samples_a_span = 4;
+constexpr std::size_t plane_points = 10;
+// A sample is seen within so many distances between neighbouring points.
+constexpr double seen_spacings = 3.0;
+
+void measure_data(const FittedSurface& fit, const FitPoints& points, FitErrors& errors) {
+  const ClosestParameters closest(fit.surface);
+  errors.uv.resize(points.given_m.size());
+  errors.distance_m.resize(points.given_m.size());
+  for (std::size_t g = 0; g < points.given_m.size(); ++g) {
+    const Vector3& point = points.given_m[g];
+    ClosestPoint found = closest.from(point, fit.uv[points.stands_for[g]], projection_steps);
+    // One that was stuck on the other side of something gets a second chance.
+    if (found.distance_m > 1.5 * fit.distance_m[points.stands_for[g]] ||
+        fit.trust[points.stands_for[g]] < 1.0) {
+      const ClosestPoint other = closest.anywhere(point, projection_steps);
+      if (other.distance_m < found.distance_m) found = other;
+    }
+    errors.uv[g] = found.uv;
+    errors.distance_m[g] = found.distance_m;
+  }
+  errors.data_to_surface = deviation_of(errors.distance_m);
+}
+
+std::vector<Vector3> surface_samples(const Surface& surface) {
+  const auto parameters = [](const KnotVector& knots) {
+    const std::vector<double> breaks = knots.breakpoints();
+    std::vector<double> middles;
+    for (std::size_t s = 0; s + 1 < breaks.size(); ++s) {
+      for (int k = 0; k < samples_a_span; ++k) {
+        middles.push_back(breaks[s] + (breaks[s + 1] - breaks[s]) * (k + 0.5) / samples_a_span);
+      }
+    }
+    return middles;
+  };
+  std::vector<Vector3> samples;
+  for (const double u : parameters(surface.u)) {
+    for (const double v : parameters(surface.v)) samples.push_back(position(surface, u, v));
+  }
+  return samples;
+}
+
+// From the plane in which the found points spread.
+double plane_distance(const Vector3& sample, const std::vector<Vector3>& points,
+                      const std::vector<NearestPoints::Found>& found) {
+  Vector3 mean = Vector3::Zero();
+  for (const NearestPoints::Found& near : found)
+    mean += points[near.index] / static_cast<double>(found.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const NearestPoints::Found& near : found) {
+    spread += (points[near.index] - mean) * (points[near.index] - mean).transpose();
+  }
+  const Vector3 normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+  return std::abs(normal.dot(sample - mean));
+}
+
+void measure_surface(const FittedSurface& fit, const FitPoints& points, FitErrors& errors) {
+  const std::vector<Vector3>& data = points.scan.points_m;
+  const NearestPoints nearest(data);
+  const double spacing = mean_edge_length(points.graph);
+  const std::vector<Vector3> samples = surface_samples(fit.surface);
+  std::vector<NearestPoints::Found> found;
+  std::vector<double> distances;
+  for (const Vector3& sample : samples) {
+    nearest.nearest(sample, plane_points, found);
+    const double away = found.front().distance, plane = plane_distance(sample, data, found);
+    const double aside = std::sqrt(std::max(0.0, away * away - plane * plane));
+    if (aside > seen_spacings * spacing) continue;
+    distances.push_back(std::min(away, plane));
+  }
+  errors.unseen_share = 1.0 - static_cast<double>(distances.size()) / static_cast<double>(samples.size());
+  errors.surface_to_data = deviation_of(std::move(distances));
+}
+
+}  // namespace
+
+Deviation deviation_of(std::vector<double> distances_m) {
+  if (distances_m.empty()) return {};
+  std::sort(distances_m.begin(), distances_m.end());
+  const double sum = std::accumulate(distances_m.begin(), distances_m.end(), 0.0);
+  const std::size_t last = distances_m.size() - 1;
+  const auto place = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(last)));
+  return {distances_m[last], distances_m[place], sum / static_cast<double>(distances_m.size())};
+}
+
+FitErrors measure_errors(const FittedSurface& fit, const FitPoints& points) {
+  FitErrors errors;
+  measure_data(fit, points, errors);
+  measure_surface(fit, points, errors);
+  return errors;
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,237 @@
+#include "engine/fitting/fit_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "engine/collision/meshes/vertex_join.h"
+#include "engine/fitting/nearest_points.h"
+#include "engine/fitting/side_cutting.h"
+#include "engine/fitting/voxels.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr std::size_t least_points = 30;
+constexpr std::size_t neighbours_of_a_node = 9;
+constexpr std::size_t neighbours_of_a_point = 8;
+// Against noise of a scanner, which keeps within three deviations of its neighbours' distances.
+constexpr double outlier_deviations = 6.0;
+
+void join(Scan& scan) {
+  const JoinedVertices joined =
+      join_vertices(scan.points_m, std::max(vertex_joining_share * size_of(scan.points_m), 1e-12));
+  std::vector<TriangleCorners> kept;
+  kept.reserve(scan.triangles.size());
+  for (TriangleCorners corners : scan.triangles) {
+    for (std::uint32_t& corner : corners) corner = joined.joined_into[corner];
+    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]) {
+      kept.push_back(corners);
+    }
+  }
+  scan.points_m = joined.vertices_m;
+  scan.triangles = std::move(kept);
+}
+
+double area_of(const Scan& scan) {
+  double area = 0.0;
+  for (const auto& [a, b, c] : scan.triangles) {
+    area += 0.5 * (scan.points_m[b] - scan.points_m[a]).cross(scan.points_m[c] - scan.points_m[a]).norm();
+  }
+  return area;
+}
+
+void refine(Scan& scan) {
+  const double longest = 1.2 * std::sqrt(area_of(scan) / static_cast<double>(node_target));
+  cut_long_sides(scan.points_m, scan.triangles, longest, 3 * fitted_point_limit);
+}
+
+// Normals of the vertices by the areas of their triangles, and a third of these areas as weights. Vertices
+// without a triangle get neither.
+std::vector<double> take_normals(Scan& scan) {
+  std::vector<double> weights(scan.points_m.size(), 0.0);
+  scan.normals.assign(scan.points_m.size(), Vector3::Zero());
+  for (const TriangleCorners& t : scan.triangles) {
+    const Vector3 twice_area =
+        (scan.points_m[t[1]] - scan.points_m[t[0]]).cross(scan.points_m[t[2]] - scan.points_m[t[0]]);
+    for (const std::uint32_t corner : t) {
+      scan.normals[corner] += twice_area;
+      weights[corner] += twice_area.norm() / 6.0;
+    }
+  }
+  for (Vector3& normal : scan.normals) {
+    const double length = normal.norm();
+    normal = length > 1e-30 ? Vector3(normal / length) : Vector3::Zero();
+  }
+  return weights;
+}
+
+// Thinned to the limit by voxels; `weights` go with their points. Pairs of groups in one triangle remain
+// pairs.
+void thin(Scan& scan, std::vector<double>& weights, std::vector<std::uint32_t>& stands_for) {
+  if (scan.points_m.size() <= fitted_point_limit + fitted_point_limit / 4) return;
+  const VoxelGroups groups = group_by_voxels(scan, voxel_side_for(scan, fitted_point_limit));
+  Scan thinned = middles_of(scan, groups);
+  std::vector<double> sums(groups.count, 0.0);
+  for (std::size_t p = 0; p < weights.size(); ++p) sums[groups.group_of[p]] += weights[p];
+  for (TriangleCorners corners : scan.triangles) {
+    for (std::uint32_t& corner : corners) corner = groups.group_of[corner];
+    if (corners[0] != corners[1] || corners[1] != corners[2]) thinned.triangles.push_back(corners);
+  }
+  // A voxel of a dense place counts as much as one of a thin place.
+  if (scan.triangles.empty()) std::fill(sums.begin(), sums.end(), 1.0);
+  for (std::uint32_t& point : stands_for) point = groups.group_of[point];
+  scan = std::move(thinned);
+  weights = std::move(sums);
+}
+
+// Points whose neighbours are much farther than those of others. None of a mesh.
+std::vector<bool> lie_apart(const Scan& scan) {
+  std::vector<bool> apart(scan.points_m.size(), false);
+  if (!scan.triangles.empty()) return apart;
+  const NearestPoints nearest(scan.points_m);
+  std::vector<NearestPoints::Found> found;
+  std::vector<double> reach(apart.size());
+  for (std::size_t p = 0; p < apart.size(); ++p) {
+    nearest.nearest(scan.points_m[p], neighbours_of_a_point + 1, found);
+    double sum = 0.0;
+    for (const NearestPoints::Found& other : found) sum += other.distance;
+    reach[p] = sum / static_cast<double>(neighbours_of_a_point);
+  }
+  std::vector<double> sorted = reach;
+  const auto at = [&](double share) {
+    const auto place =
+        sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1));
+    std::nth_element(sorted.begin(), place, sorted.end());
+    return *place;
+  };
+  const double median = at(0.5), deviation = std::max((at(0.84) - median), 0.1 * median);
+  for (std::size_t p = 0; p < apart.size(); ++p)
+    apart[p] = reach[p] > median + outlier_deviations * deviation;
+  return apart;
+}
+
+void keep_only(FitPoints& fit, const std::vector<bool>& leave_out) {
+  std::uint32_t kept = 0;
+  std::vector<std::uint32_t> place(leave_out.size(), no_point);
+  for (std::size_t p = 0; p < leave_out.size(); ++p) {
+    if (leave_out[p]) continue;
+    place[p] = kept;
+    fit.scan.points_m[kept] = fit.scan.points_m[p];
+    if (fit.scan.has_normals()) fit.scan.normals[kept] = fit.scan.normals[p];
+    fit.weights[kept] = fit.weights[p];
+    ++kept;
+  }
+  for (std::uint32_t& point : fit.stands_for) {
+    point = place[point];
+    if (point == no_point) ++fit.outliers;
+  }
+  fit.scan.points_m.resize(kept);
+  if (fit.scan.has_normals()) fit.scan.normals.resize(kept);
+  fit.weights.resize(kept);
+}
+
+std::vector<NodePair> pairs_of_mesh(const Scan& scan, const std::vector<std::uint32_t>& node_of) {
+  std::vector<NodePair> pairs;
+  for (const TriangleCorners& t : scan.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(node_of[t[k]], node_of[t[(k + 1) % 3]]);
+  }
+  return pairs;
+}
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The nearest nodes of each, unless they are far beyond what is usual or face the other way.
+std::vector<NodePair> pairs_of_cloud(const Scan& nodes) {
+  const NearestPoints nearest(nodes.points_m);
+  std::vector<NearestPoints::Found> found;
+  std::vector<NodePair> pairs;
+  std::vector<double> lengths;
+  for (std::uint32_t n = 0; n < nodes.points_m.size(); ++n) {
+    nearest.nearest(nodes.points_m[n], neighbours_of_a_node + 1, found);
+    for (const NearestPoints::Found& other : found) {
+      if (other.index == n) continue;
+      if (nodes.has_normals() && nodes.normals[n].dot(nodes.normals[other.index]) < -0.2) continue;
+      pairs.emplace_back(n, other.index);
+      lengths.push_back(other.distance);
+    }
+  }
+  if (pairs.empty()) return pairs;
+  const double longest = 3.0 * median_of(lengths);
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (lengths[k] <= longest) pairs[kept++] = pairs[k];
+  }
+  pairs.resize(kept);
+  return pairs;
+}
+
+void make_nodes(FitPoints& fit) {
+  const bool is_mesh = !fit.scan.triangles.empty();
+  VoxelGroups groups;
+  if (fit.scan.points_m.size() > (is_mesh ? 4 : 2) * node_target) {
+    groups = group_by_voxels(fit.scan, voxel_side_for(fit.scan, node_target));
+  } else {
+    groups.count = fit.scan.points_m.size();
+    groups.group_of.resize(groups.count);
+    std::iota(groups.group_of.begin(), groups.group_of.end(), 0U);
+  }
+  Scan nodes = middles_of(fit.scan, groups);
+  const auto pairs = is_mesh ? pairs_of_mesh(fit.scan, groups.group_of) : pairs_of_cloud(nodes);
+  fit.node_of = std::move(groups.group_of);
+  fit.node_normals = nodes.has_normals() ? std::move(nodes.normals)
+                                         : std::vector<Vector3>(nodes.points_m.size(), Vector3::Zero());
+  fit.graph = make_point_graph(std::move(nodes.points_m), pairs);
+  fit.rims = is_mesh ? rims_of_mesh(fit.scan.triangles, fit.node_of, fit.graph) : rims_of_cloud(fit.graph);
+  fit.scan.triangles.clear();
+}
+
+}  // namespace
+
+Result<FitPoints> make_fit_points(Scan scan) {
+  const bool is_mesh = !scan.triangles.empty();
+  FitPoints fit;
+  fit.weights.assign(scan.points_m.size(), 1.0);
+  if (is_mesh) join(scan);
+  fit.given_m = scan.points_m;
+  fit.stands_for.resize(fit.given_m.size());
+  std::iota(fit.stands_for.begin(), fit.stands_for.end(), 0U);
+  if (is_mesh) {
+    if (!(area_of(scan) > 0.0)) return Error{"its triangles have no area"};
+    refine(scan);
+    fit.weights = take_normals(scan);
+  }
+  if (scan.points_m.size() < least_points) {
+    return Error{"has " + std::to_string(scan.points_m.size()) + " points, a fit needs " +
+                 std::to_string(least_points)};
+  }
+  if (!(size_of(scan.points_m) > 0.0)) return Error{"its points all lie in one place"};
+  thin(scan, fit.weights, fit.stands_for);
+  fit.scan = std::move(scan);
+  const std::vector<bool> apart = lie_apart(fit.scan);
+  if (!is_mesh) keep_only(fit, apart);
+  make_nodes(fit);
+  return fit;
+}
+
+void add_spanning_nodes(FitPoints& points, const std::vector<Vector3>& places_m,
+                        const std::vector<Vector3>& normals, const std::vector<NodePair>& pairs) {
+  std::vector<NodePair> all = pairs;
+  for (std::uint32_t n = 0; n < points.graph.size(); ++n) {
+    for (const std::uint32_t other : points.graph.of(n)) {
+      if (other > n) all.emplace_back(n, other);
+    }
+  }
+  std::vector<Vector3> nodes = std::move(points.graph.points_m);
+  nodes.insert(nodes.end(), places_m.begin(), places_m.end());
+  points.node_normals.insert(points.node_normals.end(), normals.begin(), normals.end());
+  points.spanning_nodes += places_m.size();
+  points.graph = make_point_graph(std::move(nodes), all);
+}
+
+}  // namespace spoonbill

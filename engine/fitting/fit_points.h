@@ -1,0 +1,40 @@
+// A scan made ready for fitting: the points that take part, thinned, and a graph of fewer nodes over them.
+#pragma once
+
+#include <vector>
+
+#include "engine/fitting/point_graph.h"
+#include "engine/fitting/rims.h"
+#include "engine/fitting/scan.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+inline constexpr std::size_t fitted_point_limit = 120'000;
+inline constexpr std::size_t node_target = 5000;
+inline constexpr std::uint32_t no_point = 0xffffffffU;
+
+struct FitPoints {
+  Scan scan;  // thinned, cleaned; triangles no longer
+  // Of each point given (of a mesh: of each vertex left after joining) the one above that stands for it, or
+  // no_point where it was left out; with where it lies.
+  std::vector<Vector3> given_m;
+  std::vector<std::uint32_t> stands_for;
+  std::vector<double> weights;         // what each point stands for: an area of a mesh, 1 of a cloud
+  PointGraph graph;                    // nodes among and between the points
+  std::vector<Vector3> node_normals;   // unit where they are known; else zero
+  std::vector<std::uint32_t> node_of;  // of each point
+  std::vector<Rim> rims;               // where the surface ends, the longest first
+  std::size_t spanning_nodes = 0;      // the last so many nodes have no points: they span holes and gaps
+  std::size_t outliers = 0;            // points given that lie apart from all others
+};
+
+// Joins the vertices of a mesh, refines its triangles to the nodes' spacing, gives its vertices normals;
+// thins a cloud by voxels and leaves out what lies apart. Refused: fewer than 30 points, no extent.
+Result<FitPoints> make_fit_points(Scan scan);
+
+// Adds nodes that span a hole or a gap; `pairs` join them, whose numbers begin at graph.size(), to others.
+void add_spanning_nodes(FitPoints& points, const std::vector<Vector3>& places_m,
+                        const std::vector<Vector3>& normals, const std::vector<NodePair>& pairs);
+
+}  // namespace spoonbill

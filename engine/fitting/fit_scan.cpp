@@ -1,0 +1,70 @@
+#include "engine/fitting/fit_scan.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/fitting/islands.h"
+#include "engine/fitting/shape_start.h"
+
+namespace spoonbill {
+namespace {
+
+Vector3 extent_of(const std::vector<Vector3>& points_m) {
+  Vector3 low = points_m.front(), high = low;
+  for (const Vector3& point : points_m) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  return high - low;
+}
+
+Result<FittedBody> fit_island(FitPoints island, const FitRequest& request, const FitWatch& watch) {
+  const ShapeKind kind = request.kind.value_or(kind_of_shape(island));
+  const auto start = first_parameters(island, kind);
+  if (!start) return start.error();
+  FitSettings settings = request.settings;
+  settings.watch = watch;
+  auto fit = fit_surface(island, start.value(), settings);
+  if (!fit) return fit.error();
+  FittedBody body;
+  body.errors = measure_errors(fit.value(), island);
+  body.surface = std::move(fit->surface);
+  body.folds = std::move(fit->folds);
+  body.kind = kind;
+  body.size_m = extent_of(island.given_m);
+  body.points_m = std::move(island.given_m);
+  return body;
+}
+
+}  // namespace
+
+Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
+  auto points = make_fit_points(std::move(scan));
+  if (!points) return points.error();
+  Islands islands = split_islands(points.value());
+  ScanFit result;
+  result.islands = islands.islands.size();
+  result.outliers = points->outliers;
+  result.dust = islands.dust_points;
+  if (islands.islands.empty())
+    return Error{"its points hang together nowhere; they are too few or too noisy"};
+  if (request.islands == IslandChoice::largest) {
+    for (std::size_t k = 1; k < islands.islands.size(); ++k) {
+      result.other_islands += islands.islands[k].given_m.size();
+    }
+    islands.islands.resize(1);
+  }
+  const auto count = static_cast<double>(islands.islands.size());
+  for (FitPoints& island : islands.islands) {
+    const double done = static_cast<double>(result.bodies.size());
+    const auto watch = [&](double share) {
+      return !request.settings.watch || request.settings.watch((done + share) / count);
+    };
+    auto body = fit_island(std::move(island), request, watch);
+    if (!body) return body.error();
+    result.bodies.push_back(std::move(body).value());
+  }
+  return result;
+}
+
+}  // namespace spoonbill

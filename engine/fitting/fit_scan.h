@@ -1,0 +1,44 @@
+// B-spline surfaces of a scan: from points or triangles to one surface for each island, with its errors.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/fitting/fit_errors.h"
+#include "engine/fitting/fit_surface.h"
+#include "engine/fitting/parameterisation.h"
+#include "engine/fitting/scan.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+// Of a scan in several islands: only the largest, one body over the gaps, or each a body.
+enum class IslandChoice { largest, bridge, all };
+
+struct FitRequest {
+  FitSettings settings;
+  std::optional<ShapeKind> kind;  // found where none is asked for
+  IslandChoice islands = IslandChoice::largest;
+};
+
+struct FittedBody {
+  Surface surface;
+  ShapeKind kind = ShapeKind::closed;
+  FitErrors errors;
+  FoldCheck folds;
+  std::vector<Vector3> points_m;  // those given that belong to it, in the order of the errors
+  Vector3 size_m = Vector3::Zero();
+};
+
+struct ScanFit {
+  std::vector<FittedBody> bodies;  // the largest first
+  std::size_t islands = 0;         // found, whatever was fitted of them
+  std::size_t outliers = 0, dust = 0,
+              other_islands = 0;  // points left out: apart, in specks, on other islands
+};
+
+// The scan's points must be finite. Refused, with what to try instead: too few points, a shape that cannot be
+// laid out as the kind asked for, islands that cannot be bridged.
+Result<ScanFit> fit_scan(Scan scan, const FitRequest& request);
+
+}  // namespace spoonbill

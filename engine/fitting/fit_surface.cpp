@@ -1,0 +1,345 @@
+#include "engine/fitting/fit_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/fitting/closest_parameters.h"
+#include "engine/fitting/refine_knots.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr int degree = 3;
+constexpr int first_controls = 10;
+constexpr double growth = 1.35;
+constexpr double first_fairness = 1e-2, last_fairness = 1e-4;
+constexpr int projection_steps = 3;
+constexpr int fold_rounds = 12;
+constexpr double most_fairness = 1.0;
+constexpr double huber_deviations = 3.0;
+// Of a node that spans a hole, against the others': it is a guess.
+constexpr double spanning_weight = 1e-2;
+
+// What is fitted: the nodes at first, then all points.
+struct Data {
+  std::span<const Vector3> points_m;
+  std::span<const double> weights;
+  std::vector<Vector2> uv;
+  std::vector<double> distance_m;
+  std::vector<double> trust;
+};
+
+double wrapped(double difference) {
+  return difference - std::round(difference);
+}
+
+class Fitter {
+ public:
+  Fitter(const FitPoints& points, const Parameterisation& start, const FitSettings& settings);
+  Result<FittedSurface> run();
+
+ private:
+  bool closed() const { return kind_ == ShapeKind::closed; }
+  bool periodic() const { return kind_ != ShapeKind::sheet; }
+  Status solve(Data& data);
+  void project(Data& data, bool smooth);
+  void take_trust(Data& data) const;
+  void smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const;
+  bool within_tolerance(const Data& data) const;
+  bool grow();
+  bool faces_inwards() const;
+  Status node_rounds();
+  Status point_rounds();
+  void stiffen_folds();
+  Status unfold();
+  void set_fairness(double fairness);
+  bool tell(double share) const { return !settings_->watch || settings_->watch(share); }
+  FittedSurface result();
+
+  const FitPoints* points_;
+  const FitSettings* settings_;
+  ShapeKind kind_;
+  SurfaceStructure structure_;
+  std::vector<double> fairness_;
+  std::vector<double> node_weights_, all_weights_;
+  std::vector<Vector3> all_points_m_;
+  Data nodes_, all_;
+  Surface surface_;
+  FoldCheck folds_;
+};
+
+KnotVector first_knots(bool is_periodic, int count) {
+  return is_periodic ? KnotVector::periodic_uniform(degree, std::max(count, degree)).value()
+                     : KnotVector::clamped_uniform(degree, std::max(count, degree + 1)).value();
+}
+
+// Over [0, 1], whatever period the uniform knots have.
+KnotVector over_unit(const KnotVector& knots) {
+  std::vector<double> scaled = knots.knots();
+  const double start = knots.domain_start(), length = knots.domain_end() - start;
+  for (double& knot : scaled) knot = (knot - start) / length;
+  return knots.is_periodic() ? KnotVector::periodic(degree, std::move(scaled)).value()
+                             : KnotVector::open(degree, std::move(scaled)).value();
+}
+
+Fitter::Fitter(const FitPoints& points, const Parameterisation& start, const FitSettings& settings)
+    : points_(&points), settings_(&settings), kind_(start.kind) {
+  structure_.u = over_unit(first_knots(periodic(), std::min(settings.control_u, first_controls)));
+  structure_.v = over_unit(first_knots(false, std::min(settings.control_v, first_controls)));
+  structure_.pole_at_start = structure_.pole_at_end = closed();
+  node_weights_.assign(points.graph.size(), 0.0);
+  for (std::size_t p = 0; p < points.weights.size(); ++p) {
+    node_weights_[points.node_of[p]] += points.weights[p];
+  }
+  double mean = 0.0;
+  for (const double weight : node_weights_) mean += weight / static_cast<double>(node_weights_.size());
+  for (std::size_t n = node_weights_.size() - points.spanning_nodes; n < node_weights_.size(); ++n) {
+    node_weights_[n] = spanning_weight * mean;
+  }
+  nodes_ = {points.graph.points_m, node_weights_, start.uv, std::vector<double>(points.graph.size(), 0.0),
+            std::vector<double>(points.graph.size(), 1.0)};
+}
+
+void Fitter::set_fairness(double fairness) {
+  fairness_.assign(span_count(structure_.u) * span_count(structure_.v), fairness);
+}
+
+Status Fitter::solve(Data& data) {
+  std::vector<double> weights(data.weights.begin(), data.weights.end());
+  for (std::size_t p = 0; p < weights.size(); ++p) weights[p] *= data.trust[p];
+  auto surface = fit_scattered(structure_, {data.points_m, data.uv, weights}, fairness_);
+  if (!surface) return surface.error();
+  surface_ = std::move(surface).value();
+  return {};
+}
+
+void Fitter::smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const {
+  std::vector<Vector2> shift(uv.size(), Vector2::Zero());
+  std::vector<bool> known(uv.size());
+  for (std::size_t n = 0; n < uv.size(); ++n) {
+    known[n] = !before[n].hasNaN();
+    if (!known[n]) continue;
+    shift[n] = uv[n] - before[n];
+    if (periodic()) shift[n].x() = wrapped(shift[n].x());
+  }
+  for (std::uint32_t n = 0; n < uv.size(); ++n) {
+    if (!known[n]) continue;
+    Vector2 sum = shift[n];
+    double count = 1.0;
+    for (const std::uint32_t other : points_->graph.of(n)) {
+      if (!known[other]) continue;
+      sum += shift[other];
+      count += 1.0;
+    }
+    uv[n] = before[n] + 0.5 * (shift[n] + sum / count);
+    uv[n].y() = std::clamp(uv[n].y(), 0.0, 1.0);
+    if (periodic()) {
+      uv[n].x() -= std::floor(uv[n].x());
+    } else {
+      uv[n].x() = std::clamp(uv[n].x(), 0.0, 1.0);
+    }
+  }
+}
+
+void Fitter::project(Data& data, bool smooth) {
+  const ClosestParameters closest(surface_);
+  const std::vector<Vector2> before = data.uv;
+  for (std::size_t p = 0; p < data.uv.size(); ++p) {
+    const ClosestPoint found = before[p].hasNaN()
+                                   ? closest.anywhere(data.points_m[p], projection_steps)
+                                   : closest.from(data.points_m[p], before[p], projection_steps);
+    data.uv[p] = found.uv;
+    data.distance_m[p] = found.distance_m;
+  }
+  if (smooth) smooth_shifts(before, data.uv);
+}
+
+// What lies farther off than nearly all others weighs less, but no more than one in twenty does: at first the
+// surface is what is wrong, not the points.
+void Fitter::take_trust(Data& data) const {
+  std::vector<double> sorted(data.distance_m.begin(),
+                             data.distance_m.end() - static_cast<std::ptrdiff_t>(points_->spanning_nodes));
+  const auto at = [&](double share) {
+    const auto place =
+        sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1));
+    std::nth_element(sorted.begin(), place, sorted.end());
+    return *place;
+  };
+  const double reach =
+      std::max({huber_deviations * 1.4826 * at(0.5), at(0.95), 1e-9 * size_of(points_->scan.points_m)});
+  for (std::size_t p = 0; p < data.trust.size(); ++p) {
+    data.trust[p] = data.distance_m[p] <= reach ? 1.0 : reach / data.distance_m[p];
+  }
+}
+
+bool Fitter::within_tolerance(const Data& data) const {
+  if (settings_->tolerance_m <= 0.0) return false;
+  for (std::size_t p = 0; p + points_->spanning_nodes < data.distance_m.size(); ++p) {
+    if (data.distance_m[p] > settings_->tolerance_m && data.trust[p] > 0.25) return false;
+  }
+  return true;
+}
+
+// More control points; false where there are enough.
+bool Fitter::grow() {
+  const int u = structure_.u.control_point_count(), v = structure_.v.control_point_count();
+  if (u >= settings_->control_u && v >= settings_->control_v) return false;
+  if (within_tolerance(nodes_)) return false;
+  const auto next = [](int count, int most) {
+    return std::min(most, std::max(count + 2, static_cast<int>(std::lround(growth * count))));
+  };
+  std::vector<double> squares(nodes_.uv.size());
+  for (std::size_t n = 0; n < squares.size(); ++n) {
+    squares[n] = nodes_.weights[n] * nodes_.trust[n] * nodes_.distance_m[n] * nodes_.distance_m[n];
+  }
+  structure_.u = with_knots_for_errors(structure_.u, 0, next(u, settings_->control_u), nodes_.uv, squares);
+  structure_.v = with_knots_for_errors(structure_.v, 1, next(v, settings_->control_v), nodes_.uv, squares);
+  return true;
+}
+
+// Against the nodes' normals or, of a closed shape without them, against its own inside.
+bool Fitter::faces_inwards() const {
+  double along = 0.0, volume = 0.0;
+  for (std::size_t n = 0; n < nodes_.uv.size(); ++n) {
+    if (nodes_.uv[n].hasNaN()) continue;
+    const SurfacePoint at = evaluate(surface_, nodes_.uv[n].x(), nodes_.uv[n].y());
+    const Vector3 normal = at.du.cross(at.dv).normalized();
+    if (!normal.allFinite()) continue;
+    along += normal.dot(points_->node_normals[n]);
+  }
+  if (along != 0.0 || !closed()) return along < 0.0;
+  constexpr int grid = 40;
+  for (int i = 0; i < grid * grid; ++i) {
+    const SurfacePoint at = evaluate(surface_, (i / grid + 0.5) / grid, (i % grid + 0.5) / grid);
+    volume += at.position_m.dot(at.du.cross(at.dv));
+  }
+  return volume < 0.0;
+}
+
+Status Fitter::node_rounds() {
+  set_fairness(first_fairness);
+  if (Status solved = solve(nodes_); !solved) return solved;
+  if (faces_inwards()) {
+    for (Vector2& uv : nodes_.uv) uv.x() = 1.0 - uv.x();
+  }
+  double fairness = first_fairness;
+  int stage = 0;
+  do {
+    for (int round = 0; round < 3; ++round) {
+      set_fairness(fairness);
+      if (Status solved = solve(nodes_); !solved) return solved;
+      project(nodes_, true);
+      if (stage > 0) take_trust(nodes_);
+      fairness = std::max(last_fairness, 0.6 * fairness);
+    }
+    ++stage;
+    if (!tell(0.1 * std::min(stage, 6))) return Error{"stopped before the fit was done"};
+  } while (grow());
+  return {};
+}
+
+Status Fitter::point_rounds() {
+  const std::size_t spanning = points_->spanning_nodes, node_count = points_->graph.size();
+  all_points_m_ = points_->scan.points_m;
+  all_weights_ = points_->weights;
+  double mean = 0.0;
+  for (const double weight : all_weights_) mean += weight / static_cast<double>(all_weights_.size());
+  for (const std::uint32_t node : points_->node_of) all_.uv.push_back(nodes_.uv[node]);
+  for (std::size_t n = node_count - spanning; n < node_count; ++n) {
+    all_points_m_.push_back(points_->graph.points_m[n]);
+    all_weights_.push_back(spanning_weight * mean);
+    all_.uv.push_back(nodes_.uv[n]);
+  }
+  all_.points_m = all_points_m_;
+  all_.weights = all_weights_;
+  all_.distance_m.assign(all_.uv.size(), 0.0);
+  all_.trust.assign(all_.uv.size(), 1.0);
+  for (int round = 0; round < 2; ++round) {
+    project(all_, false);
+    take_trust(all_);
+    set_fairness(last_fairness);
+    if (Status solved = solve(all_); !solved) return solved;
+    if (!tell(0.7 + 0.1 * round)) return Error{"stopped before the fit was done"};
+  }
+  return {};
+}
+
+void Fitter::stiffen_folds() {
+  const auto u_spans = static_cast<int>(span_count(structure_.u));
+  const auto v_spans = static_cast<int>(span_count(structure_.v));
+  for (int s = 0; s < u_spans; ++s) {
+    for (int t = 0; t < v_spans; ++t) {
+      if (!folds_.span_folds[static_cast<std::size_t>(s * v_spans + t)]) continue;
+      for (int ds = -1; ds <= 1; ++ds) {
+        for (int dt = -1; dt <= 1; ++dt) {
+          const int row = periodic() ? (s + ds + u_spans) % u_spans : s + ds, column = t + dt;
+          if (row < 0 || row >= u_spans || column < 0 || column >= v_spans) continue;
+          double& fairness = fairness_[static_cast<std::size_t>(row * v_spans + column)];
+          fairness = std::min(most_fairness, fairness * (ds == 0 && dt == 0 ? 4.0 : 2.0));
+        }
+      }
+    }
+  }
+}
+
+Status Fitter::unfold() {
+  std::vector<Vector3> normals = points_->scan.normals;
+  if (!normals.empty()) {
+    normals.insert(normals.end(),
+                   points_->node_normals.end() - static_cast<std::ptrdiff_t>(points_->spanning_nodes),
+                   points_->node_normals.end());
+  }
+  project(all_, false);
+  folds_ = check_folds(surface_, {all_.uv, normals});
+  Surface least_folded = surface_;
+  FoldCheck least = folds_;
+  std::vector<Vector2> least_uv = all_.uv;
+  for (int round = 0; round < fold_rounds && folds_.folds > 0; ++round) {
+    stiffen_folds();
+    if (Status solved = solve(all_); !solved) return solved;
+    project(all_, false);
+    folds_ = check_folds(surface_, {all_.uv, normals});
+    if (folds_.folds < least.folds) {
+      least_folded = surface_;
+      least = folds_;
+      least_uv = all_.uv;
+    }
+    if (!tell(0.9)) return Error{"stopped before the fit was done"};
+  }
+  surface_ = std::move(least_folded);
+  folds_ = std::move(least);
+  all_.uv = std::move(least_uv);
+  return {};
+}
+
+FittedSurface Fitter::result() {
+  const std::size_t count = points_->scan.points_m.size();
+  all_.uv.resize(count);
+  all_.distance_m.resize(count);
+  all_.trust.resize(count);
+  const ClosestParameters closest(surface_);
+  for (std::size_t p = 0; p < all_.uv.size(); ++p) {
+    const ClosestPoint found = closest.from(all_.points_m[p], all_.uv[p], projection_steps);
+    all_.uv[p] = found.uv;
+    all_.distance_m[p] = found.distance_m;
+  }
+  return {std::move(surface_), std::move(all_.uv), std::move(all_.distance_m), std::move(all_.trust),
+          std::move(folds_)};
+}
+
+Result<FittedSurface> Fitter::run() {
+  for (const auto step : {&Fitter::node_rounds, &Fitter::point_rounds, &Fitter::unfold}) {
+    if (Status done = (this->*step)(); !done) return done.error();
+  }
+  return result();
+}
+
+}  // namespace
+
+Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
+                                  const FitSettings& settings) {
+  return Fitter(points, start, settings).run();
+}
+
+}  // namespace spoonbill

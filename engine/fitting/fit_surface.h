@@ -1,0 +1,38 @@
+// A surface fitted to points, from first parameters to the last control point.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "engine/fitting/fit_points.h"
+#include "engine/fitting/folds.h"
+#include "engine/fitting/parameterisation.h"
+#include "engine/fitting/scattered_fit.h"
+
+namespace spoonbill {
+
+// Told how far a fit has come, 0 to 1; false stops it.
+using FitWatch = std::function<bool(double)>;
+
+struct FitSettings {
+  int control_u = 24, control_v = 24;  // as many control points at most
+  double tolerance_m = 0.0;            // no more of them once all but outliers lie within; 0: all of them
+  FitWatch watch = {};
+};
+
+struct FittedSurface {
+  Surface surface;
+  std::vector<Vector2> uv;         // of each point
+  std::vector<double> distance_m;  // of each point
+  std::vector<double> trust;       // of each point, 1 to 0: what an outlier weighs less
+  FoldCheck folds;
+};
+
+// Cubic. `start` gives the nodes their first parameters. Alternates least squares with new parameters by the
+// closest points, from few control points to many, knots where errors are; outliers weigh less (Huber 1964).
+// Where the surface folds its fairness is raised until it does not, or no further. Closed shapes get outward
+// normals.
+Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
+                                  const FitSettings& settings);
+
+}  // namespace spoonbill

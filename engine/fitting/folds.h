@@ -1,0 +1,31 @@
+// Places where a fitted surface turns against the data, or against itself.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/bspline/surface.h"
+#include "engine/fitting/parameterisation.h"
+
+namespace spoonbill {
+
+struct FoldCheck {
+  std::size_t samples = 0, folds = 0;
+  std::vector<bool> span_folds;  // u-major, one for each pair of spans
+};
+
+// The normals of a scan where its points lie on the surface; normals may be none.
+struct NormalsAtParameters {
+  std::span<const Vector2> uv;
+  std::span<const Vector3> normals;
+};
+
+// Samples each span four by four. A sample folds where its normal points against the normals of all of the
+// six points nearest in (u, v), counted in spans, the first within a span: on thin walls the point nearest in
+// space may lie on the other face, and over a sharp rim the data's normals turn from point to point. Of a
+// scan without normals, where it points against that of the next sample. Poles, where there is no normal, are
+// passed over.
+FoldCheck check_folds(const Surface& surface, const NormalsAtParameters& data);
+
+}  // namespace spoonbill

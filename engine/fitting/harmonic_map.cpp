@@ -1,0 +1,291 @@
+#include "engine/fitting/harmonic_map.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace spoonbill {
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+double edge_weight(const PointGraph& graph, std::uint32_t a, std::uint32_t b, double length) {
+  const double share = graph.length(a, b) / length;
+  return 1.0 / (0.25 + share * share);
+}
+
+// Minimises sum w (f_b - f_a - jump(a, b))^2 over the edges that use(a, b) lets take part, with f given where
+// `fixed` is no NaN. A weak spring to zero keeps nodes without edges determined.
+template <class Use, class Jump>
+std::optional<Eigen::VectorXd> smoothest(const PointGraph& graph, const std::vector<double>& fixed,
+                                         const Use& use, const Jump& jump) {
+  const double length = mean_edge_length(graph);
+  std::vector<int> place(graph.size(), -1);
+  int count = 0;
+  for (std::size_t n = 0; n < graph.size(); ++n) {
+    if (std::isnan(fixed[n])) place[n] = count++;
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(graph.neighbours.size() + graph.size());
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
+  for (std::uint32_t a = 0; a < graph.size(); ++a) {
+    if (place[a] < 0) continue;
+    double diagonal = 1e-9;
+    for (const std::uint32_t b : graph.of(a)) {
+      if (!use(a, b)) continue;
+      const double weight = edge_weight(graph, a, b, length);
+      diagonal += weight;
+      right[place[a]] -= weight * jump(a, b);
+      if (place[b] < 0) {
+        right[place[a]] += weight * fixed[b];
+      } else if (place[a] > place[b]) {
+        entries.emplace_back(place[a], place[b], -weight);
+      }
+    }
+    entries.emplace_back(place[a], place[a], diagonal);
+  }
+  Eigen::SparseMatrix<double> matrix(count, count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
+  if (factor.info() != Eigen::Success) return {};
+  const Eigen::VectorXd solution = factor.solve(right);
+  if (!solution.allFinite()) return {};
+  Eigen::VectorXd all(static_cast<Eigen::Index>(graph.size()));
+  for (std::size_t n = 0; n < graph.size(); ++n) {
+    all[static_cast<Eigen::Index>(n)] = place[n] < 0 ? fixed[n] : solution[place[n]];
+  }
+  return all;
+}
+
+// Means of `value` over groups of nodes of like `key`, both rising: key[k] belongs to value[k].
+struct RisingTable {
+  std::vector<double> key, value;
+  double at(double k) const {
+    const auto above = static_cast<std::size_t>(std::upper_bound(key.begin(), key.end(), k) - key.begin());
+    if (above == 0) return value.front();
+    if (above == key.size()) return value.back();
+    const double share = (k - key[above - 1]) / std::max(key[above] - key[above - 1], 1e-300);
+    return value[above - 1] + share * (value[above] - value[above - 1]);
+  }
+};
+
+// From 0 at 0 to 1 at 1.
+RisingTable rising_means(const Eigen::VectorXd& key, const std::vector<double>& value, std::size_t groups) {
+  std::vector<Eigen::Index> order(value.size());
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key[a] < key[b]; });
+  RisingTable table{{0.0}, {0.0}};
+  for (std::size_t g = 0; g < groups; ++g) {
+    const std::size_t begin = g * order.size() / groups, end = (g + 1) * order.size() / groups;
+    double keys = 0.0, values = 0.0;
+    for (std::size_t k = begin; k < end; ++k) {
+      keys += key[order[k]];
+      values += value[static_cast<std::size_t>(order[k])];
+    }
+    if (begin == end) continue;
+    const double count = static_cast<double>(end - begin), mean = values / count;
+    if (keys / count <= table.key.back() || mean <= table.value.back() || mean >= 1.0) continue;
+    table.key.push_back(keys / count);
+    table.value.push_back(mean);
+  }
+  table.key.push_back(std::max(1.0, std::nextafter(table.key.back(), 2.0)));
+  table.value.push_back(1.0);
+  return table;
+}
+
+std::optional<std::vector<double>> rising_v(const PointGraph& graph, const ShapeEnds& ends) {
+  std::vector<double> fixed(graph.size(), not_a_number);
+  for (const std::uint32_t node : ends.start) fixed[node] = 0.0;
+  for (const std::uint32_t node : ends.end) fixed[node] = 1.0;
+  const auto harmonic = smoothest(
+      graph, fixed, [](auto, auto) { return true; }, [](auto, auto) { return 0.0; });
+  if (!harmonic) return {};
+  const ShortestWays from = shortest_ways(graph, ends.start), to = shortest_ways(graph, ends.end);
+  std::vector<double> share(graph.size());
+  for (std::size_t n = 0; n < graph.size(); ++n) {
+    share[n] = from.length[n] / std::max(from.length[n] + to.length[n], 1e-300);
+    if (!std::isfinite(share[n])) return {};
+  }
+  const RisingTable table = rising_means(*harmonic, share, std::min<std::size_t>(100, graph.size() / 8 + 1));
+  std::vector<double> v(graph.size());
+  for (std::size_t n = 0; n < graph.size(); ++n) v[n] = table.at((*harmonic)[static_cast<Eigen::Index>(n)]);
+  return v;
+}
+
+// The direction across the surface at a node, of either sign: that in which its neighbours spread least.
+Vector3 across(const PointGraph& graph, std::uint32_t node) {
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  Vector3 mean = graph.points_m[node];
+  for (const std::uint32_t other : graph.of(node)) mean += graph.points_m[other];
+  mean /= static_cast<double>(graph.of(node).size() + 1);
+  const auto add = [&](const Vector3& point) { spread += (point - mean) * (point - mean).transpose(); };
+  add(graph.points_m[node]);
+  for (const std::uint32_t other : graph.of(node)) {
+    add(graph.points_m[other]);
+    for (const std::uint32_t further : graph.of(other)) add(graph.points_m[further]);
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+}
+
+enum class Side : unsigned char { none, left, right };
+
+// A cut along the shortest way between the ends: to which side of it nodes near it lie.
+struct Cut {
+  std::vector<Side> side;
+  std::vector<bool> near_pole;
+};
+
+std::vector<std::uint32_t> shortest_path(const PointGraph& graph, const ShapeEnds& ends) {
+  const ShortestWays ways = shortest_ways(graph, ends.start);
+  std::uint32_t node = *std::min_element(ends.end.begin(), ends.end.end(),
+                                         [&](auto a, auto b) { return ways.length[a] < ways.length[b]; });
+  std::vector<std::uint32_t> path{node};
+  while (ways.before[node] != node) path.push_back(node = ways.before[node]);
+  return path;
+}
+
+void mark_around(const PointGraph& graph, std::uint32_t node, int rings, std::vector<bool>& marks) {
+  marks[node] = true;
+  if (rings == 0) return;
+  for (const std::uint32_t other : graph.of(node)) mark_around(graph, other, rings - 1, marks);
+}
+
+// The path's left, seen along it: across the path and within the surface. It turns slowly, even where the
+// path goes over a sharp edge, so that those of many nodes before say which of two signs is meant.
+std::vector<Vector3> lefts_of(const PointGraph& graph, const std::vector<std::uint32_t>& path) {
+  constexpr std::size_t reach = 3, memory = 14;
+  std::vector<Vector3> lefts(path.size());
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    const std::size_t back = k < reach ? 0 : k - reach, ahead = std::min(path.size() - 1, k + reach);
+    const Vector3 along = graph.points_m[path[ahead]] - graph.points_m[path[back]];
+    lefts[k] = across(graph, path[k]).cross(along).normalized();
+    Vector3 before = Vector3::Zero();
+    for (std::size_t b = k < memory ? 0 : k - memory; b < k; ++b) before += lefts[b];
+    if (lefts[k].dot(before) < 0.0) lefts[k] = -lefts[k];
+  }
+  std::vector<Vector3> smooth(path.size());
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    Vector3 sum = Vector3::Zero();
+    for (std::size_t m = k < reach ? 0 : k - reach; m <= std::min(path.size() - 1, k + reach); ++m) {
+      sum += lefts[m];
+    }
+    smooth[k] = sum.normalized();
+  }
+  return smooth;
+}
+
+Cut cut_between(const PointGraph& graph, const ShapeEnds& ends) {
+  const std::vector<std::uint32_t> path = shortest_path(graph, ends);
+  const std::vector<Vector3> lefts = lefts_of(graph, path);
+  Cut cut{std::vector<Side>(graph.size(), Side::none), std::vector<bool>(graph.size(), false)};
+  std::vector<double> distance(graph.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    const Vector3& at = graph.points_m[path[k]];
+    const auto offer = [&](std::uint32_t node) {
+      const double away = graph.length(node, path[k]);
+      if (away >= distance[node]) return;
+      distance[node] = away;
+      cut.side[node] = (graph.points_m[node] - at).dot(lefts[k]) > 0.0 ? Side::left : Side::right;
+    };
+    for (const std::uint32_t other : graph.of(path[k])) {
+      offer(other);
+      for (const std::uint32_t further : graph.of(other)) offer(further);
+    }
+  }
+  for (const std::uint32_t node : path) cut.side[node] = Side::right;
+  for (const auto* end : {&ends.start, &ends.end}) {
+    if (end->size() == 1) mark_around(graph, end->front(), 2, cut.near_pole);
+  }
+  return cut;
+}
+
+std::optional<std::vector<double>> turning_u(const PointGraph& graph, const ShapeEnds& ends) {
+  const Cut cut = cut_between(graph, ends);
+  const auto use = [&](std::uint32_t a, std::uint32_t b) { return !cut.near_pole[a] && !cut.near_pole[b]; };
+  const auto jump = [&](std::uint32_t a, std::uint32_t b) {
+    if (cut.side[a] == Side::right && cut.side[b] == Side::left) return -1.0;
+    if (cut.side[a] == Side::left && cut.side[b] == Side::right) return 1.0;
+    return 0.0;
+  };
+  std::vector<double> fixed(graph.size(), not_a_number);
+  const std::vector<std::uint32_t> path = shortest_path(graph, ends);
+  fixed[path[path.size() / 2]] = 0.0;
+  const auto harmonic = smoothest(graph, fixed, use, jump);
+  if (!harmonic) return {};
+  std::size_t torn = 0, edges = 0;
+  std::vector<double> u(graph.size(), not_a_number);
+  for (std::uint32_t a = 0; a < graph.size(); ++a) {
+    const double value = (*harmonic)[a];
+    if (!cut.near_pole[a]) u[a] = value - std::floor(value);
+    for (const std::uint32_t b : graph.of(a)) {
+      if (!use(a, b)) continue;
+      ++edges;
+      if (std::abs((*harmonic)[b] - value - jump(a, b)) > 0.3) ++torn;
+    }
+  }
+  if (edges == 0 || torn > edges / 50) return {};
+  return u;
+}
+
+}  // namespace
+
+Result<std::vector<Vector2>> harmonic_tube_map(const PointGraph& graph, const ShapeEnds& ends) {
+  const auto v = rising_v(graph, ends);
+  if (!v) return Error{"its points do not hang together from end to end"};
+  const auto u = turning_u(graph, ends);
+  if (!u) return Error{"no way around it closes: it has a handle, or too few points"};
+  std::vector<Vector2> uv(graph.size());
+  for (std::size_t n = 0; n < uv.size(); ++n) uv[n] = {(*u)[n], (*v)[n]};
+  return uv;
+}
+
+Result<std::vector<Vector2>> harmonic_square_map(const PointGraph& graph,
+                                                 const std::vector<std::uint32_t>& rim,
+                                                 const std::array<std::size_t, 4>& corners) {
+  static const std::array<Vector2, 4> square{Vector2(0, 0), Vector2(1, 0), Vector2(1, 1), Vector2(0, 1)};
+  std::array<std::vector<double>, 2> fixed;
+  fixed.fill(std::vector<double>(graph.size(), not_a_number));
+  for (std::size_t side = 0; side < 4; ++side) {
+    const std::size_t begin = corners[side];
+    const std::size_t steps = (corners[(side + 1) % 4] + rim.size() - begin) % rim.size();
+    std::vector<double> length(steps + 1, 0.0);
+    const auto at = [&](std::size_t k) { return rim[(begin + k) % rim.size()]; };
+    for (std::size_t k = 1; k <= steps; ++k) length[k] = length[k - 1] + graph.length(at(k - 1), at(k));
+    for (std::size_t k = 0; k < steps; ++k) {
+      const double share = length[k] / std::max(length[steps], 1e-300);
+      const Vector2 place = square[side] + share * (square[(side + 1) % 4] - square[side]);
+      fixed[0][at(k)] = place.x();
+      fixed[1][at(k)] = place.y();
+    }
+  }
+  std::vector<Vector2> uv(graph.size());
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto values = smoothest(
+        graph, fixed[static_cast<std::size_t>(axis)], [](auto, auto) { return true; },
+        [](auto, auto) { return 0.0; });
+    if (!values) return Error{"its points do not hang together"};
+    for (std::size_t n = 0; n < uv.size(); ++n) {
+      uv[n][axis] = std::clamp((*values)[static_cast<Eigen::Index>(n)], 0.0, 1.0);
+    }
+  }
+  return uv;
+}
+
+ShapeEnds farthest_ends(const PointGraph& graph) {
+  const auto farthest = [&](std::uint32_t from) {
+    const std::array<std::uint32_t, 1> source{from};
+    const ShortestWays ways = shortest_ways(graph, source);
+    return static_cast<std::uint32_t>(std::max_element(ways.length.begin(), ways.length.end()) -
+                                      ways.length.begin());
+  };
+  std::uint32_t a = farthest(0), b = farthest(a);
+  a = farthest(b);
+  return {{a}, {b}};
+}
+
+}  // namespace spoonbill

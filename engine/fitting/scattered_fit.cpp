@@ -1,0 +1,195 @@
+#include "engine/fitting/scattered_fit.h"
+
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "engine/bspline/basis.h"
+#include "engine/bspline/piece_basis.h"
+
+namespace spoonbill {
+namespace {
+
+// Products of each control point's basis function with those of its neighbours to `degree` places away, so
+// that a sum needs no search: entry (control, du + degree, dv + degree).
+class NormalEquations {
+ public:
+  NormalEquations(const SurfaceStructure& structure)
+      : pu_(structure.u.degree()),
+        pv_(structure.v.degree()),
+        rows_(structure.u.control_point_count()),
+        columns_(structure.v.control_point_count()),
+        width_(2 * pv_ + 1),
+        block_((2 * pu_ + 1) * width_),
+        products_(static_cast<std::size_t>(rows_) * columns_ * block_),
+        right_(static_cast<std::size_t>(rows_) * columns_, Vector3::Zero()) {}
+
+  // One equation: sum of a_k b_l over the net = value, with the weight.
+  void add(const double* a, const int* rows, const double* b, const int* columns, double weight,
+           const Vector3* value) {
+    for (int k = 0; k <= pu_; ++k) {
+      for (int l = 0; l <= pv_; ++l) {
+        const double factor = weight * a[k] * b[l];
+        const std::size_t control = index(rows[k], columns[l]);
+        double* const block = &products_[control * block_];
+        for (int m = k; m <= pu_; ++m) {
+          double* const line = block + (m - k + pu_) * width_ + pv_ - l;
+          const double along = factor * a[m];
+          for (int n = 0; n <= pv_; ++n) line[n] += along * b[n];
+        }
+        if (value != nullptr) right_[control] += factor * *value;
+      }
+    }
+  }
+
+  Result<Surface> solve(const SurfaceStructure& structure) const;
+
+ private:
+  std::size_t index(int row, int column) const {
+    return static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column);
+  }
+  std::vector<int> unknowns(const SurfaceStructure& structure, int& count) const;
+
+  int pu_, pv_, rows_, columns_, width_, block_;
+  std::vector<double> products_;
+  std::vector<Vector3> right_;
+};
+
+// The unknown of each control point: those of a pole share one.
+std::vector<int> NormalEquations::unknowns(const SurfaceStructure& structure, int& count) const {
+  std::vector<int> unknown(right_.size());
+  count = 0;
+  const int start = structure.pole_at_start ? count++ : -1;
+  const int end = structure.pole_at_end ? count++ : -1;
+  for (int i = 0; i < rows_; ++i) {
+    for (int j = 0; j < columns_; ++j) {
+      const bool at_start = j == 0 && start >= 0, at_end = j == columns_ - 1 && end >= 0;
+      unknown[index(i, j)] = at_start ? start : at_end ? end : count++;
+    }
+  }
+  return unknown;
+}
+
+Result<Surface> NormalEquations::solve(const SurfaceStructure& structure) const {
+  int count = 0;
+  const std::vector<int> unknown = unknowns(structure, count);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(products_.size());
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(count, 3);
+  const auto put = [&](int a, int b, double value) {
+    if (a >= b) entries.emplace_back(a, b, value);
+  };
+  for (int i = 0; i < rows_; ++i) {
+    for (int j = 0; j < columns_; ++j) {
+      const std::size_t control = index(i, j);
+      right.row(unknown[control]) += right_[control].transpose();
+      const double* const block = &products_[control * block_];
+      for (int di = 0; di <= pu_; ++di) {
+        if (i + di >= rows_ && !structure.u.is_periodic()) break;
+        for (int dj = -pv_; dj <= pv_; ++dj) {
+          if (j + dj < 0 || j + dj >= columns_) continue;
+          const double value = block[(di + pu_) * width_ + dj + pv_];
+          const int other = unknown[index((i + di) % rows_, j + dj)];
+          put(unknown[control], other, value);
+          // The other half, which add() leaves out.
+          if (di > 0) put(other, unknown[control], value);
+        }
+      }
+    }
+  }
+  Eigen::SparseMatrix<double> matrix(count, count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
+  const Error indefinite{"the points do not determine the surface; ask for fewer control points"};
+  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0.0)) return indefinite;
+  const Eigen::MatrixXd solution = factor.solve(right);
+  if (!solution.allFinite()) return indefinite;
+  ControlNet net(rows_, columns_);
+  for (int i = 0; i < rows_; ++i) {
+    for (int j = 0; j < columns_; ++j) net.set_point(i, j, solution.row(unknown[index(i, j)]).transpose());
+  }
+  return make_surface(structure.u, structure.v, std::move(net));
+}
+
+double span_weight(const ScatteredData& data, std::size_t spans) {
+  double sum = 0.0;
+  for (std::size_t p = 0; p < data.uv.size(); ++p) {
+    if (!data.uv[p].hasNaN()) sum += data.weights[p];
+  }
+  return sum / static_cast<double>(spans);
+}
+
+// The derivatives of a direction at two Gauss points of a span, times the span's length to their order.
+struct SpanBasis {
+  std::array<PieceBasis::Values, 2> at;
+};
+
+std::vector<SpanBasis> span_bases(const PieceBasis& basis) {
+  const double gauss = 0.5 / std::sqrt(3.0);
+  const std::vector<double> breaks = basis.knots().breakpoints();
+  std::vector<SpanBasis> spans(breaks.size() - 1);
+  for (std::size_t s = 0; s < spans.size(); ++s) {
+    const double length = breaks[s + 1] - breaks[s], middle = 0.5 * (breaks[s] + breaks[s + 1]);
+    for (int side = 0; side < 2; ++side) {
+      PieceBasis::Values& values = spans[s].at[side];
+      basis.take(middle + (side == 0 ? -gauss : gauss) * length, values);
+      for (int k = 0; k <= basis.degree(); ++k) {
+        values.value[1][k] *= length;
+        values.value[2][k] *= length * length;
+      }
+    }
+  }
+  return spans;
+}
+
+void add_fairness(const SurfaceStructure& structure, double weight, std::span<const double> fairness,
+                  NormalEquations& equations) {
+  const PieceBasis u_basis(structure.u), v_basis(structure.v);
+  const std::vector<SpanBasis> u_spans = span_bases(u_basis), v_spans = span_bases(v_basis);
+  constexpr double gauss_weight = 0.25;
+  for (std::size_t s = 0; s < u_spans.size(); ++s) {
+    for (std::size_t t = 0; t < v_spans.size(); ++t) {
+      const double factor = gauss_weight * weight * fairness[s * v_spans.size() + t];
+      for (const PieceBasis::Values& u : u_spans[s].at) {
+        for (const PieceBasis::Values& v : v_spans[t].at) {
+          const auto add = [&](int du, int dv, double times) {
+            equations.add(u.value[du].data(), u.controls, v.value[dv].data(), v.controls, times * factor,
+                          nullptr);
+          };
+          add(2, 0, 1.0);
+          add(1, 1, 2.0);
+          add(0, 2, 1.0);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::size_t span_count(const KnotVector& knots) {
+  return knots.breakpoints().size() - 1;
+}
+
+Result<Surface> fit_scattered(const SurfaceStructure& structure, const ScatteredData& data,
+                              std::span<const double> fairness) {
+  const std::size_t spans = span_count(structure.u) * span_count(structure.v);
+  const double weight = span_weight(data, spans);
+  if (!(weight > 0.0)) return Error{"no points are left to fit"};
+  NormalEquations equations(structure);
+  const PieceBasis u_basis(structure.u), v_basis(structure.v);
+  PieceBasis::Values u, v;
+  for (std::size_t p = 0; p < data.uv.size(); ++p) {
+    if (data.uv[p].hasNaN() || data.weights[p] == 0.0) continue;
+    u_basis.take_values_only(structure.u.into_domain(data.uv[p].x()), u);
+    v_basis.take_values_only(structure.v.into_domain(data.uv[p].y()), v);
+    equations.add(u.value[0].data(), u.controls, v.value[0].data(), v.controls, data.weights[p],
+                  &data.points_m[p]);
+  }
+  add_fairness(structure, weight, fairness, equations);
+  return equations.solve(structure);
+}
+
+}  // namespace spoonbill
