@@ -1,5 +1,5 @@
-// spoonbill-cad: the child of spoonbill that alone loads OpenCASCADE. It answers with frames (cad_stream.h) on
-// its standard output:
+// spoonbill-cad: the child of spoonbill that alone loads OpenCASCADE. It answers with frames (cad_stream.h)
+// on its standard output:
 //
 //   spoonbill-cad read step|iges FILE UNIT_M TOLERANCE_M FACE_LIMIT      UNIT_M 0: as the file declares
 //   spoonbill-cad write step|iges ap214|ap242 mm|cm|m|in                 with frames on its standard input
@@ -103,8 +103,7 @@ void answer_write(const std::vector<std::string>& arguments, std::ostream& out) 
   writing.format = format_named(arguments[1]);
   writing.schema = arguments[2] == "ap242" ? StepSchema::ap242 : StepSchema::ap214;
   writing.unit = arguments[3];
-  const auto content =
-      write_cad(model.value(), writing, [&](double share) { write_progress(out, share); });
+  const auto content = write_cad(model.value(), writing, [&](double share) { write_progress(out, share); });
   if (!content) return write_cad_failure(out, content.error().message);
   write_frame(out, CadFrameKind::file, content->text);
   const Json ending = {
@@ -114,9 +113,8 @@ void answer_write(const std::vector<std::string>& arguments, std::ostream& out) 
 
 int serve(const std::vector<std::string>& arguments) {
   CadReading reading;
-  const bool reads = arguments.size() == 6 && arguments[0] == "read" &&
-                     parse(arguments[3], reading.unit_m) && parse(arguments[4], reading.tolerance_m) &&
-                     parse(arguments[5], reading.face_limit);
+  const bool reads = arguments.size() == 6 && arguments[0] == "read" && parse(arguments[3], reading.unit_m) &&
+                     parse(arguments[4], reading.tolerance_m) && parse(arguments[5], reading.face_limit);
   const bool writes = arguments.size() == 4 && arguments[0] == "write";
   if (!reads && !writes) {
     std::cerr << "spoonbill-cad: is run by spoonbill itself; see `spoonbill convert --help`\n";

@@ -23,7 +23,10 @@ Result<Extent> parse_extent(std::string_view text, Range<int> range);
 // as a quaternion w,x,y,z of any length but 0.
 Result<Pose> parse_pose(std::string_view text);
 
-// "mm", "cm", "m" or "in".
+// "0.05mm": a number with its unit, within the range.
+Result<double> parse_length(std::string_view text, Range<double> range_m);
+
+// "mm", "cm", "m" or "in"; "inch" too.
 Result<LengthUnit> parse_unit(std::string_view text);
 
 }  // namespace spoonbill

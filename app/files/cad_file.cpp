@@ -71,8 +71,8 @@ class Conversation {
 
   Error refusal(const std::string& reason) const {
     if (reason.find("bad alloc") != std::string::npos) {
-      return Error{file_.string() + ": takes more than " +
-                   std::to_string(ChildOutput::memory_limit >> 30) + " GiB; " + smaller};
+      return Error{file_.string() + ": takes more than " + std::to_string(ChildOutput::memory_limit >> 30) +
+                   " GiB; " + smaller};
     }
     return Error{file_.string() + ": " + clean_cad_name(reason, "cannot be read; export it anew")};
   }

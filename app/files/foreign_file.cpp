@@ -41,8 +41,8 @@ Error explain_end(const std::filesystem::path& file, const ChildEnd& end, std::c
     return Error{name + ": the reader crashed on it (signal " + std::to_string(end.signal) +
                  "); the file is damaged, export it anew"};
   }
-  return Error{name + ": the reader ended without a " + thing + " (exit code " + std::to_string(end.exit_code) +
-               "); export it anew"};
+  return Error{name + ": the reader ended without a " + thing + " (exit code " +
+               std::to_string(end.exit_code) + "); export it anew"};
 }
 
 }  // namespace spoonbill

@@ -151,14 +151,13 @@ int control_points_of(const PatchDirection& direction, const Pieces& pieces, int
 }
 
 // Nothing where it would take too many control points; the Error only of a patch that is none.
-Result<std::optional<Approximation>> approximate_of_degree(const Patch& patch, double tolerance_m,
-                                                           int degree) {
+Result<std::optional<PatchFit>> approximate_of_degree(const Patch& patch, double tolerance_m, int degree) {
   Pieces u_pieces = first_pieces(patch.u, degree), v_pieces = first_pieces(patch.v, degree);
   const double allowed_m = allowed_share * tolerance_m;
   for (;;) {
     if (control_points_of(patch.u, u_pieces, degree) > control_point_count_range.high ||
         control_points_of(patch.v, v_pieces, degree) > control_point_count_range.high) {
-      return std::optional<Approximation>();
+      return std::optional<PatchFit>();
     }
     const auto u = knots_of(patch.u, u_pieces, degree), v = knots_of(patch.v, v_pieces, degree);
     if (!u) return u.error();
@@ -179,7 +178,7 @@ Result<std::optional<Approximation>> approximate_of_degree(const Patch& patch, d
     if (refined_u || refined_v) continue;
     const Eigen::MatrixXd all = distances(patch, surface.value(), u_checks, v_checks);
     if (const double largest = all.maxCoeff(); largest <= allowed_m) {
-      return std::optional(Approximation{std::move(surface).value(), largest});
+      return std::optional(PatchFit{std::move(surface).value(), largest});
     }
     refine(errors_of(all, u_ends.size() - 1), allowed_m, degree, u_pieces);
     refine(errors_of(all.transpose(), v_ends.size() - 1), allowed_m, degree, v_pieces);
@@ -188,7 +187,7 @@ Result<std::optional<Approximation>> approximate_of_degree(const Patch& patch, d
 
 }  // namespace
 
-Result<Approximation> approximate(const Patch& patch, double tolerance_m) {
+Result<PatchFit> approximate(const Patch& patch, double tolerance_m) {
   for (const int degree : {3, 5, 7}) {
     auto found = approximate_of_degree(patch, tolerance_m, degree);
     if (!found) return found.error();

@@ -27,7 +27,7 @@ struct Patch {
   std::function<Vector3(double u, double v)> at;  // metres
 };
 
-struct Approximation {
+struct PatchFit {
   Surface surface;  // over the patch's own parameters
   // The largest distance at equal parameters over four places and the ends of each of its pieces, each way.
   double deviation_m = 0.0;
@@ -35,6 +35,6 @@ struct Approximation {
 
 // Cubic where that is enough, of degree 5 or 7 where fewer control points then do. Refused: a tolerance that
 // would take more control points than a surface has, a patch that is not finite.
-Result<Approximation> approximate(const Patch& patch, double tolerance_m);
+Result<PatchFit> approximate(const Patch& patch, double tolerance_m);
 
 }  // namespace spoonbill

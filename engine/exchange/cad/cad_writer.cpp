@@ -25,6 +25,7 @@
 #include "engine/exchange/cad/body_shape.h"
 #include "engine/exchange/cad/occt_surface.h"
 #include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad/step_text.h"
 
 namespace spoonbill {
 namespace {
@@ -71,7 +72,7 @@ Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writi
   if (!writer.Transfer(document)) return Error{"OpenCASCADE makes no STEP file of it"};
   const auto step = opencascade::handle<StepData_StepModel>::DownCast(writer.Writer().WS()->Model());
   fill_header(step);
-  content.text = text_of(step);
+  content.text = step_text_in_ascii(text_of(step));
   return content;
 }
 

@@ -19,6 +19,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/bspline/reparameterise.h"
 #include "engine/exchange/cad/closing.h"
 #include "engine/exchange/cad/face_trims.h"
 #include "engine/exchange/cad/occt_surface.h"
@@ -124,26 +125,6 @@ void scale_net(ControlNet& net, double factor) {
   }
 }
 
-// The same surface from the other side: u runs the other way over the same range.
-Result<Surface> turned_round(const Surface& surface) {
-  const double sum = surface.u.domain_start() + surface.u.domain_end();
-  std::vector<double> knots = surface.u.knots();
-  std::reverse(knots.begin(), knots.end());
-  for (double& knot : knots) knot = sum - knot;
-  const int degree = surface.u.degree();
-  auto u = surface.u.is_periodic() ? KnotVector::periodic(degree, std::move(knots))
-                                   : KnotVector::open(degree, std::move(knots));
-  if (!u) return u.error();
-  ControlNet net(surface.net.rows, surface.net.columns);
-  // The basis function that starts at knot i of a period ends degree + 1 knots further.
-  const int shift = surface.u.is_periodic() ? degree : 0;
-  for (int i = 0; i < net.rows; ++i) {
-    const int from = ((net.rows - 1 - i - shift) % net.rows + net.rows) % net.rows;
-    for (int j = 0; j < net.columns; ++j) net.set_point(i, j, surface.net.point(from, j));
-  }
-  return make_surface(std::move(u).value(), surface.v, std::move(net));
-}
-
 Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolerance_m) {
   const Geometry surface = without_trims(BRep_Tool::Surface(face));
   if (surface.IsNull()) return Error{"has no surface; export it anew"};
@@ -163,11 +144,7 @@ Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolera
     result.deviation_m = approximation->deviation_m;
   }
   close_poles(result.surface, coincidence_m);
-  if (face.Orientation() == TopAbs_REVERSED) {
-    auto turned = turned_round(result.surface);
-    if (!turned) return turned.error();
-    result.surface = std::move(turned).value();
-  }
+  if (face.Orientation() == TopAbs_REVERSED) result.surface = reversed(result.surface, Direction::u);
   return result;
 }
 

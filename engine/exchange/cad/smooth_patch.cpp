@@ -99,8 +99,8 @@ PatchDirection direction_of(const Line& line, double scale) {
 
 }  // namespace
 
-Result<Approximation> approximate_patch(const opencascade::handle<Geom_Surface>& surface,
-                                        const ParameterBox& box, double scale, double tolerance_m) {
+Result<PatchFit> approximate_patch(const opencascade::handle<Geom_Surface>& surface, const ParameterBox& box,
+                                   double scale, double tolerance_m) {
   const GeomAdaptor_Surface adaptor(surface, box.u_start, box.u_end, box.v_start, box.v_end);
   Patch patch;
   patch.u = direction_of(Line(adaptor, box, true), scale);

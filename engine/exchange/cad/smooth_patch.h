@@ -10,7 +10,7 @@ namespace spoonbill {
 
 // `scale` is metres for each unit of the surface. A direction whose box is a whole period, or whose ends
 // meet, becomes periodic.
-Result<Approximation> approximate_patch(const opencascade::handle<Geom_Surface>& surface,
-                                        const ParameterBox& box, double scale, double tolerance_m);
+Result<PatchFit> approximate_patch(const opencascade::handle<Geom_Surface>& surface, const ParameterBox& box,
+                                   double scale, double tolerance_m);
 
 }  // namespace spoonbill
