@@ -24,6 +24,7 @@ CommandEntry add_edit(CLI::App& root);
 CommandEntry add_info(CLI::App& root);
 CommandEntry add_sample(CLI::App& root);
 CommandEntry add_collide(CLI::App& root);
+CommandEntry add_convert(CLI::App& root);
 CommandEntry add_rest(CLI::App& root);
 CommandEntry add_merge(CLI::App& root);
 CommandEntry add_change(CLI::App& root);

@@ -1,17 +1,11 @@
 #include "app/files/mesh_file.h"
 
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <string>
-#include <system_error>
 #include <utility>
 
+#include "app/files/foreign_file.h"
 #include "app/files/mesh_stream.h"
 #include "app/process/child_output.h"
 #include "engine/exchange/mesh_import.h"
@@ -20,27 +14,6 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t file_bytes_limit = std::size_t{512} << 20;
-
-Status check_file(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  const int opened = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (opened < 0) {
-    if (errno == ENOENT) return Error{name + ": no such file"};
-    return Error{name + ": cannot be opened: " + std::generic_category().message(errno)};
-  }
-  struct stat facts {};
-  const bool examined = ::fstat(opened, &facts) == 0;
-  ::close(opened);
-  if (!examined) return Error{name + ": cannot be examined: " + std::generic_category().message(errno)};
-  if (S_ISDIR(facts.st_mode)) return Error{name + ": is a folder, name a file in it"};
-  if (!S_ISREG(facts.st_mode)) return Error{name + ": is not a regular file"};
-  if (facts.st_size == 0) return Error{name + ": is empty"};
-  if (static_cast<std::size_t>(facts.st_size) > file_bytes_limit) {
-    return Error{name + ": is larger than " + std::to_string(file_bytes_limit >> 20) +
-                 " MiB; reduce the mesh"};
-  }
-  return {};
-}
 
 std::string format_name(const std::filesystem::path& file) {
   std::string name = format_of(file);
@@ -51,18 +24,7 @@ std::string format_name(const std::filesystem::path& file) {
 
 // Why there is no mesh, after the child has ended or was ended.
 Error explain(const std::filesystem::path& file, ChildOutput& child, const MeshReading& reading) {
-  const std::string name = file.string();
-  const ChildEnd end = child.wait();
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(reading.patience).count();
-  if (end.out_of_time) {
-    return Error{name + ": reading it took longer than " + std::to_string(seconds) + " s; reduce the mesh"};
-  }
-  if (end.signal != 0) {
-    return Error{name + ": the reader crashed on it (signal " + std::to_string(end.signal) +
-                 "); the file is damaged, export it anew"};
-  }
-  return Error{name + ": the reader ended without a mesh (exit code " + std::to_string(end.exit_code) +
-               "); export it anew"};
+  return explain_end(file, child.wait(), reading.patience, "mesh", "reduce the mesh");
 }
 
 Error failure_of_import(const std::filesystem::path& file, ChildOutput& child, std::uint64_t length,
@@ -98,7 +60,7 @@ Result<MeshFile> read_mesh_file(const std::filesystem::path& file, const MeshRea
   if (!is_mesh_name(file)) {
     return Error{file.string() + ": is no mesh by its name; .obj, .stl and .ply are read"};
   }
-  if (Status status = check_file(file); !status) return status.error();
+  if (Status status = check_foreign_file(file, file_bytes_limit, "reduce the mesh"); !status) return status.error();
   auto child =
       ChildOutput::start({reading.program.string(), "read-mesh", "--", file.string()}, reading.patience);
   if (!child) return Error{file.string() + ": " + child.error().message};

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <thread>
 #include <utility>
 
@@ -24,6 +25,8 @@ constexpr bool addresses_are_limited = false;
 constexpr bool addresses_are_limited = true;
 #endif
 
+constexpr std::int64_t milliseconds_between_questions = 50;
+
 void limit(pid_t process, std::chrono::milliseconds patience) {
   const rlimit memory{ChildOutput::memory_limit, ChildOutput::memory_limit};
   if (addresses_are_limited) prlimit(process, RLIMIT_AS, &memory, nullptr);
@@ -37,10 +40,10 @@ void limit(pid_t process, std::chrono::milliseconds patience) {
 }  // namespace
 
 Result<ChildOutput> ChildOutput::start(const std::vector<std::string>& arguments,
-                                       std::chrono::milliseconds patience) {
+                                       std::chrono::milliseconds patience, int input) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return Error{"there is no pipe left to read it through"};
-  const pid_t process = start_process(arguments, -1, ends[1]);
+  const pid_t process = start_process(arguments, input, ends[1]);
   close(ends[1]);
   if (process < 0) {
     close(ends[0]);
@@ -53,7 +56,8 @@ Result<ChildOutput> ChildOutput::start(const std::vector<std::string>& arguments
 ChildOutput::ChildOutput(ChildOutput&& other) noexcept
     : process_(std::exchange(other.process_, -1)),
       pipe_(std::exchange(other.pipe_, -1)),
-      deadline_(other.deadline_) {}
+      deadline_(other.deadline_),
+      gives_up_(std::move(other.gives_up_)) {}
 
 ChildOutput::~ChildOutput() {
   if (pipe_ >= 0) close(pipe_);
@@ -62,13 +66,19 @@ ChildOutput::~ChildOutput() {
   wait_for_process(process_);
 }
 
+void ChildOutput::give_up_when(std::function<bool()> asked) {
+  gives_up_ = std::move(asked);
+}
+
 bool ChildOutput::read(void* to, std::size_t bytes) {
   auto* place = static_cast<char*>(to);
   while (bytes > 0) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline_ - Clock::now()).count();
     pollfd waiting{pipe_, POLLIN, 0};
-    const int ready = left > 0 ? poll(&waiting, 1, static_cast<int>(left)) : 0;
-    if (ready < 0 && errno == EINTR) continue;
+    if (gives_up_ && gives_up_()) return false;
+    const auto wait = gives_up_ ? std::min<std::int64_t>(left, milliseconds_between_questions) : left;
+    const int ready = wait > 0 ? poll(&waiting, 1, static_cast<int>(wait)) : 0;
+    if ((ready < 0 && errno == EINTR) || (ready == 0 && wait < left)) continue;
     if (ready <= 0) return false;
     const ssize_t count = ::read(pipe_, place, bytes);
     if (count < 0 && errno == EINTR) continue;

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,14 +25,18 @@ class ChildOutput {
   static constexpr std::size_t memory_limit = std::size_t{4} << 30;  // of its addresses, in bytes
 
   // The patience is for all that it does, in time of the clock; its processor time is limited to the same.
+  // `input` becomes its standard input, nothing if negative.
   static Result<ChildOutput> start(const std::vector<std::string>& arguments,
-                                   std::chrono::milliseconds patience);
+                                   std::chrono::milliseconds patience, int input = -1);
 
   ChildOutput(ChildOutput&& other) noexcept;
   ChildOutput& operator=(ChildOutput&&) = delete;
   ~ChildOutput();  // a child that still runs is killed
 
-  // False when the output ends before so many bytes, or the patience does.
+  // Asked several times a second while read() waits; it gives up where the answer is yes.
+  void give_up_when(std::function<bool()> asked);
+
+  // False when the output ends before so many bytes, or the patience does, or it gave up.
   bool read(void* to, std::size_t bytes);
 
   // Waits for its end until the patience is over, then kills it.
@@ -45,6 +50,7 @@ class ChildOutput {
   pid_t process_;  // -1 when it has ended
   int pipe_;
   Clock::time_point deadline_;
+  std::function<bool()> gives_up_;
 };
 
 }  // namespace spoonbill

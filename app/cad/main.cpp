@@ -1,0 +1,144 @@
+// spoonbill-cad: the child of spoonbill that alone loads OpenCASCADE. It answers with frames (cad_stream.h)
+// on its standard output:
+//
+//   spoonbill-cad read step|iges FILE UNIT_M TOLERANCE_M FACE_LIMIT      UNIT_M 0: as the file declares
+//   spoonbill-cad write step|iges ap214|ap242 mm|cm|m|in                 with frames on its standard input
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <csignal>
+#include <cstddef>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <ostream>
+#include <streambuf>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/exchange/cad/cad_reader.h"
+#include "engine/exchange/cad/cad_writer.h"
+#include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad_stream.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr int wrong_use = 2;
+
+// The standard output that the program was started with, which nobody else writes to: OpenCASCADE prints.
+class Answers : public std::streambuf {
+ public:
+  Answers() : descriptor_(dup(STDOUT_FILENO)) {
+    const int nowhere = open("/dev/null", O_WRONLY);
+    dup2(nowhere, STDOUT_FILENO);
+    dup2(nowhere, STDERR_FILENO);
+    close(nowhere);
+  }
+
+ protected:
+  std::streamsize xsputn(const char* text, std::streamsize count) override {
+    std::streamsize written = 0;
+    while (written < count) {
+      const ssize_t more = write(descriptor_, text + written, static_cast<std::size_t>(count - written));
+      if (more <= 0) return written;
+      written += more;
+    }
+    return written;
+  }
+  int overflow(int letter) override {
+    const char byte = static_cast<char>(letter);
+    return xsputn(&byte, 1) == 1 ? letter : traits_type::eof();
+  }
+
+ private:
+  int descriptor_;
+};
+
+template <class Number>
+bool parse(const std::string& text, Number& number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+CadFormat format_named(const std::string& name) {
+  return name == "iges" ? CadFormat::iges : CadFormat::step;
+}
+
+void answer_read(const std::vector<std::string>& arguments, CadReading reading, std::ostream& out) {
+  reading.format = format_named(arguments[1]);
+  const auto model = read_cad(
+      arguments[2], reading,
+      [&](const CadSurface& surface) {
+        write_frame(out, CadFrameKind::surface, json_to_line(cad_surface_to_json(surface)));
+      },
+      [&](double share) { write_progress(out, share); });
+  if (!model) return write_cad_failure(out, model.error().message);
+  const Json ending = {
+      {"unit", model->unit}, {"unit_declared", model->unit_declared}, {"notes", model->notes}};
+  write_frame(out, CadFrameKind::ending, json_to_line(ending));
+}
+
+Result<CadModel> model_of(std::istream& in) {
+  CadModel model;
+  for (;;) {
+    const auto frame = read_frame([&](void* to, std::size_t bytes) {
+      return static_cast<bool>(in.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)));
+    });
+    if (!frame) return Error{"the model ends early"};
+    if (frame->kind == CadFrameKind::ending) return model;
+    auto surface = cad_surface_from_json(frame->content, "model");
+    if (!surface) return surface.error();
+    model.surfaces.push_back(std::move(surface).value());
+  }
+}
+
+void answer_write(const std::vector<std::string>& arguments, std::ostream& out) {
+  const auto model = model_of(std::cin);
+  if (!model) return write_cad_failure(out, model.error().message);
+  CadWriting writing;
+  writing.format = format_named(arguments[1]);
+  writing.schema = arguments[2] == "ap242" ? StepSchema::ap242 : StepSchema::ap214;
+  writing.unit = arguments[3];
+  const auto content = write_cad(model.value(), writing, [&](double share) { write_progress(out, share); });
+  if (!content) return write_cad_failure(out, content.error().message);
+  write_frame(out, CadFrameKind::file, content->text);
+  const Json ending = {
+      {"solids", content->solids}, {"open_shells", content->open_shells}, {"notes", content->notes}};
+  write_frame(out, CadFrameKind::ending, json_to_line(ending));
+}
+
+int serve(const std::vector<std::string>& arguments) {
+  CadReading reading;
+  const bool reads = arguments.size() == 6 && arguments[0] == "read" && parse(arguments[3], reading.unit_m) &&
+                     parse(arguments[4], reading.tolerance_m) && parse(arguments[5], reading.face_limit);
+  const bool writes = arguments.size() == 4 && arguments[0] == "write";
+  if (!reads && !writes) {
+    std::cerr << "spoonbill-cad: is run by spoonbill itself; see `spoonbill convert --help`\n";
+    return wrong_use;
+  }
+  Answers answers;
+  std::ostream out(&answers);
+  try {
+    prepare_occt();
+    if (reads) answer_read(arguments, reading, out);
+    if (writes) answer_write(arguments, out);
+  } catch (const std::bad_alloc&) {
+    write_cad_failure(out, "bad allocation");
+  } catch (const std::exception& exception) {
+    write_cad_failure(out, exception.what());
+  }
+  return out ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace spoonbill
+
+int main(int argc, char** argv) {
+  // Whoever asked may be stopped while a file keeps this one busy.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  return spoonbill::serve(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+}

@@ -1,0 +1,107 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <memory>
+#include <string>
+
+#include "app/commands/command.h"
+#include "app/commands/common_options.h"
+#include "app/commands/option_values.h"
+#include "app/convert/conversion.h"
+#include "app/interrupt.h"
+#include "app/report/conversion_facts.h"
+#include "app/report/progress_bar.h"
+#include "engine/exchange/mesh_export/tessellation.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr Range<double> tolerance_range_m{1e-9, 0.01};
+constexpr std::uint64_t progress_steps = 1000;
+
+struct ConvertOptions {
+  ConversionRequest request;
+  bool progress = false;
+  bool json = false;
+};
+
+Status convert(const ConvertOptions& options, Console& console) {
+  InterruptWatch interrupt;
+  ConversionWatch watch;
+  watch.stop = [&] { return interrupt.requested(); };
+  Result<ConversionReport> report = Error{};
+  {
+    ProgressBar bar(console, "Converting", options.progress);
+    watch.progress = [&](double share) {
+      bar.show(static_cast<std::uint64_t>(share * progress_steps), progress_steps);
+    };
+    report = convert_file(options.request, watch);
+  }
+  if (interrupt.requested()) interrupt.answer();
+  if (!report) return report.error();
+  FactSheet facts;
+  facts.add("From", options.request.in.string(), "in", options.request.in.string());
+  facts.add("To", options.request.out.string(), "out", options.request.out.string());
+  add_conversion_facts(facts, report.value());
+  facts.print(console.out, options.json);
+  return {};
+}
+
+// An option whose text `read` makes a value of, for `keep` to keep.
+template <class Read, class Keep>
+CLI::Option* add_value(CLI::App& parser, const std::string& name, Read read, Keep keep,
+                       const std::string& help) {
+  return parser.add_option_function<std::string>(
+      name,
+      [=](const std::string& text) {
+        auto value = read(text);
+        if (!value) throw CLI::ValidationError(name, value.error().message);
+        keep(value.value());
+      },
+      help);
+}
+
+Result<StepSchema> parse_schema(const std::string& text) {
+  if (text == "ap214") return StepSchema::ap214;
+  if (text == "ap242") return StepSchema::ap242;
+  return Error{"'" + text.substr(0, 40) + "' is not a schema of STEP: ap214 or ap242"};
+}
+
+}  // namespace
+
+CommandEntry add_convert(CLI::App& root) {
+  auto options = std::make_shared<ConvertOptions>();
+  CLI::App* parser = root.add_subcommand("convert", "Bring a model in from CAD, or out to CAD or as a mesh");
+  parser->footer(
+      "Read: documents (.json), STEP (.step, .stp) and IGES (.iges, .igs). Written: those, and meshes "
+      "(.stl,\n"
+      ".obj, .ply, .3mf). Bodies that close become solids in STEP and watertight meshes; each face of a CAD\n"
+      "file becomes a body. OUT appears whole or not at all.\n"
+      "Example: spoonbill convert assets/models/spoon-handle.json handle.step --schema ap242");
+  parser->add_option("IN", options->request.in, "A document or a CAD file")->required();
+  parser->add_option("OUT", options->request.out, "The file to write; its ending is its format")->required();
+  add_value(
+      *parser, "--unit", parse_unit, [options](const LengthUnit& unit) { options->request.unit = unit; },
+      "Of the other file's numbers: mm, cm, m or in. Going out, mm unless told (m for .ply); coming in,\n"
+      "what the file declares unless told, or mm where it declares none")
+      ->type_name("UNIT");
+  add_value(
+      *parser, "--chord", [](const std::string& text) { return parse_length(text, chord_range_m); },
+      [options](double chord_m) { options->request.chord_m = chord_m; },
+      "How far a mesh's triangles may be from the surface; 0.05mm unless told")
+      ->type_name("LENGTH");
+  add_value(
+      *parser, "--tolerance", [](const std::string& text) { return parse_length(text, tolerance_range_m); },
+      [options](double tolerance_m) { options->request.tolerance_m = tolerance_m; },
+      "How far what no B-spline is, such as a cylinder, may come to be from itself; 0.01mm unless told")
+      ->type_name("LENGTH");
+  add_value(
+      *parser, "--schema", parse_schema, [options](StepSchema schema) { options->request.schema = schema; },
+      "Of a STEP file: ap214, unless told, or ap242")
+      ->type_name("SCHEMA");
+  parser->add_flag("--progress", options->progress, "Show progress even where nobody watches");
+  add_json_option(*parser, options->json);
+  return {parser, [options](Console& console) { return convert(*options, console); }};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,232 @@
+#include "app/convert/conversion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include "app/convert/cad_document.h"
+#include "app/files/output_file.h"
+#include "engine/bspline/evaluate.h"
+#include "engine/exchange/cad_stream.h"
+#include "engine/exchange/document.h"
+#include "engine/exchange/mesh_export/mesh_writer.h"
+#include "engine/exchange/mesh_export/tessellation.h"
+#include "engine/exchange/mesh_import.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double usual_chord_m = 5e-5, usual_tolerance_m = 1e-5;
+constexpr int size_samples = 100;
+// Of the whole work; writing takes the rest.
+constexpr double share_of_reading = 0.5;
+
+enum class ModelKind { document, cad, mesh, unknown };
+
+ModelKind kind_of(const std::filesystem::path& file) {
+  const std::string format = format_of(file);
+  if (format == "json") return ModelKind::document;
+  if (is_cad_file(file)) return ModelKind::cad;
+  if (format == "stl" || format == "obj" || format == "ply" || format == "3mf") return ModelKind::mesh;
+  return ModelKind::unknown;
+}
+
+MeshFormat mesh_format_of(const std::filesystem::path& file) {
+  const std::string format = format_of(file);
+  if (format == "stl") return MeshFormat::stl;
+  if (format == "obj") return MeshFormat::obj;
+  return format == "ply" ? MeshFormat::ply : MeshFormat::three_mf;
+}
+
+Error about(const std::filesystem::path& file, const std::string& message) {
+  return Error{file.string() + ": " + message};
+}
+
+Status check_kinds(const ConversionRequest& request) {
+  const ModelKind in = kind_of(request.in), out = kind_of(request.out);
+  const std::string known = ".json, .step, .stp, .iges, .igs";
+  if (in == ModelKind::unknown) return about(request.in, "is no model by its name; " + known + " are read");
+  if (in == ModelKind::mesh) {
+    return about(request.in, "is a mesh, which has no B-splines; fit a surface to it with `spoonbill fit`");
+  }
+  if (out == ModelKind::unknown) {
+    return about(request.out, "names no format; " + known + ", .stl, .obj, .ply and .3mf are written");
+  }
+  if (in == ModelKind::document && out == ModelKind::document) {
+    return about(request.out, "is a document like the one that is read; choose another ending");
+  }
+  std::error_code ignored;
+  if (std::filesystem::equivalent(request.in, request.out, ignored)) {
+    return about(request.out, "is the file that is read; choose another name");
+  }
+  return {};
+}
+
+// An option that changes nothing is a mistake.
+Status check_options(const ConversionRequest& request) {
+  const ModelKind in = kind_of(request.in), out = kind_of(request.out);
+  if (request.chord_m && out != ModelKind::mesh) {
+    return about(request.out, "is no mesh, which has no chord error; leave --chord out");
+  }
+  if (request.tolerance_m && in != ModelKind::cad) {
+    return about(request.in, "is taken exactly; leave --tolerance out");
+  }
+  if (request.schema && (out != ModelKind::cad || cad_format_of(request.out) != CadFormat::step)) {
+    return about(request.out, "is no STEP file, which alone has a schema; leave --schema out");
+  }
+  if (request.unit && format_of(request.out) == "3mf") {
+    return about(request.out, "3MF is written in millimetres; leave --unit out");
+  }
+  if (request.unit && in == ModelKind::cad && out != ModelKind::document) {
+    return about(request.out, "of two files with a unit --unit could mean either; convert to .json first");
+  }
+  return {};
+}
+
+Vector3 size_of(const std::vector<CadSurface>& surfaces) {
+  Vector3 low = Vector3::Constant(1e30), high = -low;
+  for (const CadSurface& part : surfaces) {
+    for (const double u : uniform_parameters(part.surface.u, size_samples)) {
+      for (const double v : uniform_parameters(part.surface.v, size_samples)) {
+        const Vector3 point = position(part.surface, u, v);
+        low = low.cwiseMin(point);
+        high = high.cwiseMax(point);
+      }
+    }
+  }
+  return high - low;
+}
+
+Result<CadModel> read_native(const ConversionRequest& request, ConversionReport& report) {
+  auto document = read_document(request.in);
+  if (!document) return document.error();
+  CadModel model;
+  model.unit = "mm";
+  for (Body& body : document->scene.bodies) {
+    if (body.shell_thickness_m) {
+      report.notes.push_back("'" + body.name + "' is a shell; the surface that it lies behind is written");
+    }
+    CadSurface surface;
+    surface.name = clean_cad_name(body.name, "body");
+    surface.surface = std::move(body.surface);
+    model.surfaces.push_back(std::move(surface));
+  }
+  return model;
+}
+
+Result<CadModel> read_model(const ConversionRequest& request, const CadChild& child,
+                            ConversionReport& report) {
+  if (kind_of(request.in) == ModelKind::document) return read_native(request, report);
+  CadReading reading;
+  reading.format = cad_format_of(request.in);
+  reading.tolerance_m = request.tolerance_m.value_or(usual_tolerance_m);
+  if (request.unit) reading.unit_m = request.unit->metres;
+  auto model = read_cad_file(request.in, reading, child);
+  if (!model) return model.error();
+  for (const CadSurface& surface : model->surfaces) {
+    if (!surface.trims_dropped) continue;
+    model->notes.push_back("'" + surface.name + "' is trimmed; the whole surface is kept, its trims are not");
+  }
+  return model;
+}
+
+Status store(const std::filesystem::path& file, const std::string& text) {
+  auto out = OutputFile::create(file);
+  if (!out) return out.error();
+  if (Status written = out->write(text); !written) return written;
+  return out->commit();
+}
+
+Status write_model(const CadModel& model, const ConversionRequest& request, const CadChild& child,
+                   ConversionReport& report) {
+  CadWriting writing;
+  writing.format = cad_format_of(request.out);
+  writing.schema = request.schema.value_or(StepSchema::ap214);
+  writing.unit = request.unit.value_or(millimetre).name;
+  const auto content = make_cad_file(model, writing, request.out, child);
+  if (!content) return content.error();
+  report.unit_out = writing.unit;
+  report.solids = content->solids;
+  report.open_shells = content->open_shells;
+  return store(request.out, content->text);
+}
+
+Status write_mesh_file(const CadModel& model, const ConversionRequest& request, const ConversionWatch& watch,
+                       ConversionReport& report) {
+  const MeshFormat format = mesh_format_of(request.out);
+  const LengthUnit unit = request.unit.value_or(format == MeshFormat::ply ? metre : millimetre);
+  std::vector<NamedMesh> meshes;
+  report.triangles = report.closed_meshes = 0;
+  std::size_t left = exported_triangle_limit;
+  for (const CadSurface& part : model.surfaces) {
+    if (watch.stop && watch.stop()) return about(request.out, "stopped");
+    auto tessellation = tessellate(part.surface, request.chord_m.value_or(usual_chord_m), left);
+    if (!tessellation) return about(request.out, "'" + part.name + "': " + tessellation.error().message);
+    *report.triangles += tessellation->mesh.triangles.size();
+    *report.closed_meshes += tessellation->closed ? 1 : 0;
+    left -= tessellation->mesh.triangles.size();
+    report.chord_error_m = std::max(report.chord_error_m, tessellation->chord_error_m);
+    meshes.push_back({part.name, std::move(tessellation->mesh)});
+    if (watch.progress) {
+      watch.progress(share_of_reading + (1.0 - share_of_reading) * static_cast<double>(meshes.size()) /
+                                            static_cast<double>(model.surfaces.size() + 1));
+    }
+  }
+  report.unit_out = unit.name;
+  auto out = OutputFile::create(request.out);
+  if (!out) return out.error();
+  const Status written = write_meshes(meshes, format, unit.metres, [&](std::string_view bytes) -> Status {
+    if (watch.stop && watch.stop()) return about(request.out, "stopped");
+    return out->write(bytes);
+  });
+  return written ? out->commit() : written;
+}
+
+Status write_native(const CadModel& model, const ConversionRequest& request, ConversionReport& report) {
+  const auto document = document_of(model, clean_cad_name(request.out.stem().string(), "model"));
+  if (!document) return about(request.in, document.error().message);
+  report.unit_out = "mm";
+  return write_document(document.value(), request.out);
+}
+
+CadChild child_of(const ConversionRequest& request, const ConversionWatch& watch, double from, double to) {
+  CadChild child;
+  child.program = request.cad_program;
+  child.stop = watch.stop;
+  if (watch.progress) {
+    child.progress = [report = watch.progress, from, to](double share) {
+      report(from + share * (to - from));
+    };
+  }
+  return child;
+}
+
+}  // namespace
+
+Result<ConversionReport> convert_file(const ConversionRequest& request, const ConversionWatch& watch) {
+  if (Status kinds = check_kinds(request); !kinds) return kinds.error();
+  if (Status options = check_options(request); !options) return options.error();
+  ConversionReport report;
+  auto model = read_model(request, child_of(request, watch, 0.0, share_of_reading), report);
+  if (!model) return model.error();
+  report.unit_in = model->unit;
+  report.unit_declared = model->unit_declared;
+  report.notes.insert(report.notes.end(), model->notes.begin(), model->notes.end());
+  report.size_m = size_of(model->surfaces);
+  if (watch.progress) watch.progress(share_of_reading);
+  if (watch.stop && watch.stop()) return about(request.out, "stopped");
+
+  const ModelKind out = kind_of(request.out);
+  const Status written =
+      out == ModelKind::document ? write_native(model.value(), request, report)
+      : out == ModelKind::cad
+          ? write_model(model.value(), request, child_of(request, watch, share_of_reading, 1.0), report)
+          : write_mesh_file(model.value(), request, watch, report);
+  if (!written) return written.error();
+  report.surfaces = std::move(model->surfaces);
+  if (watch.progress) watch.progress(1.0);
+  return report;
+}
+
+}  // namespace spoonbill

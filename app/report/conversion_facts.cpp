@@ -1,0 +1,77 @@
+#include "app/report/conversion_facts.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "app/report/quantity_text.h"
+#include "engine/number_text.h"
+
+namespace spoonbill {
+namespace {
+
+std::string short_millimetres(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g mm", 1e3 * metres);
+  return text;
+}
+
+std::string net_text(const Surface& surface) {
+  return "degrees " + std::to_string(surface.u.degree()) + " and " + std::to_string(surface.v.degree()) +
+         ", " + std::to_string(surface.net.rows) + "x" + std::to_string(surface.net.columns) +
+         " control points";
+}
+
+Json direction_json(const KnotVector& knots) {
+  return {{"degree", knots.degree()},
+          {"control_points", knots.control_point_count()},
+          {"periodic", knots.is_periodic()}};
+}
+
+}  // namespace
+
+void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces) {
+  Json bodies = Json::array();
+  double deviation_m = 0.0;
+  for (const CadSurface& part : surfaces) {
+    std::string text = net_text(part.surface);
+    if (part.deviation_m > 0.0) text += ", approximated within " + short_millimetres(part.deviation_m);
+    facts.add("Body", part.name + ": " + text, "", nullptr);
+    bodies.push_back({{"name", part.name},
+                      {"u", direction_json(part.surface.u)},
+                      {"v", direction_json(part.surface.v)},
+                      {"deviation_m", part.deviation_m},
+                      {"trims_dropped", part.trims_dropped}});
+    deviation_m = std::max(deviation_m, part.deviation_m);
+  }
+  facts.add("", "", "bodies", std::move(bodies));
+  facts.add("", "", "deviation_m", deviation_m);
+}
+
+void add_conversion_facts(FactSheet& facts, const ConversionReport& report) {
+  const std::string from_where = report.unit_declared ? "" : " (not declared)";
+  facts.add("Unit read", report.unit_in + from_where, "unit_in", report.unit_in);
+  facts.add("", "", "unit_declared", report.unit_declared);
+  facts.add("Unit written", report.unit_out, "unit_out", report.unit_out);
+  const Vector3& size = report.size_m;
+  facts.add("Size", size_text(size), "size_mm", {1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z()});
+  add_surface_facts(facts, report.surfaces);
+  if (report.solids) {
+    facts.add("Solids", std::to_string(*report.solids), "solids", *report.solids);
+    facts.add("Open", std::to_string(*report.open_shells), "open_shells", *report.open_shells);
+  }
+  if (report.triangles) {
+    facts.add("Triangles",
+              std::to_string(*report.triangles) + ", within " + short_millimetres(report.chord_error_m) +
+                  " of the surface",
+              "triangles", *report.triangles);
+    facts.add("Watertight",
+              std::to_string(*report.closed_meshes) + " of " + std::to_string(report.surfaces.size()),
+              "closed_meshes", *report.closed_meshes);
+    facts.add("", "", "chord_error_m", report.chord_error_m);
+  }
+  for (const std::string& note : report.notes) facts.add("Note", note, "", nullptr);
+  facts.add("", "", "notes", report.notes);
+}
+
+}  // namespace spoonbill

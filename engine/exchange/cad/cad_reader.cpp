@@ -1,0 +1,131 @@
+#include "engine/exchange/cad/cad_reader.h"
+
+#include <IGESCAFControl_Reader.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <Standard_Failure.hxx>
+#include <TDocStd_Document.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XSControl_WorkSession.hxx>
+#include <exception>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/exchange/cad/face_surface.h"
+#include "engine/exchange/cad/file_unit.h"
+#include "engine/exchange/cad/named_faces.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double share_of_parsing = 0.3, share_of_transfer = 0.5;
+
+using OcctDocument = opencascade::handle<TDocStd_Document>;
+
+struct Content {
+  OcctDocument document;
+  FileUnit unit;
+};
+
+OcctDocument new_document() {
+  OcctDocument document;
+  XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+  return document;
+}
+
+Result<Content> read_step(const std::filesystem::path& file, const CadProgress& progress) {
+  STEPCAFControl_Reader reader;
+  reader.SetColorMode(false);
+  reader.SetLayerMode(false);
+  reader.SetNameMode(true);
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return Error{"is no STEP file, or a damaged one"};
+  if (progress) progress(share_of_parsing);
+  Content content{new_document(), unit_of(reader.Reader().StepModel())};
+  if (!reader.Transfer(content.document)) return Error{"holds no shape"};
+  return content;
+}
+
+Result<Content> read_iges(const std::filesystem::path& file, const CadProgress& progress) {
+  IGESCAFControl_Reader reader;
+  reader.SetColorMode(false);
+  reader.SetLayerMode(false);
+  reader.SetNameMode(true);
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return Error{"is no IGES file, or a damaged one"};
+  if (progress) progress(share_of_parsing);
+  Content content{new_document(), unit_of(reader.IGESModel())};
+  if (!reader.Transfer(content.document)) return Error{"holds no shape"};
+  return content;
+}
+
+void say_unit(const FileUnit& unit, const CadReading& reading, CadModel& model) {
+  model.unit = unit.name;
+  model.unit_declared = unit.declared;
+  if (!unit.declared && reading.unit_m == 0.0) {
+    model.unit = "mm";
+    model.notes.push_back(
+        "the file declares no unit of length; millimetres are taken (--unit names another)");
+  }
+}
+
+// Metres for each of what OpenCASCADE made of the file's numbers, which are millimetres if the unit is right.
+double scale_of(const FileUnit& unit, const CadReading& reading) {
+  if (reading.unit_m > 0.0) return reading.unit_m / unit.millimetres;
+  return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
+}
+
+Status take_faces(const std::vector<NamedFace>& faces, double scale, const CadReading& reading,
+                  const TakeSurface& take, const CadProgress& progress) {
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    auto found = face_surface(faces[k].face, scale, reading.tolerance_m);
+    if (!found) return Error{"'" + faces[k].name + "': " + found.error().message};
+    CadSurface surface;
+    surface.name = faces[k].name;
+    surface.surface = std::move(found->surface);
+    surface.deviation_m = found->deviation_m;
+    surface.trims_dropped = found->trimmed;
+    take(std::move(surface));
+    if (progress) {
+      progress(share_of_transfer +
+               (1.0 - share_of_transfer) * static_cast<double>(k + 1) / static_cast<double>(faces.size()));
+    }
+  }
+  return {};
+}
+
+Result<CadModel> read(const std::filesystem::path& file, const CadReading& reading, const TakeSurface& take,
+                      const CadProgress& progress) {
+  const auto content =
+      reading.format == CadFormat::step ? read_step(file, progress) : read_iges(file, progress);
+  if (!content) return content.error();
+  if (progress) progress(share_of_transfer);
+  const std::vector<NamedFace> faces = named_faces(content->document);
+  if (faces.empty()) return Error{"holds no surface"};
+  if (faces.size() > reading.face_limit) {
+    return Error{"has " + std::to_string(faces.size()) + " faces, more than the " +
+                 std::to_string(reading.face_limit) + " that are read; export fewer"};
+  }
+  CadModel model;
+  say_unit(content->unit, reading, model);
+  if (Status taken = take_faces(faces, scale_of(content->unit, reading), reading, take, progress); !taken) {
+    return taken.error();
+  }
+  return model;
+}
+
+}  // namespace
+
+Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& reading,
+                          const TakeSurface& take, const CadProgress& progress) {
+  try {
+    return read(file, reading, take, progress);
+  } catch (const Standard_Failure& failure) {
+    return Error{std::string("OpenCASCADE fails on it (") + failure.DynamicType()->Name() + ")"};
+  } catch (const std::bad_alloc&) {
+    return Error{"bad allocation"};
+  } catch (const std::exception& exception) {
+    return Error{std::string("OpenCASCADE fails on it (") + exception.what() + ")"};
+  }
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,23 @@
+// STEP and IGES files to surfaces. What a hostile file does to OpenCASCADE it does to this process: call it
+// in a child with limits.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "engine/exchange/cad/cad_writer.h"
+#include "engine/exchange/cad_model.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+using TakeSurface = std::function<void(CadSurface)>;
+
+// Hands over the surface of each face of the file, as assemblies place it, one after the other, and returns
+// what is said of all together, with no surfaces. prepare_occt() must have been called. Refused: what
+// OpenCASCADE cannot read, a file without faces or with more than the limit, a face that is no surface of
+// ours. The Error says what is wrong, without the file's name.
+Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& reading,
+                          const TakeSurface& take, const CadProgress& progress = {});
+
+}  // namespace spoonbill

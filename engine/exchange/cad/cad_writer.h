@@ -1,0 +1,20 @@
+// CAD models to the text of STEP and IGES files.
+#pragma once
+
+#include <functional>
+
+#include "engine/exchange/cad_model.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+// A share from 0 to 1 of the work that is done.
+using CadProgress = std::function<void(double)>;
+
+// Each surface becomes a product of its name in STEP (a MANIFOLD_SOLID_BREP where it closes, an open shell
+// where not), a named entity 128 in IGES. prepare_occt() must have been called. The Error says what is wrong,
+// without the file's name.
+Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writing,
+                                 const CadProgress& progress = {});
+
+}  // namespace spoonbill

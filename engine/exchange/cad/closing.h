@@ -1,0 +1,22 @@
+// Surfaces that meet themselves made periodic: CAD files hold them open, with a seam.
+#pragma once
+
+#include "engine/bspline/knot_insertion.h"
+#include "engine/bspline/surface.h"
+
+namespace spoonbill {
+
+// The same surface, periodic in that direction, where its two edges coincide to `tolerance_m`; the surface as
+// it is where they do not, or where an edge is a single point. Its seam is as smooth as the surface is there:
+// as many of the seam's knots go as can without moving a control point of the open form by more than the
+// tolerance. `surface` must be clamped in that direction.
+Surface closed_where_it_meets(const Surface& surface, Direction direction, double tolerance_m);
+
+// Makes the points of an edge that is one point to `tolerance_m` exactly that, in either direction.
+void close_poles(Surface& surface, double tolerance_m);
+
+// The parameters at which a spline of as many control points is interpolated well: the mean of the inner
+// knots that each basis function reaches (Greville 1964), brought into the domain.
+std::vector<double> greville_parameters(const KnotVector& knots);
+
+}  // namespace spoonbill

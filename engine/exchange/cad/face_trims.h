@@ -1,0 +1,16 @@
+// What part of its surface a face is.
+#pragma once
+
+#include <TopoDS_Face.hxx>
+
+namespace spoonbill {
+
+// A range of a surface's parameters.
+struct ParameterBox {
+  double u_start = 0.0, u_end = 0.0, v_start = 0.0, v_end = 0.0;
+};
+
+// Whether some edge of the face leaves the sides of its box, but for edges that the surface's own seam makes.
+bool is_trimmed(const TopoDS_Face& face, const ParameterBox& box);
+
+}  // namespace spoonbill

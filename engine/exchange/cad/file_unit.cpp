@@ -1,0 +1,64 @@
+#include "engine/exchange/cad/file_unit.h"
+
+#include <IGESData_GlobalSection.hxx>
+#include <Interface_FileParameter.hxx>
+#include <Interface_ParamSet.hxx>
+#include <STEPConstruct_UnitContext.hxx>
+#include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
+#include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
+#include <StepRepr_GlobalUnitAssignedContext.hxx>
+#include <cmath>
+#include <utility>
+
+#include "engine/number_text.h"
+
+namespace spoonbill {
+namespace {
+
+std::string name_of(double millimetres) {
+  static constexpr std::pair<double, const char*> known[] = {
+      {1.0, "mm"},     {10.0, "cm"}, {1000.0, "m"}, {25.4, "inch"},
+      {304.8, "foot"}, {1e-3, "um"}, {1e6, "km"},   {0.0254, "thousandth of an inch"}};
+  for (const auto& [length, name] : known) {
+    if (std::abs(millimetres - length) < 1e-6 * length) return name;
+  }
+  return number_text(millimetres) + " mm";
+}
+
+opencascade::handle<StepRepr_GlobalUnitAssignedContext> units_in(
+    const opencascade::handle<Standard_Transient>& entity) {
+  using Plain = StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext;
+  using Uncertain = StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx;
+  if (const auto plain = opencascade::handle<Plain>::DownCast(entity)) {
+    return plain->GlobalUnitAssignedContext();
+  }
+  if (const auto uncertain = opencascade::handle<Uncertain>::DownCast(entity)) {
+    return uncertain->GlobalUnitAssignedContext();
+  }
+  return opencascade::handle<StepRepr_GlobalUnitAssignedContext>::DownCast(entity);
+}
+
+}  // namespace
+
+FileUnit unit_of(const opencascade::handle<StepData_StepModel>& model) {
+  for (int k = 1; k <= model->NbEntities(); ++k) {
+    const auto units = units_in(model->Value(k));
+    if (units.IsNull() || units->Units().IsNull()) continue;
+    STEPConstruct_UnitContext context;
+    context.ComputeFactors(units);
+    if (context.LengthDone()) return {name_of(context.LengthFactor()), context.LengthFactor(), true};
+  }
+  return {"mm", 1.0, false};
+}
+
+FileUnit unit_of(const opencascade::handle<IGESData_IGESModel>& model) {
+  const IGESData_GlobalSection section = model->GlobalSection();
+  const double millimetres = section.UnitValue();
+  const auto parameters = section.Params();
+  constexpr int place_of_unit = 14;
+  const bool declared = !parameters.IsNull() && parameters->NbParams() >= place_of_unit &&
+                        parameters->Param(place_of_unit).ParamType() != Interface_ParamVoid;
+  return {name_of(millimetres), millimetres, declared};
+}
+
+}  // namespace spoonbill

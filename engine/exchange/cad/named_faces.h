@@ -1,0 +1,18 @@
+// The faces of a CAD model, each where its assembly places it and with the name that says most about it.
+#pragma once
+
+#include <TDocStd_Document.hxx>
+#include <TopoDS_Face.hxx>
+#include <string>
+#include <vector>
+
+namespace spoonbill {
+
+struct NamedFace {
+  TopoDS_Face face;
+  std::string name;  // its own, its body's or its product's; a number follows where several share it
+};
+
+std::vector<NamedFace> named_faces(const opencascade::handle<TDocStd_Document>& document);
+
+}  // namespace spoonbill

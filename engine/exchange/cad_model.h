@@ -1,0 +1,50 @@
+// What comes from a CAD system or goes to one: named surfaces and what is known of them. Plain data.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/bspline/surface.h"
+
+namespace spoonbill {
+
+enum class CadFormat { step, iges };
+enum class StepSchema { ap214, ap242 };
+
+struct CadSurface {
+  std::string name;
+  Surface surface;
+  // The largest distance found between the surface and the file's own; 0 where it was taken as it stands.
+  double deviation_m = 0.0;
+  bool trims_dropped = false;  // the file shows less of the surface
+};
+
+struct CadModel {
+  std::vector<CadSurface> surfaces;
+  std::string unit;  // of the file's numbers: "mm", "inch", or as the file names it
+  bool unit_declared = true;
+  std::vector<std::string> notes;  // a line each
+};
+
+struct CadReading {
+  CadFormat format = CadFormat::step;
+  double unit_m = 0.0;           // of the file's numbers, whatever it declares; 0: as declared
+  double tolerance_m = 1e-5;     // of what is approximated
+  std::size_t face_limit = 500;  // files of more are refused
+};
+
+struct CadWriting {
+  CadFormat format = CadFormat::step;
+  StepSchema schema = StepSchema::ap214;  // of STEP
+  std::string unit = "mm";                // mm, cm, m or in
+};
+
+// A file's text and what stands in it.
+struct CadFileContent {
+  std::string text;
+  int solids = 0;
+  int open_shells = 0;
+  std::vector<std::string> notes;
+};
+
+}  // namespace spoonbill

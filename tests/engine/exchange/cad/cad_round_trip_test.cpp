@@ -1,0 +1,208 @@
+// Surfaces out to STEP and IGES and back, and what OpenCASCADE says of the bodies on the way.
+#include <gtest/gtest.h>
+
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepGProp.hxx>
+#include <GProp_GProps.hxx>
+#include <STEPControl_Reader.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS_Shape.hxx>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <numbers>
+
+#include "engine/exchange/cad/body_shape.h"
+#include "engine/exchange/cad/cad_reader.h"
+#include "engine/exchange/cad/cad_writer.h"
+#include "engine/exchange/cad/occt_surface.h"
+#include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad_stream.h"
+#include "tests/engine/bspline/tube.h"
+#include "tests/engine/exchange/cad/cad_surfaces.h"
+#include "tests/engine/exchange/sample_document.h"
+
+namespace spoonbill {
+namespace {
+
+// Files hold about fourteen digits of coordinates in millimetres; the surfaces are up to 2 m wide.
+constexpr double file_tolerance_m = 1e-9;
+
+class CadRoundTrip : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { prepare_occt(); }
+
+  std::filesystem::path write(const CadModel& model, const CadWriting& writing) const {
+    const auto content = write_cad(model, writing);
+    EXPECT_TRUE(content) << content.error().message;
+    return folder_.write(writing.format == CadFormat::step ? "model.step" : "model.iges",
+                         content ? content->text : "");
+  }
+
+  static std::vector<CadSurface> read(const std::filesystem::path& file, CadReading reading) {
+    std::vector<CadSurface> surfaces;
+    const auto model = read_cad(file, reading, [&](CadSurface s) { surfaces.push_back(std::move(s)); });
+    EXPECT_TRUE(model) << model.error().message;
+    return surfaces;
+  }
+
+  void expect_round_trip(const KnownSurface& known, const CadWriting& writing) const {
+    SCOPED_TRACE(known.surface.name + ", " + writing.unit);
+    CadModel model;
+    model.surfaces.push_back(known.surface);
+    CadReading reading;
+    reading.format = writing.format;
+    const auto back = read(write(model, writing), reading);
+    ASSERT_EQ(back.size(), 1u);
+    EXPECT_EQ(back[0].name, known.surface.name);
+    EXPECT_EQ(back[0].deviation_m, 0.0);
+    EXPECT_FALSE(back[0].trims_dropped);
+    // A solid's face turns outwards whichever way the surface did.
+    const bool turned = known.closes && writing.format == CadFormat::step &&
+                        volume_by_quadrature_m3(known.surface.surface) < 0.0;
+    if (turned) {
+      EXPECT_NEAR(volume_by_quadrature_m3(back[0].surface), -volume_by_quadrature_m3(known.surface.surface),
+                  1e-12);
+    } else {
+      EXPECT_LT(largest_distance_m(known.surface.surface, back[0].surface), file_tolerance_m);
+    }
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(CadRoundTrip, EverySurfaceComesBackFromStep) {
+  for (const KnownSurface& known : known_surfaces()) {
+    expect_round_trip(known, {CadFormat::step, StepSchema::ap214, "mm"});
+    expect_round_trip(known, {CadFormat::step, StepSchema::ap242, "in"});
+  }
+}
+
+TEST_F(CadRoundTrip, EverySurfaceComesBackFromIges) {
+  for (const KnownSurface& known : known_surfaces()) {
+    for (const char* unit : {"mm", "in", "m", "cm"}) {
+      expect_round_trip(known, {CadFormat::iges, StepSchema::ap214, unit});
+    }
+  }
+}
+
+TEST_F(CadRoundTrip, PeriodicTubesComeBackPeriodicWithTheSameControlPoints) {
+  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+    for (const Surface& surface : {ellipsoid_tube(9, 12), torus_like(0.04, 0.012)}) {
+      CadModel model;
+      model.surfaces.push_back({"tube", surface, 0.0, false});
+      CadReading reading;
+      reading.format = format;
+      const auto back = read(write(model, {format, StepSchema::ap214, "mm"}), reading);
+      ASSERT_EQ(back.size(), 1u);
+      ASSERT_EQ(back[0].surface.u.is_periodic(), surface.u.is_periodic());
+      ASSERT_EQ(back[0].surface.v.is_periodic(), surface.v.is_periodic());
+      ASSERT_EQ(back[0].surface.net.size(), surface.net.size());
+      for (std::size_t k = 0; k < surface.net.size(); ++k) {
+        EXPECT_NEAR(back[0].surface.net.x[k], surface.net.x[k], 1e-12);
+        EXPECT_NEAR(back[0].surface.net.z[k], surface.net.z[k], 1e-12);
+      }
+    }
+  }
+}
+
+TEST_F(CadRoundTrip, NamesAndTheirOrderAreKept) {
+  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+    CadModel model;
+    const std::vector<std::string> names = {"handle", "a long name with spaces, 'quotes' and (brackets)",
+                                            "L\xc3\xb6"
+                                            "ffel \xe5\x8c\x99",
+                                            "back\\slash"};
+    for (const std::string& name : names) model.surfaces.push_back({name, ellipsoid_tube(8, 8), 0.0, false});
+    CadReading reading;
+    reading.format = format;
+    const auto back = read(write(model, {format, StepSchema::ap214, "mm"}), reading);
+    ASSERT_EQ(back.size(), names.size());
+    for (std::size_t k = 0; k < names.size(); ++k) EXPECT_EQ(back[k].name, names[k]);
+  }
+}
+
+TEST_F(CadRoundTrip, StepFilesHoldOnlyAscii) {
+  CadModel model;
+  model.surfaces.push_back(
+      {"L\xc3\xb6"
+       "ffel",
+       ellipsoid_tube(8, 8), 0.0, false});
+  const auto content = write_cad(model, {});
+  ASSERT_TRUE(content);
+  for (const char letter : content->text) EXPECT_GE(letter, 0);
+  EXPECT_NE(content->text.find("L\\X2\\00F6\\X0\\ffel"), std::string::npos);
+}
+
+TEST_F(CadRoundTrip, BodiesThatCloseAreValidSolidsOfTheirVolume) {
+  for (const KnownSurface& known : known_surfaces()) {
+    SCOPED_TRACE(known.surface.name);
+    CadModel model;
+    model.surfaces.push_back(known.surface);
+    const auto content = write_cad(model, {});
+    ASSERT_TRUE(content) << content.error().message;
+    EXPECT_EQ(content->solids, known.closes ? 1 : 0);
+    EXPECT_EQ(content->open_shells, known.closes ? 0 : 1);
+    const auto file = folder_.write("solid.step", content->text);
+    STEPControl_Reader reader;
+    ASSERT_EQ(reader.ReadFile(file.c_str()), IFSelect_RetDone);
+    reader.TransferRoots();
+    const TopoDS_Shape shape = reader.OneShape();
+    EXPECT_TRUE(BRepCheck_Analyzer(shape).IsValid());
+    EXPECT_EQ(TopExp_Explorer(shape, TopAbs_SOLID).More(), known.closes);
+    if (!known.closes) continue;
+    GProp_GProps properties;
+    BRepGProp::VolumeProperties(shape, properties);
+    const double ours = std::abs(volume_by_quadrature_m3(known.surface.surface));
+    // OpenCASCADE integrates over Gauss points of its own; both are exact to rounding for cubic pieces.
+    EXPECT_NEAR(properties.Mass() * 1e-9, ours, 1e-6 * ours);
+    EXPECT_GT(properties.Mass(), 0.0);
+  }
+}
+
+TEST_F(CadRoundTrip, SchemaAndUnitAreDeclared) {
+  CadModel model;
+  model.surfaces.push_back({"tube", ellipsoid_tube(8, 8), 0.0, false});
+  const auto text = [&](StepSchema schema, const char* unit) {
+    return write_cad(model, {CadFormat::step, schema, unit})->text;
+  };
+  EXPECT_NE(text(StepSchema::ap214, "mm").find("AUTOMOTIVE_DESIGN"), std::string::npos);
+  EXPECT_NE(text(StepSchema::ap242, "mm").find("AP242_MANAGED_MODEL_BASED_3D_ENGINEERING"),
+            std::string::npos);
+  EXPECT_NE(text(StepSchema::ap214, "mm").find("SI_UNIT(.MILLI.,.METRE.)"), std::string::npos);
+  EXPECT_NE(text(StepSchema::ap214, "m").find("SI_UNIT($,.METRE.)"), std::string::npos);
+  EXPECT_NE(text(StepSchema::ap214, "cm").find("SI_UNIT(.CENTI.,.METRE.)"), std::string::npos);
+  EXPECT_NE(text(StepSchema::ap214, "in").find("'INCH'"), std::string::npos);
+}
+
+TEST(CadStream, SurfacesComeBackToTheBit) {
+  for (const KnownSurface& known : known_surfaces()) {
+    CadSurface surface = known.surface;
+    surface.deviation_m = 1.0 / 3.0;
+    surface.trims_dropped = known.closes;
+    const auto back = cad_surface_from_json(json_to_line(cad_surface_to_json(surface)), "file");
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->name, surface.name);
+    EXPECT_EQ(back->deviation_m, surface.deviation_m);
+    EXPECT_EQ(back->trims_dropped, surface.trims_dropped);
+    EXPECT_EQ(back->surface.u, surface.surface.u);
+    EXPECT_EQ(back->surface.v, surface.surface.v);
+    EXPECT_EQ(back->surface.net.x, surface.surface.net.x);
+    EXPECT_EQ(back->surface.net.y, surface.surface.net.y);
+    EXPECT_EQ(back->surface.net.z, surface.surface.net.z);
+  }
+}
+
+TEST(CadStream, NamesAreCleaned) {
+  EXPECT_EQ(clean_cad_name("  a\nb\t ", "x"), "a b");
+  EXPECT_EQ(clean_cad_name("", "x"), "x");
+  EXPECT_EQ(clean_cad_name("\x01\x7f", "x"), "x");
+  EXPECT_EQ(clean_cad_name("a\xff\xfe", "x"), "a");
+  EXPECT_EQ(clean_cad_name("a\xed\xa0\x80z", "x"), "a   z");  // a surrogate
+  EXPECT_EQ(clean_cad_name(std::string(300, 'a'), "x").size(), 200u);
+  // Not in the middle of a letter.
+  EXPECT_EQ(clean_cad_name(std::string(199, 'a') + "\xc3\xb6", "x").size(), 199u);
+}
+
+}  // namespace
+}  // namespace spoonbill

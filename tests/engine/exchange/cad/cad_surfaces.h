@@ -1,0 +1,28 @@
+// Surfaces of every kind that goes to CAD systems, and how far two of them are apart.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/exchange/cad_model.h"
+
+namespace spoonbill {
+
+// Open sheets, clamped or not, of degrees 1 to 5; periodic tubes with and without poles; bodies that close.
+struct KnownSurface {
+  CadSurface surface;
+  bool closes = false;
+};
+std::vector<KnownSurface> known_surfaces();
+
+// Periodic both ways, about z; normals outward.
+Surface torus_like(double ring_m, double tube_m);
+
+// The largest distance at equal parameters.
+double largest_distance_m(const Surface& a, const Surface& b);
+
+// By the divergence theorem over Gauss points, exact for polynomial pieces of degrees up to 5.
+double volume_by_quadrature_m3(const Surface& surface);
+double area_by_quadrature_m2(const Surface& surface);
+
+}  // namespace spoonbill

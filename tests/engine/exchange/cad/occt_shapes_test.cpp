@@ -1,0 +1,221 @@
+// Fifty shapes of OpenCASCADE's own builders, written by OpenCASCADE, read by us, and compared with what was
+// built.
+#include "tests/engine/exchange/cad/occt_shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <BRepAdaptor_Surface.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepClass_FaceClassifier.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
+#include <BRepGProp.hxx>
+#include <BRepTools.hxx>
+#include <GProp_GProps.hxx>
+#include <IGESControl_Writer.hxx>
+#include <STEPControl_Writer.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/bspline/evaluate.h"
+#include "engine/exchange/cad/cad_reader.h"
+#include "engine/exchange/cad/session.h"
+#include "tests/engine/exchange/cad/cad_surfaces.h"
+#include "tests/engine/exchange/sample_document.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double tolerance_m = 1e-5;
+// OpenCASCADE writes coordinates of 100 mm to about 1e-12 mm, and some curved faces of IGES to its own 1e-4
+// mm.
+constexpr double file_tolerance_m = 2e-7;
+
+Vector3 metres(const gp_Pnt& point) {
+  return 1e-3 * Vector3(point.X(), point.Y(), point.Z());
+}
+
+// Points of the faces, none nearer to an edge than the classifier can tell.
+std::vector<Vector3> points_on(const TopoDS_Shape& shape) {
+  constexpr int across = 6;
+  std::vector<Vector3> points;
+  for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next()) {
+    const TopoDS_Face& face = TopoDS::Face(faces.Current());
+    double u_start, u_end, v_start, v_end;
+    BRepTools::UVBounds(face, u_start, u_end, v_start, v_end);
+    const BRepAdaptor_Surface surface(face);
+    for (int i = 0; i < across; ++i) {
+      for (int j = 0; j < across; ++j) {
+        const double u = u_start + (u_end - u_start) * (i + 0.5) / across;
+        const double v = v_start + (v_end - v_start) * (j + 0.5) / across;
+        BRepClass_FaceClassifier at(face, gp_Pnt2d(u, v), 1e-6);
+        if (at.State() == TopAbs_IN) points.push_back(metres(surface.Value(u, v)));
+      }
+    }
+  }
+  return points;
+}
+
+// The distance of a point from a surface: the nearest of a grid, followed by Gauss-Newton steps.
+class NearestPoint {
+ public:
+  explicit NearestPoint(const Surface& surface) : surface_(surface) {
+    for (const double u : uniform_parameters(surface.u, 33)) {
+      for (const double v : uniform_parameters(surface.v, 33)) {
+        grid_.push_back({u, v, position(surface, u, v)});
+      }
+    }
+  }
+
+  double distance_m(const Vector3& from) const {
+    std::vector<const Sample*> best;
+    for (const Sample& sample : grid_) best.push_back(&sample);
+    std::partial_sort(best.begin(), best.begin() + 4, best.end(), [&](const Sample* a, const Sample* b) {
+      return (a->at - from).squaredNorm() < (b->at - from).squaredNorm();
+    });
+    double least = 1e30;
+    for (int k = 0; k < 4; ++k) least = std::min(least, polished(*best[static_cast<std::size_t>(k)], from));
+    return least;
+  }
+
+ private:
+  struct Sample {
+    double u, v;
+    Vector3 at;
+  };
+
+  double polished(const Sample& start, const Vector3& from) const {
+    double u = start.u, v = start.v, least = (start.at - from).norm();
+    for (int step = 0; step < 20; ++step) {
+      const SurfacePoint at = evaluate(surface_, u, v);
+      const Vector3 way = from - at.position_m;
+      least = std::min(least, way.norm());
+      const double a = at.du.squaredNorm() + 1e-18, b = at.du.dot(at.dv), c = at.dv.squaredNorm() + 1e-18;
+      const double determinant = a * c - b * b;
+      if (!(determinant > 1e-12 * a * c)) break;
+      u = surface_.u.into_domain(u + (c * way.dot(at.du) - b * way.dot(at.dv)) / determinant);
+      v = surface_.v.into_domain(v + (a * way.dot(at.dv) - b * way.dot(at.du)) / determinant);
+    }
+    return least;
+  }
+
+  Surface surface_;
+  std::vector<Sample> grid_;
+};
+
+double area_m2(const TopoDS_Shape& shape) {
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(shape, properties);
+  return properties.Mass() * 1e-6;
+}
+
+struct ReadBack {
+  std::vector<CadSurface> surfaces;
+  bool trimmed = false;
+  double deviation_m = 0.0;
+};
+
+void expect_same_shape(const TopoDS_Shape& shape, const ReadBack& back) {
+  ASSERT_FALSE(back.surfaces.empty());
+  EXPECT_LE(back.deviation_m, tolerance_m);
+  std::vector<NearestPoint> surfaces;
+  for (const CadSurface& part : back.surfaces) surfaces.emplace_back(part.surface);
+  double farthest = 0.0;
+  const auto points = points_on(shape);
+  EXPECT_GT(points.size(), 10u);
+  for (const Vector3& point : points) {
+    double least = 1e30;
+    for (const NearestPoint& surface : surfaces) least = std::min(least, surface.distance_m(point));
+    farthest = std::max(farthest, least);
+  }
+  EXPECT_LE(farthest, back.deviation_m + file_tolerance_m);
+
+  // What is not trimmed lies on the shape, all of it and no more.
+  double area = 0.0;
+  for (const CadSurface& part : back.surfaces) {
+    area += area_by_quadrature_m2(part.surface);
+    if (part.trims_dropped) continue;
+    for (const double u : uniform_parameters(part.surface.u, 4)) {
+      for (const double v : uniform_parameters(part.surface.v, 4)) {
+        const Vector3 at = 1e3 * position(part.surface, u, v);
+        const BRepExtrema_DistShapeShape distance(
+            BRepBuilderAPI_MakeVertex(gp_Pnt(at.x(), at.y(), at.z())).Shape(), shape);
+        EXPECT_LE(1e-3 * distance.Value(), part.deviation_m + file_tolerance_m);
+      }
+    }
+  }
+  // Quadrature over polynomial pieces of a root is good to 1e-4; so is what a deviation of 0.01 mm does to
+  // faces of a centimetre, but for its slope, which is a hundred times it by a piece's length.
+  if (!back.trimmed) {
+    EXPECT_NEAR(area, area_m2(shape), 2e-3 * area);
+  } else {
+    EXPECT_GT(area, (1.0 - 2e-3) * area_m2(shape));
+  }
+}
+
+class OcctShapes : public testing::TestWithParam<CadFormat> {
+ protected:
+  static void SetUpTestSuite() { prepare_occt(); }
+
+  std::filesystem::path write(const TopoDS_Shape& shape) const {
+    choose_unit("mm");
+    if (GetParam() == CadFormat::step) {
+      const auto file = folder_.path() / "shape.step";
+      STEPControl_Writer writer;
+      EXPECT_EQ(writer.Transfer(shape, STEPControl_AsIs), IFSelect_RetDone);
+      EXPECT_EQ(writer.Write(file.c_str()), IFSelect_RetDone);
+      return file;
+    }
+    const auto file = folder_.path() / "shape.iges";
+    IGESControl_Writer writer;
+    EXPECT_TRUE(writer.AddShape(shape));
+    writer.ComputeModel();
+    EXPECT_TRUE(writer.Write(file.c_str()));
+    return file;
+  }
+
+  ReadBack read(const std::filesystem::path& file) const {
+    CadReading reading;
+    reading.format = GetParam();
+    reading.tolerance_m = tolerance_m;
+    ReadBack back;
+    const auto model = read_cad(file, reading, [&](CadSurface part) {
+      back.trimmed = back.trimmed || part.trims_dropped;
+      back.deviation_m = std::max(back.deviation_m, part.deviation_m);
+      back.surfaces.push_back(std::move(part));
+    });
+    EXPECT_TRUE(model) << model.error().message;
+    return back;
+  }
+
+  void expect_read_without_loss(const std::vector<NamedShape>& shapes) const {
+    for (const NamedShape& named : shapes) {
+      SCOPED_TRACE(named.name);
+      expect_same_shape(named.shape, read(write(named.shape)));
+    }
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_P(OcctShapes, FiftyAndMoreAreTried) {
+  EXPECT_GE(solid_shapes().size() + single_faces().size(), 50u);
+}
+
+TEST_P(OcctShapes, SolidsAreReadWithoutLoss) {
+  expect_read_without_loss(solid_shapes());
+}
+
+TEST_P(OcctShapes, FacesAreReadWithoutLoss) {
+  expect_read_without_loss(single_faces());
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, OcctShapes, testing::Values(CadFormat::step, CadFormat::iges),
+                         [](const auto& format) {
+                           return std::string(format.param == CadFormat::step ? "Step" : "Iges");
+                         });
+
+}  // namespace
+}  // namespace spoonbill
