@@ -131,14 +131,6 @@ Result<Pose> parse_pose(std::string_view text) {
   return pose;
 }
 
-Result<double> parse_length(std::string_view text, Range<double> range_m) {
-  const auto length = length_m(text);
-  if (length && range_m.contains(*length)) return *length;
-  return Error{"'" + std::string(text.substr(0, 40)) +
-               "' is not a length with its unit (mm, cm, m or in) from " + number_text(1e3 * range_m.low) +
-               " mm to " + number_text(1e3 * range_m.high) + " mm"};
-}
-
 Result<LengthUnit> parse_unit(std::string_view text) {
   if (text == "inch") text = "in";
   for (const LengthUnit& unit : length_units) {

@@ -31,10 +31,6 @@ Result<double> parse_length(std::string_view text, Range<double> range_m);
 // those before it that have none.
 Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t count, Range<double> range_m);
 
-// "mm", "cm", "m" or "in".
-// "0.05mm": a number with its unit, within the range.
-Result<double> parse_length(std::string_view text, Range<double> range_m);
-
 // "mm", "cm", "m" or "in"; "inch" too.
 Result<LengthUnit> parse_unit(std::string_view text);
 
