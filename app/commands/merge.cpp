@@ -15,6 +15,7 @@
 #include "app/commands/option_values.h"
 #include "app/report/fact_sheet.h"
 #include "engine/exchange/document.h"
+#include "engine/merging/intersection_merge.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -22,6 +23,7 @@ namespace {
 
 constexpr Range<double> tolerance_range_m{1e-9, 0.1};
 constexpr Range<double> blend_range_m{0.0, 1.0};
+constexpr Range<double> fillet_range_m{0.0, 1.0};
 constexpr int highest_continuity = max_degree - 1;
 
 struct MergeOptions {
@@ -29,6 +31,8 @@ struct MergeOptions {
   std::filesystem::path out;
   std::string name;
   MergeRequest request;
+  bool crossing = false;
+  double fillet_m = 0.0;
   bool json = false;
 };
 
@@ -101,7 +105,7 @@ void report(const MergeOptions& options, const std::vector<Body>& patches, const
                 ", degrees " + std::to_string(u.degree()) + " and " + std::to_string(v.degree()),
             "control_points", {u.control_point_count(), v.control_point_count()});
   facts.add("", "", "degrees", {u.degree(), v.degree()});
-  const int continuity = options.request.join.continuity;
+  const int continuity = options.crossing && options.fillet_m == 0.0 ? 0 : options.request.join.continuity;
   facts.add("Continuity", "C" + std::to_string(continuity), "continuity", continuity);
   facts.add("Deviation", "at most " + short_length_text(merged.deviation_m) + " outside blends",
             "deviation_m", merged.deviation_m);
@@ -129,6 +133,19 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   return document;
 }
 
+// Those that cross are merged one after the other.
+Result<Merged> merged_surface(const std::vector<Surface>& patches, const MergeOptions& options) {
+  if (!options.crossing) return merge(patches, options.request);
+  Merged merged{patches[0], 0.0, {}};
+  for (std::size_t p = 1; p < patches.size(); ++p) {
+    auto next = merge_crossing(merged.surface, patches[p], {options.request.join, options.fillet_m});
+    if (!next) return Error{"patch " + std::to_string(p + 1) + ": " + next.error().message};
+    merged.surface = std::move(next->surface);
+    merged.deviation_m += next->deviation_m;
+  }
+  return merged;
+}
+
 Status merge_models(const MergeOptions& options, Console& console) {
   std::optional<Document> first;
   std::vector<Body> bodies;
@@ -142,7 +159,7 @@ Status merge_models(const MergeOptions& options, Console& console) {
     }
     if (!first) first = std::move(document).value();
   }
-  const auto merged = merge(patches, options.request);
+  const auto merged = merged_surface(patches, options);
   if (!merged) return merged.error();
   const Document document = merged_document(*first, bodies, options, merged->surface);
   if (Status written = write_document(document, options.out); !written) return written;
@@ -210,6 +227,13 @@ CommandEntry add_merge(CLI::App& root) {
           },
           "Join these edges, instead of those found: 1.v_end:2.v_start; once for each joint")
       ->type_name("EDGE:EDGE");
+  CLI::Option* crossing = parser->add_flag("--intersect", options->crossing,
+                                           "The patches cross: each keeps what lies before the other");
+  add_parsed_option(*parser, "--fillet", "Round the corner in which they cross with this radius", "LENGTH",
+                    length_in(fillet_range_m), [options](double length_m) { options->fillet_m = length_m; });
+  parser->get_option("--fillet")->needs(crossing);
+  crossing->excludes(parser->get_option("--edges"));
+  crossing->excludes(parser->get_option("--blend"));
   add_json_option(*parser, options->json);
   return {parser, [options](Console& console) { return merge_models(*options, console); }};
 }

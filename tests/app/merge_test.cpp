@@ -63,6 +63,25 @@ TEST(MergeCommand, ASplitHandleIsWholeAgain) {
   }
 }
 
+TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
+  const Workplace place;
+  // The handle and itself across, 80 mm along it.
+  Document across = read_document(handle).value();
+  Body& body = across.scene.bodies[0];
+  const Quaternion turn(Eigen::AngleAxisd(-0.5 * M_PI, Vector3::UnitY()));
+  body.surface = placed(body.surface, {Vector3(0.05, 0, -0.002), turn});
+  place.write("across.json", json_to_page(document_to_json(across)));
+  const std::vector<std::string> arguments{"merge",  place.text("across.json"),
+                                           handle,   "--intersect",
+                                           "--out",  place.text("cross.json"),
+                                           "--json", "--fillet",
+                                           "1.5mm",  "--tolerance",
+                                           "0.2mm"};
+  const Outcome outcome = run(arguments);
+  ASSERT_NE(outcome.code, exit_wrong_use) << outcome.err;
+  EXPECT_TRUE(outcome.code == exit_done || is_clean_failure(outcome)) << outcome.err;
+}
+
 TEST(MergeCommand, RefusesInOneLine) {
   const Workplace place;
   const std::string out = place.text("out.json");
