@@ -22,6 +22,21 @@ double thickness_for(Body body, double size_m) {
   return thickness;
 }
 
+// The largest number of nodes with which the body has a lattice: scans have places where cells of the usual
+// size would fold.
+Status choose_node_budget(Body& body) {
+  const int usual = body.lattice.node_budget;
+  Status first;
+  for (const int share : {1, 2, 4, 8, 16}) {
+    body.lattice.node_budget = std::max(node_budget_range.low, usual / share);
+    const auto lattice = lattice_of(body);
+    if (lattice) return {};
+    if (first) first = lattice.error();
+  }
+  body.lattice.node_budget = usual;
+  return first;
+}
+
 }  // namespace
 
 Result<FittedDocument> fitted_document(const ScanFit& fit, const std::string& name, const Material& clay) {
@@ -39,9 +54,8 @@ Result<FittedDocument> fitted_document(const ScanFit& fit, const std::string& na
     body.surface = fitted.surface;
     body.material = clay;
     if (fitted.kind != ShapeKind::closed) body.shell_thickness_m = thickness_for(body, fitted.size_m.norm());
-    if (const auto lattice = lattice_of(body); !lattice) {
-      result.remarks.push_back("body \"" + body.name +
-                               "\" cannot be simulated yet: " + lattice.error().message);
+    if (Status fits = choose_node_budget(body); !fits) {
+      result.remarks.push_back("body \"" + body.name + "\" cannot be simulated yet: " + fits.error().message);
     }
     result.document.scene.bodies.push_back(std::move(body));
   }
