@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
-#include <thread>
 
 #include "app/program.h"
 #include "engine/bspline/evaluate.h"
@@ -131,6 +131,21 @@ TEST_F(ConvertTest, AStepFileOfAnotherUnitOrNone) {
   EXPECT_NEAR(named["size_mm"][0].get<double>(), 1000.0, 1.0);
 }
 
+TEST_F(ConvertTest, InfoTellsWhatACadFileHolds) {
+  convert_for_facts({handle_, place_.text("a.step"), "--unit", "in"});
+  const Outcome told = run_process(SPOONBILL_PROGRAM, {"info", place_.text("a.step"), "--json"});
+  ASSERT_EQ(told.code, exit_done) << told.err;
+  const Json facts = json_of(told.out);
+  EXPECT_EQ(facts["kind"], "step");
+  EXPECT_EQ(facts["unit_in"], "inch");
+  EXPECT_EQ(facts["bodies"].size(), 1u);
+  EXPECT_EQ(facts["bodies"][0]["name"], "handle");
+  EXPECT_NEAR(facts["size_mm"][0].get<double>(), 100.0, 0.1);
+  const Outcome refused = run_process(SPOONBILL_PROGRAM, {"info", place_.text("missing.igs")});
+  EXPECT_EQ(refused.code, exit_failed);
+  EXPECT_TRUE(is_clean_failure(refused)) << refused.err;
+}
+
 TEST_F(ConvertTest, WhatMakesNoSenseIsRefused) {
   expect_failure({handle_, place_.text("a.txt")}, "names no format");
   expect_failure({place_.text("script.json.txt"), place_.text("a.step")}, "is no model by its name");
@@ -143,7 +158,6 @@ TEST_F(ConvertTest, WhatMakesNoSenseIsRefused) {
   expect_failure({handle_, place_.text("a.iges"), "--schema", "ap242"}, "is no STEP file");
   expect_failure({handle_, place_.text("a.step"), "--tolerance", "1mm"}, "is taken exactly");
   expect_failure({handle_, place_.text("a.3mf"), "--unit", "in"}, "is written in millimetres");
-  expect_failure({handle_, place_.text("a.stl"), "--chord", "0.0002mm"}, "choose a larger --chord");
   expect_failure({handle_, place_.text("a.stl"), "--chord", "5"}, "is not a length", exit_wrong_use);
   expect_failure({handle_, place_.text("a.stl"), "--chord", "0mm"}, "is not a length", exit_wrong_use);
   expect_failure({handle_, place_.text("a.stl"), "--chord", "nanmm"}, "is not a length", exit_wrong_use);
@@ -170,23 +184,33 @@ TEST_F(ConvertTest, AnOlderFileStaysWhenAConversionFails) {
   }
 }
 
-TEST_F(ConvertTest, CtrlCLeavesTheOlderFile) {
-  place_.write("a.obj", "precious");
-  const std::string out = place_.text("a.obj");
+// With Ctrl+C pressed before it begins, which waits for the first place where it can stop.
+int exit_code_when_interrupted(const std::string& in, const std::string& out) {
   const pid_t process = fork();
   if (process == 0) {
+    sigset_t interrupt;
+    sigemptyset(&interrupt);
+    sigaddset(&interrupt, SIGINT);
+    sigprocmask(SIG_BLOCK, &interrupt, nullptr);
+    raise(SIGINT);
     if (freopen("/dev/null", "w", stderr) == nullptr) _exit(9);
-    execl(SPOONBILL_PROGRAM, SPOONBILL_PROGRAM, "convert", handle_.c_str(), out.c_str(), "--chord",
-          "0.0005mm", nullptr);
+    execl(SPOONBILL_PROGRAM, SPOONBILL_PROGRAM, "convert", in.c_str(), out.c_str(), nullptr);
     _exit(9);
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(150));
-  kill(process, SIGINT);
   int status = 0;
   waitpid(process, &status, 0);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), exit_failed);
-  EXPECT_EQ(content_of(place_.path("a.obj")), "precious");
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST_F(ConvertTest, CtrlCLeavesTheOlderFile) {
+  convert_for_facts({handle_, place_.text("in.step")});
+  for (const char* name : {"a.obj", "a.3mf", "a.step", "a.igs", "a.json"}) {
+    SCOPED_TRACE(name);
+    const std::string in = std::string(name) == "a.json" ? place_.text("in.step") : handle_;
+    const auto old = place_.write(name, "precious");
+    EXPECT_EQ(exit_code_when_interrupted(in, old.string()), exit_failed);
+    EXPECT_EQ(content_of(old), "precious");
+  }
 }
 
 }  // namespace
