@@ -8,10 +8,14 @@
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
+#include "app/files/cad_file.h"
 #include "app/files/file_kind.h"
+#include "app/interrupt.h"
+#include "app/report/conversion_facts.h"
 #include "app/report/document_facts.h"
 #include "app/report/hash_text.h"
 #include "app/report/map_progress.h"
+#include "app/report/progress_bar.h"
 #include "app/session/session.h"
 #include "engine/number_text.h"
 #include "haptic/recording.h"
@@ -97,7 +101,28 @@ Status describe_material(FactSheet& facts, const std::filesystem::path& file) {
   return {};
 }
 
+Status describe_cad(FactSheet& facts, const std::filesystem::path& file, Console& console) {
+  InterruptWatch interrupt;
+  ProgressBar bar(console, "Reading", false);
+  CadReading reading;
+  reading.format = cad_format_of(file);
+  CadChild child;
+  child.stop = [&] { return interrupt.requested(); };
+  child.progress = [&](double share) { bar.show(static_cast<std::uint64_t>(1000.0 * share), 1000); };
+  const auto model = read_cad_file(file, reading, child);
+  if (interrupt.requested()) interrupt.answer();
+  if (!model) return model.error();
+  facts.add("Kind", reading.format == CadFormat::step ? "STEP file" : "IGES file", "kind",
+            reading.format == CadFormat::step ? "step" : "iges");
+  add_unit_facts(facts, model->unit, model->unit_declared);
+  add_surface_facts(facts, model->surfaces);
+  for (const std::string& note : model->notes) facts.add("Note", note, "", nullptr);
+  facts.add("", "", "notes", model->notes);
+  return {};
+}
+
 Status describe(FactSheet& facts, const std::filesystem::path& file, Console& console) {
+  if (is_cad_file(file)) return describe_cad(facts, file, console);
   const auto kind = kind_of_file(file);
   if (!kind) return kind.error();
   switch (kind.value()) {
@@ -125,7 +150,8 @@ Status info(const InfoOptions& options, Console& console) {
 
 CommandEntry add_info(CLI::App& root) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* parser = root.add_subcommand("info", "Tell what a model, recording, script or material holds");
+  CLI::App* parser =
+      root.add_subcommand("info", "Tell what a model, recording, script, material or CAD file holds");
   parser->footer(
       "A model is reported with its size, its surfaces' degrees, control points and knots, and the lattice "
       "that a\n"
@@ -133,7 +159,9 @@ CommandEntry add_info(CLI::App& root) {
       "sculpting,\n"
       "and what the lattice achieves of the material's elasticity along each axis.\n"
       "Example: spoonbill info assets/models/spoon-handle.json");
-  parser->add_option("FILE", options->file, "A document, script or material (.json), or a recording")
+  parser
+      ->add_option("FILE", options->file,
+                   "A document, script or material (.json), a recording, or a STEP or IGES file")
       ->required();
   add_json_option(*parser, options->json);
   return {parser, [options](Console& console) { return info(*options, console); }};

@@ -1,9 +1,9 @@
 #include "app/convert/cad_document.h"
 
-#include <filesystem>
 #include <utility>
 
-#include "app/assets_folder.h"
+#include "app/start/shipped_materials.h"
+#include "app/start/starting_document.h"
 
 namespace spoonbill {
 
@@ -13,16 +13,15 @@ Result<Document> document_of(const CadModel& model, const std::string& name) {
     return Error{"has " + std::to_string(model.surfaces.size()) + " faces, and a document holds " +
                  std::to_string(most) + " bodies; export fewer faces"};
   }
-  const auto material =
-      read_material(std::filesystem::path(assets_folder) / "materials" / "modelling-clay.json");
+  const auto material = shipped_material("modelling-clay");
   if (!material) return material.error();
-  Document document;
-  document.name = name;
+  Document document = starting_document(name, model.surfaces.front().surface, material.value());
+  const Body first = document.scene.bodies.front();
+  document.scene.bodies.clear();
   for (const CadSurface& surface : model.surfaces) {
-    Body body;
+    Body body = first;
     body.name = surface.name;
     body.surface = surface.surface;
-    body.material = material.value();
     document.scene.bodies.push_back(std::move(body));
   }
   return document;

@@ -10,8 +10,8 @@
 
 namespace spoonbill {
 
-// Each becomes a body of modelling clay; the other settings are those that a new document has. Refused: more
-// surfaces than a document has bodies.
+// Each becomes a body of modelling clay; the other settings are those that a new document of the first has.
+// Refused: more surfaces than a document has bodies.
 Result<Document> document_of(const CadModel& model, const std::string& name);
 
 }  // namespace spoonbill

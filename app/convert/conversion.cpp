@@ -7,7 +7,6 @@
 
 #include "app/convert/cad_document.h"
 #include "app/files/output_file.h"
-#include "engine/bspline/evaluate.h"
 #include "engine/exchange/cad_stream.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/mesh_export/mesh_writer.h"
@@ -18,7 +17,6 @@ namespace spoonbill {
 namespace {
 
 constexpr double usual_chord_m = 5e-5, usual_tolerance_m = 1e-5;
-constexpr int size_samples = 100;
 // Of the whole work; writing takes the rest.
 constexpr double share_of_reading = 0.5;
 
@@ -84,20 +82,6 @@ Status check_options(const ConversionRequest& request) {
   return {};
 }
 
-Vector3 size_of(const std::vector<CadSurface>& surfaces) {
-  Vector3 low = Vector3::Constant(1e30), high = -low;
-  for (const CadSurface& part : surfaces) {
-    for (const double u : uniform_parameters(part.surface.u, size_samples)) {
-      for (const double v : uniform_parameters(part.surface.v, size_samples)) {
-        const Vector3 point = position(part.surface, u, v);
-        low = low.cwiseMin(point);
-        high = high.cwiseMax(point);
-      }
-    }
-  }
-  return high - low;
-}
-
 Result<CadModel> read_native(const ConversionRequest& request, ConversionReport& report) {
   auto document = read_document(request.in);
   if (!document) return document.error();
@@ -124,10 +108,6 @@ Result<CadModel> read_model(const ConversionRequest& request, const CadChild& ch
   if (request.unit) reading.unit_m = request.unit->metres;
   auto model = read_cad_file(request.in, reading, child);
   if (!model) return model.error();
-  for (const CadSurface& surface : model->surfaces) {
-    if (!surface.trims_dropped) continue;
-    model->notes.push_back("'" + surface.name + "' is trimmed; the whole surface is kept, its trims are not");
-  }
   return model;
 }
 
@@ -213,7 +193,6 @@ Result<ConversionReport> convert_file(const ConversionRequest& request, const Co
   report.unit_in = model->unit;
   report.unit_declared = model->unit_declared;
   report.notes.insert(report.notes.end(), model->notes.begin(), model->notes.end());
-  report.size_m = size_of(model->surfaces);
   if (watch.progress) watch.progress(share_of_reading);
   if (watch.stop && watch.stop()) return about(request.out, "stopped");
 

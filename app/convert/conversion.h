@@ -10,7 +10,6 @@
 #include "app/files/cad_file.h"
 #include "app/files/length_unit.h"
 #include "engine/exchange/cad_model.h"
-#include "engine/pose.h"
 #include "engine/result.h"
 
 namespace spoonbill {
@@ -29,7 +28,6 @@ struct ConversionRequest {
 struct ConversionReport {
   std::string unit_in, unit_out;
   bool unit_declared = true;
-  Vector3 size_m = Vector3::Zero();
   std::vector<CadSurface> surfaces;
   std::optional<int> solids, open_shells;               // of a CAD file that was written
   std::optional<std::size_t> triangles, closed_meshes;  // of a mesh that was written

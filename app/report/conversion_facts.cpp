@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/report/quantity_text.h"
+#include "app/report/surface_extent.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -28,33 +29,45 @@ Json direction_json(const KnotVector& knots) {
           {"periodic", knots.is_periodic()}};
 }
 
+Json millimetres_of(const Vector3& size_m) {
+  return {1e3 * size_m.x(), 1e3 * size_m.y(), 1e3 * size_m.z()};
+}
+
 }  // namespace
 
 void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces) {
   Json bodies = Json::array();
+  Box all = extent_of(surfaces.front().surface);
   double deviation_m = 0.0;
   for (const CadSurface& part : surfaces) {
-    std::string text = net_text(part.surface);
+    const Box extent = extent_of(part.surface);
+    const Vector3 size = extent.high - extent.low;
+    all = joined(all, extent);
+    std::string text = size_text(size) + ", " + net_text(part.surface);
     if (part.deviation_m > 0.0) text += ", approximated within " + short_millimetres(part.deviation_m);
     facts.add("Body", part.name + ": " + text, "", nullptr);
     bodies.push_back({{"name", part.name},
+                      {"size_mm", millimetres_of(size)},
                       {"u", direction_json(part.surface.u)},
                       {"v", direction_json(part.surface.v)},
                       {"deviation_m", part.deviation_m},
                       {"trims_dropped", part.trims_dropped}});
     deviation_m = std::max(deviation_m, part.deviation_m);
   }
+  const Vector3 size = all.high - all.low;
+  facts.add("Size", size_text(size), "size_mm", millimetres_of(size));
   facts.add("", "", "bodies", std::move(bodies));
   facts.add("", "", "deviation_m", deviation_m);
 }
 
+void add_unit_facts(FactSheet& facts, const std::string& unit, bool declared) {
+  facts.add("Unit read", declared ? unit : unit + " (not declared)", "unit_in", unit);
+  facts.add("", "", "unit_declared", declared);
+}
+
 void add_conversion_facts(FactSheet& facts, const ConversionReport& report) {
-  const std::string from_where = report.unit_declared ? "" : " (not declared)";
-  facts.add("Unit read", report.unit_in + from_where, "unit_in", report.unit_in);
-  facts.add("", "", "unit_declared", report.unit_declared);
+  add_unit_facts(facts, report.unit_in, report.unit_declared);
   facts.add("Unit written", report.unit_out, "unit_out", report.unit_out);
-  const Vector3& size = report.size_m;
-  facts.add("Size", size_text(size), "size_mm", {1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z()});
   add_surface_facts(facts, report.surfaces);
   if (report.solids) {
     facts.add("Solids", std::to_string(*report.solids), "solids", *report.solids);

@@ -6,31 +6,13 @@
 
 #include "app/report/quantity_text.h"
 #include "app/report/region_text.h"
+#include "app/report/surface_extent.h"
 #include "engine/bspline/surface.h"
 #include "engine/exchange/region_json.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {
-
-// Fine enough to find a size to a thousandth of it.
-constexpr int size_samples = 200;
-
-Vector3 size_of(const Surface& surface) {
-  Vector3 low = Vector3::Constant(1e30);
-  Vector3 high = -low;
-  const auto at = [](const KnotVector& knots, int i) {
-    return knots.domain_start() + (knots.domain_end() - knots.domain_start()) * i / size_samples;
-  };
-  for (int i = 0; i <= size_samples; ++i) {
-    for (int j = 0; j <= size_samples; ++j) {
-      const Vector3 point = evaluate(surface, at(surface.u, i), at(surface.v, j)).position_m;
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
-    }
-  }
-  return high - low;
-}
 
 Json direction_facts(const KnotVector& knots) {
   return {{"degree", knots.degree()},
@@ -92,7 +74,8 @@ void add_document_facts(FactSheet& facts, const Document& document) {
 }
 
 void add_size_fact(FactSheet& facts, const Surface& surface) {
-  const Vector3 size = size_of(surface);
+  const Box extent = extent_of(surface);
+  const Vector3 size = extent.high - extent.low;
   facts.add("Size", size_text(size), "size_mm", {1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z()});
 }
 

@@ -41,7 +41,7 @@ def material(name):
 
 def main():
     document = {
-        "spoonbill_document": 1,
+        "spoonbill_document": 2,
         "name": "bowl",
         "body": {
             "name": "bowl",

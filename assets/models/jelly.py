@@ -39,7 +39,7 @@ def material(name):
 
 def main():
     document = {
-        "spoonbill_document": 1,
+        "spoonbill_document": 2,
         "name": "jelly",
         "body": {
             "name": "jelly",

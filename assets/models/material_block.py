@@ -63,7 +63,7 @@ def main():
     name = sys.argv[1]
     folder = __file__.rsplit("/", 1)[0]
     document = {
-        "spoonbill_document": 1,
+        "spoonbill_document": 2,
         "name": name + "-block",
         "body": {
             "name": "block",

@@ -46,7 +46,7 @@ def material(name):
 
 def main():
     document = {
-        "spoonbill_document": 1,
+        "spoonbill_document": 2,
         "name": "soft-press",
         "body": {
             "name": "cushion",

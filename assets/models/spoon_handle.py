@@ -65,7 +65,7 @@ def main():
         for i in range(COLUMNS_U):
             points[i].append([round(x, 6), round(scale * half_thickness * y[i], 6), round(scale * half_width * z[i], 6)])
     document = {
-        "spoonbill_document": 1,
+        "spoonbill_document": 2,
         "name": "spoon-handle",
         "body": {
             "name": "handle",

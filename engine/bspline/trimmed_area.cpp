@@ -112,37 +112,48 @@ Status TrimmedArea::place(const std::vector<std::vector<Eigen::Vector2d>>& polyg
   return {};
 }
 
-// Beside most of a loop's edges the winding number is that of what it keeps. Where loops touch, or a loop
-// touches itself across the seam, it may be another by rounding.
-int TrimmedArea::winding_left_of(const std::vector<Eigen::Vector2d>& polygon) const {
+// Beside some of its edges, on the left or right: how often each winding number was found.
+std::map<int, int> TrimmedArea::windings_beside(const std::vector<Eigen::Vector2d>& polygon,
+                                                double share) const {
   const Eigen::Vector2d lengths(length_of(along_u_), length_of(along_v_));
-  const bool outer = signed_area(polygon) > 0.0;
-  std::map<int, int> votes;
+  std::map<int, int> found;
   const std::size_t step = (polygon.size() + asked_edge_count - 1) / asked_edge_count;
   for (std::size_t c = 0; c < polygon.size(); c += step) {
     const Eigen::Vector2d from = polygon[c].cwiseQuotient(lengths);
     const Eigen::Vector2d to = polygon[(c + 1) % polygon.size()].cwiseQuotient(lengths);
     const Eigen::Vector2d left = Eigen::Vector2d(from.y() - to.y(), to.x() - from.x()).normalized();
-    const Eigen::Vector2d beside = (0.5 * (from + to) + beside_share * left).cwiseProduct(lengths);
-    ++votes[winding(along_u_.into_domain(beside.x()), along_v_.into_domain(beside.y()))];
+    const Eigen::Vector2d beside = (0.5 * (from + to) + share * left).cwiseProduct(lengths);
+    ++found[winding(along_u_.into_domain(beside.x()), along_v_.into_domain(beside.y()))];
   }
-  int chosen = votes.begin()->first;
-  for (const auto& [number, count] : votes) {
-    if (count > votes[chosen] || (count == votes[chosen] && !outer)) chosen = number;
+  return found;
+}
+
+// Left of most of a loop's edges the winding number is that of what it keeps. Where loops touch, or a loop
+// touches itself across the seam, it may be another by rounding.
+int TrimmedArea::level_of(const std::vector<Eigen::Vector2d>& polygon) const {
+  const bool outer = signed_area(polygon) > 0.0;
+  const std::map<int, int> found = windings_beside(polygon, beside_share);
+  auto chosen = found.begin();
+  for (auto other = found.begin(); other != found.end(); ++other) {
+    if (other->second > chosen->second || (other->second == chosen->second && !outer)) chosen = other;
   }
-  return chosen;
+  return 1 - chosen->first;
 }
 
 Status TrimmedArea::take_level(const std::vector<std::vector<Eigen::Vector2d>>& polygons) {
   double area = 0.0;
+  level_ = level_of(polygons.front());
   for (std::size_t k = 0; k < polygons.size(); ++k) {
-    const int level = 1 - winding_left_of(polygons[k]);
-    if (k > 0 && level != level_) {
+    if (level_of(polygons[k]) != level_) {
       return Error{"trim loop " + std::to_string(k) +
-                   " does not keep what trim loop 0 keeps; let outer loops run "
-                   "counter-clockwise, those of holes clockwise"};
+                   " does not keep what trim loop 0 keeps; let outer loops run counter-clockwise, those of "
+                   "holes clockwise"};
     }
-    level_ = level;
+    // On the right nothing is kept, or across an edge that loops share what another keeps.
+    const auto beyond = windings_beside(polygons[k], -beside_share);
+    if (level_ < 0 || level_ > 1 || (!beyond.contains(-level_) && !beyond.contains(1 - level_))) {
+      return Error{"trim loop " + std::to_string(k) + " lies upon another; leave one of them out"};
+    }
     area += signed_area(polygons[k]);
   }
   kept_share_ = std::min(1.0, level_ + area / (length_of(along_u_) * length_of(along_v_)));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <vector>
 
 #include "engine/bspline/knot_vector.h"
@@ -21,7 +22,8 @@ class TrimmedArea {
   TrimmedArea() = default;
 
   // Of loops of make_trim_loop. Refused: too many loops or chords, loops that cross each other, loops that do
-  // not agree on what they keep, such as a hole that runs counter-clockwise, and loops that keep nothing.
+  // not agree on what they keep, such as a hole that runs counter-clockwise, loops upon each other, and loops
+  // that keep nothing.
   static Result<TrimmedArea> make(const KnotVector& along_u, const KnotVector& along_v,
                                   const std::vector<TrimLoop>& loops);
 
@@ -45,7 +47,8 @@ class TrimmedArea {
  private:
   Status place(const std::vector<std::vector<Eigen::Vector2d>>& polygons);
   Status take_level(const std::vector<std::vector<Eigen::Vector2d>>& polygons);
-  int winding_left_of(const std::vector<Eigen::Vector2d>& polygon) const;
+  int level_of(const std::vector<Eigen::Vector2d>& polygon) const;
+  std::map<int, int> windings_beside(const std::vector<Eigen::Vector2d>& polygon, double share) const;
   int winding(double u, double v) const;
   std::size_t column_of(double u) const;
   bool fill_columns(std::size_t columns);

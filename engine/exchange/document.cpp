@@ -33,10 +33,13 @@ void read_loads(FieldReader& reader, Body& body) {
         [&](FieldReader& item) { body.supports.push_back(read_support(item)); });
 }
 
-std::optional<Body> read_body(FieldReader reader) {
+// Version 1 had no trims, so that they are unknown there.
+std::optional<Body> read_body(FieldReader reader, int version) {
   std::string name = reader.text("name");
   FieldReader surface_reader = reader.inner("surface");
   std::optional<Surface> surface = read_surface(surface_reader);
+  std::vector<TrimLoop> trims;
+  if (surface && version > 1) trims = read_trims(surface_reader, *surface);
   surface_reader.finish();
   FieldReader material_reader = reader.inner("material");
   Material material = read_material_fields(material_reader);
@@ -51,27 +54,29 @@ std::optional<Body> read_body(FieldReader reader) {
     body.shell_thickness_m = reader.length_m("shell_thickness_mm", shell_thickness_range_m);
   }
   body.regions = read_material_regions(reader);
+  body.trims = std::move(trims);
   reader.finish();
   if (!reader.status().ok()) return std::nullopt;
   return body;
 }
 
 // Those of a document with one body are in no list.
-std::optional<std::vector<Body>> read_bodies(FieldReader& reader) {
+std::optional<std::vector<Body>> read_bodies(FieldReader& reader, int version) {
   std::vector<Body> bodies;
   const auto take = [&](std::optional<Body> body) {
     if (!body) return false;
     bodies.push_back(*std::move(body));
     return true;
   };
-  if (!take(read_body(reader.inner("body")))) return std::nullopt;
+  if (!take(read_body(reader.inner("body"), version))) return std::nullopt;
   if (!reader.has("other_bodies")) {
     reader.ignore("other_bodies");
     return bodies;
   }
   const Range<int> others{0, body_count_range.high - 1};
   for (const Json& item : reader.list("other_bodies", others)) {
-    if (!take(read_body(reader.element(item, "other_bodies", bodies.size() - 1)))) return std::nullopt;
+    FieldReader body_reader = reader.element(item, "other_bodies", bodies.size() - 1);
+    if (!take(read_body(std::move(body_reader), version))) return std::nullopt;
   }
   return bodies;
 }
@@ -116,6 +121,7 @@ Json body_to_json(const Body& body) {
   Json json;
   json["name"] = body.name;
   json["surface"] = surface_to_json(body.surface);
+  add_trims(body.trims, json["surface"]);
   add_material_fields(body.material, json["material"]);
   add_lattice_request(body.lattice, json["lattice"]);
   for (const Load& load : body.loads) json["loads"].push_back(load_to_json(load));
@@ -135,9 +141,9 @@ Result<Json> read_json(const std::filesystem::path& file, std::size_t bytes_limi
 
 Result<Document> document_from_json(const Json& json, const std::string& source) {
   FieldReader reader(json, source);
-  reader.version("spoonbill_document", document_version);
+  const int version = reader.version("spoonbill_document", {oldest_document_version, document_version});
   std::string name = reader.text("name");
-  std::optional<std::vector<Body>> bodies = read_bodies(reader);
+  std::optional<std::vector<Body>> bodies = read_bodies(reader, version);
   std::vector<FixingPlane> planes = read_planes(reader);
   FieldReader tool_reader = reader.inner("tool");
   const Tool tool = read_tool(tool_reader);

@@ -1,13 +1,15 @@
 // Documents: a scene and how it is looked at, as JSON that a person can read, lengths in mm.
 //
-//   {"spoonbill_document": 1,
+//   {"spoonbill_document": 2,
 //    "name": "spoon handle",
 //    "body": {
 //      "name": "handle",
 //      "surface": {
 //        "u": {"degree": 3, "periodic": true, "knots": [...]},   one period, as KnotVector::periodic takes it
 //        "v": {"degree": 3, "periodic": false, "knots": [...]},
-//        "control_points_mm": [[[x, y, z], ...], ...]},          a list along v for each point along u
+//        "control_points_mm": [[[x, y, z], ...], ...],           a list along v for each point along u
+//        "trims": [{"degree": 1, "periodic": false, "knots": [...],      may be left out: all of the surface
+//          "control_points_uv": [[u, v], ...]}, ...]},           closed curves in its domain (trim_loop.h)
 //      "material": {"name": "clay", "source": "...", "youngs_modulus_pa": 2e5, "poissons_ratio": 0.45,
 //        "density_kg_per_m3": 1700, "damping_ratio": 0.1, "plastic": true, "yield_strain": 0.02,
 //        "flow_rate_per_s": 40,                                  "loss_factor": 0.2 may stand for a
@@ -45,12 +47,14 @@
 // half_length_mm), box (half_extents_mm), cone (base_radius_mm, height_mm), torus (ring_radius_mm,
 // tube_radius_mm), half_space, superquadric (semi_axes_mm, exponent_along, exponent_around), mesh
 // (vertices_mm, triangles as three places of vertices each), and surface, with the fields of a body's
-// surface. Soft may be a surface, or a mesh that is closed; its "nodes" count along x, y and z.
+// surface but trims. Soft may be a surface, or a mesh that is closed; its "nodes" count along x, y and z.
 // implicit_shapes.h and triangle_mesh.h say what is meant.
 //
-// Version 1. The ranges stand in scene.h and material.h; knots lie within a million of zero and are equal or
-// at least a billionth of the domain apart. A length is a number, or a decimal in quotes where no double of
-// millimetres reads back to the same bits of metres (length.h). Normals of another length than 1 are scaled.
+// Version 2; version 1, which had no trims, is read too, and assets/schemas/document.schema.json holds for
+// both. A body's pose is where its control points stand, a tool's that of the hand. The ranges stand in
+// scene.h and material.h; knots lie within a million of zero and are equal or at least a billionth of the
+// domain apart. A length is a number, or a decimal in quotes where no double of millimetres reads back to the
+// same bits of metres (length.h). Normals of another length than 1 are scaled.
 #pragma once
 
 #include <filesystem>
@@ -63,7 +67,8 @@
 
 namespace spoonbill {
 
-inline constexpr int document_version = 1;
+inline constexpr int document_version = 2;         // that is written
+inline constexpr int oldest_document_version = 1;  // that is read
 
 // What is saved. `view` belongs to the program that draws (camera, overlays) and is kept as it was read.
 struct Document {

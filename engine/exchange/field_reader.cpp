@@ -70,12 +70,20 @@ void FieldReader::wrong_type(std::string_view field, const Json& value, const ch
 }
 
 void FieldReader::version(std::string_view field, int known) {
+  version(field, Range<int>{known, known});
+}
+
+int FieldReader::version(std::string_view field, Range<int> known) {
   const Json* value = find(field);
-  if (value == nullptr || (value->is_number_integer() && *value == known)) return;
-  const bool newer = value->is_number_integer() && *value > known;
-  refuse(field, "is " + json_excerpt(*value) + ", this program reads " + std::to_string(known) +
+  if (value == nullptr) return known.high;
+  if (value->is_number_integer() && *value >= known.low && *value <= known.high) return value->get<int>();
+  const bool newer = value->is_number_integer() && *value > known.high;
+  const std::string forms = std::to_string(known.low) +
+                            (known.low < known.high ? " to " + std::to_string(known.high) : std::string());
+  refuse(field, "is " + json_excerpt(*value) + ", this program reads " + forms +
                     (newer ? "; the file is from a newer program, update this one"
                            : "; the file is not of a known form"));
+  return known.high;
 }
 
 std::string FieldReader::text(std::string_view field) {

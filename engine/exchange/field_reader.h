@@ -31,8 +31,10 @@ class FieldReader {
 
   bool has(std::string_view field) const;
 
-  // The number that says which form the file has; refused unless it is `known`.
+  // The number that says which form the file has; refused unless it is `known`, or in the range of those
+  // known.
   void version(std::string_view field, int known);
+  int version(std::string_view field, Range<int> known);
 
   // Each returns the field's value, or a harmless one after a problem. A missing field is a problem.
   std::string text(std::string_view field);  // at most 200 bytes, no control characters

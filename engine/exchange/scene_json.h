@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/json.h"
@@ -44,6 +45,14 @@ void add_symmetry(const Symmetry& symmetry, Json& json);
 // Nothing after a problem: a surface has no harmless value.
 std::optional<Surface> read_surface(FieldReader& reader);
 Json surface_to_json(const Surface& surface);
+
+// The trim loops of a surface, within its fields; none where there are none. What they bound is checked too.
+std::vector<TrimLoop> read_trims(FieldReader& surface_reader, const Surface& surface);
+void add_trims(const std::vector<TrimLoop>& trims, Json& surface_json);
+
+// The knots of one direction of a surface, or of a loop. Nothing after a problem.
+std::optional<KnotVector> read_knot_vector(FieldReader& reader, Range<int> control_point_counts);
+void add_knot_vector(const KnotVector& knots, Json& json);
 
 // False where it is not three lengths within position_range_m.
 bool read_point(const Json& json, Vector3& point_m);

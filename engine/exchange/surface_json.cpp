@@ -12,8 +12,7 @@ constexpr Range<double> knot_range{-1e6, 1e6};
 // Knots nearer than this share of the domain are meant to be equal; apart they make derivatives overflow.
 constexpr double smallest_knot_step = 1e-9;
 
-std::vector<double> read_knots(FieldReader& reader) {
-  const int most = control_point_count_range.high + max_degree + 1;
+std::vector<double> read_knots(FieldReader& reader, int most) {
   std::vector<double> knots;
   for (const Json& item : reader.list("knots", {3, most})) {
     const double knot = item.is_number() ? item.get<double>() : knot_range.high + 1.0;
@@ -35,29 +34,6 @@ void check_knot_steps(const KnotVector& direction, FieldReader& reader) {
     if (step == 0.0 || step >= smallest) continue;
     reader.refuse("knots[" + std::to_string(i) + "]", "is nearly the knot before it, make the two equal");
   }
-}
-
-std::optional<KnotVector> read_direction(FieldReader reader) {
-  const int degree = reader.integer("degree", {1, max_degree});
-  const bool periodic = reader.boolean("periodic");
-  std::vector<double> knots = read_knots(reader);
-  reader.finish();
-  if (!reader.status().ok()) return std::nullopt;
-
-  auto direction =
-      periodic ? KnotVector::periodic(degree, std::move(knots)) : KnotVector::open(degree, std::move(knots));
-  if (!direction.ok()) {
-    reader.refuse("knots", "do not fit: " + direction.error().message);
-    return std::nullopt;
-  }
-  const int count = direction->control_point_count();
-  if (!control_point_count_range.contains(count)) {
-    reader.refuse("knots", "ask for " + std::to_string(count) + " control points, at most " +
-                               std::to_string(control_point_count_range.high) + " are handled");
-  }
-  check_knot_steps(direction.value(), reader);
-  if (!reader.status().ok()) return std::nullopt;
-  return std::move(direction).value();
 }
 
 std::optional<ControlNet> read_net(FieldReader& reader, int row_count, int column_count) {
@@ -85,16 +61,43 @@ std::optional<ControlNet> read_net(FieldReader& reader, int row_count, int colum
   return net;
 }
 
-Json direction_to_json(const KnotVector& direction) {
-  Json json;
-  json["degree"] = direction.degree();
-  json["periodic"] = direction.is_periodic();
-  Json& knots = json["knots"] = Json::array();
-  for (const double knot : direction.knots()) knots.push_back(number_to_json(knot));
-  return json;
+std::optional<KnotVector> read_direction(FieldReader reader) {
+  auto direction = read_knot_vector(reader, control_point_count_range);
+  reader.finish();
+  if (!reader.status().ok()) return std::nullopt;
+  return direction;
 }
 
 }  // namespace
+
+std::optional<KnotVector> read_knot_vector(FieldReader& reader, Range<int> control_point_counts) {
+  const int degree = reader.integer("degree", {1, max_degree});
+  const bool periodic = reader.boolean("periodic");
+  std::vector<double> knots = read_knots(reader, control_point_counts.high + max_degree + 1);
+  if (!reader.status().ok()) return std::nullopt;
+
+  auto direction =
+      periodic ? KnotVector::periodic(degree, std::move(knots)) : KnotVector::open(degree, std::move(knots));
+  if (!direction.ok()) {
+    reader.refuse("knots", "do not fit: " + direction.error().message);
+    return std::nullopt;
+  }
+  const int count = direction->control_point_count();
+  if (!control_point_counts.contains(count)) {
+    reader.refuse("knots", "ask for " + std::to_string(count) + " control points, at most " +
+                               std::to_string(control_point_counts.high) + " are handled");
+  }
+  check_knot_steps(direction.value(), reader);
+  if (!reader.status().ok()) return std::nullopt;
+  return std::move(direction).value();
+}
+
+void add_knot_vector(const KnotVector& knots, Json& json) {
+  json["degree"] = knots.degree();
+  json["periodic"] = knots.is_periodic();
+  Json& list = json["knots"] = Json::array();
+  for (const double knot : knots.knots()) list.push_back(number_to_json(knot));
+}
 
 bool read_point(const Json& json, Vector3& point_m) {
   if (!json.is_array() || json.size() != 3) return false;
@@ -120,8 +123,8 @@ std::optional<Surface> read_surface(FieldReader& reader) {
 
 Json surface_to_json(const Surface& surface) {
   Json json;
-  json["u"] = direction_to_json(surface.u);
-  json["v"] = direction_to_json(surface.v);
+  add_knot_vector(surface.u, json["u"]);
+  add_knot_vector(surface.v, json["v"]);
   Json& rows = json["control_points_mm"] = Json::array();
   for (int i = 0; i < surface.net.rows; ++i) {
     Json row = Json::array();

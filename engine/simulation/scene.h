@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/bspline/surface.h"
+#include "engine/bspline/trim_loop.h"
 #include "engine/material/lattice/shell_lattice.h"
 #include "engine/material/lattice/tube_lattice.h"
 #include "engine/material/lattice_materials.h"
@@ -32,6 +33,7 @@ struct Body {
   std::vector<Load> loads = {};
   std::vector<Support> supports = {};
   std::optional<double> shell_thickness_m = {};
+  std::vector<TrimLoop> trims = {};  // keep a part of the surface: what is drawn and touched (trimmed_area.h)
 };
 
 struct Tool {

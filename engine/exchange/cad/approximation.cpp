@@ -17,7 +17,7 @@ namespace {
 
 using Points = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr int checks_per_piece = 4;
+constexpr int checks_per_piece = 8;
 // Of the tolerance, so that what lies between two checks is within it too.
 constexpr double allowed_share = 0.8;
 

@@ -29,7 +29,7 @@ struct Patch {
 
 struct PatchFit {
   Surface surface;  // over the patch's own parameters
-  // The largest distance at equal parameters over four places and the ends of each of its pieces, each way.
+  // The largest distance at equal parameters over nine places of each of its pieces, each way.
   double deviation_m = 0.0;
 };
 

@@ -5,6 +5,10 @@
 #include <IGESControl_Writer.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
+#include <IGESData_IGESWriter.hxx>
+#include <IGESData_Protocol.hxx>
+#include <IGESSelect_WorkLibrary.hxx>
+#include <Interface_FloatWriter.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <Standard_Failure.hxx>
 #include <StepData_Protocol.hxx>
@@ -34,9 +38,25 @@ Error about(const CadSurface& surface, const Error& error) {
   return Error{"'" + surface.name + "': " + error.message};
 }
 
+// Seventeen digits, which read back as the same number; OpenCASCADE's own choice is six decimals. Leaving out
+// trailing zeros would lose the exponent of a number as long.
+void set_digits(Interface_FloatWriter& writer) {
+  writer.SetFormat("%.16E");
+}
+
 std::string text_of(const opencascade::handle<StepData_StepModel>& model) {
   StepData_StepWriter writer(model);
+  set_digits(writer.FloatWriter());
   writer.SendModel(opencascade::handle<StepData_Protocol>::DownCast(model->Protocol()));
+  std::ostringstream text;
+  writer.Print(text);
+  return std::move(text).str();
+}
+
+std::string text_of(const opencascade::handle<IGESData_IGESModel>& model) {
+  IGESData_IGESWriter writer(model);
+  set_digits(writer.FloatWriter());
+  writer.SendModel(IGESSelect_WorkLibrary::DefineProtocol());
   std::ostringstream text;
   writer.Print(text);
   return std::move(text).str();
@@ -100,9 +120,7 @@ Result<CadFileContent> write_iges(const CadModel& model, const CadProgress& prog
     if (progress) progress(0.5 * static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size()));
   }
   writer.ComputeModel();
-  std::ostringstream text;
-  if (!writer.Write(text)) return Error{"OpenCASCADE makes no IGES file of it"};
-  content.text = std::move(text).str();
+  content.text = text_of(writer.Model());
   return content;
 }
 

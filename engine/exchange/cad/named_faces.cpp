@@ -123,8 +123,8 @@ std::vector<NamedFace> named_faces(const opencascade::handle<TDocStd_Document>& 
   Collector collector(shapes);
   for (int k = 1; k <= roots.Length(); ++k) {
     const std::string name = name_of(roots.Value(k));
-    collector.visit(roots.Value(k), XCAFDoc_ShapeTool::GetLocation(roots.Value(k)),
-                    says_nothing(name) ? std::string() : name, 0);
+    // The shape of a root holds its own place.
+    collector.visit(roots.Value(k), TopLoc_Location(), says_nothing(name) ? std::string() : name, 0);
   }
   return collector.take();
 }

@@ -26,7 +26,7 @@ void choose_schema(StepSchema schema) {
 void choose_unit(std::string_view unit) {
   const char* name = unit == "cm" ? "CM" : unit == "m" ? "M" : unit == "in" ? "INCH" : "MM";
   Interface_Static::SetCVal("write.step.unit", name);
-  Interface_Static::SetCVal("write.iges.unit", unit == "in" ? "IN" : name);
+  Interface_Static::SetCVal("write.iges.unit", name);
 }
 
 }  // namespace spoonbill

@@ -88,14 +88,15 @@ TEST(Document, ScalesNormalsToUnitLength) {
 
 TEST(Document, RefusesOtherVersions) {
   EXPECT_EQ(
-      refusal([](Json& j) { j["spoonbill_document"] = 2; }),
-      "sample.json: spoonbill_document is 2, this program reads 1; the file is from a newer program, update "
-      "this one");
-  EXPECT_EQ(refusal([](Json& j) { j["spoonbill_document"] = 0; }),
-            "sample.json: spoonbill_document is 0, this program reads 1; the file is not of a known form");
+      refusal([](Json& j) { j["spoonbill_document"] = 3; }),
+      "sample.json: spoonbill_document is 3, this program reads 1 to 2; the file is from a newer program, "
+      "update this one");
+  EXPECT_EQ(
+      refusal([](Json& j) { j["spoonbill_document"] = 0; }),
+      "sample.json: spoonbill_document is 0, this program reads 1 to 2; the file is not of a known form");
   EXPECT_EQ(
       refusal([](Json& j) { j["spoonbill_document"] = "1"; }),
-      "sample.json: spoonbill_document is \"1\", this program reads 1; the file is not of a known form");
+      "sample.json: spoonbill_document is \"1\", this program reads 1 to 2; the file is not of a known form");
   EXPECT_EQ(refusal([](Json& j) { j = Json::array(); }), "sample.json: is a list of 0, must be an object");
 }
 

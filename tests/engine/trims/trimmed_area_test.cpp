@@ -134,6 +134,13 @@ TEST(TrimmedArea, RefusesLoopsThatContradictEachOther) {
   EXPECT_NE(crossing.error().message.find("0 and 1 cross"), std::string::npos) << crossing.error().message;
   const TrimLoop nothing = polygon_loop(open_u, open_v, backwards(rectangle(0, -1, 2, 1)));
   EXPECT_FALSE(TrimmedArea::make(open_u, open_v, {nothing}).ok());
+  const TrimLoop hole = polygon_loop(open_u, open_v, backwards(rectangle(0.5, -0.5, 1.0, 0.0)));
+  const TrimLoop whole = polygon_loop(open_u, open_v, rectangle(0, -1, 2, 1));
+  for (const TrimLoop& loop : {outer, hole, whole}) {
+    const auto doubled = TrimmedArea::make(open_u, open_v, {loop, loop});
+    ASSERT_FALSE(doubled.ok());
+    EXPECT_NE(doubled.error().message.find("upon another"), std::string::npos) << doubled.error().message;
+  }
   // Two halves of the surface that meet in a common edge are no contradiction.
   const auto halves = TrimmedArea::make(open_u, open_v,
                                         {polygon_loop(open_u, open_v, rectangle(0, -1, 1, 1)),

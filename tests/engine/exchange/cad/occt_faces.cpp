@@ -1,17 +1,9 @@
-#include <BRepAlgoAPI_Cut.hxx>
-#include <BRepAlgoAPI_Section.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepLib.hxx>
-#include <BRepPrimAPI_MakeCylinder.hxx>
-#include <BRepPrimAPI_MakeSphere.hxx>
-#include <GCE2d_MakeSegment.hxx>
-#include <GC_MakeSegment.hxx>
 #include <Geom2d_Circle.hxx>
 #include <Geom2d_Ellipse.hxx>
-#include <GeomFill_BSplineCurves.hxx>
-#include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_BezierCurve.hxx>
 #include <Geom_BezierSurface.hxx>
@@ -27,8 +19,9 @@
 #include <TColgp_Array1OfPnt.hxx>
 #include <TColgp_Array2OfPnt.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Wire.hxx>
 #include <cmath>
-#include <gp_Circ.hxx>
 #include <gp_Circ2d.hxx>
 #include <gp_Elips2d.hxx>
 
@@ -162,7 +155,7 @@ std::vector<NamedShape> single_faces() {
   all.push_back({"sphere in a circle", inside(sphere, circle(3.0, 0.3, 0.7))});
   all.push_back({"strip of a torus", part(new Geom_ToroidalSurface(frame(), 30, 7), 1.0, 4.0, 5.0, 7.5)});
   all.push_back({"offset spline", whole(new Geom_OffsetSurface(wavy, 2.0))});
-  all.push_back({"turned Bezier", part(turned_spline(), 0.5, 5.0, 0.1, 0.9)});
+  all.push_back({"turned Bezier", part(turned_spline(), 0.5, 5.0, 0.0, 1.0)});
   return all;
 }
 

@@ -1,0 +1,217 @@
+// The command that converts, as from a shell.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
+#include "app/program.h"
+#include "engine/bspline/evaluate.h"
+#include "engine/exchange/document.h"
+#include "tests/app/process.h"
+
+namespace spoonbill {
+namespace {
+
+class ConvertTest : public testing::Test {
+ protected:
+  Outcome convert(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> all = {"convert"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return run_process(SPOONBILL_PROGRAM, all);
+  }
+
+  Json convert_for_facts(std::vector<std::string> arguments) const {
+    arguments.push_back("--json");
+    const Outcome outcome = convert(arguments);
+    EXPECT_EQ(outcome.code, exit_done) << outcome.err;
+    return json_of(outcome.out);
+  }
+
+  void expect_failure(const std::vector<std::string>& arguments, const std::string& reason,
+                      int code = exit_failed) const {
+    const Outcome outcome = convert(arguments);
+    EXPECT_EQ(outcome.code, code);
+    EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+    EXPECT_NE(outcome.err.find(reason), std::string::npos) << outcome.err;
+  }
+
+  Workplace place_;
+  const std::string handle_ = std::string(SPOONBILL_ASSETS) + "/models/spoon-handle.json";
+};
+
+double largest_distance_m(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const auto first = read_document(a), second = read_document(b);
+  if (!first || !second) return 1e30;
+  const Surface& x = first->scene.bodies[0].surface;
+  const Surface& y = second->scene.bodies[0].surface;
+  double largest = 0.0;
+  for (const double u : uniform_parameters(x.u, 41)) {
+    for (const double v : uniform_parameters(x.v, 41)) {
+      largest = std::max(largest, (position(x, u, v) - position(y, u, v)).norm());
+    }
+  }
+  return largest;
+}
+
+TEST_F(ConvertTest, AHandleGoesOutToCadAndComesBack) {
+  for (const char* name : {"out.step", "out.STP", "out.iges", "out.igs"}) {
+    SCOPED_TRACE(name);
+    for (const char* unit : {"mm", "cm", "m", "in", "inch"}) {
+      const Json out = convert_for_facts({handle_, place_.text(name), "--unit", unit});
+      EXPECT_EQ(out["unit_in"], "mm");
+      EXPECT_EQ(out["unit_out"], std::string(unit) == "inch" ? "in" : unit);
+      EXPECT_NEAR(out["size_mm"][0].get<double>(), 100.0, 0.1);
+      const Json back = convert_for_facts({place_.text(name), place_.text("back.json")});
+      EXPECT_EQ(back["unit_in"], out["unit_out"] == "in" ? Json("inch") : out["unit_out"]);
+      EXPECT_EQ(back["bodies"][0]["name"], "handle");
+      EXPECT_EQ(back["deviation_m"], 0.0);
+      EXPECT_LT(largest_distance_m(handle_, place_.path("back.json")), 1e-9);
+      // What comes back is a body that a simulation takes.
+      const Outcome info = run_process(SPOONBILL_PROGRAM, {"info", place_.text("back.json"), "--json"});
+      EXPECT_EQ(info.code, exit_done) << info.err;
+    }
+  }
+}
+
+TEST_F(ConvertTest, SchemasAndSolidsAreAsAskedFor) {
+  const Json facts = convert_for_facts({handle_, place_.text("a.step"), "--schema", "ap242"});
+  EXPECT_EQ(facts["solids"], 1);
+  EXPECT_EQ(facts["open_shells"], 0);
+  EXPECT_NE(content_of(place_.path("a.step")).find("AP242"), std::string::npos);
+  convert_for_facts({handle_, place_.text("a.step")});
+  EXPECT_NE(content_of(place_.path("a.step")).find("AUTOMOTIVE_DESIGN"), std::string::npos);
+  EXPECT_NE(content_of(place_.path("a.step")).find("MANIFOLD_SOLID_BREP"), std::string::npos);
+}
+
+TEST_F(ConvertTest, MeshesKeepTheirChordErrorAndSayTheirUnit) {
+  for (const auto& [name, unit] : {std::pair("a.stl", "mm"), std::pair("a.obj", "mm"),
+                                   std::pair("a.ply", "m"), std::pair("a.3mf", "mm")}) {
+    SCOPED_TRACE(name);
+    const Json coarse = convert_for_facts({handle_, place_.text(name), "--chord", "0.5mm"});
+    const Json fine = convert_for_facts({handle_, place_.text(name), "--chord", "0.02mm"});
+    EXPECT_EQ(fine["unit_out"], unit);
+    EXPECT_EQ(fine["closed_meshes"], 1);
+    EXPECT_LE(fine["chord_error_m"].get<double>(), 2e-5);
+    EXPECT_LE(coarse["chord_error_m"].get<double>(), 5e-4);
+    EXPECT_GT(fine["triangles"].get<int>(), coarse["triangles"].get<int>());
+    EXPECT_GT(std::filesystem::file_size(place_.path(name)), 1000u);
+  }
+}
+
+TEST_F(ConvertTest, AStepFileOfAnotherUnitOrNone) {
+  convert_for_facts({handle_, place_.text("a.step")});
+  std::string text = content_of(place_.path("a.step"));
+  const Json taken_as_inches =
+      convert_for_facts({place_.text("a.step"), place_.text("in.json"), "--unit", "in"});
+  EXPECT_NEAR(taken_as_inches["size_mm"][0].get<double>(), 2540.0, 1.0);
+
+  const std::string declared = "SI_UNIT(.MILLI.,.METRE.)";
+  ASSERT_NE(text.find(declared), std::string::npos);
+  std::string metres = text;
+  metres.replace(metres.find(declared), declared.size(), "SI_UNIT($,.METRE.)");
+  place_.write("m.step", metres);
+  const Json in_metres = convert_for_facts({place_.text("m.step"), place_.text("m.json"), "--unit", "mm"});
+  EXPECT_NEAR(in_metres["size_mm"][0].get<double>(), 100.0, 0.1);
+  EXPECT_EQ(in_metres["unit_in"], "m");
+
+  const std::size_t units = text.find("GLOBAL_UNIT_ASSIGNED_CONTEXT");
+  ASSERT_NE(units, std::string::npos);
+  const std::size_t end = text.find("))", units);
+  text.replace(units, end + 2 - units, "");
+  place_.write("none.step", text);
+  const Json without = convert_for_facts({place_.text("none.step"), place_.text("none.json")});
+  EXPECT_EQ(without["unit_declared"], false);
+  EXPECT_NEAR(without["size_mm"][0].get<double>(), 100.0, 0.1);
+  EXPECT_NE(without["notes"][0].get<std::string>().find("declares no unit"), std::string::npos);
+  const Json named = convert_for_facts({place_.text("none.step"), place_.text("none.json"), "--unit", "cm"});
+  EXPECT_NEAR(named["size_mm"][0].get<double>(), 1000.0, 1.0);
+}
+
+TEST_F(ConvertTest, InfoTellsWhatACadFileHolds) {
+  convert_for_facts({handle_, place_.text("a.step"), "--unit", "in"});
+  const Outcome told = run_process(SPOONBILL_PROGRAM, {"info", place_.text("a.step"), "--json"});
+  ASSERT_EQ(told.code, exit_done) << told.err;
+  const Json facts = json_of(told.out);
+  EXPECT_EQ(facts["kind"], "step");
+  EXPECT_EQ(facts["unit_in"], "inch");
+  EXPECT_EQ(facts["bodies"].size(), 1u);
+  EXPECT_EQ(facts["bodies"][0]["name"], "handle");
+  EXPECT_NEAR(facts["size_mm"][0].get<double>(), 100.0, 0.1);
+  const Outcome refused = run_process(SPOONBILL_PROGRAM, {"info", place_.text("missing.igs")});
+  EXPECT_EQ(refused.code, exit_failed);
+  EXPECT_TRUE(is_clean_failure(refused)) << refused.err;
+}
+
+TEST_F(ConvertTest, WhatMakesNoSenseIsRefused) {
+  expect_failure({handle_, place_.text("a.txt")}, "names no format");
+  expect_failure({place_.text("script.json.txt"), place_.text("a.step")}, "is no model by its name");
+  expect_failure({place_.text("a.stl"), place_.text("a.step")}, "is a mesh");
+  expect_failure({handle_, place_.text("a.json")}, "is a document like the one that is read");
+  expect_failure({place_.text("missing.step"), place_.text("a.json")}, "no such file");
+  expect_failure({handle_, place_.text("nowhere/a.step")}, "cannot be written");
+  expect_failure({handle_, place_.text("a.step"), "--chord", "1mm"}, "has no chord error");
+  expect_failure({handle_, place_.text("a.stl"), "--schema", "ap242"}, "is no STEP file");
+  expect_failure({handle_, place_.text("a.iges"), "--schema", "ap242"}, "is no STEP file");
+  expect_failure({handle_, place_.text("a.step"), "--tolerance", "1mm"}, "is taken exactly");
+  expect_failure({handle_, place_.text("a.3mf"), "--unit", "in"}, "is written in millimetres");
+  expect_failure({handle_, place_.text("a.stl"), "--chord", "5"}, "is not a length", exit_wrong_use);
+  expect_failure({handle_, place_.text("a.stl"), "--chord", "0mm"}, "is not a length", exit_wrong_use);
+  expect_failure({handle_, place_.text("a.stl"), "--chord", "nanmm"}, "is not a length", exit_wrong_use);
+  expect_failure({handle_, place_.text("a.stl"), "--unit", "ell"}, "is not a unit", exit_wrong_use);
+  expect_failure({handle_, place_.text("a.step"), "--schema", "ap1"}, "is not a schema", exit_wrong_use);
+  expect_failure({handle_}, "OUT", exit_wrong_use);
+}
+
+TEST_F(ConvertTest, AnOlderFileStaysWhenAConversionFails) {
+  for (const char* name : {"a.step", "a.igs", "a.stl", "a.obj", "a.ply", "a.3mf", "a.json"}) {
+    SCOPED_TRACE(name);
+    place_.write("broken.step", "ISO-10303-21;\nHEADER;\nthis is");
+    place_.write("broken.json", "{");
+    place_.write(name, "precious");
+    const bool comes_in = std::string(name) == "a.json";
+    const Outcome failed =
+        convert({place_.text(comes_in ? "broken.step" : "broken.json"), place_.text(name)});
+    EXPECT_EQ(failed.code, exit_failed);
+    EXPECT_EQ(content_of(place_.path(name)), "precious");
+  }
+  // Nothing half made lies beside them.
+  for (const auto& entry : std::filesystem::directory_iterator(place_.path(""))) {
+    EXPECT_EQ(entry.path().string().find("unfinished"), std::string::npos) << entry.path();
+  }
+}
+
+// With Ctrl+C pressed before it begins, which waits for the first place where it can stop.
+int exit_code_when_interrupted(const std::string& in, const std::string& out) {
+  const pid_t process = fork();
+  if (process == 0) {
+    sigset_t interrupt;
+    sigemptyset(&interrupt);
+    sigaddset(&interrupt, SIGINT);
+    sigprocmask(SIG_BLOCK, &interrupt, nullptr);
+    raise(SIGINT);
+    if (freopen("/dev/null", "w", stderr) == nullptr) _exit(9);
+    execl(SPOONBILL_PROGRAM, SPOONBILL_PROGRAM, "convert", in.c_str(), out.c_str(), nullptr);
+    _exit(9);
+  }
+  int status = 0;
+  waitpid(process, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST_F(ConvertTest, CtrlCLeavesTheOlderFile) {
+  convert_for_facts({handle_, place_.text("in.step")});
+  for (const char* name : {"a.obj", "a.3mf", "a.step", "a.igs", "a.json"}) {
+    SCOPED_TRACE(name);
+    const std::string in = std::string(name) == "a.json" ? place_.text("in.step") : handle_;
+    const auto old = place_.write(name, "precious");
+    EXPECT_EQ(exit_code_when_interrupted(in, old.string()), exit_failed);
+    EXPECT_EQ(content_of(old), "precious");
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill

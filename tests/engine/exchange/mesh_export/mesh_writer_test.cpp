@@ -1,0 +1,122 @@
+// Meshes written and read again by Assimp (STL, OBJ, PLY) and libzip (3MF).
+#include "engine/exchange/mesh_export/mesh_writer.h"
+
+#include <gtest/gtest.h>
+#include <zip.h>
+
+#include <cmath>
+#include <cstring>
+#include <regex>
+#include <tuple>
+
+#include "engine/exchange/mesh_export/tessellation.h"
+#include "engine/exchange/mesh_import.h"
+#include "tests/engine/bspline/tube.h"
+#include "tests/engine/exchange/sample_document.h"
+
+namespace spoonbill {
+namespace {
+
+NamedMesh tube(const std::string& name, const Vector3& centre) {
+  return {name, tessellate(ellipsoid_tube(8, 10, centre), 2e-4).value().mesh};
+}
+
+std::string bytes_of(const std::vector<NamedMesh>& meshes, MeshFormat format, double unit_m) {
+  std::string bytes;
+  const Status written = write_meshes(meshes, format, unit_m, [&](std::string_view more) -> Status {
+    bytes += more;
+    return {};
+  });
+  EXPECT_TRUE(written.ok());
+  return bytes;
+}
+
+class MeshWriter : public testing::Test {
+ protected:
+  TriangleMesh read(const std::string& name, const std::string& bytes) const {
+    const auto mesh = import_mesh(folder_.write(name, bytes));
+    EXPECT_TRUE(mesh) << mesh.error().message;
+    return mesh ? mesh.value() : TriangleMesh();
+  }
+
+  std::string unzipped(const std::string& bytes, const char* name) const {
+    const auto file = folder_.write("model.3mf", bytes);
+    int error = 0;
+    zip_t* archive = zip_open(file.c_str(), ZIP_RDONLY | ZIP_CHECKCONS, &error);
+    if (archive == nullptr) return {};
+    std::string content;
+    zip_stat_t facts;
+    zip_file_t* entry = zip_fopen(archive, name, 0);
+    if (entry != nullptr && zip_stat(archive, name, 0, &facts) == 0) {
+      content.resize(facts.size);
+      zip_fread(entry, content.data(), content.size());
+      zip_fclose(entry);
+    }
+    zip_close(archive);
+    return content;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(MeshWriter, AssimpReadsTheSameTriangles) {
+  const std::vector<NamedMesh> meshes = {tube("one", {0, 0, 0}), tube("two", {0.1, 0, 0})};
+  const std::size_t triangles = meshes[0].mesh.triangles.size() + meshes[1].mesh.triangles.size();
+  const double volume = enclosed_volume_m3(meshes[0].mesh) + enclosed_volume_m3(meshes[1].mesh);
+  for (const auto& [name, format, unit_m] :
+       {std::tuple("a.stl", MeshFormat::stl, 1e-3), std::tuple("a.obj", MeshFormat::obj, 0.0254),
+        std::tuple("a.ply", MeshFormat::ply, 1.0)}) {
+    SCOPED_TRACE(name);
+    const TriangleMesh back = read(name, bytes_of(meshes, format, unit_m));
+    EXPECT_EQ(back.triangles.size(), triangles);
+    // Assimp keeps single precision.
+    EXPECT_NEAR(enclosed_volume_m3(back) * std::pow(unit_m, 3), volume, 1e-5 * volume);
+  }
+}
+
+TEST_F(MeshWriter, StlHoldsItsCountAndUnitNormals) {
+  const NamedMesh mesh = tube("one", {0, 0, 0});
+  const std::string bytes = bytes_of({mesh}, MeshFormat::stl, 1e-3);
+  ASSERT_EQ(bytes.size(), 84 + 50 * mesh.mesh.triangles.size());
+  EXPECT_FALSE(bytes.starts_with("solid"));  // which text files begin with
+  for (std::size_t k = 0; k < mesh.mesh.triangles.size(); ++k) {
+    float values[12];
+    std::memcpy(values, bytes.data() + 84 + 50 * k, sizeof values);
+    const Vector3 normal(values[0], values[1], values[2]);
+    EXPECT_NEAR(normal.norm(), 1.0, 1e-6);
+    // Outward of a convex body about the origin.
+    EXPECT_GT(normal.dot(Vector3(values[3], values[4], values[5])), 0.0);
+  }
+}
+
+TEST_F(MeshWriter, ThreeMfHoldsAModelInMillimetres) {
+  const NamedMesh mesh = tube("a <b> & \"c\"", {0, 0, 0});
+  const std::string bytes = bytes_of({mesh, tube("two", {0.1, 0, 0})}, MeshFormat::three_mf, 1.0);
+  EXPECT_NE(unzipped(bytes, "[Content_Types].xml").find("3dmanufacturing-3dmodel+xml"), std::string::npos);
+  EXPECT_NE(unzipped(bytes, "_rels/.rels").find("/3D/3dmodel.model"), std::string::npos);
+  const std::string model = unzipped(bytes, "3D/3dmodel.model");
+  EXPECT_NE(model.find("unit=\"millimeter\""), std::string::npos);
+  EXPECT_NE(model.find("name=\"a &lt;b> &amp; &quot;c&quot;\""), std::string::npos);
+  EXPECT_NE(model.find("<item objectid=\"2\"/>"), std::string::npos);
+
+  const std::regex vertex("<vertex x=\"([^\"]+)\" y=\"([^\"]+)\" z=\"([^\"]+)\"/>");
+  std::size_t k = 0;
+  for (std::sregex_iterator at(model.begin(), model.end(), vertex), end;
+       at != end && k < mesh.mesh.vertices_m.size(); ++at, ++k) {
+    EXPECT_DOUBLE_EQ(std::stod((*at)[1]), 1e3 * mesh.mesh.vertices_m[k].x());
+    EXPECT_DOUBLE_EQ(std::stod((*at)[3]), 1e3 * mesh.mesh.vertices_m[k].z());
+  }
+  EXPECT_EQ(k, mesh.mesh.vertices_m.size());
+}
+
+TEST_F(MeshWriter, ARefusalOfTheTakerEndsIt) {
+  for (const MeshFormat format : {MeshFormat::stl, MeshFormat::obj, MeshFormat::ply, MeshFormat::three_mf}) {
+    const Status written = write_meshes({tube("one", {0, 0, 0})}, format, 1.0,
+                                        [](std::string_view) -> Status { return Error{"disk full"}; });
+    ASSERT_FALSE(written.ok());
+    EXPECT_EQ(written.error().message, "disk full");
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,129 @@
+#include "engine/exchange/mesh_export/tessellation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "engine/bspline/evaluate.h"
+#include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/bspline/tube.h"
+#include "tests/engine/exchange/cad/cad_surfaces.h"
+
+namespace spoonbill {
+namespace {
+
+// How many edges are not run through once each way by two triangles.
+std::size_t unmatched_edges(const TriangleMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
+  for (const TriangleCorners& corners : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) ++uses[{corners[k], corners[(k + 1) % 3]}];
+  }
+  std::size_t unmatched = 0;
+  for (const auto& [edge, count] : uses) {
+    const auto back = uses.find({edge.second, edge.first});
+    if (count != 1 || back == uses.end() || back->second != 1) ++unmatched;
+  }
+  return unmatched;
+}
+
+double distance_to_triangle(const Vector3& from, const Vector3& a, const Vector3& b, const Vector3& c) {
+  // Ericson 2005, section 5.1.5.
+  const Vector3 ab = b - a, ac = c - a, ap = from - a, bp = from - b, cp = from - c;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
+               d6 = ac.dot(cp);
+  if (d1 <= 0 && d2 <= 0) return ap.norm();
+  if (d3 >= 0 && d4 <= d3) return bp.norm();
+  if (d6 >= 0 && d5 <= d6) return cp.norm();
+  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return (from - (a + d1 / (d1 - d3) * ab)).norm();
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return (from - (a + d2 / (d2 - d6) * ac)).norm();
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    return (from - (b + (d4 - d3) / (d4 - d3 + d5 - d6) * (c - b))).norm();
+  }
+  const double sum = va + vb + vc;
+  return (from - (a + vb / sum * ab + vc / sum * ac)).norm();
+}
+
+double distance_to_mesh(const Vector3& from, const TriangleMesh& mesh) {
+  double least = 1e30;
+  for (const TriangleCorners& corners : mesh.triangles) {
+    least = std::min(least, distance_to_triangle(from, mesh.vertices_m[corners[0]],
+                                                 mesh.vertices_m[corners[1]], mesh.vertices_m[corners[2]]));
+  }
+  return least;
+}
+
+TEST(Tessellation, NoPointOfTheSurfaceIsFartherThanTheChordError) {
+  Random random(5);
+  for (const KnownSurface& known : known_surfaces()) {
+    SCOPED_TRACE(known.surface.name);
+    const Surface& surface = known.surface.surface;
+    const double chord_m = known.closes ? 5e-4 : 0.02;
+    const auto found = tessellate(surface, chord_m);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_LE(found->chord_error_m, chord_m);
+    double farthest = 0.0;
+    for (int k = 0; k < 60; ++k) {
+      const double u = random.uniform(surface.u.domain_start(), surface.u.domain_end());
+      const double v = random.uniform(surface.v.domain_start(), surface.v.domain_end());
+      farthest = std::max(farthest, distance_to_mesh(position(surface, u, v), found->mesh));
+    }
+    EXPECT_LE(farthest, chord_m);
+    EXPECT_LE(farthest, found->chord_error_m);
+  }
+}
+
+TEST(Tessellation, BodiesThatCloseAreWatertightWithNormalsOutward) {
+  for (const KnownSurface& known : known_surfaces()) {
+    SCOPED_TRACE(known.surface.name);
+    const auto found = tessellate(known.surface.surface, known.closes ? 5e-5 : 0.02);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->closed, known.closes);
+    EXPECT_EQ(unmatched_edges(found->mesh) == 0, known.closes);
+    if (!known.closes) continue;
+    const double volume = std::abs(volume_by_quadrature_m3(known.surface.surface));
+    const double area = area_by_quadrature_m2(known.surface.surface);
+    // Between the mesh and the surface lies at most the chord error over the whole area.
+    EXPECT_NEAR(enclosed_volume_m3(found->mesh), volume, 5e-5 * area);
+    EXPECT_GT(enclosed_volume_m3(found->mesh), 0.0);
+  }
+}
+
+TEST(Tessellation, AFlatSheetTakesTwoTrianglesAPiece) {
+  ControlNet net(2, 2);
+  net.set_point(1, 0, {1, 0, 0});
+  net.set_point(0, 1, {0, 1, 0});
+  net.set_point(1, 1, {1, 1, 0});
+  const KnotVector line = KnotVector::clamped_uniform(1, 2).value();
+  const auto flat = tessellate(make_surface(line, line, net).value(), 1e-6);
+  ASSERT_TRUE(flat);
+  EXPECT_EQ(flat->mesh.triangles.size(), 2u);
+  EXPECT_EQ(flat->mesh.vertices_m.size(), 4u);
+
+  // A saddle's triangles are off by a quarter of its twist: |P00 - P10 - P01 + P11| / 4, halved each way.
+  net.set_point(1, 1, {1, 1, 0.4});
+  const auto saddle = tessellate(make_surface(line, line, net).value(), 0.026);
+  ASSERT_TRUE(saddle);
+  EXPECT_EQ(saddle->mesh.triangles.size(), 8u);
+  EXPECT_NEAR(saddle->chord_error_m, 0.025, 1e-12);
+}
+
+TEST(Tessellation, MoreTrianglesThanTheLimitAreRefused) {
+  const auto found = tessellate(ellipsoid_tube(8, 8), 1e-7, 1000);
+  ASSERT_FALSE(found);
+  EXPECT_NE(found.error().message.find("more than 1000 triangles; choose a larger --chord"),
+            std::string::npos);
+}
+
+TEST(Tessellation, ACubeOfTetrahedraHasItsVolume) {
+  TriangleMesh mesh;
+  mesh.vertices_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  EXPECT_NEAR(enclosed_volume_m3(mesh), 1.0 / 6.0, 1e-15);
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,79 @@
+"""The schema of documents holds for those that the program ships and writes, and for nothing that it refuses."""
+import copy
+import json
+import sys
+from pathlib import Path
+
+from jsonschema import Draft202012Validator
+
+root = Path(sys.argv[1])
+schema = json.loads((root / "assets/schemas/document.schema.json").read_text())
+Draft202012Validator.check_schema(schema)
+validator = Draft202012Validator(schema)
+written = root / "tests/engine/exchange/documents"
+
+models = sorted((root / "assets/models").glob("*.json"))
+assert len(models) >= 8, models
+for file in [*models, written / "version-1.json", written / "version-2.json"]:
+    problems = [f"{list(problem.absolute_path)}: {problem.message[:200]}"
+                for problem in validator.iter_errors(json.loads(file.read_text()))]
+    assert not problems, (file, problems)
+
+
+def objects(value, path=()):
+    """Every object in it, with its path."""
+    if isinstance(value, dict):
+        yield path, value
+        for name, inner in value.items():
+            yield from objects(inner, (*path, name))
+    elif isinstance(value, list):
+        for place, inner in enumerate(value):
+            yield from objects(inner, (*path, place))
+
+
+def at(document, path):
+    for step in path:
+        document = document[step]
+    return document
+
+
+# Fields that the program does without, each by the name of what holds it.
+optional = {
+    "": {"other_bodies", "fixing_planes", "ground", "symmetry", "view"},
+    "body": {"regions", "loads", "supports", "shell_thickness_mm"},
+    "surface": {"trims"},
+    "material": {"hardening", "stiffening", "friction"},
+    "lattice": {"feature_map"},
+    "region": {"along", "around", "depth_mm"},
+    "regions": {"material", "friction"},
+    "supports": {"motion"},
+    "tool": {"soft"},
+    "sculpting": {"settles"},
+    "view": {"camera", "overlays", "see_through_body", "ground_mm"},
+    "camera": {"yaw_deg", "pitch_deg", "field_of_view_deg"},
+}
+optional["other_bodies"] = optional["body"]
+
+whole = json.loads((written / "version-2.json").read_text())
+tried = 0
+for path, holder in objects(whole):
+    name = next((step for step in reversed(path) if isinstance(step, str)), "")
+    changed = copy.deepcopy(whole)
+    at(changed, path)["colour"] = "red"
+    assert not validator.is_valid(changed), (path, "an unknown field is taken")
+    for field, value in holder.items():
+        changed = copy.deepcopy(whole)
+        at(changed, path)[field] = {"strange": None}
+        assert not validator.is_valid(changed), (path, field, "a strange value is taken")
+        if name == "overlays" or field in optional.get(name, ()):
+            continue
+        changed = copy.deepcopy(whole)
+        del at(changed, path)[field]
+        assert not validator.is_valid(changed), (path, field, "may be missing")
+        tried += 1
+assert tried > 100, tried
+
+for version in (0, 3, "2", None):
+    assert not validator.is_valid({**whole, "spoonbill_document": version}), version
+assert not validator.is_valid({**whole, "spoonbill_document": 1}), "version 1 had no trims"
+print(f"{len(models)} models, {tried} fields taken away")
