@@ -41,6 +41,7 @@ void replace_body(std::vector<Body>& bodies, std::size_t place, ChangedSurfaces 
     Body part = body;
     if (changed.surfaces.size() > 1) part.name += " " + std::to_string(k + 1);
     part.surface = std::move(changed.surfaces[k]);
+    part.trims = changed.trims;
     bodies.insert(bodies.begin() + static_cast<std::ptrdiff_t>(place + k), std::move(part));
   }
 }
@@ -77,7 +78,7 @@ Status change(const ChangeOptions& options, Console& console) {
     return status;
   }
   const std::size_t place = static_cast<std::size_t>(options.body) - 1;
-  auto result = changed(bodies[place].surface, options.words, options.tolerance_m);
+  auto result = changed(bodies[place].surface, bodies[place].trims, options.words, options.tolerance_m);
   if (!result) {
     return Error{options.model.string() + ": body \"" + bodies[place].name + "\": " + result.error().message};
   }

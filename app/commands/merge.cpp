@@ -3,6 +3,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "app/report/fact_sheet.h"
 #include "engine/exchange/document.h"
 #include "engine/merging/intersection_merge.h"
+#include "engine/merging/trimmed_patch.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -24,6 +26,8 @@ namespace {
 constexpr Range<double> tolerance_range_m{1e-9, 0.1};
 constexpr Range<double> blend_range_m{0.0, 1.0};
 constexpr Range<double> fillet_range_m{0.0, 1.0};
+// Of the tolerance, for making a trimmed patch whole.
+constexpr double trimmed_share = 0.25;
 constexpr int highest_continuity = max_degree - 1;
 
 struct MergeOptions {
@@ -125,6 +129,7 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   body.regions.clear();
   body.loads.clear();
   body.supports.clear();
+  body.trims.clear();
   if (patches.size() > 1) {
     body.name = document.name;
     document.view = Json::object();  // so that the whole of it is framed
@@ -150,17 +155,22 @@ Status merge_models(const MergeOptions& options, Console& console) {
   std::optional<Document> first;
   std::vector<Body> bodies;
   std::vector<Surface> patches;
+  double untrimmed_m = 0.0;
   for (const auto& model : options.models) {
     auto document = read_document(model);
     if (!document) return document.error();
     for (const Body& body : document->scene.bodies) {
+      auto whole = untrimmed(body.surface, body.trims, trimmed_share * options.request.join.tolerance_m);
+      if (!whole) return Error{model.string() + ": body \"" + body.name + "\": " + whole.error().message};
+      untrimmed_m = std::max(untrimmed_m, whole->deviation_m);
       bodies.push_back(body);
-      patches.push_back(body.surface);
+      patches.push_back(std::move(whole->surface));
     }
     if (!first) first = std::move(document).value();
   }
-  const auto merged = merged_surface(patches, options);
+  auto merged = merged_surface(patches, options);
   if (!merged) return merged.error();
+  merged->deviation_m += untrimmed_m;
   const Document document = merged_document(*first, bodies, options, merged->surface);
   if (Status written = write_document(document, options.out); !written) return written;
   report(options, bodies, merged.value(), console);
@@ -193,7 +203,8 @@ CommandEntry add_merge(CLI::App& root) {
       "nearest\n"
       "ends and bridged. Where the continuity is there already the result is exact; elsewhere control "
       "points\n"
-      "are added beside the joint until the tolerance holds. Material and tool are the first model's;\n"
+      "are added beside the joint until the tolerance holds. Trimmed bodies are resampled up to their trims. "
+      "Material and tool are the first model's;\n"
       "regions, loads and supports of the patches are left out.\n"
       "Example: spoonbill merge bowl.json handle.json --continuity C2 --out spoon.json");
   parser->add_option("MODEL", options->models, "Documents (.json)")->required()->expected(1, 64);

@@ -40,6 +40,7 @@ Result<FittedShape> fitted_part(const Surface& first, CornerLines& lines, const 
   ShapeFit fit;
   fit.tolerance_m = tolerance_m;
   fit.least_spans = 4;
+  fit.keeps_parameters = true;
   auto fitted = fit_shape(exact, fit);
   if (missed) {
     return Error{
