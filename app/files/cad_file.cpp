@@ -177,8 +177,8 @@ Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReadi
   model.unit_declared = json->value("unit_declared", true);
   model.notes = notes_of(json.value());
   for (const CadSurface& surface : model.surfaces) {
-    if (!surface.trims_dropped) continue;
-    model.notes.push_back("'" + surface.name + "' is trimmed; the whole surface is kept, its trims are not");
+    if (surface.trim_problem.empty()) continue;
+    model.notes.push_back("'" + surface.name + "' is whole, without its trims: " + surface.trim_problem);
   }
   if (model.surfaces.empty()) return Error{file.string() + ": holds no surface"};
   return model;

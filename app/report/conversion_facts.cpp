@@ -44,6 +44,7 @@ void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces
     const Vector3 size = extent.high - extent.low;
     all = joined(all, extent);
     std::string text = size_text(size) + ", " + net_text(part.surface);
+    if (!part.trims.empty()) text += ", trimmed by " + std::to_string(part.trims.size());
     if (part.deviation_m > 0.0) text += ", approximated within " + short_millimetres(part.deviation_m);
     facts.add("Body", part.name + ": " + text, "", nullptr);
     bodies.push_back({{"name", part.name},
@@ -51,7 +52,8 @@ void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces
                       {"u", direction_json(part.surface.u)},
                       {"v", direction_json(part.surface.v)},
                       {"deviation_m", part.deviation_m},
-                      {"trims_dropped", part.trims_dropped}});
+                      {"trims", part.trims.size()},
+                      {"trim_problem", part.trim_problem}});
     deviation_m = std::max(deviation_m, part.deviation_m);
   }
   const Vector3 size = all.high - all.low;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/bspline/surface.h"
+#include "engine/bspline/trim_loop.h"
 
 namespace spoonbill {
 
@@ -16,7 +17,9 @@ struct CadSurface {
   Surface surface;
   // The largest distance found between the surface and the file's own; 0 where it was taken as it stands.
   double deviation_m = 0.0;
-  bool trims_dropped = false;  // the file shows less of the surface
+  std::vector<TrimLoop> trims;  // of the part that the file shows, if that is less than the surface
+  // Why there are none although the file shows less; empty otherwise.
+  std::string trim_problem;
 };
 
 struct CadModel {

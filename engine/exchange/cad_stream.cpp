@@ -78,8 +78,9 @@ Json cad_surface_to_json(const CadSurface& surface) {
   Json json;
   json["name"] = surface.name;
   json["surface"] = surface_to_json(surface.surface);
+  add_trims(surface.trims, json["surface"]);
   json["deviation_m"] = surface.deviation_m;
-  json["trims_dropped"] = surface.trims_dropped;
+  json["trim_problem"] = clean_cad_name(surface.trim_problem, "");
   return json;
 }
 
@@ -95,9 +96,10 @@ Result<CadSurface> cad_surface_from_json(std::string_view text, const std::strin
   reader.ignore("name");
   FieldReader surface_reader = reader.inner("surface");
   std::optional<Surface> surface = read_surface(surface_reader);
+  if (surface) result.trims = read_trims(surface_reader, *surface);
   surface_reader.finish();
   result.deviation_m = reader.number("deviation_m", {0.0, 1e3});
-  result.trims_dropped = reader.boolean("trims_dropped");
+  result.trim_problem = reader.text("trim_problem");
   reader.finish();
   if (!surface || !reader.status().ok()) return reader.status().error();
   result.surface = *std::move(surface);

@@ -27,8 +27,8 @@ CadChild by_program() {
 
 CadModel two_tubes() {
   CadModel model;
-  model.surfaces.push_back({"one", ellipsoid_tube(8, 10), 0.0, false});
-  model.surfaces.push_back({"two", ellipsoid_tube(6, 8, {0.1, 0, 0}), 0.0, false});
+  model.surfaces.push_back({"one", ellipsoid_tube(8, 10), 0.0, {}, {}});
+  model.surfaces.push_back({"two", ellipsoid_tube(6, 8, {0.1, 0, 0}), 0.0, {}, {}});
   return model;
 }
 

@@ -83,7 +83,8 @@ Status take_faces(const std::vector<NamedFace>& faces, double scale, const CadRe
     surface.name = faces[k].name;
     surface.surface = std::move(found->surface);
     surface.deviation_m = found->deviation_m;
-    surface.trims_dropped = found->trimmed;
+    surface.trims = std::move(found->trims);
+    surface.trim_problem = std::move(found->trim_problem);
     take(std::move(surface));
     if (progress) {
       progress(share_of_transfer +

@@ -24,6 +24,7 @@
 #include "engine/exchange/cad/face_trims.h"
 #include "engine/exchange/cad/occt_surface.h"
 #include "engine/exchange/cad/smooth_patch.h"
+#include "engine/exchange/cad/trim_reader.h"
 #include "engine/simulation/scene.h"
 
 namespace spoonbill {
@@ -125,13 +126,31 @@ void scale_net(ControlNet& net, double factor) {
   }
 }
 
+// The surface over the very parameters that the curves of the face's edges have.
+Status match_domain(const ParameterBox& box, Surface& surface) {
+  const auto match = [&](Direction direction, const KnotVector& knots, double start, double end) -> Status {
+    if (knots.domain_start() == start && knots.domain_end() == end) return {};
+    auto matched = with_domain(surface, direction, start, end);
+    if (!matched) return matched.error();
+    surface = std::move(matched).value();
+    return {};
+  };
+  const Status status = match(Direction::u, surface.u, box.u_start, box.u_end);
+  return status ? match(Direction::v, surface.v, box.v_start, box.v_end) : status;
+}
+
+// The same face from the other side.
+void turn_round(FaceSurface& face) {
+  for (TrimLoop& loop : face.trims) loop = reversed(loop, Direction::u, face.surface.u);
+  face.surface = reversed(face.surface, Direction::u);
+}
+
 Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolerance_m) {
   const Geometry surface = without_trims(BRep_Tool::Surface(face));
   if (surface.IsNull()) return Error{"has no surface; export it anew"};
   const auto box = box_of(face, surface);
   if (!box) return box.error();
   FaceSurface result;
-  result.trimmed = is_trimmed(face, box.value());
   if (auto exact = exact_surface(surface, box.value())) {
     result.surface = *std::move(exact);
     scale_net(result.surface.net, scale * millimetres_per_metre);
@@ -144,7 +163,16 @@ Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolera
     result.deviation_m = approximation->deviation_m;
   }
   close_poles(result.surface, coincidence_m);
-  if (face.Orientation() == TopAbs_REVERSED) result.surface = reversed(result.surface, Direction::u);
+  if (Status matched = match_domain(box.value(), result.surface); !matched) return matched.error();
+  if (is_trimmed(face, box.value())) {
+    auto trims = trims_of(face, result.surface.u, result.surface.v);
+    if (trims) {
+      result.trims = std::move(trims).value();
+    } else {
+      result.trim_problem = trims.error().message;
+    }
+  }
+  if (face.Orientation() == TopAbs_REVERSED) turn_round(result);
   return result;
 }
 

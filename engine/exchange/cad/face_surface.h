@@ -2,6 +2,8 @@
 #pragma once
 
 #include <TopoDS_Face.hxx>
+#include <string>
+#include <vector>
 
 #include "engine/exchange/cad_model.h"
 #include "engine/result.h"
@@ -9,9 +11,10 @@
 namespace spoonbill {
 
 struct FaceSurface {
-  Surface surface;           // metres, normals out of the face
-  double deviation_m = 0.0;  // 0 where it was taken as it stands
-  bool trimmed = false;      // the face is less than its range of parameters
+  Surface surface;              // metres, normals out of the face
+  double deviation_m = 0.0;     // 0 where it was taken as it stands
+  std::vector<TrimLoop> trims;  // where the face is less than its range of parameters
+  std::string trim_problem;     // why there are none although it is
 };
 
 // B-spline and Bezier surfaces, planes and extrusions of such curves are taken exactly; whatever is rational,

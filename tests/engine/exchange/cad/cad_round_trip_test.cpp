@@ -56,7 +56,8 @@ class CadRoundTrip : public testing::Test {
     ASSERT_EQ(back.size(), 1u);
     EXPECT_EQ(back[0].name, known.surface.name);
     EXPECT_EQ(back[0].deviation_m, 0.0);
-    EXPECT_FALSE(back[0].trims_dropped);
+    EXPECT_TRUE(back[0].trims.empty());
+    EXPECT_EQ(back[0].trim_problem, "");
     // A solid's face turns outwards whichever way the surface did.
     const bool turned = known.closes && writing.format == CadFormat::step &&
                         volume_by_quadrature_m3(known.surface.surface) < 0.0;
@@ -90,7 +91,7 @@ TEST_F(CadRoundTrip, PeriodicTubesComeBackPeriodicWithTheSameControlPoints) {
   for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
     for (const Surface& surface : {ellipsoid_tube(9, 12), torus_like(0.04, 0.012)}) {
       CadModel model;
-      model.surfaces.push_back({"tube", surface, 0.0, false});
+      model.surfaces.push_back({"tube", surface, 0.0, {}, {}});
       CadReading reading;
       reading.format = format;
       const auto back = read(write(model, {format, StepSchema::ap214, "mm"}), reading);
@@ -113,7 +114,7 @@ TEST_F(CadRoundTrip, NamesAndTheirOrderAreKept) {
                                             "L\xc3\xb6"
                                             "ffel \xe5\x8c\x99",
                                             "back\\slash"};
-    for (const std::string& name : names) model.surfaces.push_back({name, ellipsoid_tube(8, 8), 0.0, false});
+    for (const std::string& name : names) model.surfaces.push_back({name, ellipsoid_tube(8, 8), 0.0, {}, {}});
     CadReading reading;
     reading.format = format;
     const auto back = read(write(model, {format, StepSchema::ap214, "mm"}), reading);
@@ -127,7 +128,10 @@ TEST_F(CadRoundTrip, StepFilesHoldOnlyAscii) {
   model.surfaces.push_back(
       {"L\xc3\xb6"
        "ffel",
-       ellipsoid_tube(8, 8), 0.0, false});
+       ellipsoid_tube(8, 8),
+       0.0,
+       {},
+       {}});
   const auto content = write_cad(model, {});
   ASSERT_TRUE(content);
   for (const char letter : content->text) EXPECT_GE(letter, 0);
@@ -162,7 +166,7 @@ TEST_F(CadRoundTrip, BodiesThatCloseAreValidSolidsOfTheirVolume) {
 
 TEST_F(CadRoundTrip, SchemaAndUnitAreDeclared) {
   CadModel model;
-  model.surfaces.push_back({"tube", ellipsoid_tube(8, 8), 0.0, false});
+  model.surfaces.push_back({"tube", ellipsoid_tube(8, 8), 0.0, {}, {}});
   const auto text = [&](StepSchema schema, const char* unit) {
     return write_cad(model, {CadFormat::step, schema, unit})->text;
   };
@@ -179,12 +183,12 @@ TEST(CadStream, SurfacesComeBackToTheBit) {
   for (const KnownSurface& known : known_surfaces()) {
     CadSurface surface = known.surface;
     surface.deviation_m = 1.0 / 3.0;
-    surface.trims_dropped = known.closes;
+    surface.trim_problem = known.closes ? "none" : "";
     const auto back = cad_surface_from_json(json_to_line(cad_surface_to_json(surface)), "file");
     ASSERT_TRUE(back) << back.error().message;
     EXPECT_EQ(back->name, surface.name);
     EXPECT_EQ(back->deviation_m, surface.deviation_m);
-    EXPECT_EQ(back->trims_dropped, surface.trims_dropped);
+    EXPECT_EQ(back->trim_problem, surface.trim_problem);
     EXPECT_EQ(back->surface.u, surface.surface.u);
     EXPECT_EQ(back->surface.v, surface.surface.v);
     EXPECT_EQ(back->surface.net.x, surface.surface.net.x);
