@@ -3,6 +3,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <CLI/Validators.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -61,17 +62,27 @@ Result<PatchEdge> parse_edge(const std::string& text) {
   return PatchEdge{std::stoi(text.substr(0, dot)) - 1, side.value()};
 }
 
-Result<std::pair<PatchEdge, PatchEdge>> parse_edges(const std::string& text) {
+// "1.v_end:2.v_start", or with -2.v_start against it.
+Result<ChosenEdges> parse_edges(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {
     return Error{"'" + text.substr(0, 40) + "' is not a pair of edges like 1.v_end:2.v_start"};
   }
-  const auto a = parse_edge(text.substr(0, colon)), b = parse_edge(text.substr(colon + 1));
+  std::string second = text.substr(colon + 1);
+  ChosenEdges edges;
+  if (!second.empty() && (second[0] == '-' || second[0] == '+')) {
+    edges.reversed = second[0] == '-';
+    second.erase(0, 1);
+  }
+  const auto a = parse_edge(text.substr(0, colon)), b = parse_edge(second);
   if (!a) return a.error();
   if (!b) return b.error();
-  if (a->patch == b->patch)
+  if (a->patch == b->patch) {
     return Error{"'" + text.substr(0, 40) + "' joins a patch to itself; name two patches"};
-  return std::pair(a.value(), b.value());
+  }
+  edges.a = a.value();
+  edges.b = b.value();
+  return edges;
 }
 
 std::string edge_text(const PatchEdge& edge) {
@@ -236,8 +247,14 @@ CommandEntry add_merge(CLI::App& root) {
               options->request.chosen.push_back(pair.value());
             }
           },
-          "Join these edges, instead of those found: 1.v_end:2.v_start; once for each joint")
+          "Join these edges, instead of those found: 1.v_end:2.v_start, or 1.v_end:-2.v_start where the "
+          "second runs against the first and 1.v_end:+2.v_start where along it; once for each joint")
       ->type_name("EDGE:EDGE");
+  parser
+      ->add_option("--twist", options->request.join.twist,
+                   "Turn each ring by this share of a turn from where it fits the one before best")
+      ->check(CLI::Range(-1.0, 1.0))
+      ->type_name("SHARE");
   CLI::Option* crossing = parser->add_flag("--intersect", options->crossing,
                                            "The patches cross: each keeps what lies before the other");
   add_parsed_option(*parser, "--fillet", "Round the corner in which they cross with this radius", "LENGTH",
