@@ -40,7 +40,10 @@ TEST(Merge, GivesASplitSurfaceBackAtEveryDegree) {
   for (int degree = 2; degree <= 5; ++degree) {
     for (int repeat = 0; repeat < 25; ++repeat) {
       const Surface whole = smooth_sheet(random, degree, 8, 9);
-      const double cut = random.uniform(0.05, 0.95);
+      // Anywhere, and a hair's breadth beside a knot.
+      const double inner = knots_along(whole, Direction::u).breakpoints()[1];
+      const double cut =
+          repeat % 2 == 0 ? random.uniform(0.05, 0.95) : inner + std::pow(10.0, -random.uniform(1.5, 6.0));
       const Direction along = random.integer(0, 1) == 0 ? Direction::u : Direction::v;
       const std::vector<Surface> parts{part_of(whole, along, 0.0, cut).value(),
                                        part_of(whole, along, cut, 1.0).value()};
