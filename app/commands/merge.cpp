@@ -1,8 +1,5 @@
 #include "engine/merging/merge.h"
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
 #include <algorithm>
 #include <filesystem>
@@ -15,6 +12,7 @@
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/option_values.h"
+#include "app/commands/parsed_option.h"
 #include "app/report/fact_sheet.h"
 #include "engine/exchange/document.h"
 #include "engine/merging/intersection_merge.h"
@@ -188,21 +186,6 @@ Status merge_models(const MergeOptions& options, Console& console) {
   return {};
 }
 
-template <class Parse, class Take>
-void add_parsed_option(CLI::App& parser, const std::string& name, const std::string& help, const char* form,
-                       const Parse& parse, const Take& take) {
-  parser
-      .add_option_function<std::string>(
-          name,
-          [=](const std::string& text) {
-            const auto parsed = parse(text);
-            if (!parsed) throw CLI::ValidationError(name, parsed.error().message);
-            take(parsed.value());
-          },
-          help)
-      ->type_name(form);
-}
-
 }  // namespace
 
 CommandEntry add_merge(CLI::App& root) {
@@ -221,22 +204,22 @@ CommandEntry add_merge(CLI::App& root) {
   parser->add_option("MODEL", options->models, "Documents (.json)")->required()->expected(1, 64);
   parser->add_option("--out", options->out, "The merged document")->required();
   parser->add_option("--name", options->name, "Of the result; the file's unless told");
-  JoinRequest& join = options->request.join;
-  add_parsed_option(*parser, "--continuity", "Of the joints, C2 unless told", "C0..C8", parse_continuity,
-                    [options](int order) { options->request.join.continuity = order; });
+  const JoinRequest& join = options->request.join;
   const auto length_in = [](Range<double> range) {
     return [range](const std::string& text) { return parse_length(text, range); };
   };
-  add_parsed_option(*parser, "--tolerance",
-                    "How far the result may leave the patches outside blends, " +
-                        short_length_text(join.tolerance_m) + " unless told",
-                    "LENGTH", length_in(tolerance_range_m),
-                    [options](double length_m) { options->request.join.tolerance_m = length_m; });
   add_parsed_option(
-      *parser, "--blend",
-      "Round joints that are not as smooth as asked over this length, instead of within the tolerance",
-      "LENGTH", length_in(blend_range_m),
-      [options](double length_m) { options->request.join.blend_m = length_m; });
+      *parser, "--continuity", "C0..C8", parse_continuity,
+      [options](int order) { options->request.join.continuity = order; }, "Of the joints, C2 unless told");
+  add_parsed_option(
+      *parser, "--tolerance", "LENGTH", length_in(tolerance_range_m),
+      [options](double length_m) { options->request.join.tolerance_m = length_m; },
+      "How far the result may leave the patches outside blends, " + short_length_text(join.tolerance_m) +
+          " unless told");
+  add_parsed_option(
+      *parser, "--blend", "LENGTH", length_in(blend_range_m),
+      [options](double length_m) { options->request.join.blend_m = length_m; },
+      "Round joints that are not as smooth as asked over this length, instead of within the tolerance");
   parser
       ->add_option_function<std::vector<std::string>>(
           "--edges",
@@ -257,9 +240,11 @@ CommandEntry add_merge(CLI::App& root) {
       ->type_name("SHARE");
   CLI::Option* crossing = parser->add_flag("--intersect", options->crossing,
                                            "The patches cross: each keeps what lies before the other");
-  add_parsed_option(*parser, "--fillet", "Round the corner in which they cross with this radius", "LENGTH",
-                    length_in(fillet_range_m), [options](double length_m) { options->fillet_m = length_m; });
-  parser->get_option("--fillet")->needs(crossing);
+  add_parsed_option(
+      *parser, "--fillet", "LENGTH", length_in(fillet_range_m),
+      [options](double length_m) { options->fillet_m = length_m; },
+      "Round the corner in which they cross with this radius")
+      ->needs(crossing);
   crossing->excludes(parser->get_option("--edges"));
   crossing->excludes(parser->get_option("--blend"));
   add_json_option(*parser, options->json);
