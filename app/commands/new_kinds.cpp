@@ -16,23 +16,6 @@ namespace {
 // Wider than any shape may be: those say themselves what they need.
 constexpr Range<double> length_range_m{-1e3, 1e3};
 
-using Length = std::shared_ptr<std::optional<double>>;
-
-Length add_length(CLI::App& parser, const std::string& name, const std::string& help) {
-  auto length = std::make_shared<std::optional<double>>();
-  parser
-      .add_option_function<std::string>(
-          name,
-          [length, name](const std::string& text) {
-            const auto value = parse_length(text, length_range_m);
-            if (!value) throw CLI::ValidationError(name, value.error().message);
-            *length = value.value();
-          },
-          help)
-      ->type_name("LENGTH");
-  return length;
-}
-
 std::shared_ptr<std::vector<double>> add_size(CLI::App& parser, std::size_t count, const std::string& help) {
   auto size = std::make_shared<std::vector<double>>();
   parser
@@ -150,7 +133,22 @@ NewKind add_torus(CLI::App& root) {
 
 }  // namespace
 
-std::vector<NewKind> add_new_kinds(CLI::App& parser) {
+Length add_length(CLI::App& parser, const std::string& name, const std::string& help) {
+  auto length = std::make_shared<std::optional<double>>();
+  parser
+      .add_option_function<std::string>(
+          name,
+          [length, name](const std::string& text) {
+            const auto value = parse_length(text, length_range_m);
+            if (!value) throw CLI::ValidationError(name, value.error().message);
+            *length = value.value();
+          },
+          help)
+      ->type_name("LENGTH");
+  return length;
+}
+
+std::vector<NewKind> add_lump_kinds(CLI::App& parser) {
   return {add_sphere(parser), add_box(parser),   add_cylinder(parser),
           add_cone(parser),   add_plate(parser), add_torus(parser)};
 }
