@@ -68,10 +68,22 @@ double plane_distance(const Vector3& sample, const std::vector<Vector3>& points,
   return std::abs(normal.dot(sample - mean));
 }
 
+// The mean distance to the sixth neighbour, of some of the points: as far as all around a point reach.
+double usual_spacing(const std::vector<Vector3>& points, const NearestPoints& nearest) {
+  constexpr std::size_t neighbours = 6, most = 2000;
+  std::vector<NearestPoints::Found> found;
+  double sum = 0.0, count = 0.0;
+  for (std::size_t p = 0; p < points.size(); p += 1 + points.size() / most, count += 1.0) {
+    nearest.nearest(points[p], neighbours + 1, found);
+    sum += found.back().distance;
+  }
+  return sum / count;
+}
+
 void measure_surface(const FittedSurface& fit, const FitPoints& points, FitErrors& errors) {
   const std::vector<Vector3>& data = points.scan.points_m;
   const NearestPoints nearest(data);
-  const double spacing = mean_edge_length(points.graph);
+  const double spacing = usual_spacing(data, nearest);
   const std::vector<Vector3> samples = surface_samples(fit.surface);
   std::vector<bool> at_rim(points.graph.size(), false);
   for (const Rim& rim : points.rims) {

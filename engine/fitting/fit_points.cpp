@@ -221,6 +221,24 @@ Result<FitPoints> make_fit_points(Scan scan) {
   return fit;
 }
 
+std::vector<Vector2> take_points_as_nodes(FitPoints& points, const std::vector<Vector2>& uv) {
+  const std::size_t count = points.scan.points_m.size(), stride = 1 + count / (4 * node_target);
+  std::vector<Vector3> nodes, places;
+  std::vector<Vector2> node_uv;
+  for (std::size_t p = 0; p < count; p += stride) {
+    nodes.push_back(points.scan.points_m[p]);
+    node_uv.push_back(uv[p]);
+    places.emplace_back(uv[p].x(), uv[p].y(), 0.0);
+  }
+  const NearestPoints nearest(places);
+  for (std::size_t p = 0; p < count; ++p)
+    points.node_of[p] = nearest.nearest({uv[p].x(), uv[p].y(), 0.0}).index;
+  points.node_normals.assign(nodes.size(), Vector3::Zero());
+  points.rims.clear();
+  points.graph = make_point_graph(std::move(nodes), {});
+  return node_uv;
+}
+
 void add_spanning_nodes(FitPoints& points, const std::vector<Vector3>& places_m,
                         const std::vector<Vector3>& normals, const std::vector<NodePair>& pairs) {
   std::vector<NodePair> all = pairs;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "engine/fitting/parameterisation.h"
 #include "engine/fitting/point_graph.h"
 #include "engine/fitting/rims.h"
 #include "engine/fitting/scan.h"
@@ -32,6 +33,10 @@ struct FitPoints {
 // Joins the vertices of a mesh, refines its triangles to the nodes' spacing, gives its vertices normals;
 // thins a cloud by voxels and leaves out what lies apart. Refused: fewer than 30 points, no extent.
 Result<FitPoints> make_fit_points(Scan scan);
+
+// Makes some of the points themselves the nodes, without neighbours: for clouds whose parameters are known
+// already, those of the points, and whose neighbours mislead. The nodes' follow.
+std::vector<Vector2> take_points_as_nodes(FitPoints& points, const std::vector<Vector2>& uv);
 
 // Adds nodes that span a hole or a gap; `pairs` join them, whose numbers begin at graph.size(), to others.
 void add_spanning_nodes(FitPoints& points, const std::vector<Vector3>& places_m,
