@@ -33,7 +33,13 @@ void measure_data(const FittedSurface& fit, const FitPoints& points, FitErrors& 
     errors.uv[g] = found.uv;
     errors.distance_m[g] = found.distance_m;
   }
-  errors.data_to_surface = deviation_of(errors.distance_m);
+  std::vector<double> trusted;
+  for (std::size_t g = 0; g < points.given_m.size(); ++g) {
+    if (fit.trust[points.stands_for[g]] > 0.0) trusted.push_back(errors.distance_m[g]);
+  }
+  errors.strays = points.given_m.size() - trusted.size();
+  errors.data_to_surface = deviation_of(std::move(trusted));
+  errors.all_to_surface = deviation_of(errors.distance_m);
 }
 
 std::vector<Vector3> surface_samples(const Surface& surface) {

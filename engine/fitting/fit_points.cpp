@@ -198,6 +198,7 @@ void make_nodes(FitPoints& fit) {
 Result<FitPoints> make_fit_points(Scan scan) {
   const bool is_mesh = !scan.triangles.empty();
   FitPoints fit;
+  fit.is_mesh = is_mesh;
   fit.weights.assign(scan.points_m.size(), 1.0);
   if (is_mesh) join(scan);
   fit.given_m = scan.points_m;

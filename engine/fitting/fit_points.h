@@ -16,7 +16,8 @@ inline constexpr std::size_t node_target = 5000;
 inline constexpr std::uint32_t no_point = 0xffffffffU;
 
 struct FitPoints {
-  Scan scan;  // thinned, cleaned; triangles no longer
+  bool is_mesh = false;  // has no points apart from its surface then
+  Scan scan;             // thinned, cleaned; triangles no longer
   // Of each point given (of a mesh: of each vertex left after joining) the one above that stands for it, or
   // no_point where it was left out; with where it lies.
   std::vector<Vector3> given_m;
