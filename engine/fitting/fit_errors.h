@@ -15,7 +15,9 @@ struct Deviation {
 Deviation deviation_of(std::vector<double> distances_m);
 
 struct FitErrors {
-  Deviation data_to_surface;  // of every point given, from the surface point nearest to it
+  // Of every point given but strays, from the surface point nearest to it; and with the strays.
+  Deviation data_to_surface, all_to_surface;
+  std::size_t strays = 0;  // points of no trust: off the surface, unlike those around them
   // Of samples of the surface, four by four a span, from the plane of the scan's points around the nearest
   // one, or from that point where they do not reach as far.
   Deviation surface_to_data;

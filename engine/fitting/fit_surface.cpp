@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/fitting/closest_parameters.h"
+#include "engine/fitting/nearest_points.h"
 #include "engine/fitting/refine_knots.h"
 
 namespace spoonbill {
@@ -13,13 +14,16 @@ namespace {
 constexpr int degree = 3;
 constexpr int first_controls = 10;
 constexpr double growth = 1.35;
-constexpr double first_fairness = 1e-2, last_fairness = 2e-4;
+constexpr double first_fairness = 1e-2, last_fairness = 3e-4;
 constexpr int projection_steps = 3;
-constexpr int fold_rounds = 12;
-constexpr double most_fairness = 1.0;
+constexpr int fold_rounds = 30, relaxing_rounds = 10;
+constexpr double most_fairness = 10.0;
 constexpr double huber_deviations = 3.0;
+constexpr double stray_deviations = 5.0;
+constexpr std::size_t stray_neighbours = 15;
+constexpr int point_round_count = 3;
 // Of a node that spans a hole, against the others': it is a guess.
-constexpr double spanning_weight = 0.4;
+constexpr double spanning_weight = 0.15;
 // A span with less than this share of the mean's data is stiffened, by up to this factor.
 constexpr double seen_share = 0.3, unseen_fairness = 3.0;
 
@@ -47,6 +51,7 @@ class Fitter {
   Status solve(Data& data);
   void project(Data& data, bool smooth);
   void take_trust(Data& data) const;
+  void distrust_strays();
   void smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const;
   bool within_tolerance(const Data& data) const;
   bool grow();
@@ -54,6 +59,9 @@ class Fitter {
   Status node_rounds();
   Status point_rounds();
   void stiffen_folds();
+  void relax_folds();
+  bool in_folded_span(const Vector2& uv) const;
+  Vector2 kept_inside(Vector2 uv) const;
   Status unfold();
   void set_fairness(double fairness, const Data& data);
   bool tell(double share) const { return !settings_->watch || settings_->watch(share); }
@@ -69,6 +77,7 @@ class Fitter {
   Data nodes_, all_;
   Surface surface_;
   FoldCheck folds_;
+  std::vector<double> u_breaks_, v_breaks_;  // of the last knots
 };
 
 KnotVector first_knots(bool is_periodic, int count) {
@@ -195,6 +204,41 @@ void Fitter::take_trust(Data& data) const {
   }
 }
 
+// Of a cloud, what lies off the surface otherwise than the points around it in (u, v): where the surface is
+// wrong, all of them lie off alike.
+void Fitter::distrust_strays() {
+  if (points_->is_mesh) return;
+  const Vector2 scale(static_cast<double>(span_count(structure_.u)),
+                      static_cast<double>(span_count(structure_.v)));
+  const std::size_t count = points_->scan.points_m.size();
+  std::vector<Vector3> places;
+  std::vector<double> heights;
+  for (std::size_t p = 0; p < count; ++p) {
+    const SurfacePoint at = evaluate(surface_, all_.uv[p].x(), all_.uv[p].y());
+    const Vector3 normal = at.du.cross(at.dv).normalized();
+    places.emplace_back(all_.uv[p].x() * scale.x(), all_.uv[p].y() * scale.y(), 0.0);
+    heights.push_back(normal.dot(all_.points_m[p] - at.position_m));
+  }
+  const NearestPoints nearest(places);
+  std::vector<NearestPoints::Found> found;
+  std::vector<double> near, off(count);
+  for (std::size_t p = 0; p < count; ++p) {
+    nearest.nearest(places[p], stray_neighbours, found);
+    near.clear();
+    for (const NearestPoints::Found& other : found) near.push_back(heights[other.index]);
+    const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
+    std::nth_element(near.begin(), middle, near.end());
+    off[p] = std::abs(heights[p] - *middle);
+  }
+  std::vector<double> sorted = off;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double reach = std::max(stray_deviations * 1.4826 * *middle, 1e-6 * size_of(points_->scan.points_m));
+  for (std::size_t p = 0; p < count; ++p) {
+    if (off[p] > reach) all_.trust[p] = 0.0;
+  }
+}
+
 bool Fitter::within_tolerance(const Data& data) const {
   if (settings_->tolerance_m <= 0.0) return false;
   for (std::size_t p = 0; p + points_->spanning_nodes < data.distance_m.size(); ++p) {
@@ -277,12 +321,13 @@ Status Fitter::point_rounds() {
   all_.weights = all_weights_;
   all_.distance_m.assign(all_.uv.size(), 0.0);
   all_.trust.assign(all_.uv.size(), 1.0);
-  for (int round = 0; round < 2; ++round) {
+  for (int round = 0; round < point_round_count; ++round) {
     project(all_, false);
     take_trust(all_);
+    if (round > 0) distrust_strays();
     set_fairness(last_fairness, all_);
     if (Status solved = solve(all_); !solved) return solved;
-    if (!tell(0.7 + 0.1 * round)) return Error{"stopped before the fit was done"};
+    if (!tell(0.7 + 0.05 * round)) return Error{"stopped before the fit was done"};
   }
   return {};
 }
@@ -305,6 +350,65 @@ void Fitter::stiffen_folds() {
   }
 }
 
+// Parameters of points in spans that fold, moved towards the means of their neighbours': as in the harmonic
+// map that they come from, where none crosses another.
+void Fitter::relax_folds() {
+  const PointGraph& graph = points_->graph;
+  const std::size_t count = points_->scan.points_m.size(), spanning = points_->spanning_nodes;
+  std::vector<std::vector<std::uint32_t>> of_node(graph.size());
+  for (std::uint32_t p = 0; p < count; ++p) of_node[points_->node_of[p]].push_back(p);
+  for (std::uint32_t k = 0; k < spanning; ++k) {
+    of_node[graph.size() - spanning + k].push_back(static_cast<std::uint32_t>(count) + k);
+  }
+  // A node lies where its first point does.
+  const auto place = [&](std::uint32_t node) {
+    return of_node[node].empty() ? no_point : of_node[node].front();
+  };
+  std::vector<std::uint32_t> folded;
+  for (std::uint32_t n = 0; n < graph.size(); ++n) {
+    if (place(n) != no_point && in_folded_span(all_.uv[place(n)])) folded.push_back(n);
+  }
+  for (int round = 0; round < relaxing_rounds; ++round) {
+    for (const std::uint32_t n : folded) {
+      const Vector2 before = all_.uv[place(n)];
+      Vector2 shift = Vector2::Zero();
+      double near = 0.0;
+      for (const std::uint32_t other : graph.of(n)) {
+        if (place(other) == no_point) continue;
+        Vector2 way = all_.uv[place(other)] - before;
+        if (periodic()) way.x() = wrapped(way.x());
+        shift += way;
+        near += 1.0;
+      }
+      if (near == 0.0) continue;
+      for (const std::uint32_t p : of_node[n]) all_.uv[p] = kept_inside(all_.uv[p] + 0.7 / near * shift);
+    }
+  }
+}
+
+bool Fitter::in_folded_span(const Vector2& uv) const {
+  const auto span_of = [](const std::vector<double>& breaks, double at) {
+    const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, at);
+    return static_cast<std::size_t>(above - breaks.begin()) - 1;
+  };
+  const std::vector<double>&u = u_breaks_, &v = v_breaks_;
+  const std::size_t columns = v.size() - 1, rows = u.size() - 1;
+  const std::size_t row = span_of(u, uv.x()), column = span_of(v, uv.y());
+  for (std::size_t s = row + rows - 1; s <= row + rows + 1; ++s) {
+    for (std::size_t t = column == 0 ? 0 : column - 1; t <= std::min(columns - 1, column + 1); ++t) {
+      if (folds_.span_folds[s % rows * columns + t]) return true;
+    }
+  }
+  return false;
+}
+
+// Wrapped in u where it is periodic, else on the nearest edge.
+Vector2 Fitter::kept_inside(Vector2 uv) const {
+  uv.y() = std::clamp(uv.y(), 0.0, 1.0);
+  uv.x() = periodic() ? uv.x() - std::floor(uv.x()) : std::clamp(uv.x(), 0.0, 1.0);
+  return uv;
+}
+
 Status Fitter::unfold() {
   std::vector<Vector3> normals = points_->scan.normals;
   if (!normals.empty()) {
@@ -312,6 +416,8 @@ Status Fitter::unfold() {
                    points_->node_normals.end() - static_cast<std::ptrdiff_t>(points_->spanning_nodes),
                    points_->node_normals.end());
   }
+  u_breaks_ = structure_.u.breakpoints();
+  v_breaks_ = structure_.v.breakpoints();
   project(all_, false);
   folds_ = check_folds(surface_, {all_.uv, normals});
   Surface least_folded = surface_;
@@ -319,8 +425,9 @@ Status Fitter::unfold() {
   std::vector<Vector2> least_uv = all_.uv;
   for (int round = 0; round < fold_rounds && folds_.folds > 0; ++round) {
     stiffen_folds();
+    relax_folds();
     if (Status solved = solve(all_); !solved) return solved;
-    project(all_, false);
+    if (round % 2 == 1) project(all_, false);
     folds_ = check_folds(surface_, {all_.uv, normals});
     if (folds_.folds < least.folds) {
       least_folded = surface_;
