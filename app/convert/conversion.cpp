@@ -94,6 +94,7 @@ Result<CadModel> read_native(const ConversionRequest& request, ConversionReport&
     CadSurface surface;
     surface.name = clean_cad_name(body.name, "body");
     surface.surface = std::move(body.surface);
+    surface.trims = std::move(body.trims);
     model.surfaces.push_back(std::move(surface));
   }
   return model;
