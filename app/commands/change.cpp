@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -10,6 +7,7 @@
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/option_values.h"
+#include "app/commands/parsed_option.h"
 #include "app/commands/surface_change.h"
 #include "app/report/fact_sheet.h"
 #include "engine/exchange/document.h"
@@ -41,6 +39,7 @@ void replace_body(std::vector<Body>& bodies, std::size_t place, ChangedSurfaces 
     Body part = body;
     if (changed.surfaces.size() > 1) part.name += " " + std::to_string(k + 1);
     part.surface = std::move(changed.surfaces[k]);
+    part.trims = changed.trims;
     bodies.insert(bodies.begin() + static_cast<std::ptrdiff_t>(place + k), std::move(part));
   }
 }
@@ -77,7 +76,7 @@ Status change(const ChangeOptions& options, Console& console) {
     return status;
   }
   const std::size_t place = static_cast<std::size_t>(options.body) - 1;
-  auto result = changed(bodies[place].surface, options.words, options.tolerance_m);
+  auto result = changed(bodies[place].surface, bodies[place].trims, options.words, options.tolerance_m);
   if (!result) {
     return Error{options.model.string() + ": body \"" + bodies[place].name + "\": " + result.error().message};
   }
@@ -102,16 +101,11 @@ CommandEntry add_change(CLI::App& root) {
   parser->add_option("CHANGE", options->words, "What to do, as below")->required()->expected(1, 3);
   parser->add_option("--out", options->out, "The changed document")->required();
   parser->add_option("--body", options->body, "Which body, counted from 1; the first unless told");
-  parser
-      ->add_option_function<std::string>(
-          "--tolerance",
-          [options](const std::string& text) {
-            const auto length_m = parse_length(text, tolerance_range_m);
-            if (!length_m) throw CLI::ValidationError("--tolerance", length_m.error().message);
-            options->tolerance_m = length_m.value();
-          },
-          "For changes that are not exact, " + short_length_text(options->tolerance_m) + " unless told")
-      ->type_name("LENGTH");
+  add_parsed_option(
+      *parser, "--tolerance", "LENGTH",
+      [](const std::string& text) { return parse_length(text, tolerance_range_m); },
+      [options](double length_m) { options->tolerance_m = length_m; },
+      "For changes that are not exact, " + short_length_text(options->tolerance_m) + " unless told");
   add_json_option(*parser, options->json);
   return {parser, [options](Console& console) { return change(*options, console); }};
 }

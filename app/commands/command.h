@@ -29,6 +29,8 @@ CommandEntry add_rest(CLI::App& root);
 CommandEntry add_merge(CLI::App& root);
 CommandEntry add_change(CLI::App& root);
 CommandEntry add_new(CLI::App& root);
+CommandEntry add_fit(CLI::App& root);
+CommandEntry add_check(CLI::App& root);
 CommandEntry add_read_mesh(CLI::App& root);  // the program's own, not shown
 
 }  // namespace spoonbill

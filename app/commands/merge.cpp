@@ -1,8 +1,7 @@
 #include "engine/merging/merge.h"
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
+#include <CLI/Validators.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -13,8 +12,11 @@
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/option_values.h"
+#include "app/commands/parsed_option.h"
 #include "app/report/fact_sheet.h"
 #include "engine/exchange/document.h"
+#include "engine/merging/intersection_merge.h"
+#include "engine/merging/trimmed_patch.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -22,6 +24,9 @@ namespace {
 
 constexpr Range<double> tolerance_range_m{1e-9, 0.1};
 constexpr Range<double> blend_range_m{0.0, 1.0};
+constexpr Range<double> fillet_range_m{0.0, 1.0};
+// Of the tolerance, for making a trimmed patch whole.
+constexpr double trimmed_share = 0.25;
 constexpr int highest_continuity = max_degree - 1;
 
 struct MergeOptions {
@@ -29,6 +34,8 @@ struct MergeOptions {
   std::filesystem::path out;
   std::string name;
   MergeRequest request;
+  bool crossing = false;
+  double fillet_m = 0.0;
   bool json = false;
 };
 
@@ -53,17 +60,27 @@ Result<PatchEdge> parse_edge(const std::string& text) {
   return PatchEdge{std::stoi(text.substr(0, dot)) - 1, side.value()};
 }
 
-Result<std::pair<PatchEdge, PatchEdge>> parse_edges(const std::string& text) {
+// "1.v_end:2.v_start", or with -2.v_start against it.
+Result<ChosenEdges> parse_edges(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {
     return Error{"'" + text.substr(0, 40) + "' is not a pair of edges like 1.v_end:2.v_start"};
   }
-  const auto a = parse_edge(text.substr(0, colon)), b = parse_edge(text.substr(colon + 1));
+  std::string second = text.substr(colon + 1);
+  ChosenEdges edges;
+  if (!second.empty() && (second[0] == '-' || second[0] == '+')) {
+    edges.reversed = second[0] == '-';
+    second.erase(0, 1);
+  }
+  const auto a = parse_edge(text.substr(0, colon)), b = parse_edge(second);
   if (!a) return a.error();
   if (!b) return b.error();
-  if (a->patch == b->patch)
+  if (a->patch == b->patch) {
     return Error{"'" + text.substr(0, 40) + "' joins a patch to itself; name two patches"};
-  return std::pair(a.value(), b.value());
+  }
+  edges.a = a.value();
+  edges.b = b.value();
+  return edges;
 }
 
 std::string edge_text(const PatchEdge& edge) {
@@ -101,7 +118,7 @@ void report(const MergeOptions& options, const std::vector<Body>& patches, const
                 ", degrees " + std::to_string(u.degree()) + " and " + std::to_string(v.degree()),
             "control_points", {u.control_point_count(), v.control_point_count()});
   facts.add("", "", "degrees", {u.degree(), v.degree()});
-  const int continuity = options.request.join.continuity;
+  const int continuity = options.crossing && options.fillet_m == 0.0 ? 0 : options.request.join.continuity;
   facts.add("Continuity", "C" + std::to_string(continuity), "continuity", continuity);
   facts.add("Deviation", "at most " + short_length_text(merged.deviation_m) + " outside blends",
             "deviation_m", merged.deviation_m);
@@ -121,6 +138,7 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   body.regions.clear();
   body.loads.clear();
   body.supports.clear();
+  body.trims.clear();
   if (patches.size() > 1) {
     body.name = document.name;
     document.view = Json::object();  // so that the whole of it is framed
@@ -129,40 +147,43 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   return document;
 }
 
+// Those that cross are merged one after the other.
+Result<Merged> merged_surface(const std::vector<Surface>& patches, const MergeOptions& options) {
+  if (!options.crossing) return merge(patches, options.request);
+  Merged merged{patches[0], 0.0, {}};
+  for (std::size_t p = 1; p < patches.size(); ++p) {
+    auto next = merge_crossing(merged.surface, patches[p], {options.request.join, options.fillet_m});
+    if (!next) return Error{"patch " + std::to_string(p + 1) + ": " + next.error().message};
+    merged.surface = std::move(next->surface);
+    merged.deviation_m += next->deviation_m;
+  }
+  return merged;
+}
+
 Status merge_models(const MergeOptions& options, Console& console) {
   std::optional<Document> first;
   std::vector<Body> bodies;
   std::vector<Surface> patches;
+  double untrimmed_m = 0.0;
   for (const auto& model : options.models) {
     auto document = read_document(model);
     if (!document) return document.error();
     for (const Body& body : document->scene.bodies) {
+      auto whole = untrimmed(body.surface, body.trims, trimmed_share * options.request.join.tolerance_m);
+      if (!whole) return Error{model.string() + ": body \"" + body.name + "\": " + whole.error().message};
+      untrimmed_m = std::max(untrimmed_m, whole->deviation_m);
       bodies.push_back(body);
-      patches.push_back(body.surface);
+      patches.push_back(std::move(whole->surface));
     }
     if (!first) first = std::move(document).value();
   }
-  const auto merged = merge(patches, options.request);
+  auto merged = merged_surface(patches, options);
   if (!merged) return merged.error();
+  merged->deviation_m += untrimmed_m;
   const Document document = merged_document(*first, bodies, options, merged->surface);
   if (Status written = write_document(document, options.out); !written) return written;
   report(options, bodies, merged.value(), console);
   return {};
-}
-
-template <class Parse, class Take>
-void add_parsed_option(CLI::App& parser, const std::string& name, const std::string& help, const char* form,
-                       const Parse& parse, const Take& take) {
-  parser
-      .add_option_function<std::string>(
-          name,
-          [=](const std::string& text) {
-            const auto parsed = parse(text);
-            if (!parsed) throw CLI::ValidationError(name, parsed.error().message);
-            take(parsed.value());
-          },
-          help)
-      ->type_name(form);
 }
 
 }  // namespace
@@ -176,28 +197,29 @@ CommandEntry add_merge(CLI::App& root) {
       "nearest\n"
       "ends and bridged. Where the continuity is there already the result is exact; elsewhere control "
       "points\n"
-      "are added beside the joint until the tolerance holds. Material and tool are the first model's;\n"
+      "are added beside the joint until the tolerance holds. Trimmed bodies are resampled up to their trims. "
+      "Material and tool are the first model's;\n"
       "regions, loads and supports of the patches are left out.\n"
       "Example: spoonbill merge bowl.json handle.json --continuity C2 --out spoon.json");
   parser->add_option("MODEL", options->models, "Documents (.json)")->required()->expected(1, 64);
   parser->add_option("--out", options->out, "The merged document")->required();
   parser->add_option("--name", options->name, "Of the result; the file's unless told");
-  JoinRequest& join = options->request.join;
-  add_parsed_option(*parser, "--continuity", "Of the joints, C2 unless told", "C0..C8", parse_continuity,
-                    [options](int order) { options->request.join.continuity = order; });
+  const JoinRequest& join = options->request.join;
   const auto length_in = [](Range<double> range) {
     return [range](const std::string& text) { return parse_length(text, range); };
   };
-  add_parsed_option(*parser, "--tolerance",
-                    "How far the result may leave the patches outside blends, " +
-                        short_length_text(join.tolerance_m) + " unless told",
-                    "LENGTH", length_in(tolerance_range_m),
-                    [options](double length_m) { options->request.join.tolerance_m = length_m; });
   add_parsed_option(
-      *parser, "--blend",
-      "Round joints that are not as smooth as asked over this length, instead of within the tolerance",
-      "LENGTH", length_in(blend_range_m),
-      [options](double length_m) { options->request.join.blend_m = length_m; });
+      *parser, "--continuity", "C0..C8", parse_continuity,
+      [options](int order) { options->request.join.continuity = order; }, "Of the joints, C2 unless told");
+  add_parsed_option(
+      *parser, "--tolerance", "LENGTH", length_in(tolerance_range_m),
+      [options](double length_m) { options->request.join.tolerance_m = length_m; },
+      "How far the result may leave the patches outside blends, " + short_length_text(join.tolerance_m) +
+          " unless told");
+  add_parsed_option(
+      *parser, "--blend", "LENGTH", length_in(blend_range_m),
+      [options](double length_m) { options->request.join.blend_m = length_m; },
+      "Round joints that are not as smooth as asked over this length, instead of within the tolerance");
   parser
       ->add_option_function<std::vector<std::string>>(
           "--edges",
@@ -208,8 +230,23 @@ CommandEntry add_merge(CLI::App& root) {
               options->request.chosen.push_back(pair.value());
             }
           },
-          "Join these edges, instead of those found: 1.v_end:2.v_start; once for each joint")
+          "Join these edges, instead of those found: 1.v_end:2.v_start, or 1.v_end:-2.v_start where the "
+          "second runs against the first and 1.v_end:+2.v_start where along it; once for each joint")
       ->type_name("EDGE:EDGE");
+  parser
+      ->add_option("--twist", options->request.join.twist,
+                   "Turn each ring by this share of a turn from where it fits the one before best")
+      ->check(CLI::Range(-1.0, 1.0))
+      ->type_name("SHARE");
+  CLI::Option* crossing = parser->add_flag("--intersect", options->crossing,
+                                           "The patches cross: each keeps what lies before the other");
+  add_parsed_option(
+      *parser, "--fillet", "LENGTH", length_in(fillet_range_m),
+      [options](double length_m) { options->fillet_m = length_m; },
+      "Round the corner in which they cross with this radius")
+      ->needs(crossing);
+  crossing->excludes(parser->get_option("--edges"));
+  crossing->excludes(parser->get_option("--blend"));
   add_json_option(*parser, options->json);
   return {parser, [options](Console& console) { return merge_models(*options, console); }};
 }

@@ -28,6 +28,8 @@ struct Change {
   const char* form;
   const char* what;
   std::function<Result<ChangedSurfaces>(const Call&)> make;
+  // Where the change does not keep the parameters, what becomes of a trim loop; empty where that is nothing.
+  std::function<TrimLoop(const Call&, const TrimLoop&)> turn_trim = {};
 };
 
 Result<Direction> direction_of(const std::string& text) {
@@ -71,12 +73,12 @@ Result<Place> place_of(const std::string& text) {
 
 Result<ChangedSurfaces> exactly(Result<Surface> surface, bool keeps_parameters) {
   if (!surface) return surface.error();
-  return ChangedSurfaces{{std::move(surface).value()}, 0.0, keeps_parameters};
+  return ChangedSurfaces{{std::move(surface).value()}, {}, 0.0, keeps_parameters};
 }
 
 Result<ChangedSurfaces> nearly(Result<Approximation> result) {
   if (!result) return result.error();
-  return ChangedSurfaces{{std::move(result->surface)}, result->deviation_m, true};
+  return ChangedSurfaces{{std::move(result->surface)}, {}, result->deviation_m, true};
 }
 
 Result<ChangedSurfaces> split(const Call& call) {
@@ -93,7 +95,7 @@ Result<ChangedSurfaces> split(const Call& call) {
   if (!first) return first.error();
   auto second = part_of(call.surface, place->direction, place->parameter, knots.domain_end());
   if (!second) return second.error();
-  return ChangedSurfaces{{std::move(first).value(), std::move(second).value()}, 0.0, false};
+  return ChangedSurfaces{{std::move(first).value(), std::move(second).value()}, {}, 0.0, false};
 }
 
 Result<ChangedSurfaces> insert(const Call& call) {
@@ -126,7 +128,7 @@ Result<ChangedSurfaces> simplify(const Call& call) {
   if (!along_u) return along_u.error();
   auto both = without_spare_knots(along_u->surface, Direction::v, 0.5 * call.tolerance_m);
   if (!both) return both.error();
-  return ChangedSurfaces{{std::move(both->surface)}, along_u->deviation_m + both->deviation_m, true};
+  return ChangedSurfaces{{std::move(both->surface)}, {}, along_u->deviation_m + both->deviation_m, true};
 }
 
 Result<ChangedSurfaces> reverse(const Call& call) {
@@ -150,7 +152,7 @@ Result<ChangedSurfaces> close_around(const Call& call) {
   if (!direction) return direction.error();
   auto closed = closed_around(call.surface, direction.value(), 2, call.tolerance_m);
   if (!closed) return closed.error();
-  return ChangedSurfaces{{std::move(closed->surface)}, closed->deviation_m, true};
+  return ChangedSurfaces{{std::move(closed->surface)}, {}, closed->deviation_m, true};
 }
 
 Result<ChangedSurfaces> cap(const Call& call) {
@@ -163,7 +165,7 @@ Result<ChangedSurfaces> cap(const Call& call) {
   request.tolerance_m = call.tolerance_m;
   auto capped = with_cap(call.surface, side.value(), height_m.value(), request);
   if (!capped) return capped.error();
-  return ChangedSurfaces{{std::move(capped->surface)}, capped->deviation_m, false};
+  return ChangedSurfaces{{std::move(capped->surface)}, {}, capped->deviation_m, false};
 }
 
 Result<ChangedSurfaces> open_end(const Call& call) {
@@ -172,15 +174,44 @@ Result<ChangedSurfaces> open_end(const Call& call) {
   return exactly(opened_pole(call.surface, side.value(), HUGE_VAL), false);
 }
 
+// The words have been understood by then.
+TrimLoop reverse_trim(const Call& call, const TrimLoop& loop) {
+  const Direction direction = direction_of(call.values[0]).value();
+  return reversed(loop, direction, knots_along(call.surface, direction));
+}
+
+TrimLoop exchange_trim(const Call&, const TrimLoop& loop) {
+  return exchanged(loop);
+}
+
+TrimLoop move_trims_seam(const Call& call, const TrimLoop& loop) {
+  const Place place = place_of(call.values[0]).value();
+  return with_seam_at(loop, place.direction, knots_along(call.surface, place.direction), place.parameter);
+}
+
+Status turn_trims(const Change& change, const Call& call, const std::vector<TrimLoop>& trims,
+                  ChangedSurfaces& changed) {
+  if (trims.empty() || changed.keeps_parameters) {
+    changed.trims = trims;
+    return {};
+  }
+  if (!change.turn_trim) {
+    return Error{std::string("'") + change.name +
+                 "' would lose its trims; make it whole first, by `spoonbill merge` of it alone"};
+  }
+  for (const TrimLoop& loop : trims) changed.trims.push_back(change.turn_trim(call, loop));
+  return {};
+}
+
 const std::vector<Change>& all_changes() {
   static const std::vector<Change> changes{
       {"split", 1, 1, "v=0.5", "cut in two there, or open around where it is closed", split},
       {"insert", 1, 2, "v=0.5 [2]", "a knot, so many times; exact", insert},
       {"degree", 2, 2, "v 5", "raise the degree (exact) or lower it within the tolerance", set_degree},
       {"simplify", 0, 0, "", "remove the knots that the tolerance can spare", simplify},
-      {"reverse", 1, 1, "v", "run through a direction backwards; turns the normals", reverse},
-      {"exchange", 0, 0, "", "u becomes v and v becomes u; turns the normals", exchange},
-      {"seam", 1, 1, "u=0.25", "begin the closed direction there", move_seam},
+      {"reverse", 1, 1, "v", "run through a direction backwards; turns the normals", reverse, reverse_trim},
+      {"exchange", 0, 0, "", "u becomes v and v becomes u; turns the normals", exchange, exchange_trim},
+      {"seam", 1, 1, "u=0.25", "begin the closed direction there", move_seam, move_trims_seam},
       {"close", 1, 1, "u", "close around where the first and the last edge meet", close_around},
       {"cap", 1, 2, "v_end [3mm]", "close an open end of a tube, flat or bulging so far", cap},
       {"open", 1, 1, "v_end", "cut the pole off where the sides begin to run straight", open_end}};
@@ -189,8 +220,8 @@ const std::vector<Change>& all_changes() {
 
 }  // namespace
 
-Result<ChangedSurfaces> changed(const Surface& surface, const std::vector<std::string>& words,
-                                double tolerance_m) {
+Result<ChangedSurfaces> changed(const Surface& surface, const std::vector<TrimLoop>& trims,
+                                const std::vector<std::string>& words, double tolerance_m) {
   std::string known;
   for (const Change& change : all_changes()) {
     known += (known.empty() ? "" : ", ") + std::string(change.name);
@@ -199,7 +230,11 @@ Result<ChangedSurfaces> changed(const Surface& surface, const std::vector<std::s
     if (values.size() < change.fewest_values || values.size() > change.most_values) {
       return Error{std::string("'") + change.name + "' is asked for as: " + change.name + " " + change.form};
     }
-    return change.make({surface, values, tolerance_m});
+    const Call call{surface, values, tolerance_m};
+    auto result = change.make(call);
+    if (!result) return result;
+    if (Status status = turn_trims(change, call, trims, result.value()); !status) return status.error();
+    return result;
   }
   return Error{"'" + (words.empty() ? "" : words[0].substr(0, 20)) + "' is no change; choose from " + known};
 }

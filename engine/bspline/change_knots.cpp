@@ -78,8 +78,8 @@ Status check_holds_all(const KnotVector& from, const KnotVector& to) {
   }
   const std::vector<KnotMultiplicity> there = knot_multiplicities(to);
   for (const auto& [knot, multiplicity] : knot_multiplicities(from)) {
-    const double turns = from.is_periodic() ? std::ceil((start - nearness - knot) / length) : 0.0;
-    for (double place = knot + turns * length; place < end - nearness; place += length) {
+    for (const double place : places_from(from, knot, start - nearness)) {
+      if (place >= end - nearness) continue;
       const bool at_end = !to.is_periodic() && place <= start + nearness;
       if (at_end || multiplicity_at(there, place, nearness) >= multiplicity + to.degree() - from.degree()) {
         continue;

@@ -101,6 +101,13 @@ Result<KnotVector> knot_union(const KnotVector& a, const KnotVector& b) {
   return assemble(a.degree(), a.is_periodic(), all, a.domain_end());
 }
 
+std::vector<double> places_from(const KnotVector& knots, double knot, double start) {
+  if (!knots.is_periodic()) return {knot};
+  const double length = length_of(knots);
+  const double first = knot + std::ceil((start - knot) / length) * length;
+  return {first, first + length};
+}
+
 Result<KnotVector> clamped_part(const KnotVector& knots, double start, double end) {
   const double length = length_of(knots);
   const bool within = knots.is_periodic()
@@ -113,10 +120,8 @@ Result<KnotVector> clamped_part(const KnotVector& knots, double start, double en
   }
   std::vector<KnotMultiplicity> all{{start, knots.degree() + 1}};
   for (const auto& inner : knot_multiplicities(knots)) {
-    // In a period, the first place of this knot beyond the start.
-    const double turns = knots.is_periodic() ? std::ceil((start - inner.knot) / length) : 0.0;
-    for (double knot = inner.knot + turns * length; knot < end; knot += length) {
-      if (knot > start && !same_knot(knot, start, length) && !same_knot(knot, end, length)) {
+    for (const double knot : places_from(knots, inner.knot, start)) {
+      if (knot > start && knot < end && !same_knot(knot, start, length) && !same_knot(knot, end, length)) {
         all.push_back({knot, inner.multiplicity});
       }
     }

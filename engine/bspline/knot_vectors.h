@@ -19,6 +19,10 @@ struct KnotMultiplicity {
 };
 std::vector<KnotMultiplicity> knot_multiplicities(const KnotVector& knots);
 
+// Where a knot stands within a period from `start` on, both of its places where the period ends on it; of
+// open knots, itself.
+std::vector<double> places_from(const KnotVector& knots, double knot, double start);
+
 // Of the degree, not below that of `knots`, and such that every spline over `knots` is one over these: each
 // knot stands as many times more often as the degree is higher. Open ones become clamped.
 Result<KnotVector> elevated(const KnotVector& knots, int degree);

@@ -86,7 +86,7 @@ Result<Surface> with_seam_at(const Surface& surface, Direction direction, double
   for (const double knot : knots.breakpoints()) {
     if (std::abs(knot - at) <= same_knot_share * length) at = knots.into_domain(knot);
   }
-  const auto cut = insert_knot(surface, direction, at, 1);
+  auto cut = insert_knot(surface, direction, at, 1);
   if (!cut) return cut.error();
   const KnotVector& finer = knots_along(cut.value(), direction);
   const int first = knot_at(finer, at), count = finer.control_point_count();

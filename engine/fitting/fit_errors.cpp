@@ -14,7 +14,7 @@ namespace {
 constexpr int projection_steps = 4;
 constexpr int samples_a_span = 4;
 constexpr std::size_t plane_points = 10;
-// A sample is seen within so many distances between neighbouring points.
+// A sample is seen within so many distances between neighbouring points, beyond a rim within one.
 constexpr double seen_spacings = 3.0;
 
 void measure_data(const FittedSurface& fit, const FitPoints& points, FitErrors& errors) {
@@ -73,13 +73,21 @@ void measure_surface(const FittedSurface& fit, const FitPoints& points, FitError
   const NearestPoints nearest(data);
   const double spacing = mean_edge_length(points.graph);
   const std::vector<Vector3> samples = surface_samples(fit.surface);
+  std::vector<bool> at_rim(points.graph.size(), false);
+  for (const Rim& rim : points.rims) {
+    for (const std::uint32_t node : rim.nodes) {
+      at_rim[node] = true;
+      for (const std::uint32_t near : points.graph.of(node)) at_rim[near] = true;
+    }
+  }
   std::vector<NearestPoints::Found> found;
   std::vector<double> distances;
   for (const Vector3& sample : samples) {
     nearest.nearest(sample, plane_points, found);
     const double away = found.front().distance, plane = plane_distance(sample, data, found);
     const double aside = std::sqrt(std::max(0.0, away * away - plane * plane));
-    if (aside > seen_spacings * spacing) continue;
+    const bool beyond_rim = at_rim[points.node_of[found.front().index]] && away > spacing;
+    if (beyond_rim || aside > seen_spacings * spacing) continue;
     distances.push_back(std::min(away, plane));
   }
   errors.unseen_share = 1.0 - static_cast<double>(distances.size()) / static_cast<double>(samples.size());

@@ -174,8 +174,10 @@ std::vector<NodePair> pairs_of_cloud(const Scan& nodes) {
 void make_nodes(FitPoints& fit) {
   const bool is_mesh = !fit.scan.triangles.empty();
   VoxelGroups groups;
-  if (fit.scan.points_m.size() > (is_mesh ? 4 : 2) * node_target) {
-    groups = group_by_voxels(fit.scan, voxel_side_for(fit.scan, node_target));
+  // The nodes of a cloud are means of some points, which lie more evenly than these.
+  const std::size_t target = is_mesh ? 4 * node_target : std::min(node_target, fit.scan.points_m.size() / 3);
+  if (fit.scan.points_m.size() > target) {
+    groups = group_by_voxels(fit.scan, voxel_side_for(fit.scan, std::min(target, node_target)));
   } else {
     groups.count = fit.scan.points_m.size();
     groups.group_of.resize(groups.count);

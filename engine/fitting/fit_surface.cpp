@@ -13,13 +13,15 @@ namespace {
 constexpr int degree = 3;
 constexpr int first_controls = 10;
 constexpr double growth = 1.35;
-constexpr double first_fairness = 1e-2, last_fairness = 1e-4;
+constexpr double first_fairness = 1e-2, last_fairness = 2e-4;
 constexpr int projection_steps = 3;
 constexpr int fold_rounds = 12;
 constexpr double most_fairness = 1.0;
 constexpr double huber_deviations = 3.0;
 // Of a node that spans a hole, against the others': it is a guess.
-constexpr double spanning_weight = 1e-2;
+constexpr double spanning_weight = 0.4;
+// A span with less than this share of the mean's data is stiffened, by up to this factor.
+constexpr double seen_share = 0.3, unseen_fairness = 3.0;
 
 // What is fitted: the nodes at first, then all points.
 struct Data {
@@ -53,7 +55,7 @@ class Fitter {
   Status point_rounds();
   void stiffen_folds();
   Status unfold();
-  void set_fairness(double fairness);
+  void set_fairness(double fairness, const Data& data);
   bool tell(double share) const { return !settings_->watch || settings_->watch(share); }
   FittedSurface result();
 
@@ -101,8 +103,28 @@ Fitter::Fitter(const FitPoints& points, const Parameterisation& start, const Fit
             std::vector<double>(points.graph.size(), 1.0)};
 }
 
-void Fitter::set_fairness(double fairness) {
-  fairness_.assign(span_count(structure_.u) * span_count(structure_.v), fairness);
+// More where there is little data: all of it where there is none.
+void Fitter::set_fairness(double fairness, const Data& data) {
+  const std::size_t u_spans = span_count(structure_.u), v_spans = span_count(structure_.v);
+  std::vector<double> weight(u_spans * v_spans, 0.0);
+  const std::vector<double> u_breaks = structure_.u.breakpoints(), v_breaks = structure_.v.breakpoints();
+  const auto span_of = [](const std::vector<double>& breaks, double at) {
+    const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, at);
+    return static_cast<std::size_t>(above - breaks.begin()) - 1;
+  };
+  double mean = 0.0;
+  for (std::size_t p = 0; p + points_->spanning_nodes < data.uv.size(); ++p) {
+    if (data.uv[p].hasNaN()) continue;
+    const std::size_t span = span_of(u_breaks, structure_.u.into_domain(data.uv[p].x())) * v_spans +
+                             span_of(v_breaks, structure_.v.into_domain(data.uv[p].y()));
+    weight[span] += data.weights[p];
+    mean += data.weights[p] / static_cast<double>(weight.size());
+  }
+  fairness_.resize(weight.size());
+  for (std::size_t s = 0; s < weight.size(); ++s) {
+    const double seen = std::min(1.0, weight[s] / (seen_share * mean));
+    fairness_[s] = fairness * std::pow(unseen_fairness, 1.0 - seen);
+  }
 }
 
 Status Fitter::solve(Data& data) {
@@ -218,7 +240,7 @@ bool Fitter::faces_inwards() const {
 }
 
 Status Fitter::node_rounds() {
-  set_fairness(first_fairness);
+  set_fairness(first_fairness, nodes_);
   if (Status solved = solve(nodes_); !solved) return solved;
   if (faces_inwards()) {
     for (Vector2& uv : nodes_.uv) uv.x() = 1.0 - uv.x();
@@ -227,7 +249,7 @@ Status Fitter::node_rounds() {
   int stage = 0;
   do {
     for (int round = 0; round < 3; ++round) {
-      set_fairness(fairness);
+      set_fairness(fairness, nodes_);
       if (Status solved = solve(nodes_); !solved) return solved;
       project(nodes_, true);
       if (stage > 0) take_trust(nodes_);
@@ -258,7 +280,7 @@ Status Fitter::point_rounds() {
   for (int round = 0; round < 2; ++round) {
     project(all_, false);
     take_trust(all_);
-    set_fairness(last_fairness);
+    set_fairness(last_fairness, all_);
     if (Status solved = solve(all_); !solved) return solved;
     if (!tell(0.7 + 0.1 * round)) return Error{"stopped before the fit was done"};
   }

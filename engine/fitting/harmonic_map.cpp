@@ -277,14 +277,27 @@ Result<std::vector<Vector2>> harmonic_square_map(const PointGraph& graph,
 }
 
 ShapeEnds farthest_ends(const PointGraph& graph) {
+  // The middle of the nodes that are nearly as far as the farthest: that one itself may be any corner.
+  constexpr double nearly = 0.04;
   const auto farthest = [&](std::uint32_t from) {
     const std::array<std::uint32_t, 1> source{from};
     const ShortestWays ways = shortest_ways(graph, source);
-    return static_cast<std::uint32_t>(std::max_element(ways.length.begin(), ways.length.end()) -
-                                      ways.length.begin());
+    std::vector<std::uint32_t> order(graph.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto count =
+        std::max<std::size_t>(1, static_cast<std::size_t>(nearly * static_cast<double>(order.size())));
+    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
+                      [&](auto a, auto b) { return ways.length[a] > ways.length[b]; });
+    order.resize(count);
+    Vector3 middle = Vector3::Zero();
+    for (const std::uint32_t node : order) middle += graph.points_m[node] / static_cast<double>(count);
+    return *std::min_element(order.begin(), order.end(), [&](auto a, auto b) {
+      return (graph.points_m[a] - middle).norm() < (graph.points_m[b] - middle).norm();
+    });
   };
   std::uint32_t a = farthest(0), b = farthest(a);
   a = farthest(b);
+  b = farthest(a);
   return {{a}, {b}};
 }
 

@@ -81,6 +81,27 @@ double widest_gap(const PointGraph& graph, std::uint32_t node) {
   return gap;
 }
 
+// The nodes given, each with those that are no more than two steps away.
+PointGraph strung_together(const PointGraph& graph, const std::vector<std::uint32_t>& nodes) {
+  constexpr std::uint32_t none = 0xffffffffU;
+  std::vector<std::uint32_t> place(graph.size(), none);
+  std::vector<Vector3> points;
+  for (const std::uint32_t node : nodes) {
+    place[node] = static_cast<std::uint32_t>(points.size());
+    points.push_back(graph.points_m[node]);
+  }
+  std::vector<NodePair> pairs;
+  for (const std::uint32_t node : nodes) {
+    for (const std::uint32_t other : graph.of(node)) {
+      if (place[other] != none) pairs.emplace_back(place[node], place[other]);
+      for (const std::uint32_t further : graph.of(other)) {
+        if (place[further] != none) pairs.emplace_back(place[node], place[further]);
+      }
+    }
+  }
+  return make_point_graph(std::move(points), pairs);
+}
+
 // The ring through nodes that hang together: from one to the farthest of them and back on the other side.
 std::vector<std::uint32_t> ring_through(const PointGraph& part) {
   const auto farthest = [&](const ShortestWays& ways) {
@@ -162,6 +183,28 @@ std::vector<TriangleCorners> least_area_triangles(const std::vector<Vector3>& wa
   return triangles;
 }
 
+// With the node between two that are two steps apart.
+std::vector<std::uint32_t> step_by_step(const PointGraph& graph, const std::vector<std::uint32_t>& ring) {
+  std::vector<std::uint32_t> steps;
+  std::set<std::uint32_t> taken(ring.begin(), ring.end());
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const std::uint32_t a = ring[k], b = ring[(k + 1) % ring.size()];
+    steps.push_back(a);
+    const auto near_a = graph.of(a), near_b = graph.of(b);
+    if (std::binary_search(near_a.begin(), near_a.end(), b)) continue;
+    double shortest = std::numeric_limits<double>::infinity();
+    std::uint32_t between = a;
+    for (const std::uint32_t node : near_a) {
+      const double way = graph.length(a, node) + graph.length(node, b);
+      if (way >= shortest || !std::binary_search(near_b.begin(), near_b.end(), node)) continue;
+      shortest = way;
+      between = node;
+    }
+    if (taken.insert(between).second) steps.push_back(between);
+  }
+  return steps;
+}
+
 }  // namespace
 
 std::vector<Rim> rims_of_mesh(const std::vector<TriangleCorners>& triangles,
@@ -201,7 +244,7 @@ std::vector<Rim> rims_of_cloud(const PointGraph& graph) {
   }
   std::vector<Rim> rims;
   if (open.empty()) return rims;
-  const PointGraph all = part_of(graph, open);
+  const PointGraph all = strung_together(graph, open);
   const GraphParts parts = connected_parts(all);
   for (std::size_t k = 0; k < parts.sizes.size() && parts.sizes[k] >= 2 * least_rim; ++k) {
     std::vector<std::uint32_t> nodes;
@@ -212,6 +255,7 @@ std::vector<Rim> rims_of_cloud(const PointGraph& graph) {
     if (ring.size() < 2 * least_rim) continue;
     Rim rim;
     for (const std::uint32_t n : ring) rim.nodes.push_back(open[nodes[n]]);
+    rim.nodes = step_by_step(graph, rim.nodes);
     measure(graph, rim);
     rims.push_back(std::move(rim));
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "engine/fitting/harmonic_map.h"
@@ -12,6 +13,8 @@ namespace spoonbill {
 namespace {
 
 constexpr double sheet_share = 0.12;
+// Of a mesh that faces out of its rim, as a shell seen from outside does: it may have lost its foot.
+constexpr double outward_sheet_share = 0.3;
 constexpr double tube_share = 0.75;
 constexpr double roundness = 0.12;
 
@@ -24,13 +27,25 @@ Vector3 area_within(const PointGraph& graph, const Rim& rim) {
   return area;
 }
 
-// A node stands for a hexagon of the lattice that its edges would make.
-double area_of(const PointGraph& graph) {
-  const double edge = mean_edge_length(graph);
-  return static_cast<double>(graph.size()) * edge * edge * 0.6;
+// What each node stands for: a hexagon of the lattice that its edges would make.
+std::vector<double> areas_of(const PointGraph& graph) {
+  std::vector<double> areas(graph.size(), 0.0);
+  for (std::uint32_t n = 0; n < graph.size(); ++n) {
+    const auto near = graph.of(n);
+    for (const std::uint32_t other : near) {
+      areas[n] +=
+          0.6 * (graph.points_m[n] - graph.points_m[other]).squaredNorm() / static_cast<double>(near.size());
+    }
+  }
+  return areas;
 }
 
-// The weighted middle and main axes, the longest last.
+double area_of(const PointGraph& graph) {
+  const std::vector<double> areas = areas_of(graph);
+  return std::accumulate(areas.begin(), areas.end(), 0.0);
+}
+
+// The surface's middle and main axes, the longest last.
 struct Axes {
   Vector3 middle = Vector3::Zero();
   Vector3 squares = Vector3::Zero();  // mean squared extents, rising
@@ -39,11 +54,13 @@ struct Axes {
 
 Axes axes_of(const PointGraph& graph) {
   Axes result;
-  const auto count = static_cast<double>(graph.size());
-  for (const Vector3& point : graph.points_m) result.middle += point / count;
+  const std::vector<double> areas = areas_of(graph);
+  const double area = std::accumulate(areas.begin(), areas.end(), 1e-300);
+  for (std::size_t n = 0; n < areas.size(); ++n) result.middle += areas[n] / area * graph.points_m[n];
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Vector3& point : graph.points_m) {
-    spread += (point - result.middle) * (point - result.middle).transpose() / count;
+  for (std::size_t n = 0; n < areas.size(); ++n) {
+    const Vector3 way = graph.points_m[n] - result.middle;
+    spread += areas[n] / area * way * way.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
   result.squares = solver.eigenvalues();
@@ -85,22 +102,21 @@ std::vector<std::uint32_t> nodes_on_axis(const PointGraph& graph, const Vector3&
   return chosen;
 }
 
-std::optional<ShapeEnds> poles_on_axis(const PointGraph& graph) {
-  const Axes axes = axes_of(graph);
-  const double small = axes.squares[0], middle = axes.squares[1], large = axes.squares[2];
-  Vector3 axis;
-  if (large - middle < roundness * large && middle - small > roundness * large) {
-    axis = axes.axes.col(0);
-  } else if (middle - small < roundness * middle) {
-    axis = axes.axes.col(2);
-  } else {
-    return {};
-  }
-  const std::vector<std::uint32_t> on_axis = nodes_on_axis(graph, axes.middle, axis);
-  if (on_axis.size() < 2) return {};
-  const auto height = [&](std::uint32_t n) { return (graph.points_m[n] - axes.middle).dot(axis); };
+// Where an axis through the middle leaves the shape, if it does so at two places.
+std::optional<ShapeEnds> poles_on(const PointGraph& graph, const Vector3& middle, const Vector3& axis) {
+  const std::vector<std::uint32_t> on_axis = nodes_on_axis(graph, middle, axis);
+  if (on_axis.size() != 2) return {};
+  const auto height = [&](std::uint32_t n) { return (graph.points_m[n] - middle).dot(axis); };
   return height(on_axis[0]) < height(on_axis[1]) ? ShapeEnds{{on_axis[0]}, {on_axis[1]}}
                                                  : ShapeEnds{{on_axis[1]}, {on_axis[0]}};
+}
+
+// About the short axis of what is round and flat (a bowl, a plate), else about the long one.
+std::optional<ShapeEnds> poles_on_axis(const PointGraph& graph) {
+  const Axes axes = axes_of(graph);
+  const bool is_disc = axes.squares[2] - axes.squares[1] < roundness * axes.squares[2] &&
+                       axes.squares[1] - axes.squares[0] > roundness * axes.squares[2];
+  return poles_on(graph, axes.middle, axes.axes.col(is_disc ? 0 : 2));
 }
 
 Result<Parameterisation> closed_start(FitPoints& island) {
@@ -179,6 +195,17 @@ Result<Parameterisation> sheet_start(FitPoints& island) {
   return Parameterisation{ShapeKind::sheet, std::move(uv).value()};
 }
 
+// Whether normals point away from the middle, as they do where the inside of a closed shape was not seen.
+bool faces_outwards(const FitPoints& island) {
+  const Axes axes = axes_of(island.graph);
+  const std::vector<double> areas = areas_of(island.graph);
+  double volume = 0.0;
+  for (std::size_t n = 0; n < areas.size(); ++n) {
+    volume += areas[n] * (island.graph.points_m[n] - axes.middle).dot(island.node_normals[n]);
+  }
+  return volume > 0.0;
+}
+
 }  // namespace
 
 ShapeKind kind_of_shape(const FitPoints& island) {
@@ -194,8 +221,9 @@ ShapeKind kind_of_shape(const FitPoints& island) {
       return ShapeKind::tube;
     }
   }
-  return area_within(island.graph, island.rims[0]).norm() > sheet_share * area ? ShapeKind::sheet
-                                                                               : ShapeKind::closed;
+  const double share = area_within(island.graph, island.rims[0]).norm() / area;
+  return share > (faces_outwards(island) ? outward_sheet_share : sheet_share) ? ShapeKind::sheet
+                                                                              : ShapeKind::closed;
 }
 
 Result<Parameterisation> first_parameters(FitPoints& island, ShapeKind kind) {

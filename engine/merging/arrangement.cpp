@@ -103,8 +103,9 @@ Result<Arrangement> arrange(const std::vector<Surface>& patches, const std::vect
   arrangement.orientations.resize(cells);
   for (std::size_t p = 0; p < places.size(); ++p) {
     const int cell = arrangement.cell(places[p]->a - low_a, places[p]->b - low_b);
-    if (arrangement.patches[cell] >= 0)
+    if (arrangement.patches[cell] >= 0) {
       return layout_error(static_cast<int>(p), "lies where another one does");
+    }
     arrangement.patches[cell] = static_cast<int>(p);
     arrangement.orientations[cell] = places[p]->orientation;
   }

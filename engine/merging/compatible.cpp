@@ -27,10 +27,11 @@ Result<Surface> over_domain_of(const Surface& first, const Surface& patch) {
   return with_domain(patch, Direction::u, start, end);
 }
 
-Result<Surface> with_seam_beside(const Surface& before, const Surface& patch) {
-  const auto match = match_edges({before, patch}, {0, Side::v_end}, {1, Side::v_start});
+Result<Surface> with_seam_beside(const Surface& before, const Surface& patch, double twist) {
+  const auto match = match_edges({before, patch}, {0, Side::v_end}, {1, Side::v_start}, false);
   if (!match) return match.error();
-  return with_seam_at(patch, Direction::u, match->seam);
+  const double period = patch.u.domain_end() - patch.u.domain_start();
+  return with_seam_at(patch, Direction::u, match->seam + twist * period);
 }
 
 // The parameter of the point of the curve nearest to a point, from a guess.
@@ -155,7 +156,7 @@ Status match_parameters(std::vector<Surface>& patches, double tolerance_m, doubl
   for (std::size_t p = 1; p < patches.size(); ++p) {
     std::vector<Surface> pair{patches[p - 1], patches[p]};
     if (Status status = make_one_structure(pair); !status) return status;
-    const auto match = match_edges(pair, {0, Side::v_end}, {1, Side::v_start});
+    const auto match = match_edges(pair, {0, Side::v_end}, {1, Side::v_start}, false);
     if (!match) return match.error();
     if (match->mean_gap_m > tolerance_m || edge_gap_m(pair[0], pair[1]) <= tolerance_m) continue;
     auto matched = with_parameters_of(patches[p - 1], patches[p], tolerance_m);
@@ -168,7 +169,8 @@ Status match_parameters(std::vector<Surface>& patches, double tolerance_m, doubl
 
 }  // namespace
 
-Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, double tolerance_m, int degree_v) {
+Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, double tolerance_m, int degree_v,
+                                             double twist) {
   int degree_u = 1;
   for (const Surface& patch : patches) {
     degree_u = std::max(degree_u, patch.u.degree());
@@ -185,7 +187,7 @@ Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, doubl
     if (!raised) return Error{name_of(p) + ": " + raised.error().message};
     patches[p] = std::move(raised).value();
     if (p == 0 || !patches[p].u.is_periodic()) continue;
-    auto turned = with_seam_beside(patches[p - 1], patches[p]);
+    auto turned = with_seam_beside(patches[p - 1], patches[p], twist);
     if (!turned) return Error{name_of(p) + ": " + turned.error().message};
     patches[p] = std::move(turned).value();
   }

@@ -16,8 +16,10 @@ struct CompatiblePatches {
 };
 
 // Edges that are at most `tolerance_m` apart coincide. `degree_v` is the least degree along v. The first
-// patch keeps its domain along u. Refused: a closed patch beside an open one, parameters that cannot be
-// matched within the tolerance.
-Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, double tolerance_m, int degree_v);
+// patch keeps its domain along u; the seam of each ring lies where it fits the ring before best, and `twist`
+// of a turn further. Refused: a closed patch beside an open one, parameters that cannot be matched within the
+// tolerance.
+Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, double tolerance_m, int degree_v,
+                                             double twist = 0.0);
 
 }  // namespace spoonbill

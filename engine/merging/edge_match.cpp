@@ -29,13 +29,14 @@ Gaps gaps_between(const std::vector<Vector3>& a, const std::vector<Vector3>& b) 
   return gaps;
 }
 
-EdgeMatch match_open(PatchEdge a, PatchEdge b, const EdgeCurve& of_a, const EdgeCurve& of_b) {
+EdgeMatch match_open(PatchEdge a, PatchEdge b, const EdgeCurve& of_a, const EdgeCurve& of_b,
+                     std::optional<bool> asked) {
   const std::vector<Vector3> along = edge_samples(of_a, samples_of_open).points_m;
   std::vector<Vector3> beside = edge_samples(of_b, samples_of_open).points_m;
   const Gaps direct = gaps_between(along, beside);
   std::reverse(beside.begin(), beside.end());
   const Gaps against = gaps_between(along, beside);
-  const bool reversed = against.mean < direct.mean;
+  const bool reversed = asked.value_or(against.mean < direct.mean);
   const Gaps& gaps = reversed ? against : direct;
   return {a, b, reversed, 0.0, gaps.largest, gaps.mean};
 }
@@ -86,11 +87,13 @@ double better_seam(const Ring& a, const Ring& b, double seam, bool backwards) {
   return squared > 0.0 ? seam + along / squared : seam;
 }
 
-EdgeMatch match_rings(PatchEdge a, PatchEdge b, const EdgeCurve& of_a, const EdgeCurve& of_b) {
+EdgeMatch match_rings(PatchEdge a, PatchEdge b, const EdgeCurve& of_a, const EdgeCurve& of_b,
+                      std::optional<bool> asked) {
   const Ring ring_a(of_a), ring_b(of_b);
   double least = std::numeric_limits<double>::infinity();
   EdgeMatch best{a, b, false, 0.0, 0.0, 0.0};
   for (const bool backwards : {false, true}) {
+    if (asked.value_or(backwards) != backwards) continue;
     for (int k = 0; k < seams_tried; ++k) {
       const double seam =
           ring_b.parameter(of_b.knots.domain_start(), static_cast<double>(k) / seams_tried, false);
@@ -178,13 +181,15 @@ bool shares_edge(const std::vector<EdgeMatch>& taken, const EdgeMatch& match) {
 
 }  // namespace
 
-Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b) {
+Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b,
+                              std::optional<bool> reversed) {
   const EdgeCurve of_a = edge_curve(patches[a.patch], a.side), of_b = edge_curve(patches[b.patch], b.side);
   if (of_a.knots.is_periodic() != of_b.knots.is_periodic()) {
     return Error{text_of(a) + " and " + text_of(b) +
                  " do not fit: one is a closed ring and the other is not"};
   }
-  return of_a.knots.is_periodic() ? match_rings(a, b, of_a, of_b) : match_open(a, b, of_a, of_b);
+  return of_a.knots.is_periodic() ? match_rings(a, b, of_a, of_b, reversed)
+                                  : match_open(a, b, of_a, of_b, reversed);
 }
 
 Result<std::vector<EdgeMatch>> matches_of(const std::vector<Surface>& patches, double together_m) {

@@ -2,6 +2,7 @@
 // any thread.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/merging/patch_edge.h"
@@ -17,8 +18,10 @@ struct EdgeMatch {
   double mean_gap_m = 0.0;
 };
 
-// How two edges lie beside each other at best. Refused: a ring beside an open edge.
-Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b);
+// How two edges lie beside each other at best, or at best where b runs along or against a as `reversed` says.
+// Refused: a ring beside an open edge.
+Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b,
+                              std::optional<bool> reversed = std::nullopt);
 
 // The matches that hold the patches together: all pairs of edges that are at most `together_m` apart, then,
 // as long as something is loose, the pair of free edges with the smallest mean gap. Refused where the patches

@@ -221,7 +221,8 @@ std::vector<Joint> described_joints(const Surface& merged, const std::vector<Sur
 }  // namespace
 
 Result<PreparedRow> prepare_row(std::vector<Surface> patches, const JoinRequest& request) {
-  auto compatible = compatible_along_v(std::move(patches), request.tolerance_m, request.continuity + 1);
+  auto compatible =
+      compatible_along_v(std::move(patches), request.tolerance_m, request.continuity + 1, request.twist);
   if (!compatible) return compatible.error();
   PreparedRow row{std::move(compatible->patches), {}, compatible->deviation_m};
   for (std::size_t p = 1; p < row.patches.size(); ++p) {

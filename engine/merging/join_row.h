@@ -13,6 +13,7 @@ struct JoinRequest {
   int continuity = 2;         // C0 to C8
   double tolerance_m = 5e-5;  // of the merged surface to the patches, outside blends
   double blend_m = 0.0;       // the length of a blend at joints that are not of the continuity; 0 = none
+  double twist = 0.0;         // shares of a turn by which each ring is turned from where it fits best
   int largest_count = 200;    // control points a direction
 };
 

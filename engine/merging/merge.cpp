@@ -108,20 +108,17 @@ Result<Merged> merge_grid(const Grid& grid, const JoinRequest& request) {
   return merged;
 }
 
-using EdgePairs = std::vector<std::pair<PatchEdge, PatchEdge>>;
-
 // The wider of two tubes is opened no wider than a little beyond the other, so that the bridge has no step.
 constexpr double wider = 1.25;
 
 // Opens both poles of a pair; a ring stays as it is.
-Status open_poles(std::vector<Surface>& patches, const std::pair<PatchEdge, PatchEdge>& pair) {
+Status open_poles(std::vector<Surface>& patches, const PatchEdge& a, const PatchEdge& b) {
   const auto opened = [&](const PatchEdge& end, double wide_enough_m) -> Result<Surface> {
     const Surface& patch = patches[end.patch];
     if (!is_pole(patch, end.side)) return patch;
     return opened_pole(patch, end.side, wide_enough_m);
   };
   constexpr double any = std::numeric_limits<double>::infinity();
-  const auto& [a, b] = pair;
   auto first = opened(a, any), second = opened(b, any);
   if (!first && !second) return first.error();
   const double of_first = first ? tube_end(first.value(), a.side).radius_m : any;
@@ -136,20 +133,22 @@ Status open_poles(std::vector<Surface>& patches, const std::pair<PatchEdge, Patc
 }
 
 // The edges to join: those chosen, the nearest ends of tubes, or none, which lets them be found.
-EdgePairs wanted_edges(const std::vector<Surface>& patches, const MergeRequest& request) {
-  if (!request.chosen.empty()) return request.chosen;
-  return std::all_of(patches.begin(), patches.end(), is_tube) ? nearest_ends(patches) : EdgePairs();
+std::vector<ChosenEdges> wanted_edges(const std::vector<Surface>& patches, const MergeRequest& request) {
+  std::vector<ChosenEdges> wanted = request.chosen;
+  if (!wanted.empty() || !std::all_of(patches.begin(), patches.end(), is_tube)) return wanted;
+  for (const auto& [a, b] : nearest_ends(patches)) wanted.push_back({a, b});
+  return wanted;
 }
 
 Result<std::vector<EdgeMatch>> matches_for(std::vector<Surface>& patches, const MergeRequest& request) {
-  const EdgePairs wanted = wanted_edges(patches, request);
+  const std::vector<ChosenEdges> wanted = wanted_edges(patches, request);
   if (wanted.empty()) return matches_of(patches, request.join.tolerance_m);
-  for (const auto& pair : wanted) {
-    if (Status status = open_poles(patches, pair); !status) return status.error();
+  for (const ChosenEdges& edges : wanted) {
+    if (Status status = open_poles(patches, edges.a, edges.b); !status) return status.error();
   }
   std::vector<EdgeMatch> matches;
-  for (const auto& [a, b] : wanted) {
-    auto match = match_edges(patches, a, b);
+  for (const ChosenEdges& edges : wanted) {
+    auto match = match_edges(patches, edges.a, edges.b, edges.reversed);
     if (!match) return match.error();
     matches.push_back(match.value());
   }
@@ -159,8 +158,8 @@ Result<std::vector<EdgeMatch>> matches_for(std::vector<Surface>& patches, const 
 Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
   const int count = static_cast<int>(patches.size());
   if (count == 0) return Error{"there is no patch to merge; name at least one"};
-  for (const auto& [a, b] : request.chosen) {
-    for (const PatchEdge& edge : {a, b}) {
+  for (const ChosenEdges& edges : request.chosen) {
+    for (const PatchEdge& edge : {edges.a, edges.b}) {
       const std::string name = "patch " + std::to_string(edge.patch + 1);
       if (edge.patch < 0 || edge.patch >= count) return Error{name + " of a chosen edge does not exist"};
       if (knots_along(patches[edge.patch], across(edge.side)).is_periodic()) {

@@ -2,7 +2,7 @@
 // Pure functions, outside the tick; any thread.
 #pragma once
 
-#include <utility>
+#include <optional>
 #include <vector>
 
 #include "engine/merging/arrangement.h"
@@ -10,10 +10,15 @@
 
 namespace spoonbill {
 
+// Two edges to join, and how they run beside each other where that is not to be found.
+struct ChosenEdges {
+  PatchEdge a, b;
+  std::optional<bool> reversed = {};
+};
+
 struct MergeRequest {
   JoinRequest join;
-  // Pairs of edges to join, in place of those that are found; `reversed` and the seam are found.
-  std::vector<std::pair<PatchEdge, PatchEdge>> chosen;
+  std::vector<ChosenEdges> chosen;  // in place of those that are found
 };
 
 struct MergedJoint {

@@ -58,9 +58,9 @@ std::vector<double> between(const std::vector<double>& parameters, const ShapeDi
 }
 
 // What a fit along one direction alone leaves across the shape: how far it slides along the shape is no
-// error.
+// error, unless parameters are to be kept.
 Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const ShapeKnots& knots,
-                                   const std::vector<double>& lines) {
+                                   const std::vector<double>& lines, bool keeps_parameters) {
   DirectionError result;
   result.at = knots.parameters(samples_in_span);
   const KnotVector vector = knots.knots();
@@ -82,6 +82,10 @@ Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const 
     for (std::size_t l = 0; l < lines.size(); ++l) {
       const Vector3 miss = residual.block<1, 3>(i, static_cast<Eigen::Index>(3 * l)).transpose();
       if (miss.norm() <= largest) continue;
+      if (keeps_parameters) {
+        largest = miss.norm();
+        continue;
+      }
       const Vector3 normal =
           along_u ? tangents(shape, t, lines[l]).normal : tangents(shape, lines[l], t).normal;
       largest = std::max(largest, normal.isZero() ? 0.0 : std::abs(miss.dot(normal)));
@@ -125,14 +129,18 @@ struct Measure {
   bool folds = false;
 };
 
-Measure measure(const ExactShape& shape, const Surface& surface, const ShapeKnots& u, const ShapeKnots& v) {
+Measure measure(const ExactShape& shape, const Surface& surface, const ShapeKnots& u, const ShapeKnots& v,
+                bool keeps_parameters) {
   Measure result;
   for (const double at_u : between(u.parameters(checks_in_span), shape.u)) {
     for (const double at_v : between(v.parameters(checks_in_span), shape.v)) {
       const SurfacePoint point = evaluate(surface, at_u, at_v);
       if (!(point.du.cross(point.dv).dot(tangents(shape, at_u, at_v).normal) >= 0.0)) result.folds = true;
-      if ((point.position_m - shape.at(at_u, at_v)).norm() <= result.deviation_m) continue;
-      result.deviation_m = std::max(result.deviation_m, distance_near(shape, point.position_m, at_u, at_v));
+      const double apart_m = (point.position_m - shape.at(at_u, at_v)).norm();
+      if (apart_m <= result.deviation_m) continue;
+      result.deviation_m =
+          std::max(result.deviation_m,
+                   keeps_parameters ? apart_m : distance_near(shape, point.position_m, at_u, at_v));
     }
   }
   return result;
@@ -149,14 +157,15 @@ Result<FittedShape> fit_counted(const ExactShape& shape, const ShapeFit& fit) {
   for (const bool along_u : {true, false}) {
     ShapeKnots& knots = along_u ? u.value() : v.value();
     while (knots.control_count() < (along_u ? u_count : v_count)) {
-      const auto error = error_along(shape, along_u, knots, along_u ? v_lines : u_lines);
+      const auto error =
+          error_along(shape, along_u, knots, along_u ? v_lines : u_lines, fit.keeps_parameters);
       if (!error) return error.error();
       knots.refine_worst(error->at, error->error_m);
     }
   }
   auto surface = fit_with(shape, u.value(), v.value());
   if (!surface) return surface.error();
-  const Measure found = measure(shape, surface.value(), u.value(), v.value());
+  const Measure found = measure(shape, surface.value(), u.value(), v.value(), fit.keeps_parameters);
   if (found.folds) {
     return Error{"with " + std::to_string(u_count) + " x " + std::to_string(v_count) +
                  " control points the surface folds over; give it more"};
@@ -174,7 +183,7 @@ Status refine_until(const ExactShape& shape, bool along_u, double allowed_m, con
                     const std::vector<double>& lines, ShapeKnots& knots) {
   for (;;) {
     if (knots.control_count() > most_control_points) return too_fine(fit, along_u ? "u" : "v");
-    const auto error = error_along(shape, along_u, knots, lines);
+    const auto error = error_along(shape, along_u, knots, lines, fit.keeps_parameters);
     if (!error) return error.error();
     if (!knots.refine(error->at, error->error_m, allowed_m)) return {};
   }
@@ -193,7 +202,7 @@ Result<FittedShape> fit_shape(const ExactShape& shape, const ShapeFit& fit) {
     if (Status done = refine_until(shape, false, allowed_m, fit, u_lines, v); !done) return done.error();
     auto surface = fit_with(shape, u, v);
     if (!surface) return surface.error();
-    const Measure found = measure(shape, surface.value(), u, v);
+    const Measure found = measure(shape, surface.value(), u, v, fit.keeps_parameters);
     if (!found.folds && found.deviation_m <= fit.tolerance_m) {
       return FittedShape{std::move(surface).value(), found.deviation_m};
     }

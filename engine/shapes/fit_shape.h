@@ -18,6 +18,8 @@ struct ShapeFit {
   int degree = 3;
   // Cells a direction has at least: a lump is to be shaped everywhere.
   int least_spans = 12;
+  // Whether sliding along the shape is an error too: where its edges must stay where they are.
+  bool keeps_parameters = false;
   // Given, so many control points along u and v, placed where the shape asks for them, and whatever
   // deviation that leaves.
   std::optional<std::array<int, 2>> control_counts = {};

@@ -1,65 +1,13 @@
 #include "engine/study/enclosed_mass.h"
 
-#include <cmath>
-#include <numbers>
-#include <vector>
+#include "engine/study/piece_quadrature.h"
 
 namespace spoonbill {
 
-namespace {
-
-struct Quadrature {
-  std::vector<double> nodes, weights;  // on -1 to 1
-};
-
-// Roots of the Legendre polynomial by Newton's method from Tricomi's guess.
-Quadrature gauss_legendre(int count) {
-  Quadrature rule;
-  for (int k = 0; k < count; ++k) {
-    double x = std::cos(std::numbers::pi * (k + 0.75) / (count + 0.5)), slope = 1.0;
-    for (int step = 0; step < 50; ++step) {
-      double before = 1.0, value = x;
-      for (int n = 2; n <= count; ++n) {
-        const double next = ((2 * n - 1) * x * value - (n - 1) * before) / n;
-        before = value;
-        value = next;
-      }
-      if (count == 1) before = 1.0;
-      slope = count * (x * value - before) / (x * x - 1.0);
-      const double move = value / slope;
-      x -= move;
-      if (std::abs(move) < 1e-15) break;
-    }
-    rule.nodes.push_back(x);
-    rule.weights.push_back(2.0 / ((1.0 - x * x) * slope * slope));
-  }
-  return rule;
-}
-
-struct ParameterSums {
-  std::vector<double> parameters, weights;
-};
-
-// The first moment of the volume is of degree 4 p - 1 in a direction of degree p, and n nodes are exact to
-// 2 n - 1.
-ParameterSums quadrature_over(const KnotVector& knots) {
-  const Quadrature rule = gauss_legendre(2 * knots.degree() + 1);
-  const std::vector<double> pieces = knots.breakpoints();
-  ParameterSums result;
-  for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
-    const double half = 0.5 * (pieces[k + 1] - pieces[k]);
-    for (std::size_t n = 0; n < rule.nodes.size(); ++n) {
-      result.parameters.push_back(pieces[k] + half * (1.0 + rule.nodes[n]));
-      result.weights.push_back(half * rule.weights[n]);
-    }
-  }
-  return result;
-}
-
-}  // namespace
-
 EnclosedMass enclosed_mass(const Surface& surface) {
-  const ParameterSums in_u = quadrature_over(surface.u), in_v = quadrature_over(surface.v);
+  // The first moment of the volume is of degree 4 p - 1 in a direction of degree p.
+  const PieceQuadrature in_u = piece_quadrature(surface.u, 2 * surface.u.degree() + 1);
+  const PieceQuadrature in_v = piece_quadrature(surface.v, 2 * surface.v.degree() + 1);
   // From a point of the body, so that digits are not lost to where it lies.
   const Vector3 origin = surface.net.point(0, 0);
   EnclosedMass mass;

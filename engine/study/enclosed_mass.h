@@ -1,5 +1,5 @@
 // Area of a surface, and volume and middle of what a closed one encloses, by Gauss quadrature over its
-// polynomial pieces (Gauss 1814) and, for the inside, the divergence theorem. Pure functions, outside the
+// polynomial pieces and, for the inside, the divergence theorem. Pure functions, outside the
 // tick; any thread.
 #pragma once
 

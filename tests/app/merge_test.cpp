@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/program.h"
 #include "engine/bspline/change_knots.h"
@@ -61,6 +62,37 @@ TEST(MergeCommand, ASplitHandleIsWholeAgain) {
   for (double v = 0.0; v <= 100.0; v += 1.3) {
     EXPECT_LT((position(before, 0.3, v) - position(after, 0.3, v)).norm(), 1e-12);
   }
+}
+
+TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
+  const Workplace place;
+  const std::string rod = place.text("rod.json"), ball = place.text("ball.json"),
+                    knob = place.text("knob.json");
+  ASSERT_EQ(run({"new", "cylinder", "--radius", "6mm", "--height", "60mm", "--out", rod}).code, exit_done);
+  ASSERT_EQ(run({"new", "sphere", "--radius", "20mm", "--out", ball}).code, exit_done);
+  // The rod stands in the ball's middle, upright.
+  Document moved = read_document(rod).value();
+  Vector3 low = moved.scene.bodies[0].surface.net.point(0, 0);
+  for (int i = 0; i < moved.scene.bodies[0].surface.net.rows; ++i) {
+    for (int j = 0; j < moved.scene.bodies[0].surface.net.columns; ++j) {
+      low = low.cwiseMin(moved.scene.bodies[0].surface.net.point(i, j));
+    }
+  }
+  const Surface& sphere = read_document(ball).value().scene.bodies[0].surface;
+  const Vector3 middle =
+      0.5 * (position(sphere, 0.0, sphere.v.domain_start()) + position(sphere, 0.0, sphere.v.domain_end()));
+  Surface& surface = moved.scene.bodies[0].surface;
+  surface = placed(surface, {Vector3(0, middle.y() - low.y(), 0), Quaternion::Identity()});
+  place.write("rod.json", json_to_page(document_to_json(moved)));
+  const Outcome outcome =
+      run({"merge", rod, ball, "--intersect", "--fillet", "3mm", "--out", knob, "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_LE(json_of(outcome.out)["deviation_m"].get<double>(), 1e-4);
+  const Json body = json_of(run({"check", knob, "--json"}).out)["bodies"][0];
+  // The ball and what stands out of it; the fillet adds a little.
+  const double ball_m3 = 4.0 / 3.0 * M_PI * 8e-6, rod_m3 = M_PI * 36e-6 * (0.06 - std::sqrt(4e-4 - 36e-6));
+  EXPECT_GT(body["volume_m3"].get<double>(), ball_m3 + rod_m3);
+  EXPECT_LT(body["volume_m3"].get<double>(), ball_m3 + 1.2 * rod_m3);
 }
 
 TEST(MergeCommand, RefusesInOneLine) {

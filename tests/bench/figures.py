@@ -45,6 +45,7 @@ PAIRS = {
     "sphere_on_handle_us": ("handle_sphere",),
     "nets_crossing_us": ("nets_crossing/2",),
     "png_ms": ("png_ours", "png_stb"),
+    "merge_ms": ("merge_30x30",),
 }
 
 HANDLE = "assets/recordings/spoon-handle-bend.recording.jsonl"
@@ -102,6 +103,8 @@ FIGURES = (
     Figure("frames_per_second", "1/s", "ours", "at least", 30,
            "`spoonbill replay` of the bundled recording to PNG, 1280x720, antialiasing, shadow and panel"),
     Figure("png_ms", "ms", "ours", "at most", 8, "one frame of 1280x720 to PNG; peer: stb_image_write"),
+    Figure("merge_ms", "ms", "ours", "at most", 20,
+           "two patches of 30 x 30 control points that share an edge merged into one, C2"),
     Figure("lattice_at_1khz", "nodes", "ours", "at least", 32768,
            "the largest block of clay whose whole tick while touching, one relaxation step, keeps its p99 of the "
            "thread's own time under 1 ms"),

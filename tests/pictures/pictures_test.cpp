@@ -16,6 +16,7 @@
 #include "app/panel/session_panel.h"
 #include "app/session/lockstep.h"
 #include "engine/exchange/document.h"
+#include "engine/merging/merge.h"
 #include "haptic/playback_device.h"
 #include "haptic/virtual_device.h"
 #include "render/image/compare.h"
@@ -77,12 +78,15 @@ class MomentPictures : public ::testing::Test {
     return {std::move(session).value(), std::move(painter).value(), std::move(snapshot), framed};
   }
 
-  // A model as it is opened, before any tick.
-  static Stage stage_of_model(const char* model) {
-    const auto file = model_folder / (std::string(model) + ".json");
-    const auto document = read_document(file);
+  static Document document_of(const char* model) {
+    const auto document = read_document(model_folder / (std::string(model) + ".json"));
     EXPECT_TRUE(document) << document.error().message;
-    auto session = Session::make(document.value(), file.string(), VirtualDevice::default_specification(),
+    return document.value();
+  }
+
+  // A model as it is opened, before any tick.
+  static Stage stage_of_document(const Document& document) {
+    auto session = Session::make(document, document.name, VirtualDevice::default_specification(),
                                  best_instruction_set());
     EXPECT_TRUE(session) << session.error().message;
     Snapshot snapshot;
@@ -252,8 +256,42 @@ TEST_F(MaterialPictures, GelatinComesBackSlowly) {
 using LatticePictures = MomentPictures;
 
 TEST_F(LatticePictures, CellsOfJelly) {
-  Stage stage = stage_of_model("jelly");
+  Stage stage = stage_of_document(document_of("jelly"));
   compare("jelly-cells", paint(stage, {}));
+}
+
+// Fig. 9 of the paper: two patches of other counts and knots, and the one that they become.
+class MergePictures : public MomentPictures {
+ protected:
+  static Document parts() {
+    Document document = document_of("spoon-handle");
+    document.name = "handle and bowl";
+    document.scene.bodies.push_back(document_of("spoon-bowl").scene.bodies[0]);
+    document.view = Json::parse(
+        R"({"camera": {"yaw_deg": 30, "pitch_deg": 44, "target_mm": [84, -2, 0], "distance_mm": 330},
+            "ground_mm": -30, "overlays": {"control_net": true}})");
+    return document;
+  }
+  static Document spoon() {
+    Document document = parts();
+    auto merged = merge({document.scene.bodies[0].surface, document.scene.bodies[1].surface}, {});
+    EXPECT_TRUE(merged) << merged.error().message;
+    document.name = "spoon";
+    document.scene.bodies.pop_back();
+    document.scene.bodies[0].name = "spoon";
+    document.scene.bodies[0].surface = std::move(merged->surface);
+    return document;
+  }
+};
+
+TEST_F(MergePictures, HandleAndBowl) {
+  Stage stage = stage_of_document(parts());
+  compare("spoon-parts", paint(stage, {}));
+}
+
+TEST_F(MergePictures, Spoon) {
+  Stage stage = stage_of_document(spoon());
+  compare("spoon-merged", paint(stage, {}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "engine/material/lattice/share_table.h"
@@ -162,6 +163,28 @@ RingArc bent_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   return result;
 }
 
+// Of the larger one, how far apart the spreads along both axes of a section may be for its axes to mean
+// nothing.
+constexpr double nearly_alike = 1e-3;
+// Of the fourth moment about the middle, from where on it tells corners from the ripple of a round ring.
+constexpr double least_squareness = 0.02;
+
+// Of a square section any axes are principal ones. Its corners lie where its fourth moment, by four times the
+// angle, points to; e1 is turned to the middle of a side between them. A round one keeps its axis.
+void turn_to_sides(const Ring& ring, const Vector3& axis, Vector3& e1) {
+  const Vector3 e2 = axis.cross(e1);
+  std::complex<double> moment = 0.0;
+  double size = 0.0;
+  for (const Vector3& p : ring.points) {
+    const std::complex<double> place(e1.dot(p - ring.centre), e2.dot(p - ring.centre));
+    moment += place * place * place * place;
+    size += std::norm(place) * std::norm(place);
+  }
+  if (!(std::abs(moment) > least_squareness * size)) return;
+  const double to_side = 0.25 * (std::arg(moment) + std::numbers::pi);
+  e1 = std::cos(to_side) * e1 + std::sin(to_side) * e2;
+}
+
 }  // namespace
 
 double parameter_at(const KnotVector& knots, double share) {
@@ -220,6 +243,8 @@ CrossSection principal_axes(const Ring& ring, const Vector3& axis) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
   CrossSection section;
   section.e1 = solver.eigenvectors().col(2);
+  const Eigen::Vector3d spread = solver.eigenvalues();
+  if (spread[2] - spread[1] < nearly_alike * spread[2]) turn_to_sides(ring, axis, section.e1);
   // The sign is the eigenvector's largest component's, so that it does not hang on the solver's whim.
   Eigen::Index largest = 0;
   section.e1.cwiseAbs().maxCoeff(&largest);

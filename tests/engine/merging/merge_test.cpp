@@ -40,7 +40,10 @@ TEST(Merge, GivesASplitSurfaceBackAtEveryDegree) {
   for (int degree = 2; degree <= 5; ++degree) {
     for (int repeat = 0; repeat < 25; ++repeat) {
       const Surface whole = smooth_sheet(random, degree, 8, 9);
-      const double cut = random.uniform(0.05, 0.95);
+      // Anywhere, and a hair's breadth beside a knot.
+      const double inner = knots_along(whole, Direction::u).breakpoints()[1];
+      const double cut =
+          repeat % 2 == 0 ? random.uniform(0.05, 0.95) : inner + std::pow(10.0, -random.uniform(1.5, 6.0));
       const Direction along = random.integer(0, 1) == 0 ? Direction::u : Direction::v;
       const std::vector<Surface> parts{part_of(whole, along, 0.0, cut).value(),
                                        part_of(whole, along, cut, 1.0).value()};
@@ -265,6 +268,27 @@ TEST(Merge, EdgesAreChosenByHand) {
   EXPECT_EQ(merged->joints[0].a, (PatchEdge{0, Side::v_end}));
   request.chosen = {{{0, Side::v_end}, {2, Side::v_start}}};
   EXPECT_EQ(merge(parts, request).error().message, "patch 3 of a chosen edge does not exist");
+}
+
+TEST(Merge, DirectionsAndSeamsAreChosenByHand) {
+  const Surface low = ring_strip(0.0, 0.03, 16, 0.0), high = ring_strip(0.04, 0.08, 16, 0.0);
+  MergeRequest request = request_of(1);
+  request.join.twist = 0.25;
+  const auto twisted = merge({low, high}, request);
+  ASSERT_TRUE(twisted.ok()) << twisted.error().message;
+  const Surface& surface = twisted->surface;
+  const Vector3 start = position(surface, 0.0, 0.0), end = position(surface, 0.0, surface.v.domain_end());
+  // A quarter of a turn from one end to the other.
+  EXPECT_NEAR(start.head<2>().normalized().dot(end.head<2>().normalized()), 0.0, 1e-9);
+  MergeRequest against = request_of(1);
+  against.chosen = {{{0, Side::v_end}, {1, Side::v_start}, true}};
+  const auto crossed = merge({low, high}, against);
+  ASSERT_TRUE(crossed.ok()) << crossed.error().message;
+  const auto turn = [&](double v) {
+    const Vector3 a = position(crossed->surface, 0.0, v), b = position(crossed->surface, 0.1, v);
+    return a.x() * b.y() - a.y() * b.x();
+  };
+  EXPECT_LT(turn(0.0) * turn(crossed->surface.v.domain_end()), 0.0);
 }
 
 TEST(Merge, RefusesWhatMakesNoGrid) {

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <utility>
 
 #include "engine/bspline/evaluate.h"
+#include "engine/exchange/document.h"
+#include "engine/merging/merge.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
 
@@ -58,6 +61,16 @@ Surface seamed_ball() {
   return make_surface(u, tube.v, std::move(net)).value();
 }
 
+// The bundled bowl and handle, which have other counts and knots, as the merge command joins them.
+Surface merged_spoon() {
+  const std::filesystem::path models = SPOONBILL_ASSETS "/models";
+  std::vector<Surface> parts;
+  for (const char* name : {"spoon-handle.json", "spoon-bowl.json"}) {
+    parts.push_back(read_document(models / name).value().scene.bodies[0].surface);
+  }
+  return merge(parts, {}).value().surface;
+}
+
 }  // namespace
 
 Surface torus_like(double ring_m, double tube_m) {
@@ -95,6 +108,7 @@ std::vector<KnownSurface> known_surfaces() {
   add("tube inside out", transposed(ellipsoid_tube(8, 10)), true);
   add("ball with a seam", seamed_ball(), true);
   add("ring", torus_like(0.04, 0.012), true);
+  add("spoon", merged_spoon(), true);
   return all;
 }
 

@@ -8,7 +8,8 @@
 
 namespace spoonbill {
 
-// Open sheets, clamped or not, of degrees 1 to 5; periodic tubes with and without poles; bodies that close.
+// Open sheets, clamped or not, of degrees 1 to 5; periodic tubes with and without poles; bodies that close, a
+// merged spoon among them.
 struct KnownSurface {
   CadSurface surface;
   bool closes = false;

@@ -1,0 +1,154 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "app/assets_folder.h"
+#include "app/commands/command.h"
+#include "app/commands/common_options.h"
+#include "app/commands/option_values.h"
+#include "app/files/error_cloud.h"
+#include "app/files/fitted_document.h"
+#include "app/files/scan_file.h"
+#include "app/interrupt.h"
+#include "app/report/fit_facts.h"
+#include "app/report/progress_bar.h"
+#include "engine/number_text.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr Range<int> control_range{4, 200};
+constexpr Range<double> tolerance_range_m{1e-6, 0.1};
+// Where colours end that no tolerance asks for.
+constexpr double least_scale_m = 1e-6;
+
+struct FitOptions {
+  std::filesystem::path scan, out, errors;
+  Extent control{24, 24};
+  std::optional<LengthUnit> unit;
+  FitRequest request;
+  bool json = false;
+};
+
+Result<ScanFit> fit_with_progress(const FitOptions& options, Scan scan, Console& console) {
+  InterruptWatch interrupt;
+  ProgressBar progress(console, "Fitting", false);
+  bool stopped = false;
+  FitRequest request = options.request;
+  request.settings.control_u = options.control.width;
+  request.settings.control_v = options.control.height;
+  request.settings.watch = [&](double share) {
+    constexpr double whole = 1000.0;
+    progress.show(static_cast<std::uint64_t>(whole * share), static_cast<std::uint64_t>(whole));
+    stopped = interrupt.requested();
+    return !stopped;
+  };
+  auto fit = fit_scan(std::move(scan), request);
+  if (stopped) {
+    interrupt.answer();
+    return Error{"stopped; " + options.out.string() + " was not written"};
+  }
+  if (!fit) return Error{options.scan.string() + ": " + fit.error().message};
+  return fit;
+}
+
+Status fit(const FitOptions& options, Console& console) {
+  const auto clay = read_material(std::filesystem::path(assets_folder) / "materials/modelling-clay.json");
+  if (!clay) return clay.error();
+  MeshReading reading;
+  reading.unit = options.unit;
+  auto file = read_scan_file(options.scan, reading);
+  if (!file) return file.error();
+  const auto fitted = fit_with_progress(options, std::move(file->scan), console);
+  if (!fitted) return fitted.error();
+  const auto document = fitted_document(fitted.value(), options.scan.stem().string(), clay.value());
+  if (!document) return Error{options.scan.string() + ": " + document.error().message};
+  if (Status written = write_document(document->document, options.out); !written) return written;
+  FactSheet facts;
+  facts.add("File", options.out.string(), "file", options.out.string());
+  add_scan_facts(facts, file.value(), fitted.value());
+  add_fit_facts(facts, fitted.value());
+  if (!options.errors.empty()) {
+    const double asked = options.request.settings.tolerance_m;
+    const double full = std::max(least_scale_m, asked > 0.0 ? asked : deviation_of_all(fitted.value()).p95_m);
+    if (Status written = write_error_cloud(fitted.value(), full, options.errors); !written) return written;
+    facts.add("Colours", options.errors.string() + ", from 0 to " + short_length_text(full), "errors_file",
+              options.errors.string());
+    facts.add("", "", "errors_full_m", full);
+  }
+  for (const std::string& remark : document->remarks) facts.add("Note", remark, "", nullptr);
+  facts.add("", "", "remarks", document->remarks);
+  facts.print(console.out, options.json);
+  return {};
+}
+
+template <class Parse, class Take>
+void add_text_option(CLI::App& parser, const std::string& name, const std::string& help, const char* form,
+                     const Parse& parse, const Take& take) {
+  const auto read = [=](const std::string& text) {
+    const auto value = parse(text);
+    if (!value) throw CLI::ValidationError(name, value.error().message);
+    take(value.value());
+  };
+  parser.add_option_function<std::string>(name, read, help)->type_name(form);
+}
+
+void add_options(CLI::App& parser, const std::shared_ptr<FitOptions>& options) {
+  parser
+      .add_option("SCAN", options->scan,
+                  "Points (.ply, .pcd, .xyz, .txt, .csv, .asc, .pts, .obj) or triangles (.ply, .obj, .stl)")
+      ->required();
+  parser.add_option("--out", options->out, "The document to write (.json)")->required();
+  add_text_option(
+      parser, "--control", "At most so many control points along u and v (24x24 unless told)", "RxC",
+      [](const std::string& text) { return parse_extent(text, control_range); },
+      [options](const Extent& control) { options->control = control; });
+  add_text_option(
+      parser, "--tolerance", "No more control points once the scan lies within (outliers aside)", "LENGTH",
+      [](const std::string& text) { return parse_length(text, tolerance_range_m); },
+      [options](double length) { options->request.settings.tolerance_m = length; });
+  add_text_option(
+      parser, "--unit", "The unit of the scan's numbers: mm, cm, m or in (PLY and PCD: m, others: mm)",
+      "UNIT", [](const std::string& text) { return parse_unit(text); },
+      [options](const LengthUnit& unit) { options->unit = unit; });
+  const std::map<std::string, ShapeKind> kinds{
+      {"sheet", ShapeKind::sheet}, {"tube", ShapeKind::tube}, {"closed", ShapeKind::closed}};
+  parser.add_option("--kind", options->request.kind, "sheet, tube or closed; found unless told")
+      ->transform(CLI::CheckedTransformer(kinds))
+      ->option_text("KIND");
+  const std::map<std::string, IslandChoice> islands{
+      {"largest", IslandChoice::largest}, {"bridge", IslandChoice::bridge}, {"all", IslandChoice::all}};
+  parser
+      .add_option("--islands", options->request.islands,
+                  "Of a scan in several parts: largest alone, one body to bridge them, or all as bodies")
+      ->transform(CLI::CheckedTransformer(islands))
+      ->option_text("CHOICE");
+  parser.add_option("--errors", options->errors,
+                    "A cloud of the scan's points coloured by their distance (.ply)");
+  add_json_option(parser, options->json);
+}
+
+}  // namespace
+
+CommandEntry add_fit(CLI::App& root) {
+  auto options = std::make_shared<FitOptions>();
+  CLI::App* parser = root.add_subcommand("fit", "Fit B-spline surfaces to a scan");
+  parser->footer(
+      "Outliers and specks are left out, and the kind of shape is found: a sheet (open both ways), a tube\n"
+      "(closes in u), or a closed shape (closes in u, with a pole at both ends of v). Knots go where errors\n"
+      "are. The report tells how far scan and surface are from each other, both ways, and whether the "
+      "surface\n"
+      "folds. Closed shapes become solids of clay, others shells.\n"
+      "Example: spoonbill fit pear.ply --out pear.json --control 24x24 --errors pear-errors.ply");
+  add_options(*parser, options);
+  return {parser, [options](Console& console) { return fit(*options, console); }};
+}
+
+}  // namespace spoonbill

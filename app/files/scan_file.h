@@ -1,0 +1,28 @@
+// Scans: point clouds and meshes out of files, in metres.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+
+#include "app/files/length_unit.h"
+#include "app/files/mesh_file.h"
+#include "engine/fitting/scan.h"
+#include "engine/result.h"
+
+namespace spoonbill {
+
+struct ScanFile {
+  Scan scan;  // finite, within position_range_m
+  LengthUnit unit = millimetre;
+  std::size_t points_read = 0;
+  std::size_t points_skipped = 0;  // with a coordinate that is no number
+};
+
+// By the ending of the name: PLY and PCD, in metres if `unit` says nothing; STL, OBJ, XYZ and its like, in
+// millimetres. Triangles are read by the child process that `reading` names, points alone in this one.
+// Refused, each with one line that names the file: another ending, what cannot be read, more than five
+// million points, points at infinity or farther than 100 m.
+Result<ScanFile> read_scan_file(const std::filesystem::path& file, const MeshReading& reading = {});
+
+}  // namespace spoonbill

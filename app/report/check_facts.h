@@ -1,0 +1,19 @@
+// What a check found of one body.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/report/fact_sheet.h"
+#include "engine/simulation/scene.h"
+#include "engine/study/surface_check.h"
+
+namespace spoonbill {
+
+// What keeps the body from being what it says it is, a line each: none where it is sound.
+std::vector<std::string> problems_of(const Body& body, const SurfaceCheck& check);
+
+// Lines go to the sheet, the body's JSON is returned.
+Json add_check_facts(FactSheet& facts, const Body& body, const SurfaceCheck& check);
+
+}  // namespace spoonbill

@@ -1,0 +1,119 @@
+#include "app/report/fit_facts.h"
+
+#include <string>
+#include <utility>
+
+#include "app/report/quantity_text.h"
+#include "engine/number_text.h"
+
+namespace spoonbill {
+namespace {
+
+Json deviation_json(const Deviation& deviation) {
+  return {{"max_m", deviation.max_m}, {"p95_m", deviation.p95_m}, {"mean_m", deviation.mean_m}};
+}
+
+std::string deviation_text(const Deviation& deviation) {
+  return "95 % within " + short_length_text(deviation.p95_m) + ", mean " +
+         short_length_text(deviation.mean_m) + ", at most " + short_length_text(deviation.max_m);
+}
+
+std::string control_text(const Surface& surface) {
+  return std::to_string(surface.net.rows) + " x " + std::to_string(surface.net.columns);
+}
+
+Json millimetres(const Vector3& size_m) {
+  return Json::array({1e3 * size_m.x(), 1e3 * size_m.y(), 1e3 * size_m.z()});
+}
+
+Vector3 size_of_all(const ScanFit& fit) {
+  Vector3 low = fit.bodies.front().points_m.front(), high = low;
+  for (const FittedBody& body : fit.bodies) {
+    for (const Vector3& point : body.points_m) {
+      low = low.cwiseMin(point);
+      high = high.cwiseMax(point);
+    }
+  }
+  return high - low;
+}
+
+void add_body(FactSheet& facts, const FittedBody& body, Json& list) {
+  const std::string kind(name_of(body.kind));
+  facts.add("Body",
+            kind + ", " + size_text(body.size_m) + ", " + control_text(body.surface) + " control points", "",
+            nullptr);
+  facts.add("  Scan to surface", deviation_text(body.errors.data_to_surface), "", nullptr);
+  facts.add("  Surface to scan",
+            deviation_text(body.errors.surface_to_data) + "; " + percent_text(body.errors.unseen_share) +
+                " of it was not scanned",
+            "", nullptr);
+  facts.add("  Folds",
+            body.folds.folds == 0
+                ? "none"
+                : std::to_string(body.folds.folds) + " of " + std::to_string(body.folds.samples) + " samples",
+            "", nullptr);
+  list.push_back({{"kind", kind},
+                  {"control", {body.surface.net.rows, body.surface.net.columns}},
+                  {"size_mm", millimetres(body.size_m)},
+                  {"points", body.points_m.size()},
+                  {"data_to_surface", deviation_json(body.errors.data_to_surface)},
+                  {"surface_to_data", deviation_json(body.errors.surface_to_data)},
+                  {"unseen_share", body.errors.unseen_share},
+                  {"folds", body.folds.folds},
+                  {"fold_samples", body.folds.samples}});
+}
+
+}  // namespace
+
+Deviation deviation_of_all(const ScanFit& fit) {
+  std::vector<double> distances;
+  for (const FittedBody& body : fit.bodies) {
+    distances.insert(distances.end(), body.errors.distance_m.begin(), body.errors.distance_m.end());
+  }
+  return deviation_of(std::move(distances));
+}
+
+void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit) {
+  facts.add("Unit", std::string(file.unit.name) + " (of the scan's numbers; --unit names another)", "unit",
+            std::string(file.unit.name));
+  const Vector3 size = size_of_all(fit);
+  facts.add("Size", size_text(size), "size_mm", millimetres(size));
+  std::size_t used = 0;
+  for (const FittedBody& body : fit.bodies) used += body.points_m.size();
+  std::string text = std::to_string(used) + " used of " + std::to_string(file.points_read) + " read";
+  const auto left = [&](std::size_t count, const char* why) {
+    if (count > 0) text += ", " + std::to_string(count) + " " + why;
+  };
+  left(file.points_skipped, "no numbers");
+  left(fit.outliers, "apart from all others");
+  left(fit.dust, "in specks");
+  left(fit.other_islands, "on other islands");
+  facts.add("Points", text, "points_read", file.points_read);
+  facts.add("", "", "points_used", used);
+  facts.add("", "", "points_left_out",
+            {{"not_a_number", file.points_skipped},
+             {"outliers", fit.outliers},
+             {"specks", fit.dust},
+             {"other_islands", fit.other_islands}});
+  facts.add("Islands", std::to_string(fit.islands), "islands", fit.islands);
+}
+
+void add_fit_facts(FactSheet& facts, const ScanFit& fit) {
+  Json list = Json::array();
+  std::size_t folds = 0;
+  for (const FittedBody& body : fit.bodies) {
+    add_body(facts, body, list);
+    folds += body.folds.folds;
+  }
+  const Deviation all = deviation_of_all(fit);
+  const FittedBody& first = fit.bodies.front();
+  facts.add("", "", "bodies", list);
+  facts.add("", "", "kind", std::string(name_of(first.kind)));
+  facts.add("", "", "control", {first.surface.net.rows, first.surface.net.columns});
+  facts.add("", "", "folds", folds);
+  facts.add("", "", "max_m", all.max_m);
+  facts.add("", "", "p95_m", all.p95_m);
+  facts.add("", "", "mean_m", all.mean_m);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,80 @@
+#include "engine/merging/rolling_ball.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace spoonbill {
+
+namespace {
+
+struct Places {
+  double v, other_u, other_v;
+};
+
+// Of the domain, for differences of points in double.
+constexpr double small_step = 1e-6;
+
+double length_of(const KnotVector& knots) {
+  return knots.domain_end() - knots.domain_start();
+}
+
+bool is_inside(const KnotVector& knots, double t) {
+  return knots.is_periodic() || (t >= knots.domain_start() && t <= knots.domain_end());
+}
+
+class Corner {
+ public:
+  Corner(const Surface& surface, double u, const Surface& other, BallSides sides)
+      : surface_(surface), u_(u), other_(other), sides_(sides) {}
+
+  Vector3 centre_from_surface(double v, double radius_m) const {
+    return position(surface_, u_, v) + sides_.of_surface * radius_m * unit_normal(surface_, u_, v);
+  }
+  Vector3 centre_from_other(double u, double v, double radius_m) const {
+    return position(other_, u, v) + sides_.of_other * radius_m * unit_normal(other_, u, v);
+  }
+  Vector3 apart(const Places& at, double radius_m) const {
+    return centre_from_surface(at.v, radius_m) - centre_from_other(at.other_u, at.other_v, radius_m);
+  }
+  std::optional<Places> solved(Places at, double radius_m) const {
+    for (int step = 0; step < 25; ++step) {
+      const Vector3 now = apart(at, radius_m);
+      if (now.norm() <= 1e-9 * radius_m) return at;
+      const double dv = small_step * length_of(surface_.v), du_other = small_step * length_of(other_.u),
+                   dv_other = small_step * length_of(other_.v);
+      Eigen::Matrix3d slopes;
+      slopes.col(0) = (apart({at.v + dv, at.other_u, at.other_v}, radius_m) - now) / dv;
+      slopes.col(1) = (apart({at.v, at.other_u + du_other, at.other_v}, radius_m) - now) / du_other;
+      slopes.col(2) = (apart({at.v, at.other_u, at.other_v + dv_other}, radius_m) - now) / dv_other;
+      const Vector3 moved = slopes.partialPivLu().solve(-now);
+      if (!moved.allFinite()) return std::nullopt;
+      at = {at.v + moved.x(), at.other_u + moved.y(), at.other_v + moved.z()};
+      if (!is_inside(surface_.v, at.v) || !is_inside(other_.u, at.other_u) ||
+          !is_inside(other_.v, at.other_v)) {
+        return std::nullopt;
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const Surface& surface_;
+  double u_;
+  const Surface& other_;
+  BallSides sides_;
+};
+
+}  // namespace
+
+std::optional<BallContact> ball_contact(const Surface& surface, double u, const Surface& other,
+                                        const LineCrossing& crossing, BallSides sides, double radius_m) {
+  const Corner corner(surface, u, other, sides);
+  constexpr int steps = 8;
+  std::optional<Places> at = Places{crossing.along, crossing.other_u, crossing.other_v};
+  for (int k = 1; at && k <= steps; ++k) at = corner.solved(*at, radius_m * k / steps);
+  if (!at) return std::nullopt;
+  return BallContact{at->v, at->other_u, at->other_v, corner.centre_from_surface(at->v, radius_m)};
+}
+
+}  // namespace spoonbill

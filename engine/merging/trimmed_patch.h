@@ -1,0 +1,21 @@
+// A trimmed patch as a whole one: resampled along its lines of constant u from trim to trim, and fitted.
+// Outside the tick; pure function.
+#pragma once
+
+#include <vector>
+
+#include "engine/bspline/surface.h"
+#include "engine/bspline/trim_loop.h"
+#include "engine/result.h"
+#include "engine/shapes/fit_shape.h"
+
+namespace spoonbill {
+
+// What the loops keep, its edges in v on the trims, u ending where the kept part does; C0 along lines through
+// corners of the trims. Lines of constant u must
+// each meet the kept part in one piece; where they do not, lines of constant v are tried. Without loops the
+// surface itself. Refused: holes and other parts that neither cuts into single pieces, a part that ends in a
+// point where no line is left of it.
+Result<FittedShape> untrimmed(const Surface& surface, const std::vector<TrimLoop>& trims, double tolerance_m);
+
+}  // namespace spoonbill

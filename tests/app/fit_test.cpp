@@ -1,0 +1,158 @@
+// Fits from the command line: from a scan's file to a document that the program opens.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+
+#include "engine/exchange/document.h"
+#include "tests/app/mesh_texts.h"
+#include "tests/app/process.h"
+#include "tests/engine/collision/meshes/mesh_shapes.h"
+#include "tests/engine/fitting/clouds.h"
+
+namespace spoonbill {
+namespace {
+
+class FitTest : public testing::Test {
+ protected:
+  Outcome fit(const std::string& scan, std::vector<std::string> options = {}) const {
+    std::vector<std::string> arguments{"fit", scan, "--out", out()};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run_process(SPOONBILL_PROGRAM, arguments);
+  }
+  Json json_of_fit(const std::string& scan, std::vector<std::string> options = {}) const {
+    options.push_back("--json");
+    const Outcome outcome = fit(scan, std::move(options));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.code == 0 ? json_of(outcome.out) : Json::object();
+  }
+  std::string out() const { return folder_.path() / "out.json"; }
+  std::string write(const std::string& name, const std::string& content) const {
+    return folder_.write(name, content).string();
+  }
+
+  TemporaryFolder folder_;
+};
+
+std::string xyz_of(const Scan& scan, double scale) {
+  std::string text;
+  for (const Vector3& point : scan.points_m) {
+    for (int axis = 0; axis < 3; ++axis) text += std::to_string(scale * point[axis]) + " ";
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(FitTest, CloudBecomesADocumentThatOpens) {
+  const std::string scan = write("egg.xyz", xyz_of(ellipsoid_cloud(5000, {0.02, 0.02, 0.03}), 1e3));
+  const Json json = json_of_fit(scan, {"--control", "12x14"});
+  EXPECT_EQ(json.at("kind"), "closed");
+  EXPECT_EQ(json.at("control"), Json::array({12, 14}));
+  EXPECT_EQ(json.at("folds"), 0);
+  EXPECT_EQ(json.at("unit"), "mm");
+  EXPECT_NEAR(json.at("size_mm")[2].get<double>(), 60.0, 0.1);
+  EXPECT_LE(json.at("mean_m"), json.at("p95_m"));
+  EXPECT_LE(json.at("p95_m"), json.at("max_m"));
+  EXPECT_LT(json.at("p95_m").get<double>(), 1e-4);
+  EXPECT_EQ(json.at("points_read"), 5000);
+  const auto document = read_document(out());
+  ASSERT_TRUE(document) << document.error().message;
+  EXPECT_EQ(document->scene.bodies[0].material.name, "modelling-clay");
+  const Outcome info = run_process(SPOONBILL_PROGRAM, {"info", out(), "--json"});
+  EXPECT_EQ(info.code, 0) << info.err;
+}
+
+TEST_F(FitTest, SheetBecomesAShellThatOpens) {
+  const Scan waves = random_cloud(5000, 3, [](double s, double t) { return on_waves(s, t, 0.1, 0.004); });
+  const Json json =
+      json_of_fit(write("waves.csv", xyz_of(waves, 1.0)), {"--unit", "m", "--control", "12x12"});
+  EXPECT_EQ(json.at("kind"), "sheet");
+  EXPECT_NEAR(json.at("size_mm")[0].get<double>(), 100.0, 1.0);
+  const Outcome info = run_process(SPOONBILL_PROGRAM, {"info", out(), "--json"});
+  EXPECT_EQ(info.code, 0) << info.err;
+}
+
+TEST_F(FitTest, MeshIsReadByTheChildAndItsErrorsAreColoured) {
+  const std::string scan = write("ball.stl", binary_stl(ball_mesh(24, 48, 20.0)));
+  const std::string errors = folder_.path() / "errors.ply";
+  const Json json = json_of_fit(scan, {"--control", "12x12", "--errors", errors});
+  EXPECT_EQ(json.at("kind"), "closed");
+  EXPECT_NEAR(json.at("size_mm")[0].get<double>(), 40.0, 0.1);
+  std::ifstream stream(errors, std::ios::binary);
+  std::string first;
+  std::getline(stream, first);
+  EXPECT_EQ(first, "ply");
+}
+
+TEST_F(FitTest, RefusalsAreOneLineAndKeepTheOldFile) {
+  write("out.json", "kept");
+  const std::vector<std::pair<std::string, std::string>> bad{
+      {"none.ply", ""},
+      {"cut.ply",
+       "ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\n"
+       "property float z\nend_header\n1 2 3\n"},
+      {"hostile.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 4000000000\nDATA binary\n1"},
+      {"nan.xyz", "nan nan nan\nnan nan nan\n"},
+      {"huge.xyz", xyz_of(ellipsoid_cloud(500, {1e4, 1e4, 1e4}), 1e3)},
+      {"few.xyz", "1 2 3\n4 5 6\n"},
+      {"scan.doc", "1 2 3\n"}};
+  for (const auto& [name, content] : bad) {
+    const Outcome outcome = fit(write(name, content));
+    EXPECT_EQ(outcome.code, 1) << name;
+    EXPECT_TRUE(is_clean_failure(outcome)) << name << ": " << outcome.err;
+    EXPECT_NE(outcome.err.find(name), std::string::npos) << outcome.err;
+  }
+  std::ifstream stream(out());
+  std::string kept;
+  std::getline(stream, kept);
+  EXPECT_EQ(kept, "kept");
+}
+
+TEST_F(FitTest, WrongUseIsExitTwo) {
+  const std::string scan = write("egg.xyz", "1 2 3\n");
+  for (const std::vector<std::string>& options :
+       std::vector<std::vector<std::string>>{{"--control", "24"},
+                                             {"--control", "2x24"},
+                                             {"--kind", "ball"},
+                                             {"--islands", "some"},
+                                             {"--unit", "parsec"},
+                                             {"--tolerance", "0.5"}}) {
+    const Outcome outcome = fit(scan, options);
+    EXPECT_EQ(outcome.code, 2) << options[0] << ' ' << options[1];
+    EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+  }
+}
+
+// Scans that lie where the environment says: see README.
+class RealScans : public FitTest {
+ protected:
+  void SetUp() override {
+    const char* const folder = std::getenv("SPOONBILL_SCANS");
+    if (folder == nullptr) GTEST_SKIP() << "SPOONBILL_SCANS names no folder with scans";
+    scans_ = folder;
+  }
+  void expect_good(const std::string& name, const std::vector<std::string>& options, double size_m) {
+    const Json json = json_of_fit((scans_ / name).string(), options);
+    ASSERT_TRUE(json.contains("p95_m"));
+    EXPECT_LT(json.at("p95_m").get<double>(), 1e-3) << name;
+    EXPECT_LT(json.at("p95_m").get<double>(), 0.01 * size_m) << name;
+  }
+
+  std::filesystem::path scans_;
+};
+
+TEST_F(RealScans, PearIsClosedWithinAMillimetre) {
+  expect_good("ycb_016_pear.ply", {}, 0.088);
+}
+
+TEST_F(RealScans, BowlWithinAMillimetre) {
+  expect_good("ycb_024_bowl.ply", {}, 0.16);
+}
+
+TEST_F(RealScans, SpoonAsTwoBodiesWithinAMillimetre) {
+  expect_good("ycb_031_spoon.ply", {"--islands", "all"}, 0.184);
+}
+
+}  // namespace
+}  // namespace spoonbill

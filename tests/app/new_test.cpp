@@ -1,0 +1,187 @@
+// The command that makes shapes to start from.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "app/program.h"
+#include "engine/exchange/document.h"
+#include "engine/simulation/simulation.h"
+#include "tests/app/workplace.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(New, ReportsWhatItMade) {
+  const Workplace place;
+  const Outcome outcome = run(
+      {"new", "sphere", "--radius", "40mm", "--name", "ball", "--out", place.text("ball.json"), "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const Json facts = json_of(outcome.out);
+  EXPECT_EQ(facts["kind"], "sphere");
+  EXPECT_NEAR(facts["size_mm"][1], 80.0, 0.02);
+  EXPECT_LE(facts["deviation_m"], 1e-5);
+  EXPECT_NEAR(facts["volume_m3"], 4.0 / 3.0 * pi * std::pow(0.04, 3), 1e-5 * 4.0 * pi * 0.04 * 0.04);
+  EXPECT_NEAR(facts["area_m2"], 4.0 * pi * 0.04 * 0.04, 1e-5);
+  EXPECT_EQ(facts["closed"], true);
+  const Document document = read_document(place.path("ball.json")).value();
+  EXPECT_EQ(document.name, "ball");
+  const Body& body = document.scene.bodies[0];
+  EXPECT_EQ(body.material.name, "modelling-clay");
+  EXPECT_EQ(facts["control_points"][0], body.surface.net.rows);
+  EXPECT_EQ(facts["control_points"][1], body.surface.net.columns);
+}
+
+TEST(New, TakesCountsMaterialAndUnits) {
+  const Workplace place;
+  const Outcome outcome = run({"new", "box", "--size", "6cmx40mmx0.8in", "--control", "32x24", "--material",
+                               "beech", "--out", place.text("box.json"), "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const Json facts = json_of(outcome.out);
+  EXPECT_NEAR(facts["size_mm"][0], 60.0, 0.1);
+  EXPECT_NEAR(facts["size_mm"][1], 40.0, 0.1);
+  EXPECT_NEAR(facts["size_mm"][2], 20.32, 0.1);
+  EXPECT_EQ(facts["control_points"], Json::array({32, 24}));
+  EXPECT_EQ(read_document(place.path("box.json"))->scene.bodies[0].material.name, "beech");
+}
+
+class Lumps : public testing::TestWithParam<std::vector<std::string>> {};
+
+// A script presses the ball that comes with each into its top; what is recorded replays.
+TEST_P(Lumps, CanBePressed) {
+  const Workplace place;
+  const Outcome made = run(with(GetParam(), {"--out", place.text("lump.json"), "--json"}));
+  ASSERT_EQ(made.code, exit_done) << made.err;
+  const Scene scene = read_document(place.path("lump.json"))->scene;
+  const double radius = scene.tool.radius_m;
+  const double top = 5e-4 * json_of(made.out)["size_mm"][1].get<double>();
+  const auto at = [](double height_m) { return "[0, " + std::to_string(1e3 * height_m) + ", 0]"; };
+  place.write("press.json", R"({"spoonbill_script": 1, "model": "lump.json", "steps": [{"start_mm": )" +
+                                at(top + 1.2 * radius) + R"(}, {"move_to_mm": )" + at(top + 0.7 * radius) +
+                                R"(, "over_s": 0.1}]})");
+  const Outcome recorded =
+      run({"record", place.text("press.json"), "--out", place.text("press.recording.jsonl"), "--json"});
+  ASSERT_EQ(recorded.code, exit_done) << recorded.err;
+  const Outcome replayed = run({"replay", place.text("press.recording.jsonl"), "--no-frames", "--json"});
+  ASSERT_EQ(replayed.code, exit_done) << replayed.err;
+  EXPECT_EQ(json_of(replayed.out)["state_hash"], json_of(recorded.out)["state_hash"]);
+}
+
+// The ball pressed in by a tenth of its radius: it is pushed back with what a hand feels, and the surface
+// gives way by some of that and by nothing wild.
+TEST_P(Lumps, GiveWayToTheirTool) {
+  const Workplace place;
+  ASSERT_EQ(run(with(GetParam(), {"--out", place.text("lump.json")})).code, exit_done);
+  const Scene scene = read_document(place.path("lump.json"))->scene;
+  const Surface& surface = scene.bodies[0].surface;
+  double top = -1.0;
+  for (const double y : surface.net.y) top = std::max(top, y);
+  auto simulation = Simulation::make(scene, best_instruction_set());
+  ASSERT_TRUE(simulation.ok()) << simulation.error().message;
+  const double radius = scene.tool.radius_m;
+  ToolInput hand;
+  double largest_n = 0.0;
+  for (int tick = 0; tick < 60; ++tick) {
+    hand.pose.position_m = Vector3(0.0, top + radius * (1.0 - 0.1 * std::min(1.0, tick / 30.0)), 0.0);
+    largest_n = std::max(largest_n, simulation->advance(hand).force_n.y());
+  }
+  EXPECT_GT(largest_n, 0.01);
+  EXPECT_LT(largest_n, 50.0);
+  Snapshot snapshot;
+  simulation->write_snapshot(snapshot);
+  const SurfaceSnapshot& pressed = snapshot.bodies[0].surface;
+  ControlNet net(pressed.u.control_point_count(), pressed.v.control_point_count());
+  std::copy(pressed.x.begin(), pressed.x.end(), net.x.begin());
+  std::copy(pressed.y.begin(), pressed.y.end(), net.y.begin());
+  std::copy(pressed.z.begin(), pressed.z.end(), net.z.begin());
+  const auto after = make_surface(pressed.u, pressed.v, net);
+  ASSERT_TRUE(after.ok()) << after.error().message;
+  double moved = 0.0;
+  for (double u = 0.0; u < 1.0; u += 0.01) {
+    for (double v = 0.0; v <= 1.0; v += 0.01) {
+      moved = std::max(moved, (position(after.value(), u, v) - position(surface, u, v)).norm());
+    }
+  }
+  EXPECT_GT(moved, 0.005 * radius);
+  EXPECT_LT(moved, radius);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, Lumps,
+    testing::Values(std::vector<std::string>{"new", "sphere"},
+                    std::vector<std::string>{"new", "box", "--size", "60x40x20mm", "--rounding", "3mm"},
+                    std::vector<std::string>{"new", "box", "--size", "40x40x40mm"},
+                    std::vector<std::string>{"new", "cylinder"},
+                    std::vector<std::string>{"new", "cylinder", "--radius", "5cm", "--height", "1cm"},
+                    std::vector<std::string>{"new", "cone"},
+                    std::vector<std::string>{"new", "cone", "--top", "1cm"},
+                    std::vector<std::string>{"new", "plate", "--size", "100x60mm"},
+                    std::vector<std::string>{"new", "plate", "--size", "100x60mm", "--sheet"}));
+
+TEST(New, SaysWhatATorusCannotDo) {
+  const Workplace place;
+  const Outcome outcome = run({"new", "torus", "--out", place.text("ring.json")});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_NE(outcome.out.find("closed both ways"), std::string::npos);
+  EXPECT_TRUE(read_document(place.path("ring.json")).ok());
+}
+
+TEST(New, RefusesWhatMakesNoShape) {
+  const Workplace place;
+  place.write("old.json", "precious");
+  const auto out = [&](std::vector<std::string> arguments) {
+    return run(with(std::move(arguments), {"--out", place.text("old.json")}));
+  };
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"new", "sphere", "--radius", "0.01mm"},
+           {"new", "sphere", "--radius", "-5mm"},
+           {"new", "sphere", "--radius", "11m"},
+           {"new", "box", "--size", "60x40x0mm"},
+           {"new", "box", "--size", "60x40x20mm", "--rounding", "9mm"},
+           {"new", "cone", "--rounding", "25mm"},
+           {"new", "cylinder", "--rounding", "0.01mm"},
+           {"new", "torus", "--ring", "1cm", "--tube", "2cm"},
+           {"new", "plate", "--size", "100x60mm", "--thickness", "40mm"},
+           {"new", "plate", "--size", "100x60mm", "--corner", "1mm"},
+           {"new", "plate", "--size", "100x60mm", "--sheet", "--corner", "9mm"},
+           {"new", "sphere", "--tolerance", "0.00001mm", "--radius", "10m"},
+           {"new", "sphere", "--material", "cheese"},
+           {"new", "sphere", "--material", "silicone"}}) {
+    const Outcome outcome = out(arguments);
+    EXPECT_EQ(outcome.code, exit_failed) << outcome.err;
+    EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+  }
+  for (const auto& arguments :
+       std::vector<std::vector<std::string>>{{"new"},
+                                             {"new", "dodecahedron"},
+                                             {"new", "sphere", "--radius", "40"},
+                                             {"new", "sphere", "--radius", "nan mm"},
+                                             {"new", "sphere", "--radius", "1e400mm"},
+                                             {"new", "box", "--size", "60x40mm"},
+                                             {"new", "box", "--size", "60x40x20x10mm"},
+                                             {"new", "box"},
+                                             {"new", "sphere", "--control", "3x3"},
+                                             {"new", "sphere", "--control", "16"},
+                                             {"new", "sphere", "--control", "999x16"}}) {
+    const Outcome outcome = out(arguments);
+    EXPECT_EQ(outcome.code, exit_wrong_use) << outcome.err;
+    EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+  }
+  EXPECT_EQ(content_of(place.path("old.json")), "precious");
+}
+
+TEST(New, HelpNamesSizesOfEachKind) {
+  EXPECT_NE(run({"new", "--help"}).out.find("torus"), std::string::npos);
+  EXPECT_NE(run({"new", "box", "--help"}).out.find("--rounding"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace spoonbill

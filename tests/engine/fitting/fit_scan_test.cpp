@@ -1,0 +1,188 @@
+// Fits to shapes of which every point is known.
+#include "engine/fitting/fit_scan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/engine/collision/meshes/mesh_shapes.h"
+#include "tests/engine/fitting/clouds.h"
+
+namespace spoonbill {
+namespace {
+
+using Distance = std::function<double(const Vector3&)>;
+
+// The largest distance of the surface from the known shape, on a grid of samples.
+double farthest_off(const Surface& surface, const Distance& distance) {
+  double farthest = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j <= 60; ++j) {
+      farthest = std::max(farthest, distance(position(surface, i / 60.0, j / 60.0)));
+    }
+  }
+  return farthest;
+}
+
+ScanFit fit(const Scan& scan, int control, IslandChoice islands = IslandChoice::largest) {
+  FitRequest request;
+  request.settings.control_u = request.settings.control_v = control;
+  request.islands = islands;
+  auto fitted = fit_scan(scan, request);
+  EXPECT_TRUE(fitted) << fitted.error().message;
+  return fitted ? std::move(fitted).value() : ScanFit{};
+}
+
+Distance from_sphere(double radius_m) {
+  return [=](const Vector3& point) { return std::abs(point.norm() - radius_m); };
+}
+
+double volume_of(const Surface& surface) {
+  double volume = 0.0;
+  constexpr int grid = 200;
+  for (int k = 0; k < grid * grid; ++k) {
+    const SurfacePoint at = evaluate(surface, (k / grid + 0.5) / grid, (k % grid + 0.5) / grid);
+    volume += at.position_m.dot(at.du.cross(at.dv)) / (3.0 * grid * grid);
+  }
+  return volume;
+}
+
+TEST(FitScan, SphereIsClosedAndFacesOutward) {
+  const ScanFit fitted = fit(ellipsoid_cloud(6000, {0.02, 0.02, 0.02}), 16);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  const FittedBody& body = fitted.bodies[0];
+  EXPECT_EQ(body.kind, ShapeKind::closed);
+  EXPECT_EQ(body.folds.folds, 0U);
+  // Cubic pieces of a sixteenth of the way around: their own error is below 1e-4 of the radius; what remains
+  // is the fairness.
+  EXPECT_LT(body.errors.data_to_surface.p95_m, 2e-5);
+  EXPECT_LT(farthest_off(body.surface, from_sphere(0.02)), 2e-4);
+  EXPECT_NEAR(volume_of(body.surface), 4.0 / 3.0 * M_PI * 8e-6, 1e-7);
+}
+
+TEST(FitScan, EllipsoidHasPolesOnItsLongAxis) {
+  const ScanFit fitted = fit(ellipsoid_cloud(6000, {0.01, 0.012, 0.03}), 20);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  const Surface& surface = fitted.bodies[0].surface;
+  EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::closed);
+  EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 5e-5);
+  EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
+  EXPECT_NEAR(std::abs(position(surface, 0.0, 0.0).z()), 0.03, 1e-3);
+  EXPECT_NEAR(std::abs(position(surface, 0.0, 1.0).z()), 0.03, 1e-3);
+}
+
+TEST(FitScan, OpenCylinderIsATube) {
+  const Scan scan = random_cloud(8000, 1, [](double s, double t) { return on_cylinder(s, t, 0.01, 0.06); });
+  const ScanFit fitted = fit(scan, 12);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::tube);
+  EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
+  EXPECT_LT(farthest_off(fitted.bodies[0].surface,
+                         [](const Vector3& p) { return std::abs(std::hypot(p.x(), p.y()) - 0.01); }),
+            1e-4);
+}
+
+TEST(FitScan, TorusSectorIsATubeAlongItsBend) {
+  const Scan scan =
+      random_cloud(9000, 2, [](double s, double t) { return on_torus_sector(s, t, 0.05, 0.01); });
+  const ScanFit fitted = fit(scan, 14);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::tube);
+  EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
+  EXPECT_LT(farthest_off(fitted.bodies[0].surface,
+                         [](const Vector3& p) {
+                           return std::abs(std::hypot(std::hypot(p.x(), p.y()) - 0.05, p.z()) - 0.01);
+                         }),
+            1.5e-4);
+}
+
+TEST(FitScan, WavesAreASheet) {
+  const Scan scan = random_cloud(8000, 3, [](double s, double t) { return on_waves(s, t, 0.1, 0.006); });
+  const ScanFit fitted = fit(scan, 16);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::sheet);
+  EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
+  EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 1e-4);
+}
+
+TEST(FitScan, NoiseIsAveragedAndOutliersLeftOut) {
+  Scan scan = ellipsoid_cloud(20000, {0.03, 0.03, 0.03});
+  add_noise(scan, 4, 3e-4);
+  add_outliers(scan, 5, 0.02);
+  const ScanFit fitted = fit(scan, 12);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_GT(fitted.outliers, 200U);
+  EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
+  // Some 150 points for each control point average their noise of 0.3 mm; the few at a pole do not.
+  EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.03)), 4.5e-4);
+  EXPECT_LT(fitted.bodies[0].errors.surface_to_data.mean_m, 1.5e-4);
+}
+
+TEST(FitScan, HoleIsSpannedSmoothly) {
+  Scan scan = ellipsoid_cloud(12000, {0.02, 0.02, 0.02});
+  leave_out(scan, [](const Vector3& p) { return (p - Vector3(0.02, 0, 0)).norm() < 0.005; });
+  const ScanFit fitted = fit(scan, 14);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::closed);
+  EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
+  // A flat lid would lie 0.6 mm below the sphere.
+  EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.02)), 8e-4);
+}
+
+TEST(FitScan, IslandsAreFittedAsAsked) {
+  Scan scan = ellipsoid_cloud(6000, {0.02, 0.02, 0.02});
+  append(scan, ellipsoid_cloud(3000, {0.01, 0.01, 0.01}), {0.06, 0.0, 0.0});
+  const ScanFit all = fit(scan, 10, IslandChoice::all);
+  ASSERT_EQ(all.bodies.size(), 2U);
+  EXPECT_EQ(all.islands, 2U);
+  EXPECT_NEAR(all.bodies[0].size_m.x(), 0.04, 1e-4);
+  EXPECT_NEAR(all.bodies[1].size_m.x(), 0.02, 1e-4);
+  const ScanFit largest = fit(scan, 10);
+  ASSERT_EQ(largest.bodies.size(), 1U);
+  EXPECT_EQ(largest.other_islands, 3000U);
+}
+
+TEST(FitScan, TriangleSoupOfABallIsClosed) {
+  const TriangleMesh mesh = soup(ball_mesh(24, 48, 0.02));
+  const ScanFit fitted = fit({mesh.vertices_m, {}, mesh.triangles}, 14);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::closed);
+  EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
+  EXPECT_GT(volume_of(fitted.bodies[0].surface), 0.0);
+  // The triangles lie up to 0.05 mm within the ball.
+  EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.02)), 2e-4);
+}
+
+TEST(FitScan, ToleranceSavesControlPoints) {
+  FitRequest request;
+  request.settings.control_u = request.settings.control_v = 40;
+  request.settings.tolerance_m = 5e-4;
+  const auto fitted = fit_scan(ellipsoid_cloud(6000, {0.02, 0.02, 0.02}), request);
+  ASSERT_TRUE(fitted) << fitted.error().message;
+  EXPECT_LT(fitted->bodies[0].surface.net.rows, 20);
+  EXPECT_LT(fitted->bodies[0].errors.data_to_surface.max_m, 5e-4);
+}
+
+TEST(FitScan, StopsWhenToldTo) {
+  FitRequest request;
+  request.settings.watch = [](double) { return false; };
+  EXPECT_FALSE(fit_scan(ellipsoid_cloud(2000, {0.02, 0.02, 0.02}), request));
+}
+
+TEST(FitScan, RefusesWhatIsNoSurface) {
+  EXPECT_FALSE(fit_scan(Scan{}, {}));
+  EXPECT_FALSE(fit_scan(ellipsoid_cloud(20, {0.02, 0.02, 0.02}), {}));
+  Scan one_place;
+  one_place.points_m.assign(1000, Vector3(0.01, 0.02, 0.03));
+  EXPECT_FALSE(fit_scan(one_place, {}));
+  Scan line;
+  for (int k = 0; k < 1000; ++k) line.points_m.emplace_back(k * 1e-4, 0.0, 0.0);
+  const auto fitted = fit_scan(line, {});
+  if (fitted) {
+    EXPECT_TRUE(fitted->bodies[0].surface.net.point(0, 0).allFinite());
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill

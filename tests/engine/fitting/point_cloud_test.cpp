@@ -1,0 +1,213 @@
+// Point files of every form that is read, and what careless hands make of them.
+#include "engine/exchange/points/point_cloud.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+
+namespace spoonbill {
+namespace {
+
+template <class Number>
+void put(std::string& bytes, Number number, bool swapped = false) {
+  std::string copy(sizeof number, '\0');
+  std::memcpy(copy.data(), &number, sizeof number);
+  if (swapped) std::reverse(copy.begin(), copy.end());
+  bytes += copy;
+}
+
+std::string ply_header(const std::string& format, const std::string& count) {
+  return "ply\nformat " + format +
+         " 1.0\ncomment made by hand\nelement camera 1\nproperty list uchar short a\n" + "element vertex " +
+         count +
+         "\nproperty uchar red\nproperty double x\nproperty float y\nproperty float z\nproperty float nx\n"
+         "property float ny\nproperty float nz\nend_header\n";
+}
+
+std::string binary_ply_points(bool big) {
+  std::string bytes = ply_header(big ? "binary_big_endian" : "binary_little_endian", "2");
+  put(bytes, std::uint8_t{2});
+  put(bytes, std::int16_t{7}, big);
+  put(bytes, std::int16_t{8}, big);
+  for (int k = 0; k < 2; ++k) {
+    put(bytes, std::uint8_t{200});
+    put(bytes, 1.5 + k, big);
+    for (const float value : {-2.25F, 3.0F, 0.0F, 0.0F, 1.0F}) put(bytes, value, big);
+  }
+  return bytes;
+}
+
+void expect_two_points(const Result<PointCloud>& cloud, bool with_normals) {
+  ASSERT_TRUE(cloud) << cloud.error().message;
+  ASSERT_EQ(cloud->points.size(), 2U);
+  EXPECT_EQ(cloud->points[0], Vector3(1.5, -2.25, 3.0));
+  EXPECT_EQ(cloud->points[1], Vector3(2.5, -2.25, 3.0));
+  ASSERT_EQ(cloud->normals.size(), with_normals ? 2U : 0U);
+  if (with_normals) {
+    EXPECT_EQ(cloud->normals[1], Vector3(0, 0, 1));
+  }
+}
+
+void expect_refusal(const Result<PointCloud>& cloud, const std::string& reason) {
+  ASSERT_FALSE(cloud) << "should be refused: " << reason;
+  EXPECT_NE(cloud.error().message.find(reason), std::string::npos) << cloud.error().message;
+  EXPECT_EQ(cloud.error().message.find('\n'), std::string::npos) << cloud.error().message;
+}
+
+TEST(PlyPoints, TextAndBothByteOrders) {
+  const std::string text =
+      ply_header("ascii", "2") + "2 7 8\n200 1.5 -2.25 3 0 0 1\n200 2.5 -2.25 3e0 0 0 1\n";
+  expect_two_points(ply_points(text), true);
+  expect_two_points(ply_points(binary_ply_points(false)), true);
+  expect_two_points(ply_points(binary_ply_points(true)), true);
+}
+
+TEST(PlyPoints, SkipsAndCountsWhatIsNoNumber) {
+  const auto cloud = ply_points(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "end_header\n1 2 3\nnan 2 3\n4 5 6\n");
+  ASSERT_TRUE(cloud) << cloud.error().message;
+  EXPECT_EQ(cloud->points.size(), 2U);
+  EXPECT_EQ(cloud->skipped, 1U);
+}
+
+TEST(PlyPoints, RefusesEachDamageWithItsReason) {
+  expect_refusal(ply_points("solid thing"), "no PLY file");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 3\n"), "no end");
+  expect_refusal(ply_points(ply_header("ascii", "4000000000")), "cut or damaged");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\n"
+                            "property float y\nproperty float z\nend_header\n1 2 3\n"),
+                 "more than the 5000000");
+  expect_refusal(ply_points("ply\nformat binary_little_endian 1.0\nelement vertex 4999999\nproperty float x\n"
+                            "property float y\nproperty float z\nend_header\n1 2 3\n"),
+                 "cut or damaged");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+                            "property float z\nend_header\n"),
+                 "has no points");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                            "end_header\n1 2\n"),
+                 "no x, y and z");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                            "property float z\nend_header\nnan nan nan\n"),
+                 "no number");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                            "property float z\nend_header\n1 inf 2\n"),
+                 "infinity");
+  const std::string whole = binary_ply_points(false);
+  expect_refusal(ply_points(std::string_view(whole).substr(0, whole.size() - 1)), "cut or damaged");
+}
+
+const std::string pcd_fields = "VERSION .7\nFIELDS x y z rgb\nSIZE 8 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\n";
+
+TEST(PcdPoints, TextBinaryAndCompressed) {
+  expect_two_points(pcd_points("# .PCD v.6\n" + pcd_fields +
+                               "WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n1.5 -2.25 3 9\n2.5 -2.25 3 9\n"),
+                    false);
+  std::string rows = pcd_fields + "WIDTH 1\nHEIGHT 2\nDATA binary\n";
+  for (int k = 0; k < 2; ++k) {
+    put(rows, 1.5 + k);
+    put(rows, -2.25F);
+    put(rows, 3.0F);
+    put(rows, std::uint32_t{9});
+  }
+  expect_two_points(pcd_points(rows), false);
+  std::string columns;
+  for (const double value : {1.5, 2.5}) put(columns, value);
+  for (const float value : {-2.25F, -2.25F, 3.0F, 3.0F}) put(columns, value);
+  for (int k = 0; k < 2; ++k) put(columns, std::uint32_t{9});
+  // LZF by hand: runs of up to 32 letters as they are, each after its length less one.
+  std::string packed;
+  for (std::size_t at = 0; at < columns.size(); at += 32) {
+    const std::string run = columns.substr(at, 32);
+    packed += static_cast<char>(run.size() - 1);
+    packed += run;
+  }
+  std::string file = pcd_fields + "WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA binary_compressed\n";
+  put(file, static_cast<std::uint32_t>(packed.size()));
+  put(file, static_cast<std::uint32_t>(columns.size()));
+  expect_two_points(pcd_points(file + packed), false);
+  expect_refusal(pcd_points(file + packed.substr(0, 20)), "length");
+  std::string broken = packed;
+  broken[0] = static_cast<char>(0xff);  // a reference to before the beginning
+  expect_refusal(pcd_points(file + broken), "unpacked");
+}
+
+TEST(PcdPoints, RefusesEachDamageWithItsReason) {
+  expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4 4\n"), "no DATA");
+  expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"), "as many");
+  expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 3 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
+                 "field y");
+  expect_refusal(pcd_points("FIELDS x y w\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
+                 "no x, y and z");
+  for (const char* data : {"ascii", "binary", "binary_compressed"}) {
+    expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 4000000000\nDATA " +
+                              std::string(data) + "\n1 2 3\n"),
+                   "more than the 5000000");
+    expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 4999999\nDATA " +
+                              std::string(data) + "\n1 2 3 4 5 6 7 8 9\n"),
+                   "cut or damaged");
+  }
+  expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 six\n"),
+                 "point 2 of 2");
+  expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA zipped\n"), "zipped");
+}
+
+TEST(TextPoints, BlanksCommasHeadersAndNormals) {
+  expect_two_points(text_points("1.5 -2.25 3\n2.5 -2.25 3\n"), false);
+  expect_two_points(text_points("2\n1.5 -2.25 3 255 0 7\n\n2.5 -2.25 3 255 0 7\n"), false);
+  expect_two_points(text_points("x, y, z\r\n1.5, -2.25, 3\r\n# a word\r\n2.5, -2.25, 3\r\n"), false);
+  expect_two_points(text_points("1.5;-2.25;3;0;0;1\n2.5;-2.25;3;0;0;1"), true);
+}
+
+TEST(TextPoints, RefusesEachDamageWithItsReason) {
+  expect_refusal(text_points(""), "has no points");
+  expect_refusal(text_points("1 2 3\n4 5\n"), "line 2");
+  expect_refusal(text_points("1 2 3\n4 5 6 7\n"), "line 2");
+  expect_refusal(text_points("1 2 3\n4 5 seven\n"), "line 2");
+  expect_refusal(text_points("a story\nof no\npoints\n"), "line 2");
+  expect_refusal(text_points("nan nan nan\n"), "no number");
+  expect_refusal(text_points("1 2 1e999\n"), "infinity");
+}
+
+TEST(ObjPoints, TakesVerticesAndKnowsFaces) {
+  expect_two_points(obj_points("# cloud\nv 1.5 -2.25 3\nvn 0 0 1\nv 2.5 -2.25 3\nvn 0 0 1\n"), true);
+  EXPECT_FALSE(obj_has_faces("v 1 2 3\nvn 0 0 1\n"));
+  EXPECT_TRUE(obj_has_faces("v 1 2 3\nv 1 2 4\nv 2 2 3\nf 1 2 3\n"));
+  expect_refusal(obj_points("v 1 2\n"), "line 1");
+}
+
+// Whatever bytes: an answer, and an Error of one line.
+TEST(PointFiles, AnyBytesGiveAnAnswer) {
+  std::mt19937_64 random(7);
+  const std::string text = ply_header("ascii", "2") + "2 7 8\n200 1.5 -2.25 3 0 0 1\n200 2.5 -2.25 3 0 0 1\n";
+  const std::string pcd = pcd_fields + "WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n1.5 -2.25 3 9\n2.5 2 3 9\n";
+  for (int round = 0; round < 3000; ++round) {
+    std::string bytes = round % 3 == 0 ? text : round % 3 == 1 ? binary_ply_points(round % 2 == 0) : pcd;
+    for (int change = 0; change < 3; ++change) {
+      const std::size_t place = random() % bytes.size();
+      switch (random() % 3) {
+        case 0:
+          bytes[place] = static_cast<char>(random());
+          break;
+        case 1:
+          bytes.erase(place, 1 + random() % 9);
+          break;
+        default:
+          bytes.insert(place, bytes.substr(random() % bytes.size(), 5));
+      }
+      if (bytes.empty()) bytes = "p";
+    }
+    for (const auto& cloud : {ply_points(bytes), pcd_points(bytes), text_points(bytes), obj_points(bytes)}) {
+      if (cloud) {
+        EXPECT_FALSE(cloud->points.empty());
+      } else {
+        EXPECT_EQ(cloud.error().message.find('\n'), std::string::npos) << cloud.error().message;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,180 @@
+#include "engine/merging/intersection_merge.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "engine/bspline/grid.h"
+#include "engine/bspline/grid_fit.h"
+#include "engine/merging/tube_ends.h"
+
+namespace spoonbill {
+namespace {
+
+using std::numbers::pi;
+using PointOf = std::function<Vector3(double, double)>;
+
+Surface fitted(bool periodic, int along_u, int along_v, const PointOf& at) {
+  const auto u =
+      (periodic ? KnotVector::periodic_uniform(3, along_u) : KnotVector::clamped_uniform(3, along_u)).value();
+  const auto v = KnotVector::clamped_uniform(3, along_v).value();
+  PointGrid points{
+      periodic ? uniform_parameters_without_seam(u, 3 * along_u) : uniform_parameters(u, 3 * along_u),
+      uniform_parameters(v, 4 * along_v),
+      {}};
+  for (const double a : points.u) {
+    for (const double b : points.v) points.points_m.push_back(at(a, b));
+  }
+  return fit_grid(u, v, points, {false, false, true, true}).value();
+}
+
+constexpr double ball_radius = 0.02, rod_radius = 0.006;
+
+Surface ball() {
+  return fitted(true, 32, 32, [](double u, double v) {
+    const double turn = 2 * pi * u, fall = pi * v;
+    // u runs so that normals point outwards.
+    return Vector3(ball_radius * std::sin(fall) * std::cos(-turn),
+                   ball_radius * std::sin(fall) * std::sin(-turn), ball_radius * std::cos(fall));
+  });
+}
+
+// From the ball's middle outwards along a direction, with round ends, its far end first.
+Surface rod(const Vector3& direction) {
+  const Vector3 across = direction.unitOrthogonal(), other = direction.cross(across);
+  const double far = 0.06, quarter = 0.5 * pi * rod_radius, straight = far - 2 * rod_radius;
+  const double whole = straight + 2 * quarter;
+  return fitted(true, 24, 40, [=](double u, double v) {
+    const double way = v * whole, turn = -2 * pi * u;
+    double along = 0.0, radius = rod_radius;
+    if (way < quarter) {
+      along = far - rod_radius + rod_radius * std::cos(way / rod_radius);
+      radius = rod_radius * std::sin(way / rod_radius);
+    } else if (way > whole - quarter) {
+      const double left = (whole - way) / rod_radius;
+      along = rod_radius - rod_radius * std::cos(left);
+      radius = rod_radius * std::sin(left);
+    } else {
+      along = far - rod_radius - (way - quarter);
+    }
+    return Vector3(along * direction + radius * (std::cos(turn) * across + std::sin(turn) * other));
+  });
+}
+
+struct Distances {
+  double to_shape = 0.0;  // of the points of the merged surface to the exact one
+  double volume_m3 = 0.0;
+};
+
+double volume_m3(const Surface& surface) {
+  double six = 0.0;
+  const auto u = uniform_parameters(surface.u, 161), v = uniform_parameters(surface.v, 241);
+  const PointGrid grid = point_grid(surface, u, v);
+  const auto at = [&](std::size_t i, std::size_t j) { return grid.points_m[i * v.size() + j]; };
+  for (std::size_t i = 0; i + 1 < u.size(); ++i) {
+    for (std::size_t j = 0; j + 1 < v.size(); ++j) {
+      six += at(i, j).dot(at(i + 1, j).cross(at(i + 1, j + 1)));
+      six += at(i, j).dot(at(i + 1, j + 1).cross(at(i, j + 1)));
+    }
+  }
+  return six / 6.0;
+}
+
+// Of the union of ball and rod, with a fillet turned about the rod's axis: the distance in the half plane.
+double distance_to_union(const Vector3& point, const Vector3& direction, double fillet) {
+  const double along = point.dot(direction), radius = (point - along * direction).norm();
+  const double far_middle = 0.06 - rod_radius;
+  const double to_rod =
+      along > far_middle ? std::hypot(along - far_middle, radius) - rod_radius : radius - rod_radius;
+  const double to_ball = std::hypot(along, radius) - ball_radius;
+  // The fillet's circle touches the rod from outside and the ball from outside.
+  const double centre_radius = rod_radius + fillet;
+  const double centre_along = std::sqrt(std::pow(ball_radius + fillet, 2) - centre_radius * centre_radius);
+  const double touch_along = centre_along * ball_radius / (ball_radius + fillet);
+  if (fillet > 0.0 && along < centre_along && along > touch_along && radius < centre_radius &&
+      to_ball > -1e-4 && to_rod > -1e-4) {
+    return std::abs(fillet - std::hypot(along - centre_along, radius - centre_radius));
+  }
+  return std::min(std::abs(to_rod), std::abs(to_ball));
+}
+
+double largest_distance(const Surface& merged, const Vector3& direction, double fillet) {
+  const PointGrid points =
+      point_grid(merged, uniform_parameters(merged.u, 60), uniform_parameters(merged.v, 200));
+  double largest = 0.0;
+  for (const Vector3& point : points.points_m) {
+    largest = std::max(largest, distance_to_union(point, direction, fillet));
+  }
+  return largest;
+}
+
+class RodInBall : public testing::TestWithParam<double> {};
+
+// Along the ball's pole, and askew, where the ball gets new poles.
+TEST_P(RodInBall, BecomesOneSurface) {
+  const double angle = GetParam();
+  const Vector3 direction(std::sin(angle), 0.0, std::cos(angle));
+  for (const double fillet : {0.0, 0.003}) {
+    IntersectionRequest request;
+    request.fillet_m = fillet;
+    const auto merged = merge_crossing(rod(direction), ball(), request);
+    ASSERT_TRUE(merged.ok()) << merged.error().message;
+    EXPECT_TRUE(is_pole(merged->surface, Side::v_start));
+    EXPECT_TRUE(is_pole(merged->surface, Side::v_end));
+    // The ball and the rod that are given miss the exact ones by 6e-6 m; the rest is the tolerance.
+    EXPECT_LT(largest_distance(merged->surface, direction, fillet), 6e-5) << fillet;
+    // Normals point outwards, and what the rod adds is a cylinder, a half ball less the ball's own.
+    const double volume = volume_m3(merged->surface);
+    EXPECT_GT(volume, 4.0 / 3.0 * pi * std::pow(ball_radius, 3) + pi * rod_radius * rod_radius * 0.033);
+    EXPECT_LT(volume, 4.0 / 3.0 * pi * std::pow(ball_radius, 3) + pi * rod_radius * rod_radius * 0.045);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Askew, RodInBall, testing::Values(0.0, 0.4, 1.3));
+
+Surface plane(const Vector3& corner, const Vector3& across, const Vector3& along) {
+  return fitted(false, 6, 6, [=](double u, double v) { return Vector3(corner + u * across + v * along); });
+}
+
+TEST(IntersectionMerge, AFloorAndAWall) {
+  // The floor reaches 10 mm beyond the wall, the wall 5 mm below the floor.
+  const Surface floor = plane({0, 0, 0}, {0, 0.05, 0}, {0.05, 0, 0});
+  const Surface wall = plane({0.04, -0.001, -0.005}, {0, 0.052, 0}, {0, 0, 0.045});
+  for (const double fillet : {0.0, 0.008}) {
+    IntersectionRequest request;
+    request.fillet_m = fillet;
+    const auto merged = merge_crossing(floor, wall, request);
+    ASSERT_TRUE(merged.ok()) << merged.error().message;
+    const Surface& surface = merged->surface;
+    const PointGrid points =
+        point_grid(surface, uniform_parameters(surface.u, 20), uniform_parameters(surface.v, 120));
+    for (const Vector3& p : points.points_m) {
+      double distance = std::min(std::abs(p.z()), std::abs(p.x() - 0.04));
+      if (fillet > 0.0 && p.x() > 0.04 - fillet && p.z() < fillet) {
+        distance = std::abs(fillet - std::hypot(p.x() - 0.032, p.z() - fillet));
+      }
+      EXPECT_LT(distance, 5e-5);
+      EXPECT_GT(p.z(), -5e-5);
+      EXPECT_LT(p.x(), 0.04 + 5e-5);
+    }
+    EXPECT_NEAR(position(surface, 0.5, surface.v.domain_end()).z(), 0.04, 1e-6);
+  }
+}
+
+TEST(IntersectionMerge, RefusesWhatDoesNotCross) {
+  const Surface floor = plane({0, 0, 0}, {0, 0.05, 0}, {0.05, 0, 0});
+  const Surface apart = plane({0.04, 0, 0.01}, {0, 0.05, 0}, {0, 0, 0.045});
+  EXPECT_FALSE(merge_crossing(floor, apart, {}).ok());
+  IntersectionRequest request;
+  request.fillet_m = 0.2;
+  const Surface wall = plane({0.04, -0.001, -0.005}, {0, 0.052, 0}, {0, 0, 0.045});
+  const auto too_large = merge_crossing(floor, wall, request);
+  ASSERT_FALSE(too_large.ok());
+  EXPECT_NE(too_large.error().message.find("choose a smaller fillet"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace spoonbill

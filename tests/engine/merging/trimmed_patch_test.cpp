@@ -1,0 +1,87 @@
+#include "engine/merging/trimmed_patch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/bspline/grid.h"
+#include "engine/bspline/grid_fit.h"
+#include "engine/merging/merge.h"
+
+namespace spoonbill {
+namespace {
+
+// z = 10 sin(20 x) mm over 0.1 x 0.1 m, so that a point tells whether it lies on the sheet.
+Surface wave() {
+  const auto knots = KnotVector::clamped_uniform(3, 16).value();
+  PointGrid points{uniform_parameters(knots, 60), uniform_parameters(knots, 60), {}};
+  for (const double a : points.u) {
+    for (const double b : points.v) points.points_m.emplace_back(0.1 * a, 0.1 * b, 0.01 * std::sin(2.0 * a));
+  }
+  return fit_grid(knots, knots, points).value();
+}
+
+TrimLoop polygon(const std::vector<Eigen::Vector2d>& points) {
+  const Surface surface = wave();
+  return make_polygon_loop(surface.u, surface.v, points).value();
+}
+
+double largest_off_the_wave(const Surface& surface) {
+  double largest = 0.0;
+  const PointGrid points =
+      point_grid(surface, uniform_parameters(surface.u, 33), uniform_parameters(surface.v, 33));
+  for (const Vector3& p : points.points_m)
+    largest = std::max(largest, std::abs(p.z() - 0.01 * std::sin(20.0 * p.x())));
+  return largest;
+}
+
+TEST(TrimmedPatch, EndsOnItsTrims) {
+  // Above a roof with its ridge in the middle, whose corner is a kink of the lines' ends.
+  const auto whole =
+      untrimmed(wave(), {polygon({{0.1, 0.2}, {0.5, 0.5}, {0.9, 0.2}, {0.9, 0.95}, {0.1, 0.95}})}, 2e-5);
+  ASSERT_TRUE(whole.ok()) << whole.error().message;
+  const Surface& surface = whole->surface;
+  EXPECT_LT(largest_off_the_wave(surface), 3e-5);
+  for (double share = 0.0; share <= 1.0; share += 0.05) {
+    const double u = surface.u.domain_start() + share * (surface.u.domain_end() - surface.u.domain_start());
+    const Vector3 low = position(surface, u, surface.v.domain_start()),
+                  high = position(surface, u, surface.v.domain_end());
+    EXPECT_NEAR(high.y(), 0.095, 2e-5);
+    EXPECT_NEAR(low.y(), 0.02 + 0.75 * (0.04 - std::abs(low.x() - 0.05)), 6e-5) << low.x();
+  }
+}
+
+TEST(TrimmedPatch, IsMergedWithItsNeighbour) {
+  const Surface sheet = wave();
+  const auto left = untrimmed(sheet, {polygon({{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.4}, {0.0, 0.6}})}, 1e-5);
+  const auto right = untrimmed(sheet, {polygon({{0.0, 0.6}, {1.0, 0.4}, {1.0, 1.0}, {0.0, 1.0}})}, 1e-5);
+  ASSERT_TRUE(left.ok() && right.ok());
+  const auto merged = merge({left->surface, right->surface}, {});
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_LE(merged->deviation_m, 5e-5);
+  EXPECT_LT(largest_off_the_wave(merged->surface), 1e-4);
+  const Surface& surface = merged->surface;
+  EXPECT_NEAR(position(surface, surface.u.domain_end(), surface.v.domain_end()).y(), 0.1, 5e-5);
+}
+
+TEST(TrimmedPatch, LinesOfTheOtherDirectionServeToo) {
+  // A notch from the side: lines of constant u are in two pieces there, those of constant v in one.
+  const auto notched = untrimmed(
+      wave(), {polygon({{0.0, 0.0}, {0.6, 0.0}, {0.6, 0.4}, {0.4, 0.5}, {0.6, 0.6}, {0.6, 1.0}, {0.0, 1.0}})},
+      2e-5);
+  ASSERT_TRUE(notched.ok()) << notched.error().message;
+  EXPECT_LT(largest_off_the_wave(notched->surface), 3e-5);
+}
+
+TEST(TrimmedPatch, HolesAreRefused) {
+  const TrimLoop outer = polygon({{0.05, 0.05}, {0.95, 0.05}, {0.95, 0.95}, {0.05, 0.95}});
+  const TrimLoop hole = polygon({{0.4, 0.4}, {0.4, 0.6}, {0.6, 0.6}, {0.6, 0.4}});
+  const auto refused = untrimmed(wave(), {outer, hole}, 2e-5);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("fill its holes"), std::string::npos);
+  EXPECT_EQ(untrimmed(wave(), {}, 1e-5)->deviation_m, 0.0);
+}
+
+}  // namespace
+}  // namespace spoonbill

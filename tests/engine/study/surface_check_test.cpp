@@ -1,0 +1,130 @@
+#include "engine/study/surface_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/shapes/box_shapes.h"
+#include "engine/shapes/round_shapes.h"
+#include "tests/engine/shapes/body_measures.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+bool is_clean(const SurfaceCheck& check) {
+  return check.bad_spots.empty() && check.self_meetings.empty() && check.self_meetings_complete;
+}
+
+TEST(SurfaceCheck, StartingShapesAreSound) {
+  for (const auto& shape : {sphere_shape(0.03), box_shape({{0.06, 0.04, 0.02}, 0.003}),
+                            cylinder_shape({0.02, 0.06, 0.004}), cone_shape({0.03, 0.05, 0.0, 0.004}),
+                            plate_shape({0.1, 0.06, 0.004, 0.01}), torus_shape({0.04, 0.01})}) {
+    const SurfaceCheck check = check_surface(fitted(shape).surface);
+    EXPECT_EQ(check.closedness, Closedness::solid);
+    EXPECT_EQ(check.gap_m, 0.0);
+    EXPECT_GT(check.mass.volume_m3, 0.0);
+    EXPECT_TRUE(is_clean(check));
+    EXPECT_TRUE(check.thinnest.has_value());
+  }
+}
+
+ExactShape open_tube(double radius, double length) {
+  ExactShape shape;
+  shape.u.periodic = true;
+  shape.at = [=](double u, double v) {
+    return Vector3(radius * std::cos(2.0 * pi * u), length * v, -radius * std::sin(2.0 * pi * u));
+  };
+  return shape;
+}
+
+TEST(SurfaceCheck, TellsHowFarATubeIsOpen) {
+  const SurfaceCheck check = check_surface(fitted(Result<ExactShape>(open_tube(0.01, 0.05))).surface);
+  EXPECT_EQ(check.closedness, Closedness::tube);
+  EXPECT_NEAR(check.gap_m, 0.02, 2e-5);
+  EXPECT_FALSE(check.thinnest.has_value());
+  EXPECT_TRUE(is_clean(check));
+  EXPECT_NEAR(check.mass.area_m2, 2.0 * pi * 0.01 * 0.05, 1e-6);
+}
+
+TEST(SurfaceCheck, ASheetIsOpenBothWays) {
+  const SurfaceCheck check = check_surface(fitted(sheet_shape(0.1, 0.06)).surface);
+  EXPECT_EQ(check.closedness, Closedness::sheet);
+  EXPECT_TRUE(is_clean(check));
+}
+
+// The same tube without being periodic, its edges together: closed around all the same, and by 1 mm apart no
+// more.
+TEST(SurfaceCheck, EdgesThatMeetCloseATube) {
+  for (const double apart : {0.0, 1e-3}) {
+    ExactShape shape = open_tube(0.01, 0.05);
+    const auto closed = shape.at;
+    shape.u.periodic = false;
+    shape.at = [=](double u, double v) { return Vector3(closed(u, v) + Vector3(0.0, 0.0, apart * u)); };
+    const SurfaceCheck check = check_surface(fitted(Result<ExactShape>(shape)).surface);
+    EXPECT_EQ(check.closedness, apart > 0.0 ? Closedness::sheet : Closedness::tube);
+    EXPECT_NEAR(check.u_gap.apart_m, apart, 1e-6);  // fitted to 1e-5, and better at the ends
+  }
+}
+
+// A tube along a loop that comes back through itself.
+TEST(SurfaceCheck, FindsWhereATubePassesThroughItself) {
+  ExactShape shape;
+  shape.u.periodic = true;
+  shape.at = [](double u, double v) {
+    // Once around a circle of 30 mm and on, up by half the tube's width: the ends overlap.
+    const double turn = 2.2 * pi * v, around = 2.0 * pi * u;
+    const Vector3 outward(std::cos(turn), 0.0, std::sin(turn));
+    return Vector3((0.03 + 0.006 * std::cos(around)) * outward +
+                   Vector3(0.0, 0.006 * std::sin(around) + 0.006 * v, 0.0));
+  };
+  const SurfaceCheck check = check_surface(fitted(Result<ExactShape>(shape)).surface);
+  ASSERT_FALSE(check.self_meetings.empty());
+  const SelfMeeting& meeting = check.self_meetings[0];
+  // Near the start of the loop on one side, near its end on the other.
+  EXPECT_LT(std::min(meeting.v, meeting.other_v), 0.15);
+  EXPECT_GT(std::max(meeting.v, meeting.other_v), 0.85);
+}
+
+TEST(SurfaceCheck, FindsAFold) {
+  Surface sheet = fitted(sheet_shape(0.1, 0.06)).surface;
+  // One control point drawn past its neighbours.
+  Vector3 point = sheet.net.point(7, 7);
+  point.x() += 0.05;
+  sheet.net.set_point(7, 7, point);
+  const SurfaceCheck check = check_surface(sheet);
+  ASSERT_FALSE(check.bad_spots.empty());
+  EXPECT_TRUE(check.bad_spots[0].folds);
+  EXPECT_NEAR(check.bad_spots[0].u, 0.55, 0.2);
+}
+
+TEST(SurfaceCheck, FindsWhereASurfaceShrinksToALine) {
+  Surface sheet = fitted(sheet_shape(0.1, 0.06)).surface;
+  for (int i = 0; i < sheet.net.rows; ++i) {
+    for (int j = 6; j < 10; ++j) sheet.net.set_point(i, j, sheet.net.point(i, 6));
+  }
+  const SurfaceCheck check = check_surface(sheet);
+  ASSERT_FALSE(check.bad_spots.empty());
+  EXPECT_FALSE(check.bad_spots[0].folds);
+}
+
+TEST(SurfaceCheck, KnowsInsideOut) {
+  Surface sphere = fitted(sphere_shape(0.03)).surface;
+  for (double& x : sphere.net.x) x = -x;
+  const SurfaceCheck check = check_surface(sphere);
+  EXPECT_EQ(check.closedness, Closedness::solid);
+  EXPECT_LT(check.mass.volume_m3, 0.0);
+}
+
+TEST(SurfaceCheck, IsTheSameEachTime) {
+  const Surface torus = fitted(torus_shape({0.04, 0.01})).surface;
+  const SurfaceCheck a = check_surface(torus), b = check_surface(torus);
+  EXPECT_EQ(a.mass.volume_m3, b.mass.volume_m3);
+  EXPECT_EQ(a.curvature.smallest.curvature_per_m, b.curvature.smallest.curvature_per_m);
+  EXPECT_EQ(a.thinnest->thickness_m, b.thinnest->thickness_m);
+}
+
+}  // namespace
+}  // namespace spoonbill
