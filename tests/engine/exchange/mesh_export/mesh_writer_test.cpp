@@ -18,7 +18,7 @@ namespace spoonbill {
 namespace {
 
 NamedMesh tube(const std::string& name, const Vector3& centre) {
-  return {name, tessellate(ellipsoid_tube(8, 10, centre), 2e-4).value().mesh};
+  return {name, tessellate(ellipsoid_tube(8, 10, centre), {}, 2e-4).value().mesh};
 }
 
 std::string bytes_of(const std::vector<NamedMesh>& meshes, MeshFormat format, double unit_m) {
