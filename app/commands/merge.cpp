@@ -1,6 +1,5 @@
 #include "engine/merging/merge.h"
 
-#include <CLI/Validators.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
