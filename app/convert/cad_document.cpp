@@ -22,6 +22,7 @@ Result<Document> document_of(const CadModel& model, const std::string& name) {
     Body body = first;
     body.name = surface.name;
     body.surface = surface.surface;
+    body.trims = surface.trims;
     document.scene.bodies.push_back(std::move(body));
   }
   return document;

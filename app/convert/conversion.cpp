@@ -94,6 +94,7 @@ Result<CadModel> read_native(const ConversionRequest& request, ConversionReport&
     CadSurface surface;
     surface.name = clean_cad_name(body.name, "body");
     surface.surface = std::move(body.surface);
+    surface.trims = std::move(body.trims);
     model.surfaces.push_back(std::move(surface));
   }
   return model;
@@ -141,7 +142,7 @@ Status write_mesh_file(const CadModel& model, const ConversionRequest& request, 
   std::size_t left = exported_triangle_limit;
   for (const CadSurface& part : model.surfaces) {
     if (watch.stop && watch.stop()) return about(request.out, "stopped");
-    auto tessellation = tessellate(part.surface, request.chord_m.value_or(usual_chord_m), left);
+    auto tessellation = tessellate(part.surface, part.trims, request.chord_m.value_or(usual_chord_m), left);
     if (!tessellation) return about(request.out, "'" + part.name + "': " + tessellation.error().message);
     *report.triangles += tessellation->mesh.triangles.size();
     *report.closed_meshes += tessellation->closed ? 1 : 0;

@@ -1,21 +1,22 @@
 #include "engine/exchange/cad/body_shape.h"
 
-#include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Standard_Failure.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
+#include <vector>
+
+#include "engine/exchange/cad/occt_surface.h"
+#include "engine/exchange/cad/trimmed_face.h"
 
 namespace spoonbill {
 namespace {
-
-// Millimetres: OpenCASCADE's own for points that are one.
-constexpr double coincidence_mm = 1e-7;
 
 TopoDS_Shell shell_of(const TopoDS_Face& face) {
   TopoDS_Shell shell;
@@ -24,6 +25,16 @@ TopoDS_Shell shell_of(const TopoDS_Face& face) {
   builder.Add(shell, face);
   shell.Closed(BRep_Tool::IsClosed(shell));
   return shell;
+}
+
+// Faces apart are no shell.
+TopoDS_Shape together(const std::vector<TopoDS_Face>& faces) {
+  if (faces.size() == 1) return shell_of(faces.front());
+  TopoDS_Compound compound;
+  const BRep_Builder builder;
+  builder.MakeCompound(compound);
+  for (const TopoDS_Face& face : faces) builder.Add(compound, shell_of(face));
+  return compound;
 }
 
 TopoDS_Solid solid_of(const TopoDS_Shell& shell) {
@@ -35,23 +46,37 @@ TopoDS_Solid solid_of(const TopoDS_Shell& shell) {
   return solid;
 }
 
-Result<BodyShape> build(const opencascade::handle<Geom_BSplineSurface>& surface) {
-  BRepBuilderAPI_MakeFace maker(surface, coincidence_mm);
-  if (!maker.IsDone()) return Error{"no face can be built on the surface"};
-  const TopoDS_Shell shell = shell_of(maker.Face());
-  if (!BRepCheck_Analyzer(shell).IsValid()) return Error{"the face built on the surface is not valid"};
-  if (shell.Closed()) {
-    const TopoDS_Solid solid = solid_of(shell);
+Result<std::vector<TopoDS_Face>> faces_of(const CadSurface& part) {
+  const auto opened = opened_parts(part.surface, part.trims);
+  if (!opened) return opened.error();
+  std::vector<TopoDS_Face> faces;
+  for (const TrimmedSurface& piece : opened.value()) {
+    const auto geometry = to_occt(piece.surface);
+    if (!geometry) return geometry.error();
+    const auto of_piece = trimmed_faces(geometry.value(), piece);
+    if (!of_piece) return of_piece.error();
+    faces.insert(faces.end(), of_piece->begin(), of_piece->end());
+  }
+  return faces;
+}
+
+Result<BodyShape> build(const CadSurface& part) {
+  const auto faces = faces_of(part);
+  if (!faces) return faces.error();
+  const TopoDS_Shape shape = together(faces.value());
+  if (!BRepCheck_Analyzer(shape).IsValid()) return Error{"OpenCASCADE calls the face of it invalid"};
+  if (shape.ShapeType() == TopAbs_SHELL && shape.Closed()) {
+    const TopoDS_Solid solid = solid_of(TopoDS::Shell(shape));
     if (BRepCheck_Analyzer(solid).IsValid()) return BodyShape{solid, true};
   }
-  return BodyShape{shell, false};
+  return BodyShape{shape, false};
 }
 
 }  // namespace
 
-Result<BodyShape> body_shape(const opencascade::handle<Geom_BSplineSurface>& surface) {
+Result<BodyShape> body_shape(const CadSurface& part) {
   try {
-    return build(surface);
+    return build(part);
   } catch (const Standard_Failure& failure) {
     return Error{std::string("no face can be built on the surface (") + failure.DynamicType()->Name() + ")"};
   }

@@ -53,7 +53,7 @@ Result<Content> read_iges(const std::filesystem::path& file, const CadProgress& 
   reader.SetNameMode(true);
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return Error{"is no IGES file, or a damaged one"};
   if (progress) progress(share_of_parsing);
-  Content content{new_document(), unit_of(reader.IGESModel())};
+  Content content{new_document(), unit_of(reader.IGESModel(), file)};
   if (!reader.Transfer(content.document)) return Error{"holds no shape"};
   return content;
 }

@@ -18,6 +18,7 @@
 #include <TDF_Label.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
@@ -77,9 +78,7 @@ Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writi
   CadFileContent content;
   for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
     const CadSurface& surface = model.surfaces[k];
-    const auto geometry = to_occt(surface.surface);
-    if (!geometry) return about(surface, geometry.error());
-    const auto body = body_shape(geometry.value());
+    const auto body = body_shape(surface);
     if (!body) return about(surface, body.error());
     ++(body->solid ? content.solids : content.open_shells);
     const TDF_Label label = shapes->AddShape(body->shape, false);
@@ -105,17 +104,44 @@ void name_entity(const opencascade::handle<IGESData_IGESModel>& model,
   model->AddEntity(property);
 }
 
+// The entities that stand for a surface are among those after `before`: of type 144 if it is trimmed.
+void name_entities(const opencascade::handle<IGESData_IGESModel>& model, int before,
+                   const CadSurface& surface) {
+  constexpr int untrimmed = 128, trimmed = 144;
+  const int wanted = surface.trims.empty() ? untrimmed : trimmed;
+  for (int k = before + 1, count = model->NbEntities(); k <= count; ++k) {
+    const opencascade::handle<IGESData_IGESEntity> entity = model->Entity(k);
+    if (entity->TypeNumber() == wanted) name_entity(model, entity, surface.name);
+  }
+}
+
+Status add_to(IGESControl_Writer& writer, const CadSurface& surface) {
+  const int before = writer.Model()->NbEntities();
+  bool added = false;
+  if (surface.trims.empty()) {
+    const auto geometry = to_occt(surface.surface);
+    if (!geometry) return geometry.error();
+    added = writer.AddGeom(geometry.value());
+  } else {
+    const auto body = body_shape(surface);
+    if (!body) return body.error();
+    // Each by itself: a name within a group is not read.
+    for (TopExp_Explorer faces(body->shape, TopAbs_FACE); faces.More(); faces.Next()) {
+      added = writer.AddShape(faces.Current());
+      if (!added) break;
+    }
+  }
+  if (!added) return Error{"OpenCASCADE makes no IGES entity of it"};
+  name_entities(writer.Model(), before, surface);
+  return {};
+}
+
 Result<CadFileContent> write_iges(const CadModel& model, const CadProgress& progress) {
   IGESControl_Writer writer;
   CadFileContent content;
   for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
-    const CadSurface& surface = model.surfaces[k];
-    const auto geometry = to_occt(surface.surface);
-    if (!geometry) return about(surface, geometry.error());
-    if (!writer.AddGeom(geometry.value()))
-      return about(surface, Error{"OpenCASCADE makes no IGES entity of it"});
-    const auto iges = writer.Model();
-    name_entity(iges, iges->Entity(iges->NbEntities()), surface.name);
+    if (Status added = add_to(writer, model.surfaces[k]); !added)
+      return about(model.surfaces[k], added.error());
     ++content.open_shells;
     if (progress) progress(0.5 * static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size()));
   }

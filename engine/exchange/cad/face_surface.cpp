@@ -97,6 +97,16 @@ bool is_whole(const Geometry& surface, const ParameterBox& box) {
          box.v_end == own.v_end;
 }
 
+// A spline that loops trim needs no other cut, unless the face crosses its seam.
+ParameterBox widened(const Geometry& surface, const ParameterBox& box) {
+  ParameterBox own;
+  surface->Bounds(own.u_start, own.u_end, own.v_start, own.v_end);
+  const bool is_spline = !opencascade::handle<Geom_BSplineSurface>::DownCast(surface).IsNull();
+  const bool is_inside = own.u_start <= box.u_start && box.u_end <= own.u_end && own.v_start <= box.v_start &&
+                         box.v_end <= own.v_end;
+  return is_spline && is_inside && is_polynomial(surface) ? own : box;
+}
+
 opencascade::handle<Geom_BSplineSurface> spline_of(const Geometry& surface, const ParameterBox& box) {
   if (!opencascade::handle<Geom_BSplineSurface>::DownCast(surface).IsNull() && is_whole(surface, box)) {
     return opencascade::handle<Geom_BSplineSurface>::DownCast(surface->Copy());
@@ -148,8 +158,10 @@ void turn_round(FaceSurface& face) {
 Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolerance_m) {
   const Geometry surface = without_trims(BRep_Tool::Surface(face));
   if (surface.IsNull()) return Error{"has no surface; export it anew"};
-  const auto box = box_of(face, surface);
+  auto box = box_of(face, surface);
   if (!box) return box.error();
+  const bool trimmed = is_trimmed(face, box.value());
+  if (trimmed) box = widened(surface, box.value());
   FaceSurface result;
   if (auto exact = exact_surface(surface, box.value())) {
     result.surface = *std::move(exact);
@@ -164,7 +176,7 @@ Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolera
   }
   close_poles(result.surface, coincidence_m);
   if (Status matched = match_domain(box.value(), result.surface); !matched) return matched.error();
-  if (is_trimmed(face, box.value())) {
+  if (trimmed) {
     auto trims = trims_of(face, result.surface.u, result.surface.v);
     if (trims) {
       result.trims = std::move(trims).value();

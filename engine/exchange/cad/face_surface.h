@@ -1,4 +1,5 @@
-// The surface under a face of a CAD file as one of ours, cut to the face's range of parameters.
+// The surface under a face of a CAD file as one of ours: a spline with trim loops is whole, all others are
+// cut to the face's range of parameters.
 #pragma once
 
 #include <TopoDS_Face.hxx>

@@ -1,8 +1,6 @@
 #include "engine/exchange/cad/file_unit.h"
 
 #include <IGESData_GlobalSection.hxx>
-#include <Interface_FileParameter.hxx>
-#include <Interface_ParamSet.hxx>
 #include <STEPConstruct_UnitContext.hxx>
 #include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
 #include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
@@ -10,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/exchange/cad/iges_globals.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -51,14 +50,9 @@ FileUnit unit_of(const opencascade::handle<StepData_StepModel>& model) {
   return {"mm", 1.0, false};
 }
 
-FileUnit unit_of(const opencascade::handle<IGESData_IGESModel>& model) {
-  const IGESData_GlobalSection section = model->GlobalSection();
-  const double millimetres = section.UnitValue();
-  const auto parameters = section.Params();
-  constexpr int place_of_unit = 14;
-  const bool declared = !parameters.IsNull() && parameters->NbParams() >= place_of_unit &&
-                        parameters->Param(place_of_unit).ParamType() != Interface_ParamVoid;
-  return {name_of(millimetres), millimetres, declared};
+FileUnit unit_of(const opencascade::handle<IGESData_IGESModel>& model, const std::filesystem::path& file) {
+  const double millimetres = model->GlobalSection().UnitValue();
+  return {name_of(millimetres), millimetres, declares_iges_unit(file)};
 }
 
 }  // namespace spoonbill

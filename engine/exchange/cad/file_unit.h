@@ -3,6 +3,7 @@
 
 #include <IGESData_IGESModel.hxx>
 #include <StepData_StepModel.hxx>
+#include <filesystem>
 #include <string>
 
 namespace spoonbill {
@@ -14,6 +15,6 @@ struct FileUnit {
 };
 
 FileUnit unit_of(const opencascade::handle<StepData_StepModel>& model);
-FileUnit unit_of(const opencascade::handle<IGESData_IGESModel>& model);
+FileUnit unit_of(const opencascade::handle<IGESData_IGESModel>& model, const std::filesystem::path& file);
 
 }  // namespace spoonbill

@@ -20,6 +20,7 @@ using Shapes = opencascade::handle<XCAFDoc_ShapeTool>;
 
 // Assemblies nested deeper are no assemblies.
 constexpr int deepest = 64;
+constexpr std::size_t longest_shared_name = 190;  // bytes
 
 std::string name_of(const TDF_Label& label) {
   opencascade::handle<TDataStd_Name> name;
@@ -74,7 +75,8 @@ class Collector {
   std::vector<NamedFace> take() {
     std::map<std::string, int> uses;
     for (NamedFace& face : faces_) {
-      face.name = clean_cad_name(face.name, "face");
+      // With room for a number.
+      face.name = clean_cad_name(face.name.substr(0, longest_shared_name), "face");
       ++uses[face.name];
     }
     std::map<std::string, int> given;

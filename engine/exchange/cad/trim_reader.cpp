@@ -140,8 +140,8 @@ Result<TrimLoop> loop_of(const std::vector<Piece>& chain, const KnotVector& alon
   std::vector<double> knots(4, 0.0), u, v;
   const auto add = [&](const Point& point) {
     // A curve may leave an open domain by rounding.
-    u.push_back(std::clamp(point.x(), along_u.domain_start(), along_u.domain_end()));
-    v.push_back(std::clamp(point.y(), along_v.domain_start(), along_v.domain_end()));
+    u.push_back(along_u.is_periodic() ? point.x() : along_u.into_domain(point.x()));
+    v.push_back(along_v.is_periodic() ? point.y() : along_v.into_domain(point.y()));
   };
   add(chain.front()[0]);
   for (std::size_t k = 0; k < chain.size(); ++k) {

@@ -17,6 +17,7 @@ enum class MeshFormat { stl, obj, ply, three_mf };
 struct NamedMesh {
   std::string name;
   TriangleMesh mesh;
+  bool closed = true;  // 3MF tells solids from sheets
 };
 
 // What takes a file's bytes, part after part.

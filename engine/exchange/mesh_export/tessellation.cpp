@@ -1,12 +1,15 @@
 #include "engine/exchange/mesh_export/tessellation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/bspline/evaluate.h"
+#include "engine/bspline/trimmed_area.h"
+#include "engine/bspline/trimmed_grid.h"
 #include "engine/collision/levels/surface_bounds.h"
 #include "engine/number_text.h"
 
@@ -170,51 +173,100 @@ class Welding {
   bool first_row_ = false, last_row_ = false, first_column_ = false, last_column_ = false;
 };
 
+using Places = std::array<std::size_t, 3>;
+
+void add_triangle(std::size_t p, std::size_t q, std::size_t r, std::vector<Places>& triangles) {
+  if (p != q && q != r && r != p) triangles.push_back({p, q, r});
+}
+
 void add_cell(const Sheet& sheet, const Welding& welding, std::size_t i, std::size_t j,
-              std::vector<std::array<std::size_t, 3>>& triangles) {
+              std::vector<Places>& triangles) {
   const std::size_t a = welding.vertex(i, j), b = welding.vertex(i + 1, j), c = welding.vertex(i + 1, j + 1),
                     d = welding.vertex(i, j + 1);
-  const auto add = [&](std::size_t p, std::size_t q, std::size_t r) {
-    if (p != q && q != r && r != p) triangles.push_back({p, q, r});
-  };
   const double rising = (sheet.point(i, j) - sheet.point(i + 1, j + 1)).squaredNorm();
   const double falling = (sheet.point(i + 1, j) - sheet.point(i, j + 1)).squaredNorm();
   if (rising <= falling) {
-    add(a, b, c);
-    add(a, c, d);
+    add_triangle(a, b, c, triangles);
+    add_triangle(a, c, d, triangles);
   } else {
-    add(a, b, d);
-    add(b, c, d);
+    add_triangle(a, b, d, triangles);
+    add_triangle(b, c, d, triangles);
   }
 }
 
-TriangleMesh mesh_of(const Sheet& sheet, const Welding& welding) {
-  const std::size_t rows = sheet.grid.u.parameters.size(), columns = sheet.grid.v.parameters.size();
-  std::vector<std::array<std::size_t, 3>> places;
-  for (std::size_t i = 0; i + 1 < rows; ++i) {
-    for (std::size_t j = 0; j + 1 < columns; ++j) add_cell(sheet, welding, i, j, places);
-  }
-  constexpr std::uint32_t none = ~std::uint32_t{0};
-  std::vector<std::uint32_t> index(rows * columns, none);
-  TriangleMesh mesh;
-  for (const auto& corners : places) {
-    TriangleCorners triangle{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::uint32_t& vertex = index[corners[k]];
-      if (vertex == none) {
-        vertex = static_cast<std::uint32_t>(mesh.vertices_m.size());
-        mesh.vertices_m.push_back(sheet.point(corners[k] / columns, corners[k] % columns));
-      }
-      triangle[k] = vertex;
+std::vector<Places> whole_cells(const Sheet& sheet, const Welding& welding) {
+  std::vector<Places> triangles;
+  for (std::size_t i = 0; i + 1 < sheet.grid.u.parameters.size(); ++i) {
+    for (std::size_t j = 0; j + 1 < sheet.grid.v.parameters.size(); ++j) {
+      add_cell(sheet, welding, i, j, triangles);
     }
-    mesh.triangles.push_back(triangle);
+  }
+  return triangles;
+}
+
+// Triangles between places, of which those of the sheet come first and `more` follow.
+TriangleMesh mesh_of(const Sheet& sheet, const std::vector<Vector3>& more,
+                     const std::vector<Places>& triangles) {
+  const std::size_t columns = sheet.grid.v.parameters.size(), samples = sheet.samples.x.size();
+  constexpr std::uint32_t none = ~std::uint32_t{0};
+  std::vector<std::uint32_t> index(samples + more.size(), none);
+  TriangleMesh mesh;
+  for (const Places& places : triangles) {
+    TriangleCorners corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t place = places[k];
+      if (index[place] == none) {
+        index[place] = static_cast<std::uint32_t>(mesh.vertices_m.size());
+        mesh.vertices_m.push_back(place < samples ? sheet.point(place / columns, place % columns)
+                                                  : more[place - samples]);
+      }
+      corners[k] = index[place];
+    }
+    mesh.triangles.push_back(corners);
   }
   return mesh;
 }
 
+TriangleMesh kept_mesh(const Sheet& sheet, const Welding& welding, const TrimmedArea& area) {
+  const std::size_t columns = sheet.grid.v.parameters.size(), samples = sheet.samples.x.size();
+  const TrimmedGrid cut = trim_grid(sheet.grid.u, sheet.grid.v, area);
+  std::vector<Vector3> more;
+  for (const CutVertex& vertex : cut.vertices) {
+    Vector3 point = Vector3::Zero();
+    for (std::size_t k = 0; k < 4; ++k) {
+      point += vertex.weights[k] * sheet.point(vertex.corners[k] / columns, vertex.corners[k] % columns);
+    }
+    more.push_back(point);
+  }
+  const auto place = [&](std::size_t number) {
+    return number < samples ? welding.vertex(number / columns, number % columns) : number;
+  };
+  std::vector<Places> triangles;
+  for (const auto& corners : cut.triangles) {
+    add_triangle(place(corners[0]), place(corners[1]), place(corners[2]), triangles);
+  }
+  return mesh_of(sheet, more, triangles);
+}
+
+Result<Tessellation> finished(const Sheet& sheet, const Surface& surface, const std::vector<TrimLoop>& trims,
+                              double chord_error_m) {
+  const Welding welding(sheet);
+  if (!trims.empty()) {
+    const auto area = TrimmedArea::make(surface.u, surface.v, trims);
+    if (!area) return area.error();
+    return Tessellation{kept_mesh(sheet, welding, area.value()), false, chord_error_m};
+  }
+  Tessellation result{mesh_of(sheet, {}, whole_cells(sheet, welding)), welding.closed(), chord_error_m};
+  if (result.closed && enclosed_volume_m3(result.mesh) < 0.0) {
+    for (TriangleCorners& corners : result.mesh.triangles) std::swap(corners[1], corners[2]);
+  }
+  return result;
+}
+
 }  // namespace
 
-Result<Tessellation> tessellate(const Surface& surface, double chord_m, std::size_t triangle_limit) {
+Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
+                                std::size_t triangle_limit) {
   SurfaceBounds bounds(surface.u, surface.v);
   bounds.update(surface.net);
   Cells cells = first_cells(surface, bounds, chord_m);
@@ -226,17 +278,10 @@ Result<Tessellation> tessellate(const Surface& surface, double chord_m, std::siz
     const auto sheet = sheet_of(surface, cells);
     if (!sheet) return sheet.error();
     const Eigen::MatrixXd errors = errors_of(sheet.value(), bounds, cells);
-    if (const double largest = errors.maxCoeff(); largest > chord_m) {
-      refine(errors, chord_m, cells);
-      continue;
-    } else {
-      const Welding welding(sheet.value());
-      Tessellation result{mesh_of(sheet.value(), welding), welding.closed(), largest};
-      if (result.closed && enclosed_volume_m3(result.mesh) < 0.0) {
-        for (TriangleCorners& corners : result.mesh.triangles) std::swap(corners[1], corners[2]);
-      }
-      return result;
+    if (const double largest = errors.maxCoeff(); largest <= chord_m) {
+      return finished(sheet.value(), surface, trims, largest);
     }
+    refine(errors, chord_m, cells);
   }
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "engine/bspline/surface.h"
+#include "engine/bspline/trim_loop.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/range.h"
 #include "engine/result.h"
@@ -11,8 +13,9 @@
 namespace spoonbill {
 
 struct Tessellation {
-  TriangleMesh mesh;    // seams and poles are welded
-  bool closed = false;  // every side of the surface is a seam or a pole; normals are outward then
+  TriangleMesh mesh;  // seams and poles are welded
+  // It is whole and every side of the surface is a seam or a pole; normals are outward then.
+  bool closed = false;
   // No point of the surface is farther from the point of its triangle at the same parameters.
   double chord_error_m = 0.0;
 };
@@ -22,8 +25,9 @@ inline constexpr std::size_t exported_triangle_limit = 10'000'000;
 
 // A grid over the polynomial pieces, finer where the surface bends. A cell of sides h_u and h_v lies within
 // (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of the bilinear patch through its corners (surface_bounds.h), and that
-// within |P00 - P10 - P01 + P11| / 4 of its two triangles. Refused: more triangles than the limit.
-Result<Tessellation> tessellate(const Surface& surface, double chord_m,
+// within |P00 - P10 - P01 + P11| / 4 of its triangles, those that trim loops cut too, whose corners lie on
+// the patch. Refused: more triangles than the limit, loops that bound nothing.
+Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
                                 std::size_t triangle_limit = exported_triangle_limit);
 
 // By the divergence theorem; of a closed mesh, negative where its normals point inward.

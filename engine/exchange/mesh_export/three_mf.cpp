@@ -48,8 +48,9 @@ std::string attribute_text(const std::string& text) {
 
 void add_object(const NamedMesh& part, std::size_t id, std::string& xml) {
   constexpr double per_metre = 1e3;
-  xml += "<object id=\"" + std::to_string(id) + "\" type=\"model\" name=\"" + attribute_text(part.name) +
-         "\"><mesh><vertices>\n";
+  xml += "<object id=\"" + std::to_string(id) +
+         (part.closed ? "\" type=\"model\" name=\"" : "\" type=\"surface\" name=\"") +
+         attribute_text(part.name) + "\"><mesh><vertices>\n";
   for (const Vector3& vertex : part.mesh.vertices_m) {
     xml += "<vertex x=\"" + number_text(per_metre * vertex.x()) + "\" y=\"" +
            number_text(per_metre * vertex.y()) + "\" z=\"" + number_text(per_metre * vertex.z()) + "\"/>\n";

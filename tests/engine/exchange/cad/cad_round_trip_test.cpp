@@ -123,6 +123,23 @@ TEST_F(CadRoundTrip, NamesAndTheirOrderAreKept) {
   }
 }
 
+TEST_F(CadRoundTrip, LongNamesAreStillToldApart) {
+  // Whose letters fall on any byte of a line.
+  std::string name = "\xf0\x9f\xa5\x84 ";
+  while (name.size() < 190) name += name.size() % 3 == 0 ? "a" : "\xc3\xb6";
+  CadModel model;
+  for (int k = 0; k < 3; ++k) model.surfaces.push_back({name, ellipsoid_tube(8, 8), 0.0, {}, {}});
+  const auto back = read(write(model, {}), {});
+  ASSERT_EQ(back.size(), 3u);
+  for (const CadSurface& part : back) {
+    EXPECT_LE(part.name.size(), 200u);
+    EXPECT_TRUE(part.name.starts_with(name.substr(0, 180))) << part.name;
+    EXPECT_TRUE(cad_surface_from_json(json_to_line(cad_surface_to_json(part)), "file"));
+  }
+  EXPECT_NE(back[0].name, back[1].name);
+  EXPECT_NE(back[1].name, back[2].name);
+}
+
 TEST_F(CadRoundTrip, StepFilesHoldOnlyAscii) {
   CadModel model;
   model.surfaces.push_back(

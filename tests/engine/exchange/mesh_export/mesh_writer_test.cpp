@@ -18,7 +18,7 @@ namespace spoonbill {
 namespace {
 
 NamedMesh tube(const std::string& name, const Vector3& centre) {
-  return {name, tessellate(ellipsoid_tube(8, 10, centre), 2e-4).value().mesh};
+  return {name, tessellate(ellipsoid_tube(8, 10, centre), {}, 2e-4).value().mesh, true};
 }
 
 std::string bytes_of(const std::vector<NamedMesh>& meshes, MeshFormat format, double unit_m) {
@@ -91,12 +91,16 @@ TEST_F(MeshWriter, StlHoldsItsCountAndUnitNormals) {
 
 TEST_F(MeshWriter, ThreeMfHoldsAModelInMillimetres) {
   const NamedMesh mesh = tube("a <b> & \"c\"", {0, 0, 0});
-  const std::string bytes = bytes_of({mesh, tube("two", {0.1, 0, 0})}, MeshFormat::three_mf, 1.0);
+  NamedMesh sheet = tube("two", {0.1, 0, 0});
+  sheet.closed = false;
+  const std::string bytes = bytes_of({mesh, sheet}, MeshFormat::three_mf, 1.0);
   EXPECT_NE(unzipped(bytes, "[Content_Types].xml").find("3dmanufacturing-3dmodel+xml"), std::string::npos);
   EXPECT_NE(unzipped(bytes, "_rels/.rels").find("/3D/3dmodel.model"), std::string::npos);
   const std::string model = unzipped(bytes, "3D/3dmodel.model");
   EXPECT_NE(model.find("unit=\"millimeter\""), std::string::npos);
   EXPECT_NE(model.find("name=\"a &lt;b> &amp; &quot;c&quot;\""), std::string::npos);
+  EXPECT_NE(model.find("<object id=\"1\" type=\"model\""), std::string::npos);
+  EXPECT_NE(model.find("<object id=\"2\" type=\"surface\""), std::string::npos);
   EXPECT_NE(model.find("<item objectid=\"2\"/>"), std::string::npos);
 
   const std::regex vertex("<vertex x=\"([^\"]+)\" y=\"([^\"]+)\" z=\"([^\"]+)\"/>");

@@ -11,6 +11,8 @@
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"
+#include "tests/engine/exchange/cad/kept_part.h"
+#include "tests/engine/trims/loops.h"
 
 namespace spoonbill {
 namespace {
@@ -27,6 +29,15 @@ std::size_t unmatched_edges(const TriangleMesh& mesh) {
     if (count != 1 || back == uses.end() || back->second != 1) ++unmatched;
   }
   return unmatched;
+}
+
+double area_of(const TriangleMesh& mesh) {
+  double area = 0.0;
+  for (const TriangleCorners& corners : mesh.triangles) {
+    const Vector3 a = mesh.vertices_m[corners[0]];
+    area += 0.5 * (mesh.vertices_m[corners[1]] - a).cross(mesh.vertices_m[corners[2]] - a).norm();
+  }
+  return area;
 }
 
 double distance_to_triangle(const Vector3& from, const Vector3& a, const Vector3& b, const Vector3& c) {
@@ -62,7 +73,7 @@ TEST(Tessellation, NoPointOfTheSurfaceIsFartherThanTheChordError) {
     SCOPED_TRACE(known.surface.name);
     const Surface& surface = known.surface.surface;
     const double chord_m = known.closes ? 5e-4 : 0.02;
-    const auto found = tessellate(surface, chord_m);
+    const auto found = tessellate(surface, {}, chord_m);
     ASSERT_TRUE(found) << found.error().message;
     EXPECT_LE(found->chord_error_m, chord_m);
     double farthest = 0.0;
@@ -79,7 +90,7 @@ TEST(Tessellation, NoPointOfTheSurfaceIsFartherThanTheChordError) {
 TEST(Tessellation, BodiesThatCloseAreWatertightWithNormalsOutward) {
   for (const KnownSurface& known : known_surfaces()) {
     SCOPED_TRACE(known.surface.name);
-    const auto found = tessellate(known.surface.surface, known.closes ? 5e-5 : 0.02);
+    const auto found = tessellate(known.surface.surface, {}, known.closes ? 5e-5 : 0.02);
     ASSERT_TRUE(found);
     EXPECT_EQ(found->closed, known.closes);
     EXPECT_EQ(unmatched_edges(found->mesh) == 0, known.closes);
@@ -98,21 +109,52 @@ TEST(Tessellation, AFlatSheetTakesTwoTrianglesAPiece) {
   net.set_point(0, 1, {0, 1, 0});
   net.set_point(1, 1, {1, 1, 0});
   const KnotVector line = KnotVector::clamped_uniform(1, 2).value();
-  const auto flat = tessellate(make_surface(line, line, net).value(), 1e-6);
+  const auto flat = tessellate(make_surface(line, line, net).value(), {}, 1e-6);
   ASSERT_TRUE(flat);
   EXPECT_EQ(flat->mesh.triangles.size(), 2u);
   EXPECT_EQ(flat->mesh.vertices_m.size(), 4u);
 
   // A saddle's triangles are off by a quarter of its twist: |P00 - P10 - P01 + P11| / 4, halved each way.
   net.set_point(1, 1, {1, 1, 0.4});
-  const auto saddle = tessellate(make_surface(line, line, net).value(), 0.026);
+  const auto saddle = tessellate(make_surface(line, line, net).value(), {}, 0.026);
   ASSERT_TRUE(saddle);
   EXPECT_EQ(saddle->mesh.triangles.size(), 8u);
   EXPECT_NEAR(saddle->chord_error_m, 0.025, 1e-12);
 }
 
+TEST(Tessellation, ATrimmedSurfaceStaysTrimmed) {
+  // A plate of 1 by 1 m with a hole of known area, and a tube with one across its seam.
+  ControlNet net(2, 2);
+  net.set_point(1, 0, {1, 0, 0});
+  net.set_point(0, 1, {0, 1, 0});
+  net.set_point(1, 1, {1, 1, 0});
+  const KnotVector line = KnotVector::clamped_uniform(1, 2).value();
+  const Surface plate = make_surface(line, line, net).value();
+  const auto holed = tessellate(plate, {round_loop(line, line, {0.4, 0.5}, 0.3, 12, true)}, 1e-3);
+  ASSERT_TRUE(holed) << holed.error().message;
+  EXPECT_FALSE(holed->closed);
+  // The polygon of the loop is within 1e-5 of it, over a length of less than 2.
+  EXPECT_NEAR(area_of(holed->mesh), 1.0 - round_loop_area(0.3, 12), 2e-5);
+
+  const Surface tube = ellipsoid_tube(10, 10);
+  const auto loop = round_loop(tube.u, tube.v, {0.98, 0.5}, 0.15, 12, true);
+  const auto whole = tessellate(tube, {}, 2e-5), cut = tessellate(tube, {loop}, 2e-5);
+  ASSERT_TRUE(whole);
+  ASSERT_TRUE(cut) << cut.error().message;
+  EXPECT_LE(cut->chord_error_m, 2e-5);
+  // Open along one loop: every edge but those of the hole is met.
+  EXPECT_FALSE(cut->closed);
+  EXPECT_GT(unmatched_edges(cut->mesh), 10u);
+  EXPECT_LT(unmatched_edges(cut->mesh), cut->mesh.triangles.size() / 4);
+  CadSurface part;
+  part.surface = tube;
+  part.trims = {loop};
+  EXPECT_NEAR(area_of(cut->mesh), kept_area_m2(part), 5e-3 * area_of(cut->mesh));
+  EXPECT_LT(area_of(cut->mesh), 0.99 * area_of(whole->mesh));
+}
+
 TEST(Tessellation, MoreTrianglesThanTheLimitAreRefused) {
-  const auto found = tessellate(ellipsoid_tube(8, 8), 1e-7, 1000);
+  const auto found = tessellate(ellipsoid_tube(8, 8), {}, 1e-7, 1000);
   ASSERT_FALSE(found);
   EXPECT_NE(found.error().message.find("more than 1000 triangles; choose a larger --chord"),
             std::string::npos);

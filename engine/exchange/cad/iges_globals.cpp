@@ -1,0 +1,69 @@
+#include "engine/exchange/cad/iges_globals.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+namespace spoonbill {
+namespace {
+
+constexpr std::size_t section_column = 72, most_lines = 2000, most_parameters = 26;
+constexpr std::size_t unit_flag = 13, unit_name = 14;  // counted from 0
+
+// The text of the lines that are marked as global.
+std::string global_text(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string text, line;
+  for (std::size_t k = 0; k < most_lines && std::getline(stream, line); ++k) {
+    if (line.size() <= section_column || line[section_column] == 'S') continue;
+    if (line[section_column] != 'G') break;
+    text += line.substr(0, section_column);
+  }
+  return text;
+}
+
+// A string "3Habc" at `start`: how many letters it takes in all; 0 where there is none.
+std::size_t string_length(const std::string& text, std::size_t start) {
+  std::size_t end = start;
+  std::size_t count = 0;
+  while (end < text.size() && end < start + 6 && std::isdigit(static_cast<unsigned char>(text[end])) != 0) {
+    count = 10 * count + static_cast<std::size_t>(text[end++] - '0');
+  }
+  if (end == start || end >= text.size() || text[end] != 'H') return 0;
+  return std::min(end + 1 + count, text.size()) - start;
+}
+
+std::string without_spaces(std::string text) {
+  text.erase(std::remove(text.begin(), text.end(), ' '), text.end());
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> iges_global_parameters(const std::filesystem::path& file) {
+  const std::string text = global_text(file);
+  char between = ',', after = ';';
+  std::vector<std::string> parameters;
+  for (std::size_t k = 0; k < text.size() && parameters.size() < most_parameters;) {
+    while (k < text.size() && text[k] == ' ') ++k;
+    const std::size_t start = k;
+    k += string_length(text, k);
+    while (k < text.size() && text[k] != between && text[k] != after) ++k;
+    parameters.push_back(without_spaces(text.substr(start, k - start)));
+    // The first two name the separators themselves: "1H,".
+    if (parameters.size() <= 2 && parameters.back().size() == 3) {
+      (parameters.size() == 1 ? between : after) = parameters.back()[2];
+    }
+    if (k < text.size() && text[k] == after && parameters.size() > 2) break;
+    ++k;
+  }
+  return parameters;
+}
+
+bool declares_iges_unit(const std::filesystem::path& file) {
+  const std::vector<std::string> parameters = iges_global_parameters(file);
+  const auto has = [&](std::size_t place) { return parameters.size() > place && !parameters[place].empty(); };
+  return has(unit_flag) || has(unit_name);
+}
+
+}  // namespace spoonbill

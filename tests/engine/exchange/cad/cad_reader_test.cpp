@@ -1,0 +1,219 @@
+// Assemblies, names and units of files that OpenCASCADE writes.
+#include "engine/exchange/cad/cad_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <IGESControl_Writer.hxx>
+#include <STEPCAFControl_Writer.hxx>
+#include <STEPControl_Writer.hxx>
+#include <TDF_Label.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <algorithm>
+#include <cmath>
+#include <gp_Trsf.hxx>
+#include <numbers>
+
+#include "engine/bspline/grid.h"
+#include "engine/exchange/cad/session.h"
+#include "tests/engine/exchange/sample_document.h"
+
+namespace spoonbill {
+namespace {
+
+struct Found {
+  std::vector<CadSurface> surfaces;
+  CadModel model;
+};
+
+Vector3 middle_of(const std::vector<CadSurface>& surfaces, const std::string& name) {
+  Vector3 low = Vector3::Constant(1e30), high = -low;
+  for (const CadSurface& part : surfaces) {
+    if (!part.name.starts_with(name)) continue;
+    for (const double u : uniform_parameters(part.surface.u, 17)) {
+      for (const double v : uniform_parameters(part.surface.v, 17)) {
+        const Vector3 at = position(part.surface, u, v);
+        low = low.cwiseMin(at);
+        high = high.cwiseMax(at);
+      }
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+class CadReader : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { prepare_occt(); }
+
+  Found read(const std::filesystem::path& file, CadReading reading = {}) const {
+    if (file.extension() == ".igs") reading.format = CadFormat::iges;
+    Found found;
+    auto model = read_cad(file, reading, [&](CadSurface part) { found.surfaces.push_back(std::move(part)); });
+    EXPECT_TRUE(model) << model.error().message;
+    if (model) found.model = std::move(model).value();
+    return found;
+  }
+
+  std::filesystem::path box_in(const char* unit, const char* name) const {
+    choose_unit(unit);
+    const auto file = folder_.path() / name;
+    const TopoDS_Shape box = BRepPrimAPI_MakeBox(30, 20, 10).Shape();
+    if (file.extension() == ".igs") {
+      IGESControl_Writer writer;
+      EXPECT_TRUE(writer.AddShape(box));
+      EXPECT_TRUE(writer.Write(file.c_str()));
+    } else {
+      STEPControl_Writer writer;
+      writer.Transfer(box, STEPControl_AsIs);
+      writer.Write(file.c_str());
+    }
+    choose_unit("mm");
+    return file;
+  }
+
+  TemporaryFolder folder_;
+};
+
+gp_Trsf moved(double x, double y, double z, double turn = 0.0) {
+  gp_Trsf motion;
+  motion.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), turn);
+  motion.SetTranslationPart(gp_Vec(x, y, z));
+  return motion;
+}
+
+// A trolley at a place: a deck, and an axle of two wheels, one of them under a name of its own.
+void write_trolley(const std::filesystem::path& file) {
+  opencascade::handle<TDocStd_Document> document;
+  XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+  const auto shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  const auto part = [&](const TopoDS_Shape& shape, const char* name) {
+    const TDF_Label label = shapes->AddShape(shape, false);
+    TDataStd_Name::Set(label, name);
+    return label;
+  };
+  const auto assembly = [&](const char* name) {
+    const TDF_Label label = shapes->NewShape();
+    TDataStd_Name::Set(label, name);
+    return label;
+  };
+  const TDF_Label wheel = part(BRepPrimAPI_MakeCylinder(5, 2).Shape(), "wheel");
+  const TDF_Label deck = part(BRepPrimAPI_MakeBox(40, 20, 1).Shape(), "deck");
+  const TDF_Label axle = assembly("axle"), trolley = assembly("trolley");
+  shapes->AddComponent(axle, wheel, moved(0, 0, 0));
+  TDataStd_Name::Set(shapes->AddComponent(axle, wheel, moved(0, 0, 30)), "spare wheel");
+  shapes->AddComponent(trolley, axle, moved(100, 0, 0));
+  shapes->AddComponent(trolley, deck, moved(0, 200, 0, 0.5 * std::numbers::pi));
+  shapes->UpdateAssemblies();
+  STEPCAFControl_Writer writer;
+  ASSERT_TRUE(writer.Transfer(document));
+  ASSERT_EQ(writer.Write(file.c_str()), IFSelect_RetDone);
+}
+
+TEST_F(CadReader, AssembliesArePlacedAndNamed) {
+  const auto file = folder_.path() / "trolley.step";
+  write_trolley(file);
+  const Found found = read(file);
+  EXPECT_EQ(found.surfaces.size(), 3u + 3u + 6u);
+  const auto count = [&](const std::string& name) {
+    return std::count_if(found.surfaces.begin(), found.surfaces.end(),
+                         [&](const CadSurface& part) { return part.name.starts_with(name); });
+  };
+  EXPECT_EQ(count("wheel"), 3);
+  EXPECT_EQ(count("spare wheel"), 3);
+  EXPECT_EQ(count("deck"), 6);
+  // To what a cylinder of 5 mm may deviate.
+  EXPECT_LT((middle_of(found.surfaces, "wheel") - Vector3(0.1, 0.0, 0.001)).norm(), 2e-5);
+  EXPECT_LT((middle_of(found.surfaces, "spare wheel") - Vector3(0.1, 0.0, 0.031)).norm(), 2e-5);
+  // The deck of 40 x 20, turned by a quarter about its corner, then moved.
+  EXPECT_LT((middle_of(found.surfaces, "deck") - Vector3(-0.01, 0.22, 0.0005)).norm(), 1e-9);
+  std::vector<std::string> names;
+  for (const CadSurface& part : found.surfaces) names.push_back(part.name);
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end()) << "names must tell faces apart";
+}
+
+TEST_F(CadReader, UnitsAreThoseDeclared) {
+  for (const char* ending : {".step", ".igs"}) {
+    for (const auto& [unit, name] :
+         {std::pair("mm", "mm"), std::pair("cm", "cm"), std::pair("m", "m"), std::pair("in", "inch")}) {
+      SCOPED_TRACE(std::string(unit) + ending);
+      const auto file = box_in(unit, (std::string("box") + ending).c_str());
+      const Found found = read(file);
+      EXPECT_EQ(found.model.unit, name);
+      EXPECT_TRUE(found.model.unit_declared);
+      EXPECT_LT((middle_of(found.surfaces, "") - Vector3(0.015, 0.01, 0.005)).norm(), 1e-9);
+      // Whatever the file says, its numbers are centimetres.
+      CadReading reading;
+      reading.unit_m = 0.01;
+      const double in_file = std::string(unit) == "mm"   ? 1e-3
+                             : std::string(unit) == "cm" ? 1e-2
+                             : std::string(unit) == "m"  ? 1.0
+                                                         : 0.0254;
+      const Vector3 expected = Vector3(0.015, 0.01, 0.005) * (0.01 / in_file);
+      EXPECT_LT((middle_of(read(file, reading).surfaces, "") - expected).norm(), 1e-9 * 0.01 / in_file);
+    }
+  }
+}
+
+TEST_F(CadReader, AnIgesFileWithoutAUnitIsInMillimetresAndSaysSo) {
+  std::string text = content_of(box_in("in", "box.igs"));
+  const std::string declared = ",1,4HINCH,";
+  const std::size_t at = text.find(declared);
+  ASSERT_NE(at, std::string::npos) << text.substr(0, 600);
+  text.replace(at, declared.size(), ",,,");
+  const std::size_t end = text.find_first_of("SGDP", text.find("G000000", at) - 1);
+  text.insert(end, declared.size() - 3, ' ');
+  const Found found = read(folder_.write("none.igs", text));
+  EXPECT_FALSE(found.model.unit_declared);
+  EXPECT_EQ(found.model.unit, "mm");
+  ASSERT_EQ(found.model.notes.size(), 1u);
+  EXPECT_NE(found.model.notes[0].find("declares no unit"), std::string::npos);
+  EXPECT_LT((middle_of(found.surfaces, "") - Vector3(0.015, 0.01, 0.005) / 25.4).norm(), 1e-9);
+}
+
+TEST_F(CadReader, MoreFacesThanTheLimitAreRefused) {
+  CadReading reading;
+  reading.face_limit = 5;
+  const auto found = read_cad(box_in("mm", "box.step"), reading, [](const CadSurface&) {});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().message, "has 6 faces, more than the 5 that are read; export fewer");
+}
+
+TEST_F(CadReader, AToleranceIsKeptAndReported) {
+  const auto file = folder_.path() / "cylinder.step";
+  STEPControl_Writer writer;
+  writer.Transfer(BRepPrimAPI_MakeCylinder(50, 20).Shape(), STEPControl_AsIs);
+  writer.Write(file.c_str());
+  std::size_t before = 0;
+  for (const double tolerance_m : {1e-4, 1e-6, 1e-8}) {
+    CadReading reading;
+    reading.tolerance_m = tolerance_m;
+    const Found found = read(file, reading);
+    double farthest = 0.0, deviation = 0.0;
+    std::size_t controls = 0;
+    for (const CadSurface& part : found.surfaces) {
+      if (part.deviation_m == 0.0) continue;  // the discs at its ends
+      deviation = part.deviation_m;
+      controls = part.surface.net.size();
+      for (const double u : uniform_parameters(part.surface.u, 777)) {
+        const Vector3 at = position(part.surface, u, part.surface.v.domain_start());
+        farthest = std::max(farthest, std::abs(std::hypot(at.x(), at.y()) - 0.05));
+      }
+    }
+    EXPECT_GT(deviation, 0.0);
+    EXPECT_LE(deviation, tolerance_m);
+    EXPECT_LE(farthest, 1.05 * deviation);  // measured at nine places a piece
+    EXPECT_GT(controls, before);
+    before = controls;
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill

@@ -1,0 +1,149 @@
+// Trimmed surfaces out to STEP and IGES and back.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/bspline/evaluate.h"
+#include "engine/exchange/cad/cad_reader.h"
+#include "engine/exchange/cad/cad_writer.h"
+#include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad_stream.h"
+#include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/bspline/tube.h"
+#include "tests/engine/exchange/cad/kept_part.h"
+#include "tests/engine/exchange/sample_document.h"
+#include "tests/engine/trims/loops.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double tolerance_m = 1e-7;
+
+CadSurface named(const std::string& name, Surface surface) {
+  CadSurface part;
+  part.name = name;
+  part.surface = std::move(surface);
+  return part;
+}
+
+CadSurface sheet(const std::string& name) {
+  Random random(4);
+  const KnotVector u = KnotVector::clamped_uniform(3, 8).value(),
+                   v = KnotVector::clamped_uniform(2, 6).value();
+  return named(name, random_surface(random, u, v));
+}
+
+void add_polygon(CadSurface& part, const std::vector<Eigen::Vector2d>& points) {
+  part.trims.push_back(polygon_loop(part.surface.u, part.surface.v, points));
+}
+
+void add_circle(CadSurface& part, double u, double v, double radius, bool hole) {
+  part.trims.push_back(round_loop(part.surface.u, part.surface.v, {u, v}, radius, 12, hole));
+}
+
+std::vector<CadSurface> trimmed_surfaces() {
+  CadSurface holed = sheet("sheet with a hole");
+  add_circle(holed, 0.4, 0.6, 0.2, true);
+  CadSurface framed = sheet("polygon with two holes");
+  add_polygon(framed, {{0.1, 0.1}, {0.9, 0.2}, {0.8, 0.9}, {0.3, 0.8}});
+  add_circle(framed, 0.4, 0.4, 0.1, true);
+  add_circle(framed, 0.65, 0.6, 0.1, true);
+  CadSurface islands = sheet("two islands");
+  add_circle(islands, 0.25, 0.3, 0.2, false);
+  add_polygon(islands, rectangle(0.6, 0.5, 0.9, 0.95));
+  CadSurface tube = named("tube with a hole", ellipsoid_tube(10, 10));
+  add_circle(tube, 0.5, 0.5, 0.15, true);
+  CadSurface across = named("tube with a hole across its seam", ellipsoid_tube(10, 10));
+  add_circle(across, 0.98, 0.5, 0.15, true);
+  CadSurface cup = named("strip of a tube", ellipsoid_tube(10, 10));
+  add_polygon(cup, rectangle(0.0, 0.25, 1.0, 0.8));
+  return {holed, framed, islands, tube, across, cup};
+}
+
+class TrimmedRoundTrip : public testing::TestWithParam<CadFormat> {
+ protected:
+  static void SetUpTestSuite() { prepare_occt(); }
+
+  std::vector<CadSurface> there_and_back(const CadSurface& part) const {
+    CadModel model;
+    model.surfaces.push_back(part);
+    const auto content = write_cad(model, {GetParam(), StepSchema::ap214, "mm"});
+    EXPECT_TRUE(content) << content.error().message;
+    if (!content) return {};
+    const auto file = folder_.write(GetParam() == CadFormat::step ? "a.step" : "a.igs", content->text);
+    CadReading reading;
+    reading.format = GetParam();
+    std::vector<CadSurface> back;
+    const auto read =
+        read_cad(file, reading, [&](CadSurface surface) { back.push_back(std::move(surface)); });
+    EXPECT_TRUE(read) << read.error().message;
+    return back;
+  }
+
+  TemporaryFolder folder_;
+};
+
+// Points of the part lie on what came back, and the other way round.
+void expect_covered(const CadSurface& part, const std::vector<CadSurface>& by) {
+  std::vector<NearestPoint> nearest(by.begin(), by.end());
+  const auto kept = TrimmedArea::make(part.surface.u, part.surface.v, part.trims).value();
+  int points = 0;
+  for (const double u : uniform_parameters(part.surface.u, 24)) {
+    for (const double v : uniform_parameters(part.surface.v, 24)) {
+      if (!kept.contains(u, v)) continue;
+      ++points;
+      double least = 1e30;
+      for (const NearestPoint& other : nearest) {
+        least = std::min(least, other.distance_m(position(part.surface, u, v)));
+      }
+      EXPECT_LT(least, tolerance_m) << u << " " << v;
+    }
+  }
+  EXPECT_GT(points, 20);
+}
+
+TEST_P(TrimmedRoundTrip, WhatIsKeptComesBack) {
+  for (const CadSurface& part : trimmed_surfaces()) {
+    SCOPED_TRACE(part.name);
+    const std::vector<CadSurface> back = there_and_back(part);
+    ASSERT_FALSE(back.empty());
+    double area = 0.0;
+    for (const CadSurface& face : back) {
+      EXPECT_EQ(face.trim_problem, "");
+      EXPECT_EQ(face.deviation_m, 0.0);
+      EXPECT_TRUE(face.name.starts_with(part.name)) << face.name;
+      area += kept_area_m2(face);
+      expect_covered(face, {part});
+    }
+    expect_covered(part, back);
+    // Both by the midpoint rule over two hundred lines.
+    EXPECT_NEAR(area, kept_area_m2(part), 5e-3 * area);
+  }
+}
+
+TEST_P(TrimmedRoundTrip, ASurfaceWithOneFaceKeepsItsParameters) {
+  const CadSurface part = trimmed_surfaces()[1];
+  const std::vector<CadSurface> back = there_and_back(part);
+  ASSERT_EQ(back.size(), 1u);
+  ASSERT_EQ(back[0].trims.size(), 3u);
+  const auto before = TrimmedArea::make(part.surface.u, part.surface.v, part.trims).value();
+  const auto after = TrimmedArea::make(back[0].surface.u, back[0].surface.v, back[0].trims);
+  ASSERT_TRUE(after);
+  EXPECT_NEAR(after->kept_share(), before.kept_share(), 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, TrimmedRoundTrip, testing::Values(CadFormat::step, CadFormat::iges),
+                         [](const auto& format) {
+                           return std::string(format.param == CadFormat::step ? "Step" : "Iges");
+                         });
+
+TEST(CadStream, TrimsComeBackToTheBit) {
+  for (const CadSurface& part : trimmed_surfaces()) {
+    const auto back = cad_surface_from_json(json_to_line(cad_surface_to_json(part)), "file");
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->trims, part.trims);
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill
