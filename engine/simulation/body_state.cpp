@@ -70,6 +70,8 @@ void BodyState::hold_behind(const std::vector<FixingPlane>& planes) {
 
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
                                   InstructionSet set, const FeatureMapWatch& watch) {
+  Result<std::shared_ptr<const TrimmedArea>> trim = trim_of(body);
+  if (!trim.ok()) return trim.error();
   Result<LatticeMesh> mesh = lattice_of(body, watch);
   if (!mesh.ok()) return mesh.error();
   const Result<LatticeMaterials> materials = lattice_materials(mesh.value(), body.material, body.regions);
@@ -91,6 +93,7 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
                   {},
                   std::vector<std::uint8_t>(mesh->nodes.size(), 0)};
   state.shell_thickness_m = body.shell_thickness_m.value_or(0.0);
+  state.trim = std::move(trim).value();
   state.loads = std::move(loads).value();
   state.supports = std::move(supports).value();
   state.hold_behind(planes);

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "engine/bspline/trimmed_area.h"
 #include "engine/instruction_set.h"
 #include "engine/material/implicit/implicit_core.h"
 #include "engine/material/springs/spring_lattice.h"
@@ -31,7 +33,8 @@ struct BodyState {
   bool core_rests = false;
   BodyLoads loads = {};
   BodySupports supports = {};
-  double shell_thickness_m = 0.0;  // 0: a solid
+  double shell_thickness_m = 0.0;                // 0: a solid
+  std::shared_ptr<const TrimmedArea> trim = {};  // what is there of its surface; none: all
 
   // Lets the supports hold what the planes do not.
   void hold_behind(const std::vector<FixingPlane>& planes);

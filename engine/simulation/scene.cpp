@@ -49,6 +49,15 @@ Status check_lattice_request(const LatticeRequest& lattice) {
                std::to_string(node_budget_range.high)};
 }
 
+Result<std::shared_ptr<const TrimmedArea>> trim_of(const Body& body) {
+  std::shared_ptr<const TrimmedArea> trim;
+  if (body.trims.empty()) return trim;
+  Result<TrimmedArea> area = TrimmedArea::make(body.surface.u, body.surface.v, body.trims);
+  if (!area.ok()) return area.error();
+  trim = std::make_shared<const TrimmedArea>(std::move(area).value());
+  return trim;
+}
+
 Status check_loads(const Body& body) {
   if (Status status = check_range("loads", static_cast<int>(body.loads.size()), load_count_range);
       !status.ok()) {

@@ -8,6 +8,7 @@
 
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
+#include "engine/bspline/trimmed_area.h"
 #include "engine/material/lattice/shell_lattice.h"
 #include "engine/material/lattice/tube_lattice.h"
 #include "engine/material/lattice_materials.h"
@@ -83,6 +84,9 @@ inline constexpr Range<double> force_scale_range{0.0, 1e6};
 
 // Of a solid or a shell, at rest.
 Result<LatticeMesh> lattice_of(const Body& body, const FeatureMapWatch& watch = {});
+
+// What its trims keep of its surface; null without trims.
+Result<std::shared_ptr<const TrimmedArea>> trim_of(const Body& body);
 
 // Each names the field, the value and the range of the first thing that is not within it.
 Status check_loads(const Body& body);  // and supports

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/bspline/knot_vector.h"
+#include "engine/bspline/trimmed_area.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/pose.h"
 
@@ -31,6 +32,7 @@ struct SurfaceSnapshot {
   KnotVector u, v;
   std::uint64_t structure = 0;  // the knot vectors' fingerprint: while it stays, a Grid can be kept
   std::vector<float> x, y, z;   // control points in metres, as in ControlNet
+  std::shared_ptr<const TrimmedArea> trim = {};  // what is there of it; none: all
 };
 
 // The triangles of a soft tool that is made of them, counter-clockwise seen from outside.

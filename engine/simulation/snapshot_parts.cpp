@@ -24,7 +24,7 @@ std::uint64_t structure_of(const Surface& surface) {
 
 void write_surface(const Surface& surface, SurfaceSnapshot& out) {
   const std::uint64_t structure = structure_of(surface);
-  if (out.structure != structure) out = {surface.u, surface.v, structure, {}, {}, {}};
+  if (out.structure != structure) out = {surface.u, surface.v, structure, {}, {}, {}, {}};
   const auto copy = [](const std::vector<double>& from, std::vector<float>& to) {
     to.assign(from.begin(), from.end());
   };
@@ -99,6 +99,7 @@ void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::ve
     } else {
       const BodyMapping& mapping = bodies[b].mapping();
       write_surface(mapping.current(), out[b].surface);
+      out[b].surface.trim = bodies[b].trim;
       out[b].residual = {mapping.residual().largest_m, mapping.residual().root_mean_square_m};
     }
     out[b].shell_thickness_m = bodies[b].shell_thickness_m;

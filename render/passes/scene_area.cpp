@@ -63,7 +63,7 @@ class Strips {
   void include_triangles(const TessellatedSurface& surface) {
     const GridSamples<float>& at = surface.samples();
     const std::vector<std::uint32_t>& indices = surface.indices();
-    if (surface.is_mesh()) return include_each(at, indices);
+    if (surface.is_mesh() || surface.is_trimmed()) return include_each(at, indices);
     // Two triangles a cell.
     for (std::size_t first = 0; first + 5 < indices.size(); first += 6) {
       Hull hull(*this);

@@ -25,12 +25,13 @@ Status check_net(const SurfaceSnapshot& surface) {
 Status TessellatedSurface::update(const SurfaceSnapshot& surface, const SamplingLevel& level) {
   if (Status net = check_net(surface); !net) return net;
   const bool keep = !is_mesh_ && evaluator_ && structure_ == surface.structure && level_ == level &&
-                    grid_->u.knots == surface.u && grid_->v.knots == surface.v;
+                    grid_->u.knots == surface.u && grid_->v.knots == surface.v && trim_ == surface.trim;
   if (!keep) {
     if (Status built = rebuild(surface, level); !built) return built;
   }
   evaluator_->points_and_normals(surface.x.data(), surface.y.data(), surface.z.data(), samples_);
   if (!keep) orient();
+  fill_cut_vertices();
   if (inward_) {
     for (auto* component : {&samples_.nx, &samples_.ny, &samples_.nz}) {
       for (float& value : *component) value = -value;
@@ -46,6 +47,8 @@ void TessellatedSurface::update(const MeshSnapshot& mesh) {
     ++topology_version_;
     closed_ = is_mesh_ = true;
     level_ = {};
+    trim_ = nullptr;
+    cut_vertices_.clear();
   }
   shading_.shade(mesh, samples_);
 }
@@ -61,6 +64,8 @@ Status TessellatedSurface::rebuild(const SurfaceSnapshot& surface, const Samplin
   structure_ = surface.structure;
   level_ = level;
   is_mesh_ = false;
+  trim_ = surface.trim;
+  cut_vertices_.clear();
   build_indices(surface.u.is_periodic(), surface.v.is_periodic());
   ++topology_version_;
   return {};
@@ -117,13 +122,50 @@ void TessellatedSurface::orient() {
                       (edge_collapsed(false, 0) && edge_collapsed(false, grid_->columns() - 1));
   closed_ = u_shut && v_shut;
   inward_ = closed_ && signed_volume_m3() < 0.0;
+  if (trim_) trim_indices();
   if (!inward_) return;
   for (std::size_t i = 0; i + 2 < indices_.size(); i += 3) std::swap(indices_[i + 1], indices_[i + 2]);
+}
+
+// Takes the place of the whole surface's triangles, by which it is known whether it is closed and which side
+// is out.
+void TessellatedSurface::trim_indices() {
+  TrimmedGrid cut = trim_grid(grid_->u, grid_->v, *trim_);
+  indices_.clear();
+  for (const auto& triangle : cut.triangles)
+    indices_.insert(indices_.end(), triangle.begin(), triangle.end());
+  cut_vertices_ = std::move(cut.vertices);
+  samples_.resize(samples_.x.size() + cut_vertices_.size());
+  closed_ = false;
+}
+
+void TessellatedSurface::fill_cut_vertices() {
+  std::size_t at = samples_.x.size() - cut_vertices_.size();
+  for (const CutVertex& cut : cut_vertices_) {
+    const auto mean = [&](const std::vector<float>& values) {
+      double sum = 0.0;
+      for (std::size_t c = 0; c < cut.corners.size(); ++c) sum += cut.weights[c] * values[cut.corners[c]];
+      return sum;
+    };
+    const Eigen::Vector3d normal =
+        Eigen::Vector3d(mean(samples_.nx), mean(samples_.ny), mean(samples_.nz)).normalized();
+    samples_.x[at] = static_cast<float>(mean(samples_.x));
+    samples_.y[at] = static_cast<float>(mean(samples_.y));
+    samples_.z[at] = static_cast<float>(mean(samples_.z));
+    samples_.nx[at] = static_cast<float>(normal.x());
+    samples_.ny[at] = static_cast<float>(normal.y());
+    samples_.nz[at] = static_cast<float>(normal.z());
+    ++at;
+  }
 }
 
 BoundingBox TessellatedSurface::bounds() const {
   BoundingBox box;
   if (samples_.x.empty()) return box;
+  if (trim_) {
+    for (const std::uint32_t i : indices_) box.include(vertex(samples_, i));
+    return box;
+  }
   const std::vector<float>* axes[3] = {&samples_.x, &samples_.y, &samples_.z};
   for (int axis = 0; axis < 3; ++axis) {
     const auto [low, high] = std::minmax_element(axes[axis]->begin(), axes[axis]->end());

@@ -9,6 +9,7 @@
 
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/grid.h"
+#include "engine/bspline/trimmed_grid.h"
 #include "engine/result.h"
 #include "engine/simulation/snapshot.h"
 #include "render/camera.h"
@@ -49,11 +50,16 @@ class TessellatedSurface {
   // Whether the surface encloses a volume: nobody sees its inside.
   bool is_closed() const { return closed_; }
 
+  // Whether triangles are cut along trim loops; samples that no triangle has are then not of the surface.
+  bool is_trimmed() const { return trim_ != nullptr; }
+
   BoundingBox bounds() const;
 
  private:
   Status rebuild(const SurfaceSnapshot& surface, const SamplingLevel& level);
   void build_indices(bool u_wraps, bool v_wraps);
+  void trim_indices();
+  void fill_cut_vertices();
   void orient();
   bool edge_collapsed(bool along_u, int at) const;
   double signed_volume_m3() const;
@@ -69,6 +75,8 @@ class TessellatedSurface {
   std::optional<GridEvaluator<float>> evaluator_;
   GridSamples<float> samples_;
   std::vector<std::uint32_t> indices_;
+  std::shared_ptr<const TrimmedArea> trim_;
+  std::vector<CutVertex> cut_vertices_;  // the samples after the grid's
 };
 
 // The box around all surfaces of a snapshot, evaluated rather than taken from the control nets, which reach
