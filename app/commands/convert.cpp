@@ -1,12 +1,11 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/option_values.h"
+#include "app/commands/parsed_option.h"
 #include "app/convert/conversion.h"
 #include "app/interrupt.h"
 #include "app/report/conversion_facts.h"
@@ -47,20 +46,6 @@ Status convert(const ConvertOptions& options, Console& console) {
   return {};
 }
 
-// An option whose text `read` makes a value of, for `keep` to keep.
-template <class Read, class Keep>
-CLI::Option* add_value(CLI::App& parser, const std::string& name, Read read, Keep keep,
-                       const std::string& help) {
-  return parser.add_option_function<std::string>(
-      name,
-      [=](const std::string& text) {
-        auto value = read(text);
-        if (!value) throw CLI::ValidationError(name, value.error().message);
-        keep(value.value());
-      },
-      help);
-}
-
 Result<StepSchema> parse_schema(const std::string& text) {
   if (text == "ap214") return StepSchema::ap214;
   if (text == "ap242") return StepSchema::ap242;
@@ -80,25 +65,29 @@ CommandEntry add_convert(CLI::App& root) {
       "Example: spoonbill convert assets/models/spoon-handle.json handle.step --schema ap242");
   parser->add_option("IN", options->request.in, "A document or a CAD file")->required();
   parser->add_option("OUT", options->request.out, "The file to write; its ending is its format")->required();
-  add_value(
-      *parser, "--unit", parse_unit, [options](const LengthUnit& unit) { options->request.unit = unit; },
+  ConversionRequest& request = options->request;
+  const auto length_in = [](Range<double> range) {
+    return [range](const std::string& text) { return parse_length(text, range); };
+  };
+  add_parsed_option(
+      *parser, "--unit", "UNIT", parse_unit, [&request](const LengthUnit& unit) { request.unit = unit; },
       "Of the other file's numbers: mm, cm, m or in. Going out, mm unless told (m for .ply); coming in,\n"
-      "what the file declares unless told, or mm where it declares none")
-      ->type_name("UNIT");
-  add_value(
-      *parser, "--chord", [](const std::string& text) { return parse_length(text, chord_range_m); },
-      [options](double chord_m) { options->request.chord_m = chord_m; },
-      "How far a mesh's triangles may be from the surface; 0.05mm unless told")
-      ->type_name("LENGTH");
-  add_value(
-      *parser, "--tolerance", [](const std::string& text) { return parse_length(text, tolerance_range_m); },
-      [options](double tolerance_m) { options->request.tolerance_m = tolerance_m; },
-      "How far what no B-spline is, such as a cylinder, may come to be from itself; 0.01mm unless told")
-      ->type_name("LENGTH");
-  add_value(
-      *parser, "--schema", parse_schema, [options](StepSchema schema) { options->request.schema = schema; },
-      "Of a STEP file: ap214, unless told, or ap242")
-      ->type_name("SCHEMA");
+      "what the file declares unless told, or mm where it declares none");
+  add_parsed_option(
+      *parser, "--chord", "LENGTH", length_in(chord_range_m),
+      [&request](double chord_m) { request.chord_m = chord_m; },
+      "How far a mesh's triangles may be from the surface; 0.05mm unless told");
+  add_parsed_option(
+      *parser, "--tolerance", "LENGTH", length_in(tolerance_range_m),
+      [&request](double tolerance_m) { request.tolerance_m = tolerance_m; },
+      "How far what no B-spline is, such as a cylinder, may come to be from itself; 0.01mm unless told");
+  add_parsed_option(
+      *parser, "--schema", "SCHEMA", parse_schema, [&request](StepSchema schema) { request.schema = schema; },
+      "Of a STEP file: ap214, unless told, or ap242");
+  add_parsed_option(
+      *parser, "--bodies", "LIST", parse_places,
+      [&request](const std::vector<int>& places) { request.bodies = places; },
+      "Which of IN's, as `spoonbill info` counts them: 1,3-5; all unless told");
   parser->add_flag("--progress", options->progress, "Show progress even where nobody watches");
   add_json_option(*parser, options->json);
   return {parser, [options](Console& console) { return convert(*options, console); }};

@@ -1,5 +1,6 @@
 #include "app/commands/option_values.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -129,6 +130,26 @@ Result<Pose> parse_pose(std::string_view text) {
   if (!(length > 1e-100 && length < 1e100)) return refusal;
   pose.orientation = Quaternion(orientation.coeffs() / length);
   return pose;
+}
+
+Result<std::vector<int>> parse_places(std::string_view text) {
+  constexpr Range<int> range{1, 1000};
+  const Error refusal{"'" + std::string(text.substr(0, 40)) +
+                      "' is not a list like 1,3-5 of places from 1 to 1000"};
+  std::vector<int> places;
+  for (std::string_view rest = text;;) {
+    const std::string_view part = rest.substr(0, rest.find(','));
+    const std::size_t dash = part.find('-');
+    const auto first = whole_number(part.substr(0, dash));
+    const auto last = dash == std::string_view::npos ? first : whole_number(part.substr(dash + 1));
+    if (!first || !last || !range.contains(*first) || !range.contains(*last) || *last < *first)
+      return refusal;
+    for (int place = *first; place <= *last; ++place) {
+      if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
+    }
+    if (part.size() == rest.size()) return places;
+    rest.remove_prefix(part.size() + 1);
+  }
 }
 
 Result<LengthUnit> parse_unit(std::string_view text) {

@@ -31,6 +31,9 @@ Result<double> parse_length(std::string_view text, Range<double> range_m);
 // those before it that have none.
 Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t count, Range<double> range_m);
 
+// "1,3-5": places counted from 1, at most 1000 of them, each once and in the order given.
+Result<std::vector<int>> parse_places(std::string_view text);
+
 // "mm", "cm", "m" or "in"; "inch" too.
 Result<LengthUnit> parse_unit(std::string_view text);
 

@@ -11,7 +11,7 @@ Result<Document> document_of(const CadModel& model, const std::string& name) {
   const auto most = static_cast<std::size_t>(body_count_range.high);
   if (model.surfaces.size() > most) {
     return Error{"has " + std::to_string(model.surfaces.size()) + " faces, and a document holds " +
-                 std::to_string(most) + " bodies; export fewer faces"};
+                 std::to_string(most) + " bodies; choose some with --bodies 1,3-5"};
   }
   const auto material = shipped_material("modelling-clay");
   if (!material) return material.error();

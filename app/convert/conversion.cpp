@@ -112,6 +112,21 @@ Result<CadModel> read_model(const ConversionRequest& request, const CadChild& ch
   return model;
 }
 
+// Those that were asked for, in that order.
+Status choose(const ConversionRequest& request, CadModel& model) {
+  if (request.bodies.empty()) return {};
+  std::vector<CadSurface> chosen;
+  for (const int place : request.bodies) {
+    if (static_cast<std::size_t>(place) > model.surfaces.size()) {
+      return about(request.in, "has " + std::to_string(model.surfaces.size()) +
+                                   " bodies, and --bodies names " + std::to_string(place));
+    }
+    chosen.push_back(model.surfaces[static_cast<std::size_t>(place) - 1]);
+  }
+  model.surfaces = std::move(chosen);
+  return {};
+}
+
 Status store(const std::filesystem::path& file, const std::string& text) {
   auto out = OutputFile::create(file);
   if (!out) return out.error();
@@ -148,7 +163,7 @@ Status write_mesh_file(const CadModel& model, const ConversionRequest& request, 
     *report.closed_meshes += tessellation->closed ? 1 : 0;
     left -= tessellation->mesh.triangles.size();
     report.chord_error_m = std::max(report.chord_error_m, tessellation->chord_error_m);
-    meshes.push_back({part.name, std::move(tessellation->mesh)});
+    meshes.push_back({part.name, std::move(tessellation->mesh), tessellation->closed});
     if (watch.progress) {
       watch.progress(share_of_reading + (1.0 - share_of_reading) * static_cast<double>(meshes.size()) /
                                             static_cast<double>(model.surfaces.size() + 1));
@@ -191,6 +206,7 @@ Result<ConversionReport> convert_file(const ConversionRequest& request, const Co
   ConversionReport report;
   auto model = read_model(request, child_of(request, watch, 0.0, share_of_reading), report);
   if (!model) return model.error();
+  if (Status chosen = choose(request, model.value()); !chosen) return chosen.error();
   report.unit_in = model->unit;
   report.unit_declared = model->unit_declared;
   report.notes.insert(report.notes.end(), model->notes.begin(), model->notes.end());

@@ -21,6 +21,7 @@ struct ConversionRequest {
   std::optional<double> chord_m;      // of meshes; 0.05 mm unless told
   std::optional<double> tolerance_m;  // of what a CAD file holds and no B-spline is; 0.01 mm unless told
   std::optional<StepSchema> schema;   // AP214 unless told
+  std::vector<int> bodies;            // which of them, counted from 1; all if empty
   std::filesystem::path cad_program;  // that handles CAD files; beside this one if empty
 };
 

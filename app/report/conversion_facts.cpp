@@ -46,7 +46,8 @@ void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces
     std::string text = size_text(size) + ", " + net_text(part.surface);
     if (!part.trims.empty()) text += ", trimmed by " + std::to_string(part.trims.size());
     if (part.deviation_m > 0.0) text += ", approximated within " + short_millimetres(part.deviation_m);
-    facts.add("Body", part.name + ": " + text, "", nullptr);
+    const std::string place = surfaces.size() > 1 ? " " + std::to_string(bodies.size() + 1) : "";
+    facts.add("Body" + place, part.name + ": " + text, "", nullptr);
     bodies.push_back({{"name", part.name},
                       {"size_mm", millimetres_of(size)},
                       {"u", direction_json(part.surface.u)},

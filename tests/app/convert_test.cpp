@@ -43,6 +43,15 @@ class ConvertTest : public testing::Test {
   const std::string handle_ = std::string(SPOONBILL_ASSETS) + "/models/spoon-handle.json";
 };
 
+std::string two_bodies() {
+  Document document = sample_document();
+  Body other = document.scene.bodies[0];
+  other.name = "other";
+  for (double& x : other.surface.net.x) x += 0.1;
+  document.scene.bodies.push_back(other);
+  return json_to_page(document_to_json(document));
+}
+
 double largest_distance_m(const std::filesystem::path& a, const std::filesystem::path& b) {
   const auto first = read_document(a), second = read_document(b);
   if (!first || !second) return 1e30;
@@ -129,6 +138,57 @@ TEST_F(ConvertTest, AStepFileOfAnotherUnitOrNone) {
   EXPECT_NE(without["notes"][0].get<std::string>().find("declares no unit"), std::string::npos);
   const Json named = convert_for_facts({place_.text("none.step"), place_.text("none.json"), "--unit", "cm"});
   EXPECT_NEAR(named["size_mm"][0].get<double>(), 1000.0, 1.0);
+}
+
+TEST_F(ConvertTest, BodiesAreChosen) {
+  const Json all =
+      convert_for_facts({place_.write("two.json", two_bodies()).string(), place_.text("a.step")});
+  EXPECT_EQ(all["bodies"].size(), 2u);
+  EXPECT_EQ(all["solids"], 2);
+  const Json second = convert_for_facts({place_.text("a.step"), place_.text("b.json"), "--bodies", "2"});
+  ASSERT_EQ(second["bodies"].size(), 1u);
+  EXPECT_EQ(second["bodies"][0]["name"], "other");
+  const Json both = convert_for_facts({place_.text("a.step"), place_.text("b.json"), "--bodies", "2,1-2"});
+  ASSERT_EQ(both["bodies"].size(), 2u);
+  EXPECT_EQ(both["bodies"][1]["name"], all["bodies"][0]["name"]);
+  expect_failure({place_.text("a.step"), place_.text("b.json"), "--bodies", "3"}, "has 2 bodies");
+  for (const char* list : {"0", "a", "2-1", "1,", "1-1001", "-1"}) {
+    expect_failure({place_.text("a.step"), place_.text("b.json"), std::string("--bodies=") + list},
+                   "is not a list like 1,3-5", exit_wrong_use);
+  }
+}
+
+TEST_F(ConvertTest, ATrimmedSurfaceStaysTrimmed) {
+  Json document = json_of(content_of(place_.path("model.json")));
+  document["spoonbill_document"] = 2;
+  Json& surface = document["body"]["surface"];
+  const auto domain = read_document(place_.path("model.json"))->scene.bodies[0].surface;
+  const double low = domain.v.domain_start(), high = domain.v.domain_end();
+  // A clockwise hole.
+  const auto at = [&](double u, double v) {
+    const double start = domain.u.domain_start(), end = domain.u.domain_end();
+    return Json::array({start + u * (end - start), low + v * (high - low)});
+  };
+  surface["trims"] =
+      Json::array({{{"degree", 1},
+                    {"periodic", true},
+                    {"knots", {0, 1, 2, 3, 4}},
+                    {"control_points_uv", {at(0.3, 0.4), at(0.3, 0.6), at(0.6, 0.6), at(0.6, 0.4)}}}});
+  place_.write("trimmed.json", json_to_page(document));
+  const Json whole = convert_for_facts({place_.text("model.json"), place_.text("a.stl")});
+  const Json cut = convert_for_facts({place_.text("trimmed.json"), place_.text("b.stl")});
+  EXPECT_EQ(whole["closed_meshes"], 1);
+  EXPECT_EQ(cut["closed_meshes"], 0);
+  for (const char* name : {"t.step", "t.igs"}) {
+    SCOPED_TRACE(name);
+    const Json out = convert_for_facts({place_.text("trimmed.json"), place_.text(name)});
+    EXPECT_EQ(out["bodies"][0]["trims"], 1);
+    const Json back = convert_for_facts({place_.text(name), place_.text("back.json")});
+    std::size_t trims = 0;
+    for (const Json& body : back["bodies"]) trims += body["trims"].get<std::size_t>();
+    EXPECT_GE(trims, 1u);
+    EXPECT_TRUE(back["notes"].empty());
+  }
 }
 
 TEST_F(ConvertTest, InfoTellsWhatACadFileHolds) {
