@@ -106,6 +106,14 @@ TEST(FitScan, WavesAreASheet) {
   EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 1e-4);
 }
 
+// Square and low, so that it is as round about its middle as a bowl.
+TEST(FitScan, LowWavesAreNoThinWall) {
+  const Scan scan = random_cloud(5000, 3, [](double s, double t) { return on_waves(s, t, 0.1, 0.004); });
+  const ScanFit fitted = fit(scan, 12);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::sheet);
+}
+
 TEST(FitScan, NoiseIsAveragedAndOutliersLeftOut) {
   Scan scan = ellipsoid_cloud(20000, {0.03, 0.03, 0.03});
   add_noise(scan, 4, 3e-4);
