@@ -35,7 +35,8 @@ void measure_data(const FittedSurface& fit, const FitPoints& points, FitErrors& 
   }
   std::vector<double> trusted;
   for (std::size_t g = 0; g < points.given_m.size(); ++g) {
-    if (fit.trust[points.stands_for[g]] > 0.0) trusted.push_back(errors.distance_m[g]);
+    errors.is_stray.push_back(fit.trust[points.stands_for[g]] == 0.0);
+    if (!errors.is_stray.back()) trusted.push_back(errors.distance_m[g]);
   }
   errors.strays = points.given_m.size() - trusted.size();
   errors.data_to_surface = deviation_of(std::move(trusted));

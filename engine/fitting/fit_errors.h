@@ -22,9 +22,10 @@ struct FitErrors {
   // one, or from that point where they do not reach as far.
   Deviation surface_to_data;
   double unseen_share = 0.0;  // of these samples: where the scan has no points, left out above
-  // For pictures: of each point given, its place and distance.
+  // For pictures: of each point given, its place, its distance, and whether it is a stray.
   std::vector<Vector2> uv;
   std::vector<double> distance_m;
+  std::vector<bool> is_stray;
 };
 
 FitErrors measure_errors(const FittedSurface& fit, const FitPoints& points);

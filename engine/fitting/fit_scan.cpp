@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/fitting/bridging.h"
 #include "engine/fitting/islands.h"
 #include "engine/fitting/profile_map.h"
 #include "engine/fitting/shape_start.h"
@@ -42,6 +43,10 @@ Result<FittedBody> fit_island(FitPoints island, const FitRequest& request, const
       return fit_from(std::move(island), *start, request.settings, watch);
     }
   }
+  if (request.islands == IslandChoice::bridge && island.spanning_nodes > 0 &&
+      request.kind.value_or(ShapeKind::closed) != ShapeKind::closed) {
+    return Error{"bridged islands make a closed body; leave --kind out"};
+  }
   const auto start = first_parameters(island, request.kind.value_or(kind_of_shape(island)));
   if (!start) return start.error();
   return fit_from(std::move(island), start.value(), request.settings, watch);
@@ -59,6 +64,12 @@ Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
   result.dust = islands.dust_points;
   if (islands.islands.empty())
     return Error{"its points hang together nowhere; they are too few or too noisy"};
+  if (request.islands == IslandChoice::bridge && islands.islands.size() > 1) {
+    auto whole = bridged(std::move(islands.islands));
+    if (!whole) return whole.error();
+    islands.islands.clear();
+    islands.islands.push_back(std::move(whole).value());
+  }
   if (request.islands == IslandChoice::largest) {
     for (std::size_t k = 1; k < islands.islands.size(); ++k) {
       result.other_islands += islands.islands[k].given_m.size();

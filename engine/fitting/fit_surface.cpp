@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "engine/fitting/closest_parameters.h"
@@ -19,12 +20,15 @@ constexpr int projection_steps = 3;
 constexpr int fold_rounds = 30, relaxing_rounds = 10;
 constexpr double most_fairness = 10.0;
 constexpr double huber_deviations = 3.0;
-constexpr double stray_deviations = 5.0;
+constexpr double stray_deviations = 5.0, most_strays = 0.15;
 constexpr std::size_t stray_neighbours = 15;
 constexpr int point_round_count = 3;
 // Of a node that spans a hole, against the others': it is a guess.
 constexpr double spanning_weight = 0.15;
 // A span with less than this share of the mean's data is stiffened, by up to this factor.
+constexpr std::size_t pole_columns = 3;
+constexpr double pole_weight = 0.5;  // of a pole, in spans' worth of points
+constexpr double least_pole_size = 0.02;
 constexpr double seen_share = 0.3, unseen_fairness = 3.0;
 
 // What is fitted: the nodes at first, then all points.
@@ -49,6 +53,7 @@ class Fitter {
   bool closed() const { return kind_ == ShapeKind::closed; }
   bool periodic() const { return kind_ != ShapeKind::sheet; }
   Status solve(Data& data);
+  void take_poles();
   void project(Data& data, bool smooth);
   void take_trust(Data& data) const;
   void distrust_strays();
@@ -75,6 +80,7 @@ class Fitter {
   std::vector<double> node_weights_, all_weights_;
   std::vector<Vector3> all_points_m_;
   Data nodes_, all_;
+  std::vector<std::pair<Vector3, double>> poles_;  // and their v
   Surface surface_;
   FoldCheck folds_;
   std::vector<double> u_breaks_, v_breaks_;  // of the last knots
@@ -110,6 +116,7 @@ Fitter::Fitter(const FitPoints& points, const Parameterisation& start, const Fit
   }
   nodes_ = {points.graph.points_m, node_weights_, start.uv, std::vector<double>(points.graph.size(), 0.0),
             std::vector<double>(points.graph.size(), 1.0)};
+  if (closed()) take_poles();
 }
 
 // More where there is little data: all of it where there is none.
@@ -130,19 +137,58 @@ void Fitter::set_fairness(double fairness, const Data& data) {
     mean += data.weights[p] / static_cast<double>(weight.size());
   }
   fairness_.resize(weight.size());
-  for (std::size_t s = 0; s < weight.size(); ++s) {
-    const double seen = std::min(1.0, weight[s] / (seen_share * mean));
-    fairness_[s] = fairness * std::pow(unseen_fairness, 1.0 - seen);
+  for (std::size_t t = 0; t < v_spans; ++t) {
+    double column = 0.0;
+    for (std::size_t s = 0; s < u_spans; ++s)
+      column += weight[s * v_spans + t] / static_cast<double>(u_spans);
+    // Spans about a pole are small, and have few points to hold them against their stiffness.
+    const bool at_pole = closed() && std::min(t, v_spans - 1 - t) < pole_columns;
+    const double size = at_pole ? std::clamp(column / mean, least_pole_size, 1.0) : 1.0;
+    for (std::size_t s = 0; s < u_spans; ++s) {
+      const double seen = std::min(1.0, weight[s * v_spans + t] / (seen_share * size * mean));
+      fairness_[s * v_spans + t] = fairness * size * std::pow(unseen_fairness, 1.0 - seen);
+    }
   }
 }
 
 Status Fitter::solve(Data& data) {
   std::vector<double> weights(data.weights.begin(), data.weights.end());
   for (std::size_t p = 0; p < weights.size(); ++p) weights[p] *= data.trust[p];
-  auto surface = fit_scattered(structure_, {data.points_m, data.uv, weights}, fairness_);
+  std::vector<Vector3> points(data.points_m.begin(), data.points_m.end());
+  std::vector<Vector2> uv = data.uv;
+  const double span_weight =
+      std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(fairness_.size());
+  for (const auto& [place, v] : poles_) {
+    points.push_back(place);
+    uv.emplace_back(0.0, v);
+    weights.push_back(pole_weight * span_weight);
+  }
+  auto surface = fit_scattered(structure_, {points, uv, weights}, fairness_);
   if (!surface) return surface.error();
   surface_ = std::move(surface).value();
   return {};
+}
+
+// Where the poles were at first: else the surface may reach beyond the points there.
+void Fitter::take_poles() {
+  constexpr double near = 0.02;
+  for (const double v : {0.0, 1.0}) {
+    Vector3 sum = Vector3::Zero();
+    double count = 0.0;
+    bool exact = false;
+    for (std::size_t n = 0; n < nodes_.uv.size(); ++n) {
+      const double away = std::abs(nodes_.uv[n].y() - v);
+      if (exact || !(away < near)) continue;  // also NaN
+      if (away == 0.0) {
+        exact = true;
+        sum.setZero();
+        count = 0.0;
+      }
+      sum += nodes_.points_m[n];
+      count += 1.0;
+    }
+    if (count > 0.0) poles_.emplace_back(sum / count, v);
+  }
 }
 
 void Fitter::smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const {
@@ -234,6 +280,9 @@ void Fitter::distrust_strays() {
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(count / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double reach = std::max(stray_deviations * 1.4826 * *middle, 1e-6 * size_of(points_->scan.points_m));
+  const auto strays = std::count_if(off.begin(), off.end(), [&](double height) { return height > reach; });
+  // More are no strays, but what the surface cannot follow.
+  if (static_cast<double>(strays) > most_strays * static_cast<double>(count)) return;
   for (std::size_t p = 0; p < count; ++p) {
     if (off[p] > reach) all_.trust[p] = 0.0;
   }

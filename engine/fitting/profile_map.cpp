@@ -17,6 +17,8 @@ constexpr double thin_share = 0.1;
 constexpr double told_apart_cells = 3.0;
 // So many points a cell of the profile, were they all on a way three times the size.
 constexpr double points_a_cell = 12.0;
+constexpr double face_share = 0.2;  // of the wall's thickness
+constexpr double seen_share = 0.85;
 constexpr int least_points = 2;           // in a cell that counts
 constexpr int dilation = 2;               // cells
 constexpr double near_axis_share = 0.05;  // of the largest distance from it
@@ -200,6 +202,20 @@ double length_of(const std::vector<Vector2>& way) {
   return length;
 }
 
+// How much of both faces has points on it, no deeper than a face is thick: of a grid of sectors and lengths.
+// Sheets with waves fill the profile as well, but each place of it somewhere else.
+double seen_all_around(const std::vector<Vector2>& uv, const std::vector<double>& depths, double reach) {
+  constexpr int sectors = 8, lengths = 16;
+  std::array<bool, sectors * lengths> seen{};
+  for (std::size_t p = 0; p < uv.size(); ++p) {
+    if (depths[p] > reach) continue;
+    const int sector = std::min(sectors - 1, static_cast<int>(uv[p].x() * sectors));
+    const int length = std::min(lengths - 1, static_cast<int>(uv[p].y() * lengths));
+    seen[static_cast<std::size_t>(sector * lengths + length)] = true;
+  }
+  return static_cast<double>(std::count(seen.begin(), seen.end(), true)) / static_cast<double>(seen.size());
+}
+
 }  // namespace
 
 std::optional<Parameterisation> profile_map(const std::vector<Vector3>& points_m) {
@@ -220,13 +236,15 @@ std::optional<Parameterisation> profile_map(const std::vector<Vector3>& points_m
   const std::vector<double> shares = shares_along(way);
   Parameterisation start;
   start.kind = ShapeKind::closed;
+  std::vector<double> depths;
   for (std::size_t p = 0; p < points_m.size(); ++p) {
     const Vector3 out = points_m[p] - axis->middle;
     const double turn = std::atan2(out.dot(axis->second()), out.dot(axis->first)) / (2.0 * std::numbers::pi);
-    const Vector2& place = profile.places[p];
-    start.uv.emplace_back(turn - std::floor(turn),
-                          shares[nearest.nearest({place.x(), place.y(), 0.0}).index]);
+    const auto found = nearest.nearest({profile.places[p].x(), profile.places[p].y(), 0.0});
+    start.uv.emplace_back(turn - std::floor(turn), shares[found.index]);
+    depths.push_back(found.distance - dilation * cell);
   }
+  if (seen_all_around(start.uv, depths, face_share * thickness + 1.5 * cell) < seen_share) return {};
   return start;
 }
 
