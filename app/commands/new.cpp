@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,6 +11,7 @@
 #include "app/commands/common_options.h"
 #include "app/commands/new_kinds.h"
 #include "app/commands/option_values.h"
+#include "app/commands/parsed_option.h"
 #include "app/report/document_facts.h"
 #include "app/report/quantity_text.h"
 #include "app/start/shipped_materials.h"
@@ -102,26 +100,15 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
 }
 
 void add_fit_options(CLI::App& parser, NewOptions& options) {
-  parser
-      .add_option_function<std::string>(
-          "--control",
-          [&options](const std::string& text) {
-            const auto control = parse_extent(text, control_range);
-            if (!control) throw CLI::ValidationError("--control", control.error().message);
-            options.control = control.value();
-          },
-          "So many control points along u and v; as many as the tolerance needs unless told")
-      ->type_name("UxV");
-  parser
-      .add_option_function<std::string>(
-          "--tolerance",
-          [&options](const std::string& text) {
-            const auto tolerance = parse_length(text, tolerance_range_m);
-            if (!tolerance) throw CLI::ValidationError("--tolerance", tolerance.error().message);
-            options.tolerance_m = tolerance.value();
-          },
-          "How far the surface may be from the exact shape; 0.01mm unless told, less below 10mm")
-      ->type_name("LENGTH");
+  add_parsed_option(
+      parser, "--control", "UxV", [](const std::string& text) { return parse_extent(text, control_range); },
+      [&options](const Extent& control) { options.control = control; },
+      "So many control points along u and v; as many as the tolerance needs unless told");
+  add_parsed_option(
+      parser, "--tolerance", "LENGTH",
+      [](const std::string& text) { return parse_length(text, tolerance_range_m); },
+      [&options](double tolerance_m) { options.tolerance_m = tolerance_m; },
+      "How far the surface may be from the exact shape; 0.01mm unless told, less below 10mm");
 }
 
 }  // namespace
