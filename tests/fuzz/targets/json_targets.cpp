@@ -42,7 +42,7 @@ void take_script(std::string_view bytes) {
   if (!script) return must_be_one_line(script.error());
   must_hold(script->tick_count() <= script_tick_limit, "a script has an end");
   const HandTarget last = script->target_at(script->tick_count());
-  must_hold(last.position_m.allFinite(), "hands go to finite places");
+  must_hold(last.pose.position_m.allFinite(), "hands go to finite places");
 }
 
 void take_cad_stream(std::string_view bytes) {

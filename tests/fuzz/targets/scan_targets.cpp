@@ -16,8 +16,8 @@ namespace {
 void take_cloud(const Result<PointCloud>& cloud, std::size_t bytes) {
   if (!cloud) return must_be_one_line(cloud.error());
   // Compressed ones hold more than their bytes, but no more than a hundred times.
-  must_hold(cloud->points_m.size() <= 100 * bytes, "a small file holds few points");
-  for (const Vector3& point : cloud->points_m) must_hold(point.allFinite(), "points are finite");
+  must_hold(cloud->points.size() <= 100 * bytes, "a small file holds few points");
+  for (const Vector3& point : cloud->points) must_hold(point.allFinite(), "points are finite");
 }
 
 }  // namespace
