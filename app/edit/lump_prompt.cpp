@@ -54,7 +54,8 @@ std::optional<LumpChoice> LumpPrompt::draw() {
     ImGui::PopTextWrapPos();
   }
   std::optional<LumpChoice> result;
-  if (ImGui::Button("Begin")) {
+  const bool entered = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
+  if (ImGui::Button("Begin") || entered) {
     result = choice_;
     asking_ = false;
   }

@@ -165,6 +165,32 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   EXPECT_EQ(run({"replay", place_.text("again.jsonl"), "--no-frames"}).code, exit_done);
 }
 
+TEST_F(EditWindow, BeginsAnewWithALump) {
+  start({});
+  // Held long enough for a frame to see it.
+  const auto enter = [&] {
+    EXPECT_TRUE(hands("keydown Return"));
+    std::this_thread::sleep_for(500ms);
+    EXPECT_TRUE(hands("keyup Return"));
+    std::this_thread::sleep_for(1s);
+  };
+  EXPECT_TRUE(hands("key ctrl+shift+n"));
+  std::this_thread::sleep_for(1s);
+  enter();
+  std::this_thread::sleep_for(2s);
+  EXPECT_TRUE(hands("key ctrl+s"));
+  std::this_thread::sleep_for(1s);
+  EXPECT_TRUE(hands("keydown ctrl keydown a"));
+  std::this_thread::sleep_for(500ms);
+  EXPECT_TRUE(hands("keyup a keyup ctrl"));
+  EXPECT_TRUE(hands("type --delay 60 " + place_.text("lump.json")));
+  enter();
+  ASSERT_TRUE(wait_for([&] { return std::filesystem::exists(place_.path("lump.json")); }));
+  const auto document = read_document(place_.path("lump.json"));
+  ASSERT_TRUE(document) << document.error().message;
+  EXPECT_EQ(document->scene.bodies[0].name, "sphere");
+}
+
 TEST_F(EditWindow, ShiftSmoothsUntilTheButtonIsLetGo) {
   ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
   start({place_.text("handle.json"), "--record", place_.text("session.jsonl")});
