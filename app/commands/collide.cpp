@@ -41,6 +41,9 @@ Result<Surface> read_body(const std::filesystem::path& file) {
     return Error{file.string() +
                  ": its body is a shell, and collide takes solid ones; give it a mesh of both faces"};
   }
+  if (!document->scene.bodies[0].trims.empty()) {
+    return Error{file.string() + ": its body is trimmed, and collide takes closed ones; leave its trims out"};
+  }
   Surface surface = std::move(document->scene.bodies[0].surface);
   if (Status closed = check_closed_tube(surface); !closed) {
     return Error{file.string() + ": " + closed.error().message};

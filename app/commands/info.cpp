@@ -18,6 +18,7 @@
 #include "app/report/progress_bar.h"
 #include "app/session/session.h"
 #include "engine/number_text.h"
+#include "engine/study/closing.h"
 #include "haptic/recording.h"
 #include "haptic/script.h"
 
@@ -38,13 +39,24 @@ void add_duration(FactSheet& facts, std::uint64_t ticks) {
   facts.add("", "", "duration_s", static_cast<double>(ticks) / 1000.0);
 }
 
+// A surface to look at, merge and export: neither a shell nor closed by poles.
+bool has_no_lattice(const Body& body) {
+  if (body.shell_thickness_m) return false;
+  return closing_of(body.surface).closedness != Closedness::solid ||
+         (body.surface.u.is_periodic() && body.surface.v.is_periodic());
+}
+
 Status add_simulated(FactSheet& facts, const Document& document, const std::string& source,
                      Console& console) {
   add_document_facts(facts, document);
   MapProgress maps(console);
   auto session = Session::make(document, source, VirtualDevice::default_specification(),
                                best_instruction_set(), maps.watch());
-  if (!session) return session.error();
+  if (!session) {
+    if (!has_no_lattice(document.scene.bodies[0])) return session.error();
+    facts.add("Lattice", "none: " + session.error().message, "lattice", nullptr);
+    return {};
+  }
   Snapshot snapshot;
   write_snapshot(session.value(), snapshot);
   add_simulation_facts(facts, snapshot);

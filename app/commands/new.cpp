@@ -1,7 +1,5 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -13,10 +11,12 @@
 #include "app/commands/common_options.h"
 #include "app/commands/new_kinds.h"
 #include "app/commands/option_values.h"
+#include "app/commands/parsed_option.h"
 #include "app/report/document_facts.h"
 #include "app/report/quantity_text.h"
 #include "app/start/shipped_materials.h"
 #include "app/start/starting_document.h"
+#include "engine/collision/surfaces/surface_self_collider.h"
 #include "engine/number_text.h"
 #include "engine/shapes/fit_shape.h"
 #include "engine/shapes/lump.h"
@@ -38,6 +38,21 @@ struct NewOptions {
 
 bool is_closed(const ExactShape& shape) {
   return shape.u.periodic && (shape.v.periodic || (shape.pole_at_start && shape.pole_at_end));
+}
+
+// Lines and profiles may lead a shape through itself.
+Status check_apart(const Surface& surface, bool closed) {
+  const auto grid = make_nested_grid(surface.u, surface.v, 0);
+  if (!grid) return grid.error();
+  SurfaceSelfCollider collider(grid.value());
+  SelfQuery query;
+  query.closed = closed;
+  if (!collider.collide(surface, query).touching) return {};
+  if (collider.contacts().empty()) return Error{"the shape passes through itself; make it thinner or wider"};
+  const Vector3 place = 1e3 * collider.contacts()[0].pair.first_m;
+  return Error{"the shape passes through itself near " + number_text(std::round(place.x())) + ", " +
+               number_text(std::round(place.y())) + ", " + number_text(std::round(place.z())) +
+               " mm; make it thinner or its line wider there"};
 }
 
 void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShape& fitted,
@@ -65,6 +80,7 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   if (options.control) fit.control_counts = {{options.control->width, options.control->height}};
   auto fitted = fit_shape(made->shape, fit);
   if (!fitted) return fitted.error();
+  if (Status alone = check_apart(fitted->surface, is_closed(made->shape)); !alone) return alone;
   const std::string name = options.name.empty() ? kind.parser->get_name() : options.name;
   const Document document =
       starting_document(name, fitted->surface, material.value(), made->shell_thickness_m);
@@ -84,26 +100,15 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
 }
 
 void add_fit_options(CLI::App& parser, NewOptions& options) {
-  parser
-      .add_option_function<std::string>(
-          "--control",
-          [&options](const std::string& text) {
-            const auto control = parse_extent(text, control_range);
-            if (!control) throw CLI::ValidationError("--control", control.error().message);
-            options.control = control.value();
-          },
-          "So many control points along u and v; as many as the tolerance needs unless told")
-      ->type_name("UxV");
-  parser
-      .add_option_function<std::string>(
-          "--tolerance",
-          [&options](const std::string& text) {
-            const auto tolerance = parse_length(text, tolerance_range_m);
-            if (!tolerance) throw CLI::ValidationError("--tolerance", tolerance.error().message);
-            options.tolerance_m = tolerance.value();
-          },
-          "How far the surface may be from the exact shape; 0.01mm unless told, less below 10mm")
-      ->type_name("LENGTH");
+  add_parsed_option(
+      parser, "--control", "UxV", [](const std::string& text) { return parse_extent(text, control_range); },
+      [&options](const Extent& control) { options.control = control; },
+      "So many control points along u and v; as many as the tolerance needs unless told");
+  add_parsed_option(
+      parser, "--tolerance", "LENGTH",
+      [](const std::string& text) { return parse_length(text, tolerance_range_m); },
+      [&options](double tolerance_m) { options.tolerance_m = tolerance_m; },
+      "How far the surface may be from the exact shape; 0.01mm unless told, less below 10mm");
 }
 
 }  // namespace
@@ -116,7 +121,8 @@ CommandEntry add_new(CLI::App& root) {
       "`spoonbill new KIND --help` tells the sizes of a kind; each has a unit: mm, cm, m or in.\n"
       "Example: spoonbill new box --size 60x40x20mm --rounding 3mm --out box.json");
   parser->require_subcommand(1);
-  const std::vector<NewKind> kinds = add_new_kinds(*parser);
+  std::vector<NewKind> kinds = add_lump_kinds(*parser);
+  for (NewKind& kind : add_swept_kinds(*parser)) kinds.push_back(std::move(kind));
   for (const NewKind& kind : kinds) {
     add_fit_options(*kind.parser, *options);
     kind.parser->add_option("--material", options->material,
@@ -126,7 +132,7 @@ CommandEntry add_new(CLI::App& root) {
     kind.parser->add_option("--out", options->out, "The document to write (.json)")->required();
     add_json_option(*kind.parser, options->json);
   }
-  return {parser, [options, kinds](Console& console) {
+  return {parser, [options, kinds = std::move(kinds)](Console& console) {
             const auto chosen = std::find_if(kinds.begin(), kinds.end(),
                                              [](const NewKind& kind) { return kind.parser->parsed(); });
             return make_new(*options, *chosen, console);

@@ -1,12 +1,10 @@
 #include "app/commands/new_kinds.h"
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <memory>
 #include <string>
 
 #include "app/commands/option_values.h"
+#include "app/commands/parsed_option.h"
 #include "engine/material/lattice/shell_lattice.h"
 #include "engine/shapes/lump.h"
 
@@ -16,36 +14,13 @@ namespace {
 // Wider than any shape may be: those say themselves what they need.
 constexpr Range<double> length_range_m{-1e3, 1e3};
 
-using Length = std::shared_ptr<std::optional<double>>;
-
-Length add_length(CLI::App& parser, const std::string& name, const std::string& help) {
-  auto length = std::make_shared<std::optional<double>>();
-  parser
-      .add_option_function<std::string>(
-          name,
-          [length, name](const std::string& text) {
-            const auto value = parse_length(text, length_range_m);
-            if (!value) throw CLI::ValidationError(name, value.error().message);
-            *length = value.value();
-          },
-          help)
-      ->type_name("LENGTH");
-  return length;
-}
-
 std::shared_ptr<std::vector<double>> add_size(CLI::App& parser, std::size_t count, const std::string& help) {
   auto size = std::make_shared<std::vector<double>>();
-  parser
-      .add_option_function<std::string>(
-          "--size",
-          [size, count](const std::string& text) {
-            auto lengths = parse_lengths(text, count, length_range_m);
-            if (!lengths) throw CLI::ValidationError("--size", lengths.error().message);
-            *size = std::move(lengths).value();
-          },
-          help)
-      ->required()
-      ->type_name(count == 2 ? "XxZ" : "XxYxZ");
+  add_parsed_option(
+      parser, "--size", count == 2 ? "XxZ" : "XxYxZ",
+      [count](const std::string& text) { return parse_lengths(text, count, length_range_m); },
+      [size](const std::vector<double>& lengths) { *size = lengths; }, help)
+      ->required();
   return size;
 }
 
@@ -150,7 +125,15 @@ NewKind add_torus(CLI::App& root) {
 
 }  // namespace
 
-std::vector<NewKind> add_new_kinds(CLI::App& parser) {
+Length add_length(CLI::App& parser, const std::string& name, const std::string& help) {
+  auto length = std::make_shared<std::optional<double>>();
+  add_parsed_option(
+      parser, name, "LENGTH", [](const std::string& text) { return parse_length(text, length_range_m); },
+      [length](double value) { *length = value; }, help);
+  return length;
+}
+
+std::vector<NewKind> add_lump_kinds(CLI::App& parser) {
   return {add_sphere(parser), add_box(parser),   add_cylinder(parser),
           add_cone(parser),   add_plate(parser), add_torus(parser)};
 }

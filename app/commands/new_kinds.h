@@ -3,7 +3,9 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/result.h"
@@ -25,6 +27,13 @@ struct NewKind {
   std::function<Result<NewShape>()> make;
 };
 
-std::vector<NewKind> add_new_kinds(CLI::App& parser);
+// Those of a few sizes: sphere, box, cylinder, cone, plate, torus.
+std::vector<NewKind> add_lump_kinds(CLI::App& parser);
+// Those made from points: tube, lathe, loft.
+std::vector<NewKind> add_swept_kinds(CLI::App& parser);
+
+// An option that is a length, once the command line has been read.
+using Length = std::shared_ptr<std::optional<double>>;
+Length add_length(CLI::App& parser, const std::string& name, const std::string& help);
 
 }  // namespace spoonbill

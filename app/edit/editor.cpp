@@ -241,6 +241,7 @@ void Editor::lay_out_questions() {
       save_as(*file);
     }
   }
+  if (const auto lump = lumps_.draw()) open_lump(*lump);
   if (const auto answer = unsaved_.draw()) {
     if (*answer == 0) {
       leave_when_saved_ = true;

@@ -11,6 +11,7 @@
 #include "app/edit/edit_window.h"
 #include "app/edit/edited_document.h"
 #include "app/edit/file_prompt.h"
+#include "app/edit/lump_prompt.h"
 #include "app/edit/menu.h"
 #include "app/edit/message_line.h"
 #include "app/edit/mouse_hand.h"
@@ -47,7 +48,7 @@ class Editor {
 
  private:
   // What happens once unsaved changes are dealt with.
-  enum class Leave { none, quit, open, fresh };
+  enum class Leave { none, quit, open, fresh, lump };
   // Work that was asked of the session and has not been answered.
   struct AskedOpen {
     std::filesystem::path file;
@@ -87,6 +88,7 @@ class Editor {
   void leave_now(Leave how);
   void open(const std::filesystem::path& file);
   void open_fresh();
+  void open_lump(const LumpChoice& choice);
   void recover();
   void save();
   void save_as(const std::filesystem::path& file);
@@ -122,6 +124,7 @@ class Editor {
   std::vector<float> forces_n_;
 
   FilePrompt files_;
+  LumpPrompt lumps_;
   Question unsaved_{"Unsaved changes", "Save", "Do not save", "Stay"};
   Question left_over_{"Unsaved work", "Recover it", "Discard it"};
   Leave leaving_ = Leave::none;

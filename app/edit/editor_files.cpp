@@ -7,6 +7,7 @@
 
 #include "app/assets_folder.h"
 #include "app/edit/editor.h"
+#include "app/start/shipped_materials.h"
 #include "render/image/png.h"
 
 namespace spoonbill {
@@ -51,6 +52,7 @@ void Editor::leave_now(Leave how) {
   leave_when_saved_ = false;
   if (how == Leave::quit) left_ = true;
   if (how == Leave::fresh) open_fresh();
+  if (how == Leave::lump) lumps_.ask();
   if (how == Leave::open) files_.ask(FilePurpose::open_model, document_.file());
 }
 
@@ -70,6 +72,17 @@ void Editor::open_fresh() {
   auto view = view_from_json(document->view, file.string());
   if (!view) return messages_.add_problem(view.error().message);
   if (!live_->open(std::move(document).value(), file.string())) return;
+  asked_.emplace_back(AskedOpen{{}, view.value()});
+}
+
+void Editor::open_lump(const LumpChoice& choice) {
+  const auto material = shipped_material("modelling-clay");
+  if (!material) return messages_.add_problem(material.error().message);
+  auto document = lump_document(choice, material.value());
+  if (!document) return lumps_.refuse(document.error().message);
+  const auto view = view_from_json(document->view, "the new lump");
+  if (!view) return messages_.add_problem(view.error().message);
+  if (!live_->open(std::move(document).value(), "the new lump")) return;
   asked_.emplace_back(AskedOpen{{}, view.value()});
 }
 

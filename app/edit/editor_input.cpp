@@ -146,6 +146,9 @@ void Editor::act(EditAction action, const LiveFrame& frame) {
     case EditAction::new_document:
       leave(Leave::fresh);
       break;
+    case EditAction::new_lump:
+      leave(Leave::lump);
+      break;
     case EditAction::open:
       leave(Leave::open);
       break;
@@ -169,6 +172,8 @@ void Editor::act(EditAction action, const LiveFrame& frame) {
     case EditAction::cancel:
       if (files_.asking()) {
         files_.close();
+      } else if (lumps_.asking()) {
+        lumps_.close();
       } else if (keys_shown_) {
         keys_shown_ = false;
       } else {

@@ -9,10 +9,11 @@ namespace {
 
 using Action = EditAction;
 
-constexpr std::array<KeyBinding, 32> bindings = {{
+constexpr std::array<KeyBinding, 33> bindings = {{
     {Action::show_keys, GLFW_KEY_F1, false, false, "F1", "Show or hide these keys"},
     {Action::open, GLFW_KEY_O, true, false, "Ctrl+O", "Open a model"},
     {Action::new_document, GLFW_KEY_N, true, false, "Ctrl+N", "Begin anew with the spoon handle"},
+    {Action::new_lump, GLFW_KEY_N, true, true, "Ctrl+Shift+N", "Begin anew with a lump"},
     {Action::save, GLFW_KEY_S, true, false, "Ctrl+S", "Save"},
     {Action::save_as, GLFW_KEY_S, true, true, "Ctrl+Shift+S", "Save under another name"},
     {Action::undo, GLFW_KEY_Z, true, false, "Ctrl+Z", "Undo the last stroke"},

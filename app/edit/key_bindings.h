@@ -9,6 +9,7 @@ namespace spoonbill {
 enum class EditAction {
   show_keys,
   new_document,
+  new_lump,
   open,
   save,
   save_as,

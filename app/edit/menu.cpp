@@ -29,6 +29,7 @@ class ActionItems {
 void draw_file(const MenuState& state, const ActionItems& item) {
   if (!ImGui::BeginMenu("File")) return;
   item("New", EditAction::new_document);
+  item("New lump...", EditAction::new_lump);
   item("Open...", EditAction::open);
   item("Save", EditAction::save);
   item("Save as...", EditAction::save_as);

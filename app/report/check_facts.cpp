@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "app/report/closing_text.h"
 #include "app/report/quantity_text.h"
 #include "engine/number_text.h"
 #include "engine/study/shell_mass.h"
@@ -20,30 +21,6 @@ std::string place_text(const Vector3& point_m) {
     return in_mm.substr(0, in_mm.find(' '));
   };
   return "(" + text(point_m.x()) + ", " + text(point_m.y()) + ", " + text(point_m.z()) + ") mm";
-}
-
-const char* name_of(Closedness closedness) {
-  switch (closedness) {
-    case Closedness::solid:
-      return "solid";
-    case Closedness::tube:
-      return "tube";
-    case Closedness::sheet:
-      return "sheet";
-  }
-  return "";
-}
-
-std::string closedness_text(const SurfaceCheck& check) {
-  switch (check.closedness) {
-    case Closedness::solid:
-      return "closed";
-    case Closedness::tube:
-      return "a tube, open by " + short_length_text(check.gap_m) + " at an end";
-    case Closedness::sheet:
-      return "open both ways";
-  }
-  return "";
 }
 
 Json place_json(const CurvaturePlace& place) {
@@ -103,7 +80,7 @@ void add_content(FactSheet& facts, const Body& body, const SurfaceCheck& check, 
     json["shell_thickness_m"] = *body.shell_thickness_m;
     return add_mass(facts, body, shell.volume_m3, shell.middle_m, json);
   }
-  if (check.closedness != Closedness::solid) return;
+  if (check.closing.closedness != Closedness::solid) return;
   json["normals_outward"] = check.mass.volume_m3 > 0.0;
   add_mass(facts, body, std::abs(check.mass.volume_m3), check.mass.middle_m, json);
   add_thickness(facts, check, json);
@@ -131,9 +108,10 @@ void add_places(const SurfaceCheck& check, Json& json) {
 
 std::vector<std::string> problems_of(const Body& body, const SurfaceCheck& check) {
   std::vector<std::string> problems;
-  const bool solid = check.closedness == Closedness::solid;
+  const bool solid = check.closing.closedness == Closedness::solid;
   if (!solid && !body.shell_thickness_m) {
-    problems.push_back("open by " + short_length_text(check.gap_m) + ", and no shell with a thickness");
+    problems.push_back("open by " + short_length_text(check.closing.gap_m) +
+                       ", and no shell with a thickness");
   }
   if (solid && !(check.mass.volume_m3 > 0.0)) problems.emplace_back("its normals point inwards");
   if (!check.self_meetings.empty()) {
@@ -161,9 +139,9 @@ Json add_check_facts(FactSheet& facts, const Body& body, const SurfaceCheck& che
   Json json = {{"name", body.name}, {"sound", problems.empty()}, {"problems", problems}};
   facts.add("Body", body.name + ": " + (problems.empty() ? "sound" : "not sound"), "", nullptr);
   for (const std::string& problem : problems) facts.add("  Problem", problem, "", nullptr);
-  facts.add("  Surface", closedness_text(check), "", nullptr);
-  json["closedness"] = name_of(check.closedness);
-  json["gap_m"] = check.gap_m;
+  facts.add("  Surface", closing_text(check.closing), "", nullptr);
+  json["closedness"] = name_of(check.closing.closedness);
+  json["gap_m"] = check.closing.gap_m;
   add_content(facts, body, check, json);
   json["curvature"] = curvature_facts(facts, check.curvature);
   json["smallest_convex_radius_m"] = radius_json(check.curvature.largest.curvature_per_m);

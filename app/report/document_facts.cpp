@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 
+#include "app/report/closing_text.h"
 #include "app/report/quantity_text.h"
 #include "app/report/region_text.h"
 #include "app/report/surface_extent.h"
@@ -67,6 +68,8 @@ void add_document_facts(FactSheet& facts, const Document& document) {
   facts.add("Along v", direction_text(body.surface.v), "", nullptr);
   facts.add("", "", "surfaces",
             Json::array({{{"u", direction_facts(body.surface.u)}, {"v", direction_facts(body.surface.v)}}}));
+  const Closing closing = closing_of(body.surface);
+  facts.add("Surface", closing_text(closing), "closedness", name_of(closing.closedness));
   add_material_facts(facts, body.material);
   add_region_facts(facts, body);
   facts.add("Fixing planes", std::to_string(document.scene.planes.size()), "fixing_planes",

@@ -43,6 +43,9 @@ void add_body(FactSheet& facts, const FittedBody& body, Json& list) {
             kind + ", " + size_text(body.size_m) + ", " + control_text(body.surface) + " control points", "",
             nullptr);
   facts.add("  Scan to surface", deviation_text(body.errors.data_to_surface), "", nullptr);
+  if (body.errors.strays > 0) {
+    facts.add("  With strays", deviation_text(body.errors.all_to_surface), "", nullptr);
+  }
   facts.add("  Surface to scan",
             deviation_text(body.errors.surface_to_data) + "; " + percent_text(body.errors.unseen_share) +
                 " of it was not scanned",
@@ -57,6 +60,7 @@ void add_body(FactSheet& facts, const FittedBody& body, Json& list) {
                   {"size_mm", millimetres(body.size_m)},
                   {"points", body.points_m.size()},
                   {"data_to_surface", deviation_json(body.errors.data_to_surface)},
+                  {"strays_too_to_surface", deviation_json(body.errors.all_to_surface)},
                   {"surface_to_data", deviation_json(body.errors.surface_to_data)},
                   {"unseen_share", body.errors.unseen_share},
                   {"folds", body.folds.folds},
@@ -68,7 +72,9 @@ void add_body(FactSheet& facts, const FittedBody& body, Json& list) {
 Deviation deviation_of_all(const ScanFit& fit) {
   std::vector<double> distances;
   for (const FittedBody& body : fit.bodies) {
-    distances.insert(distances.end(), body.errors.distance_m.begin(), body.errors.distance_m.end());
+    for (std::size_t p = 0; p < body.errors.distance_m.size(); ++p) {
+      if (!body.errors.is_stray[p]) distances.push_back(body.errors.distance_m[p]);
+    }
   }
   return deviation_of(std::move(distances));
 }
@@ -79,13 +85,18 @@ void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit) 
   const Vector3 size = size_of_all(fit);
   facts.add("Size", size_text(size), "size_mm", millimetres(size));
   std::size_t used = 0;
-  for (const FittedBody& body : fit.bodies) used += body.points_m.size();
+  std::size_t strays = 0;
+  for (const FittedBody& body : fit.bodies) {
+    strays += body.errors.strays;
+    used += body.points_m.size() - body.errors.strays;
+  }
   std::string text = std::to_string(used) + " used of " + std::to_string(file.points_read) + " read";
   const auto left = [&](std::size_t count, const char* why) {
     if (count > 0) text += ", " + std::to_string(count) + " " + why;
   };
   left(file.points_skipped, "no numbers");
   left(fit.outliers, "apart from all others");
+  left(strays, "off the surface, unlike those around them");
   left(fit.dust, "in specks");
   left(fit.other_islands, "on other islands");
   facts.add("Points", text, "points_read", file.points_read);
@@ -93,6 +104,7 @@ void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit) 
   facts.add("", "", "points_left_out",
             {{"not_a_number", file.points_skipped},
              {"outliers", fit.outliers},
+             {"strays", strays},
              {"specks", fit.dust},
              {"other_islands", fit.other_islands}});
   facts.add("Islands", std::to_string(fit.islands), "islands", fit.islands);

@@ -7,7 +7,8 @@
 
 namespace spoonbill {
 
-// Of all bodies together: the largest, the 95th percentile and the mean of their points' distances.
+// Of all bodies together: the largest, the 95th percentile and the mean of the distances of their points but
+// strays.
 Deviation deviation_of_all(const ScanFit& fit);
 
 // The scan as it was read and what of it was used; then each body with its errors, and those of all.

@@ -6,60 +6,17 @@
 #include <set>
 #include <utility>
 
+#include "engine/bspline/trimmed_cells.h"
+
 namespace spoonbill {
 
 namespace {
 
-// Of the domain: nearer to a grid line a corner of a loop is moved onto it, so that no sliver is cut off.
-constexpr double snap_share = 1e-9;
-
-struct Lines {
-  std::vector<double> at;  // both ends of the domain included
-  int count = 0;           // of samples: one fewer where the last line is the first again
-  double snap = 0.0;
-
-  explicit Lines(const GridDirection& direction)
-      : at(direction.parameters), count(static_cast<int>(direction.parameters.size())) {
-    const KnotVector& knots = direction.knots;
-    if (knots.is_periodic() && at.back() < knots.domain_end()) at.push_back(knots.domain_end());
-    snap = snap_share * (knots.domain_end() - knots.domain_start());
-  }
-  int cells() const { return static_cast<int>(at.size()) - 1; }
-  bool wraps() const { return cells() == count; }
-  double start() const { return at.front(); }
-  double end() const { return at.back(); }
-
-  double snapped(double parameter) const {
-    const auto after = std::lower_bound(at.begin(), at.end(), parameter);
-    if (after != at.end() && *after - parameter <= snap) return *after;
-    if (after != at.begin() && parameter - *(after - 1) <= snap) return *(after - 1);
-    return parameter;
-  }
-  // The cell that holds it; of a line, the one after it.
-  int cell_of(double parameter) const {
-    const auto after = std::upper_bound(at.begin(), at.end(), parameter) - at.begin();
-    return std::clamp(static_cast<int>(after) - 1, 0, cells() - 1);
-  }
-  // The number of the line that stands there; -1: none.
-  int line_at(double parameter) const {
-    const auto found = std::lower_bound(at.begin(), at.end(), parameter);
-    return found != at.end() && *found == parameter ? static_cast<int>(found - at.begin()) : -1;
-  }
-  // The same for both sides of a seam.
-  double joined(double parameter) const { return wraps() && parameter == end() ? start() : parameter; }
-};
-
-struct Segment {
-  Eigen::Vector2d from, to;
-
-  double low_u() const { return std::min(from.x(), to.x()); }
-  double high_u() const { return std::max(from.x(), to.x()); }
-  double v_at(double u) const {
-    if (u == from.x()) return from.y();
-    if (u == to.x()) return to.y();
-    return from.y() + (u - from.x()) / (to.x() - from.x()) * (to.y() - from.y());
-  }
-};
+double v_at(const TrimmedArea::Edge& edge, double u) {
+  if (u == edge.from.x()) return edge.from.y();
+  if (u == edge.to.x()) return edge.to.y();
+  return edge.from.y() + (u - edge.from.x()) / (edge.to.x() - edge.from.x()) * (edge.to.y() - edge.from.y());
+}
 
 // A side of a piece of a cell: a v at each of two lines of u.
 struct Side {
@@ -69,10 +26,9 @@ struct Side {
 class Cutter {
  public:
   Cutter(const GridDirection& u, const GridDirection& v, const TrimmedArea& area)
-      : u_(u), v_(v), area_(area), segments_(static_cast<std::size_t>(u_.cells() * v_.cells())) {}
+      : u_(u), v_(v), area_(area), cells_(u_, v_, area) {}
 
   TrimmedGrid cut() {
-    for (const TrimmedArea::Edge& edge : area_.edges()) share_out({edge.from, edge.to});
     for (int i = 0; i < u_.cells(); ++i) {
       for (int j = 0; j < v_.cells(); ++j) take_cell(i, j);
     }
@@ -86,52 +42,13 @@ class Cutter {
     std::vector<Eigen::Vector2d> corners;  // counter-clockwise, convex
   };
 
-  std::size_t cell(int i, int j) const { return static_cast<std::size_t>(i * v_.cells() + j); }
-
-  // An edge's parts between grid lines, each to its cell. What lies along a line cuts none.
-  void share_out(const Segment& edge) {
-    std::vector<std::pair<double, Eigen::Vector2d>> points{{0.0, snapped(edge.from)},
-                                                           {1.0, snapped(edge.to)}};
-    for (const int axis : {0, 1}) {
-      const Lines& lines = axis == 0 ? u_ : v_;
-      const auto [low, high] = std::minmax(edge.from[axis], edge.to[axis]);
-      for (auto line = std::upper_bound(lines.at.begin(), lines.at.end(), low);
-           line != lines.at.end() && *line < high; ++line) {
-        const double share = (*line - edge.from[axis]) / (edge.to[axis] - edge.from[axis]);
-        Eigen::Vector2d point = edge.from + share * (edge.to - edge.from);
-        point[axis] = *line;
-        points.emplace_back(share, snapped(point));
-      }
-    }
-    std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (std::size_t p = 0; p + 1 < points.size(); ++p) add({points[p].second, points[p + 1].second});
-  }
-
-  Eigen::Vector2d snapped(const Eigen::Vector2d& point) const {
-    return {u_.snapped(point.x()), v_.snapped(point.y())};
-  }
-
-  void add(const Segment& segment) {
-    const Eigen::Vector2d middle = 0.5 * (segment.from + segment.to);
-    if (middle.x() < u_.start() || middle.x() > u_.end() || middle.y() < v_.start() ||
-        middle.y() > v_.end()) {
-      return;
-    }
-    const bool along_line = (segment.from.x() == segment.to.x() && u_.line_at(middle.x()) >= 0) ||
-                            (segment.from.y() == segment.to.y() && v_.line_at(middle.y()) >= 0);
-    if (segment.from == segment.to || along_line) return;
-    segments_[cell(u_.cell_of(middle.x()), v_.cell_of(middle.y()))].push_back(segment);
-  }
-
   void take_cell(int i, int j) {
-    const std::vector<Segment>& crossing = segments_[cell(i, j)];
-    const double u0 = u_.at[i], u1 = u_.at[i + 1], v0 = v_.at[j], v1 = v_.at[j + 1];
-    if (crossing.empty()) {
-      if (area_.contains(0.5 * (u0 + u1), 0.5 * (v0 + v1))) take_piece(i, j, u0, u1, {v0, v0}, {v1, v1});
-      return;
-    }
+    const TrimmedCells::State state = cells_.state(i, j);
+    const double u0 = u_.at(i), u1 = u_.at(i + 1), v0 = v_.at(j), v1 = v_.at(j + 1);
+    if (state == TrimmedCells::State::kept) take_piece(i, j, u0, u1, {v0, v0}, {v1, v1});
+    if (state != TrimmedCells::State::cut) return;
     std::set<double> lines{u0, u1};
-    for (const Segment& segment : crossing) lines.insert({segment.from.x(), segment.to.x()});
+    for (const TrimmedArea::Edge& edge : cells_.edges(i, j)) lines.insert({edge.from.x(), edge.to.x()});
     for (auto line = lines.begin(); std::next(line) != lines.end(); ++line) {
       take_slab(i, j, *line, *std::next(line));
     }
@@ -139,11 +56,12 @@ class Cutter {
 
   // Between two lines of u, edges lie above each other.
   void take_slab(int i, int j, double first, double last) {
-    const double v0 = v_.at[j], v1 = v_.at[j + 1];
+    const double v0 = v_.at(j), v1 = v_.at(j + 1);
     std::vector<Side> sides{{v0, v0}, {v1, v1}};
-    for (const Segment& segment : segments_[cell(i, j)]) {
-      if (segment.low_u() > first || segment.high_u() < last) continue;
-      sides.push_back({std::clamp(segment.v_at(first), v0, v1), std::clamp(segment.v_at(last), v0, v1)});
+    for (const TrimmedArea::Edge& edge : cells_.edges(i, j)) {
+      const auto [low, high] = std::minmax(edge.from.x(), edge.to.x());
+      if (low > first || high < last) continue;
+      sides.push_back({std::clamp(v_at(edge, first), v0, v1), std::clamp(v_at(edge, last), v0, v1)});
     }
     std::sort(sides.begin(), sides.end(),
               [](const Side& a, const Side& b) { return a.v_first + a.v_last < b.v_first + b.v_last; });
@@ -211,19 +129,19 @@ class Cutter {
   }
 
   std::uint32_t sample(int i, int j) const {
-    return static_cast<std::uint32_t>((i % u_.count) * v_.count + j % v_.count);
+    return static_cast<std::uint32_t>((i % u_.samples()) * v_.samples() + j % v_.samples());
   }
 
   std::uint32_t vertex(const Piece& piece, const Eigen::Vector2d& at) {
     const int line_u = u_.line_at(at.x()), line_v = v_.line_at(at.y());
     if (line_u >= 0 && line_v >= 0) return sample(line_u, line_v);
     const auto [known, added] = numbers_.try_emplace({u_.joined(at.x()), v_.joined(at.y())},
-                                                     static_cast<std::uint32_t>(u_.count * v_.count) +
+                                                     static_cast<std::uint32_t>(u_.samples() * v_.samples()) +
                                                          static_cast<std::uint32_t>(result_.vertices.size()));
     if (!added) return known->second;
     const int i = piece.i, j = piece.j;
-    const double s = (at.x() - u_.at[i]) / (u_.at[i + 1] - u_.at[i]);
-    const double t = (at.y() - v_.at[j]) / (v_.at[j + 1] - v_.at[j]);
+    const double s = (at.x() - u_.at(i)) / (u_.at(i + 1) - u_.at(i));
+    const double t = (at.y() - v_.at(j)) / (v_.at(j + 1) - v_.at(j));
     result_.vertices.push_back({at.x(),
                                 at.y(),
                                 {sample(i, j), sample(i + 1, j), sample(i + 1, j + 1), sample(i, j + 1)},
@@ -231,9 +149,9 @@ class Cutter {
     return known->second;
   }
 
-  const Lines u_, v_;
+  const GridLines u_, v_;
   const TrimmedArea& area_;
-  std::vector<std::vector<Segment>> segments_;  // of each cell
+  const TrimmedCells cells_;
   std::vector<Piece> pieces_;
   std::map<double, std::set<double>> on_u_line_, on_v_line_;
   std::map<std::pair<double, double>, std::uint32_t> numbers_;

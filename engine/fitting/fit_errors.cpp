@@ -33,7 +33,14 @@ void measure_data(const FittedSurface& fit, const FitPoints& points, FitErrors& 
     errors.uv[g] = found.uv;
     errors.distance_m[g] = found.distance_m;
   }
-  errors.data_to_surface = deviation_of(errors.distance_m);
+  std::vector<double> trusted;
+  for (std::size_t g = 0; g < points.given_m.size(); ++g) {
+    errors.is_stray.push_back(fit.trust[points.stands_for[g]] == 0.0);
+    if (!errors.is_stray.back()) trusted.push_back(errors.distance_m[g]);
+  }
+  errors.strays = points.given_m.size() - trusted.size();
+  errors.data_to_surface = deviation_of(std::move(trusted));
+  errors.all_to_surface = deviation_of(errors.distance_m);
 }
 
 std::vector<Vector3> surface_samples(const Surface& surface) {
@@ -68,10 +75,22 @@ double plane_distance(const Vector3& sample, const std::vector<Vector3>& points,
   return std::abs(normal.dot(sample - mean));
 }
 
+// The mean distance to the sixth neighbour, of some of the points: as far as all around a point reach.
+double usual_spacing(const std::vector<Vector3>& points, const NearestPoints& nearest) {
+  constexpr std::size_t neighbours = 6, most = 2000;
+  std::vector<NearestPoints::Found> found;
+  double sum = 0.0, count = 0.0;
+  for (std::size_t p = 0; p < points.size(); p += 1 + points.size() / most, count += 1.0) {
+    nearest.nearest(points[p], neighbours + 1, found);
+    sum += found.back().distance;
+  }
+  return sum / count;
+}
+
 void measure_surface(const FittedSurface& fit, const FitPoints& points, FitErrors& errors) {
   const std::vector<Vector3>& data = points.scan.points_m;
   const NearestPoints nearest(data);
-  const double spacing = mean_edge_length(points.graph);
+  const double spacing = usual_spacing(data, nearest);
   const std::vector<Vector3> samples = surface_samples(fit.surface);
   std::vector<bool> at_rim(points.graph.size(), false);
   for (const Rim& rim : points.rims) {

@@ -198,6 +198,7 @@ void make_nodes(FitPoints& fit) {
 Result<FitPoints> make_fit_points(Scan scan) {
   const bool is_mesh = !scan.triangles.empty();
   FitPoints fit;
+  fit.is_mesh = is_mesh;
   fit.weights.assign(scan.points_m.size(), 1.0);
   if (is_mesh) join(scan);
   fit.given_m = scan.points_m;
@@ -219,6 +220,24 @@ Result<FitPoints> make_fit_points(Scan scan) {
   if (!is_mesh) keep_only(fit, apart);
   make_nodes(fit);
   return fit;
+}
+
+std::vector<Vector2> take_points_as_nodes(FitPoints& points, const std::vector<Vector2>& uv) {
+  const std::size_t count = points.scan.points_m.size(), stride = 1 + count / (4 * node_target);
+  std::vector<Vector3> nodes, places;
+  std::vector<Vector2> node_uv;
+  for (std::size_t p = 0; p < count; p += stride) {
+    nodes.push_back(points.scan.points_m[p]);
+    node_uv.push_back(uv[p]);
+    places.emplace_back(uv[p].x(), uv[p].y(), 0.0);
+  }
+  const NearestPoints nearest(places);
+  for (std::size_t p = 0; p < count; ++p)
+    points.node_of[p] = nearest.nearest({uv[p].x(), uv[p].y(), 0.0}).index;
+  points.node_normals.assign(nodes.size(), Vector3::Zero());
+  points.rims.clear();
+  points.graph = make_point_graph(std::move(nodes), {});
+  return node_uv;
 }
 
 void add_spanning_nodes(FitPoints& points, const std::vector<Vector3>& places_m,

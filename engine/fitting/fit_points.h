@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "engine/fitting/parameterisation.h"
 #include "engine/fitting/point_graph.h"
 #include "engine/fitting/rims.h"
 #include "engine/fitting/scan.h"
@@ -15,7 +16,8 @@ inline constexpr std::size_t node_target = 5000;
 inline constexpr std::uint32_t no_point = 0xffffffffU;
 
 struct FitPoints {
-  Scan scan;  // thinned, cleaned; triangles no longer
+  bool is_mesh = false;  // has no points apart from its surface then
+  Scan scan;             // thinned, cleaned; triangles no longer
   // Of each point given (of a mesh: of each vertex left after joining) the one above that stands for it, or
   // no_point where it was left out; with where it lies.
   std::vector<Vector3> given_m;
@@ -32,6 +34,10 @@ struct FitPoints {
 // Joins the vertices of a mesh, refines its triangles to the nodes' spacing, gives its vertices normals;
 // thins a cloud by voxels and leaves out what lies apart. Refused: fewer than 30 points, no extent.
 Result<FitPoints> make_fit_points(Scan scan);
+
+// Makes some of the points themselves the nodes, without neighbours: for clouds whose parameters are known
+// already, those of the points, and whose neighbours mislead. The nodes' follow.
+std::vector<Vector2> take_points_as_nodes(FitPoints& points, const std::vector<Vector2>& uv);
 
 // Adds nodes that span a hole or a gap; `pairs` join them, whose numbers begin at graph.size(), to others.
 void add_spanning_nodes(FitPoints& points, const std::vector<Vector3>& places_m,

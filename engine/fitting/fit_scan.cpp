@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/fitting/bridging.h"
 #include "engine/fitting/islands.h"
+#include "engine/fitting/profile_map.h"
 #include "engine/fitting/shape_start.h"
 
 namespace spoonbill {
@@ -18,22 +20,36 @@ Vector3 extent_of(const std::vector<Vector3>& points_m) {
   return high - low;
 }
 
-Result<FittedBody> fit_island(FitPoints island, const FitRequest& request, const FitWatch& watch) {
-  const ShapeKind kind = request.kind.value_or(kind_of_shape(island));
-  const auto start = first_parameters(island, kind);
-  if (!start) return start.error();
-  FitSettings settings = request.settings;
+Result<FittedBody> fit_from(FitPoints island, const Parameterisation& start, FitSettings settings,
+                            const FitWatch& watch) {
   settings.watch = watch;
-  auto fit = fit_surface(island, start.value(), settings);
+  auto fit = fit_surface(island, start, settings);
   if (!fit) return fit.error();
   FittedBody body;
   body.errors = measure_errors(fit.value(), island);
   body.surface = std::move(fit->surface);
   body.folds = std::move(fit->folds);
-  body.kind = kind;
+  body.kind = start.kind;
   body.size_m = extent_of(island.given_m);
   body.points_m = std::move(island.given_m);
   return body;
+}
+
+Result<FittedBody> fit_island(FitPoints island, const FitRequest& request, const FitWatch& watch) {
+  const bool may_be_closed = request.kind.value_or(ShapeKind::closed) == ShapeKind::closed;
+  if (may_be_closed && !island.scan.has_normals()) {
+    if (auto start = profile_map(island.scan.points_m)) {
+      start->uv = take_points_as_nodes(island, start->uv);
+      return fit_from(std::move(island), *start, request.settings, watch);
+    }
+  }
+  if (request.islands == IslandChoice::bridge && island.spanning_nodes > 0 &&
+      request.kind.value_or(ShapeKind::closed) != ShapeKind::closed) {
+    return Error{"bridged islands make a closed body; leave --kind out"};
+  }
+  const auto start = first_parameters(island, request.kind.value_or(kind_of_shape(island)));
+  if (!start) return start.error();
+  return fit_from(std::move(island), start.value(), request.settings, watch);
 }
 
 }  // namespace
@@ -48,6 +64,12 @@ Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
   result.dust = islands.dust_points;
   if (islands.islands.empty())
     return Error{"its points hang together nowhere; they are too few or too noisy"};
+  if (request.islands == IslandChoice::bridge && islands.islands.size() > 1) {
+    auto whole = bridged(std::move(islands.islands));
+    if (!whole) return whole.error();
+    islands.islands.clear();
+    islands.islands.push_back(std::move(whole).value());
+  }
   if (request.islands == IslandChoice::largest) {
     for (std::size_t k = 1; k < islands.islands.size(); ++k) {
       result.other_islands += islands.islands[k].given_m.size();

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "engine/fitting/closest_parameters.h"
+#include "engine/fitting/nearest_points.h"
 #include "engine/fitting/refine_knots.h"
 
 namespace spoonbill {
@@ -13,14 +15,20 @@ namespace {
 constexpr int degree = 3;
 constexpr int first_controls = 10;
 constexpr double growth = 1.35;
-constexpr double first_fairness = 1e-2, last_fairness = 2e-4;
+constexpr double first_fairness = 1e-2, last_fairness = 3e-4;
 constexpr int projection_steps = 3;
-constexpr int fold_rounds = 12;
-constexpr double most_fairness = 1.0;
+constexpr int fold_rounds = 30, relaxing_rounds = 10;
+constexpr double most_fairness = 10.0;
 constexpr double huber_deviations = 3.0;
+constexpr double stray_deviations = 5.0, most_strays = 0.15;
+constexpr std::size_t stray_neighbours = 15;
+constexpr int point_round_count = 3;
 // Of a node that spans a hole, against the others': it is a guess.
-constexpr double spanning_weight = 0.4;
+constexpr double spanning_weight = 0.15;
 // A span with less than this share of the mean's data is stiffened, by up to this factor.
+constexpr std::size_t pole_columns = 3;
+constexpr double pole_weight = 0.5;  // of a pole, in spans' worth of points
+constexpr double least_pole_size = 0.02;
 constexpr double seen_share = 0.3, unseen_fairness = 3.0;
 
 // What is fitted: the nodes at first, then all points.
@@ -45,8 +53,10 @@ class Fitter {
   bool closed() const { return kind_ == ShapeKind::closed; }
   bool periodic() const { return kind_ != ShapeKind::sheet; }
   Status solve(Data& data);
+  void take_poles();
   void project(Data& data, bool smooth);
   void take_trust(Data& data) const;
+  void distrust_strays();
   void smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const;
   bool within_tolerance(const Data& data) const;
   bool grow();
@@ -54,6 +64,9 @@ class Fitter {
   Status node_rounds();
   Status point_rounds();
   void stiffen_folds();
+  void relax_folds();
+  bool in_folded_span(const Vector2& uv) const;
+  Vector2 kept_inside(Vector2 uv) const;
   Status unfold();
   void set_fairness(double fairness, const Data& data);
   bool tell(double share) const { return !settings_->watch || settings_->watch(share); }
@@ -67,8 +80,10 @@ class Fitter {
   std::vector<double> node_weights_, all_weights_;
   std::vector<Vector3> all_points_m_;
   Data nodes_, all_;
+  std::vector<std::pair<Vector3, double>> poles_;  // and their v
   Surface surface_;
   FoldCheck folds_;
+  std::vector<double> u_breaks_, v_breaks_;  // of the last knots
 };
 
 KnotVector first_knots(bool is_periodic, int count) {
@@ -101,6 +116,7 @@ Fitter::Fitter(const FitPoints& points, const Parameterisation& start, const Fit
   }
   nodes_ = {points.graph.points_m, node_weights_, start.uv, std::vector<double>(points.graph.size(), 0.0),
             std::vector<double>(points.graph.size(), 1.0)};
+  if (closed()) take_poles();
 }
 
 // More where there is little data: all of it where there is none.
@@ -121,19 +137,58 @@ void Fitter::set_fairness(double fairness, const Data& data) {
     mean += data.weights[p] / static_cast<double>(weight.size());
   }
   fairness_.resize(weight.size());
-  for (std::size_t s = 0; s < weight.size(); ++s) {
-    const double seen = std::min(1.0, weight[s] / (seen_share * mean));
-    fairness_[s] = fairness * std::pow(unseen_fairness, 1.0 - seen);
+  for (std::size_t t = 0; t < v_spans; ++t) {
+    double column = 0.0;
+    for (std::size_t s = 0; s < u_spans; ++s)
+      column += weight[s * v_spans + t] / static_cast<double>(u_spans);
+    // Spans about a pole are small, and have few points to hold them against their stiffness.
+    const bool at_pole = closed() && std::min(t, v_spans - 1 - t) < pole_columns;
+    const double size = at_pole ? std::clamp(column / mean, least_pole_size, 1.0) : 1.0;
+    for (std::size_t s = 0; s < u_spans; ++s) {
+      const double seen = std::min(1.0, weight[s * v_spans + t] / (seen_share * size * mean));
+      fairness_[s * v_spans + t] = fairness * size * std::pow(unseen_fairness, 1.0 - seen);
+    }
   }
 }
 
 Status Fitter::solve(Data& data) {
   std::vector<double> weights(data.weights.begin(), data.weights.end());
   for (std::size_t p = 0; p < weights.size(); ++p) weights[p] *= data.trust[p];
-  auto surface = fit_scattered(structure_, {data.points_m, data.uv, weights}, fairness_);
+  std::vector<Vector3> points(data.points_m.begin(), data.points_m.end());
+  std::vector<Vector2> uv = data.uv;
+  const double span_weight =
+      std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(fairness_.size());
+  for (const auto& [place, v] : poles_) {
+    points.push_back(place);
+    uv.emplace_back(0.0, v);
+    weights.push_back(pole_weight * span_weight);
+  }
+  auto surface = fit_scattered(structure_, {points, uv, weights}, fairness_);
   if (!surface) return surface.error();
   surface_ = std::move(surface).value();
   return {};
+}
+
+// Where the poles were at first: else the surface may reach beyond the points there.
+void Fitter::take_poles() {
+  constexpr double near = 0.02;
+  for (const double v : {0.0, 1.0}) {
+    Vector3 sum = Vector3::Zero();
+    double count = 0.0;
+    bool exact = false;
+    for (std::size_t n = 0; n < nodes_.uv.size(); ++n) {
+      const double away = std::abs(nodes_.uv[n].y() - v);
+      if (exact || !(away < near)) continue;  // also NaN
+      if (away == 0.0) {
+        exact = true;
+        sum.setZero();
+        count = 0.0;
+      }
+      sum += nodes_.points_m[n];
+      count += 1.0;
+    }
+    if (count > 0.0) poles_.emplace_back(sum / count, v);
+  }
 }
 
 void Fitter::smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const {
@@ -192,6 +247,44 @@ void Fitter::take_trust(Data& data) const {
       std::max({huber_deviations * 1.4826 * at(0.5), at(0.95), 1e-9 * size_of(points_->scan.points_m)});
   for (std::size_t p = 0; p < data.trust.size(); ++p) {
     data.trust[p] = data.distance_m[p] <= reach ? 1.0 : reach / data.distance_m[p];
+  }
+}
+
+// Of a cloud, what lies off the surface otherwise than the points around it in (u, v): where the surface is
+// wrong, all of them lie off alike.
+void Fitter::distrust_strays() {
+  if (points_->is_mesh) return;
+  const Vector2 scale(static_cast<double>(span_count(structure_.u)),
+                      static_cast<double>(span_count(structure_.v)));
+  const std::size_t count = points_->scan.points_m.size();
+  std::vector<Vector3> places;
+  std::vector<double> heights;
+  for (std::size_t p = 0; p < count; ++p) {
+    const SurfacePoint at = evaluate(surface_, all_.uv[p].x(), all_.uv[p].y());
+    const Vector3 normal = at.du.cross(at.dv).normalized();
+    places.emplace_back(all_.uv[p].x() * scale.x(), all_.uv[p].y() * scale.y(), 0.0);
+    heights.push_back(normal.dot(all_.points_m[p] - at.position_m));
+  }
+  const NearestPoints nearest(places);
+  std::vector<NearestPoints::Found> found;
+  std::vector<double> near, off(count);
+  for (std::size_t p = 0; p < count; ++p) {
+    nearest.nearest(places[p], stray_neighbours, found);
+    near.clear();
+    for (const NearestPoints::Found& other : found) near.push_back(heights[other.index]);
+    const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
+    std::nth_element(near.begin(), middle, near.end());
+    off[p] = std::abs(heights[p] - *middle);
+  }
+  std::vector<double> sorted = off;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double reach = std::max(stray_deviations * 1.4826 * *middle, 1e-6 * size_of(points_->scan.points_m));
+  const auto strays = std::count_if(off.begin(), off.end(), [&](double height) { return height > reach; });
+  // More are no strays, but what the surface cannot follow.
+  if (static_cast<double>(strays) > most_strays * static_cast<double>(count)) return;
+  for (std::size_t p = 0; p < count; ++p) {
+    if (off[p] > reach) all_.trust[p] = 0.0;
   }
 }
 
@@ -277,12 +370,13 @@ Status Fitter::point_rounds() {
   all_.weights = all_weights_;
   all_.distance_m.assign(all_.uv.size(), 0.0);
   all_.trust.assign(all_.uv.size(), 1.0);
-  for (int round = 0; round < 2; ++round) {
+  for (int round = 0; round < point_round_count; ++round) {
     project(all_, false);
     take_trust(all_);
+    if (round > 0) distrust_strays();
     set_fairness(last_fairness, all_);
     if (Status solved = solve(all_); !solved) return solved;
-    if (!tell(0.7 + 0.1 * round)) return Error{"stopped before the fit was done"};
+    if (!tell(0.7 + 0.05 * round)) return Error{"stopped before the fit was done"};
   }
   return {};
 }
@@ -305,6 +399,65 @@ void Fitter::stiffen_folds() {
   }
 }
 
+// Parameters of points in spans that fold, moved towards the means of their neighbours': as in the harmonic
+// map that they come from, where none crosses another.
+void Fitter::relax_folds() {
+  const PointGraph& graph = points_->graph;
+  const std::size_t count = points_->scan.points_m.size(), spanning = points_->spanning_nodes;
+  std::vector<std::vector<std::uint32_t>> of_node(graph.size());
+  for (std::uint32_t p = 0; p < count; ++p) of_node[points_->node_of[p]].push_back(p);
+  for (std::uint32_t k = 0; k < spanning; ++k) {
+    of_node[graph.size() - spanning + k].push_back(static_cast<std::uint32_t>(count) + k);
+  }
+  // A node lies where its first point does.
+  const auto place = [&](std::uint32_t node) {
+    return of_node[node].empty() ? no_point : of_node[node].front();
+  };
+  std::vector<std::uint32_t> folded;
+  for (std::uint32_t n = 0; n < graph.size(); ++n) {
+    if (place(n) != no_point && in_folded_span(all_.uv[place(n)])) folded.push_back(n);
+  }
+  for (int round = 0; round < relaxing_rounds; ++round) {
+    for (const std::uint32_t n : folded) {
+      const Vector2 before = all_.uv[place(n)];
+      Vector2 shift = Vector2::Zero();
+      double near = 0.0;
+      for (const std::uint32_t other : graph.of(n)) {
+        if (place(other) == no_point) continue;
+        Vector2 way = all_.uv[place(other)] - before;
+        if (periodic()) way.x() = wrapped(way.x());
+        shift += way;
+        near += 1.0;
+      }
+      if (near == 0.0) continue;
+      for (const std::uint32_t p : of_node[n]) all_.uv[p] = kept_inside(all_.uv[p] + 0.7 / near * shift);
+    }
+  }
+}
+
+bool Fitter::in_folded_span(const Vector2& uv) const {
+  const auto span_of = [](const std::vector<double>& breaks, double at) {
+    const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, at);
+    return static_cast<std::size_t>(above - breaks.begin()) - 1;
+  };
+  const std::vector<double>&u = u_breaks_, &v = v_breaks_;
+  const std::size_t columns = v.size() - 1, rows = u.size() - 1;
+  const std::size_t row = span_of(u, uv.x()), column = span_of(v, uv.y());
+  for (std::size_t s = row + rows - 1; s <= row + rows + 1; ++s) {
+    for (std::size_t t = column == 0 ? 0 : column - 1; t <= std::min(columns - 1, column + 1); ++t) {
+      if (folds_.span_folds[s % rows * columns + t]) return true;
+    }
+  }
+  return false;
+}
+
+// Wrapped in u where it is periodic, else on the nearest edge.
+Vector2 Fitter::kept_inside(Vector2 uv) const {
+  uv.y() = std::clamp(uv.y(), 0.0, 1.0);
+  uv.x() = periodic() ? uv.x() - std::floor(uv.x()) : std::clamp(uv.x(), 0.0, 1.0);
+  return uv;
+}
+
 Status Fitter::unfold() {
   std::vector<Vector3> normals = points_->scan.normals;
   if (!normals.empty()) {
@@ -312,6 +465,8 @@ Status Fitter::unfold() {
                    points_->node_normals.end() - static_cast<std::ptrdiff_t>(points_->spanning_nodes),
                    points_->node_normals.end());
   }
+  u_breaks_ = structure_.u.breakpoints();
+  v_breaks_ = structure_.v.breakpoints();
   project(all_, false);
   folds_ = check_folds(surface_, {all_.uv, normals});
   Surface least_folded = surface_;
@@ -319,8 +474,9 @@ Status Fitter::unfold() {
   std::vector<Vector2> least_uv = all_.uv;
   for (int round = 0; round < fold_rounds && folds_.folds > 0; ++round) {
     stiffen_folds();
+    relax_folds();
     if (Status solved = solve(all_); !solved) return solved;
-    project(all_, false);
+    if (round % 2 == 1) project(all_, false);
     folds_ = check_folds(surface_, {all_.uv, normals});
     if (folds_.folds < least.folds) {
       least_folded = surface_;

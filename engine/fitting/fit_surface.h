@@ -24,7 +24,7 @@ struct FittedSurface {
   Surface surface;
   std::vector<Vector2> uv;         // of each point
   std::vector<double> distance_m;  // of each point
-  std::vector<double> trust;       // of each point, 1 to 0: what an outlier weighs less
+  std::vector<double> trust;       // of each point, 1 to 0: what is far off weighs less, a stray nothing
   FoldCheck folds;
 };
 

@@ -13,6 +13,7 @@ FitPoints island_of(const FitPoints& whole, const std::vector<std::uint32_t>& pa
                     std::uint32_t part) {
   std::vector<std::uint32_t> nodes, place(whole.graph.size(), 0);
   FitPoints island;
+  island.is_mesh = whole.is_mesh;
   for (std::uint32_t n = 0; n < whole.graph.size(); ++n) {
     if (part_of_node[n] != part) continue;
     place[n] = static_cast<std::uint32_t>(nodes.size());

@@ -12,6 +12,9 @@
 namespace spoonbill {
 namespace {
 
+// Of a span's worth of points: u may run around a pole a little unevenly.
+constexpr double smooth_pole_share = 0.1;
+
 // Products of each control point's basis function with those of its neighbours to `degree` places away, so
 // that a sum needs no search: entry (control, du + degree, dv + degree).
 class NormalEquations {
@@ -44,6 +47,7 @@ class NormalEquations {
     }
   }
 
+  void set_pole_weight(double weight) { pole_weight_ = weight; }
   Result<Surface> solve(const SurfaceStructure& structure) const;
 
  private:
@@ -51,10 +55,14 @@ class NormalEquations {
     return static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column);
   }
   std::vector<int> unknowns(const SurfaceStructure& structure, int& count) const;
+  template <class Put>
+  void add_smooth_pole(const SurfaceStructure& structure, const std::vector<int>& unknown, int pole, int ring,
+                       const Put& put) const;
 
   int pu_, pv_, rows_, columns_, width_, block_;
   std::vector<double> products_;
   std::vector<Vector3> right_;
+  double pole_weight_ = 0.0;
 };
 
 // The unknown of each control point: those of a pole share one.
@@ -70,6 +78,27 @@ std::vector<int> NormalEquations::unknowns(const SurfaceStructure& structure, in
     }
   }
   return unknown;
+}
+
+// Around a pole with a tangent plane the derivative by v turns once, so that its mean is zero: the pole is
+// the mean of the ring of control points next to it, each with the integral of its basis function.
+template <class Put>
+void NormalEquations::add_smooth_pole(const SurfaceStructure& structure, const std::vector<int>& unknown,
+                                      int pole, int ring, const Put& put) const {
+  const std::vector<double>& knots = structure.u.extended_knots();
+  const double period = structure.u.domain_end() - structure.u.domain_start();
+  std::vector<std::pair<int, double>> terms{{unknown[index(0, pole)], -1.0}};
+  for (int i = 0; i < rows_; ++i) terms.emplace_back(unknown[index(i, ring)], 0.0);
+  // extended[k] to extended[k + degree + 1] is where the basis function of the span k + degree, j = 0 lives.
+  for (int k = 0; k < rows_; ++k) {
+    const auto first = static_cast<std::size_t>(k), last = first + static_cast<std::size_t>(pu_) + 1;
+    const int control = structure.u.control_index(k + pu_, 0);
+    terms[static_cast<std::size_t>(control) + 1].second +=
+        (knots[last] - knots[first]) / ((pu_ + 1) * period);
+  }
+  for (const auto& [a, at_a] : terms) {
+    for (const auto& [b, at_b] : terms) put(a, b, pole_weight_ * at_a * at_b);
+  }
 }
 
 Result<Surface> NormalEquations::solve(const SurfaceStructure& structure) const {
@@ -99,6 +128,8 @@ Result<Surface> NormalEquations::solve(const SurfaceStructure& structure) const 
       }
     }
   }
+  if (structure.pole_at_start) add_smooth_pole(structure, unknown, 0, 1, put);
+  if (structure.pole_at_end) add_smooth_pole(structure, unknown, columns_ - 1, columns_ - 2, put);
   Eigen::SparseMatrix<double> matrix(count, count);
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
@@ -189,6 +220,7 @@ Result<Surface> fit_scattered(const SurfaceStructure& structure, const Scattered
                   &data.points_m[p]);
   }
   add_fairness(structure, weight, fairness, equations);
+  equations.set_pole_weight(smooth_pole_share * weight);
   return equations.solve(structure);
 }
 

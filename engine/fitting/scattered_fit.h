@@ -23,7 +23,8 @@ struct SurfaceStructure {
 //   sum w |S(u, v) - p|^2 + mean(w) sum over spans f (|S_uu| du^2)^2 + 2 (|S_uv| du dv)^2 + (|S_vv| dv^2)^2
 // where mean(w) is the points' weight for each span, du, dv are the span's sides and f its fairness
 // (u-major, one for each pair of spans). The squared conditioning of normal equations is harmless at the
-// accuracy of scans; fairness above 1e-9 keeps them definite. Points with a NaN parameter are passed over.
+// accuracy of scans; fairness above 1e-9 keeps them definite. A pole is besides held in the mean of the ring
+// next to it, as on a surface with a tangent plane there. Points with a NaN parameter are passed over.
 struct ScatteredData {
   std::span<const Vector3> points_m;
   std::span<const Vector2> uv;

@@ -13,7 +13,7 @@ namespace spoonbill {
 namespace {
 
 constexpr double sheet_share = 0.12;
-// Of a mesh that faces out of its rim, as a shell seen from outside does: it may have lost its foot.
+// Of what faces out of its rim, as a body seen from outside does, or may do so: it may have lost its foot.
 constexpr double outward_sheet_share = 0.3;
 constexpr double tube_share = 0.75;
 constexpr double roundness = 0.12;
@@ -203,7 +203,7 @@ bool faces_outwards(const FitPoints& island) {
   for (std::size_t n = 0; n < areas.size(); ++n) {
     volume += areas[n] * (island.graph.points_m[n] - axes.middle).dot(island.node_normals[n]);
   }
-  return volume > 0.0;
+  return volume >= 0.0;  // zero without normals
 }
 
 }  // namespace
@@ -224,6 +224,11 @@ ShapeKind kind_of_shape(const FitPoints& island) {
   const double share = area_within(island.graph, island.rims[0]).norm() / area;
   return share > (faces_outwards(island) ? outward_sheet_share : sheet_share) ? ShapeKind::sheet
                                                                               : ShapeKind::closed;
+}
+
+void span_all_holes(FitPoints& island) {
+  span_holes(island, 0);
+  island.rims.clear();
 }
 
 Result<Parameterisation> first_parameters(FitPoints& island, ShapeKind kind) {

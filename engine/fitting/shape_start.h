@@ -13,6 +13,9 @@ namespace spoonbill {
 // tube, smaller ones are holes of a closed shape.
 ShapeKind kind_of_shape(const FitPoints& island);
 
+// Adds nodes over all holes and open ends.
+void span_all_holes(FitPoints& island);
+
 // Spans the holes of an island (adds nodes to it) and lays its nodes out in (u, v). Poles of a closed shape
 // lie on its axis where it is round about one, else as far apart as its surface allows. Refused: a shape that
 // cannot be laid out so.

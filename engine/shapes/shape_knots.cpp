@@ -142,8 +142,8 @@ void ShapeKnots::even_out() {
   const auto cut_beside = [&](std::size_t k, std::size_t beside) {
     const double most = largest_step * (ends_[beside + 1] - ends_[beside]) / spans_[beside];
     const double length = ends_[k + 1] - ends_[k];
-    if (length / spans_[k] <= most * (1.0 + 1e-9)) return false;
-    spans_[k] = static_cast<int>(std::ceil(length / most - 1e-9));
+    if (!(length / spans_[k] > most * (1.0 + 1e-6))) return false;
+    ++spans_[k];
     return true;
   };
   for (bool changed = true; changed;) {

@@ -70,10 +70,36 @@ std::optional<SurfaceSpot> deepest_of(const std::vector<SampleNearMesh>& samples
   return SurfaceSpot{u, v, evaluate(mapping.current(), u, v).position_m, deepest->mesh.gap_m};
 }
 
+bool is_there(const BodyState& body, double u, double v) {
+  return !body.trim || body.trim->contains(u, v);
+}
+
+void keep_what_is_there(SurfaceProximity& proximity, const BodyState& first, const BodyState& second) {
+  if (!first.trim && !second.trim) return;
+  const auto keep = [](const BodyState& of, const BodyState& other) {
+    return [&](const NearPoint& near) {
+      return is_there(of, near.u, near.v) && is_there(other, near.other_u, near.other_v);
+    };
+  };
+  proximity.keep_if(keep(first, second), keep(second, first));
+}
+
+void keep_what_is_there(MeshProximity& proximity, const BodyState& body) {
+  if (!body.trim) return;
+  const Grid& grid = body.mapping().nested().grid;
+  proximity.keep_if(
+      [&](const SampleNearMesh& near) {
+        return is_there(body, grid.u.parameters[near.sample / grid.columns()],
+                        grid.v.parameters[near.sample % grid.columns()]);
+      },
+      [&](const VertexNearSurface& near) { return is_there(body, near.u, near.v); });
+}
+
 void find_near(SurfaceProximity& proximity, const BodyState& first, const BodyState& second, double margin) {
   const MaybeShell one{&first.mapping().current(), first.shell_thickness_m},
       other{&second.mapping().current(), second.shell_thickness_m};
   proximity.find(*one.surface, *other.surface, margin + one.thickness_m + other.thickness_m);
+  keep_what_is_there(proximity, first, second);
   if (!(one.thickness_m > 0.0 || other.thickness_m > 0.0)) return;
   proximity.keep_if([&](NearPoint& near) { return settle_shell_gap(one, other, margin, near); },
                     [&](NearPoint& near) { return settle_shell_gap(other, one, margin, near); });
@@ -84,6 +110,7 @@ void find_near(MeshProximity& proximity, const BodyState& first, const BodyState
   const DeformingMesh& mesh = second.mesh()->current();
   const double thickness = first.shell_thickness_m;
   proximity.find(surface, mesh, margin + thickness);
+  keep_what_is_there(proximity, first);
   if (!(thickness > 0.0)) return;
   const Grid& grid = first.mapping().nested().grid;
   proximity.keep_if(

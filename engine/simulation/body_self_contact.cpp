@@ -12,6 +12,11 @@ bool BodySelfContact::add_contacts(const NumberedBody& body, BodyContacts& conta
   if (!proximity_) return true;
   const double margin = contact_margin_cells * static_cast<double>(body.state->lattice.cell_size_m());
   proximity_->find(body.state->mapping().current(), margin);
+  if (const TrimmedArea* const trim = body.state->trim.get()) {
+    proximity_->keep_if([&](const NearPoint& near) {
+      return trim->contains(near.u, near.v) && trim->contains(near.other_u, near.other_v);
+    });
+  }
   const bool complete = add_near_points(body, body, proximity_->points(), contacts);
   return complete && !proximity_->overflow();
 }

@@ -52,7 +52,7 @@ ToolContact::ToolContact(std::span<const BodyState> bodies, const ToolModel& mod
     : constraints_(constraint_capacity) {
   contacts_.reserve(bodies.size());
   for (const BodyState& body : bodies) {
-    contacts_.push_back({SurfaceCollider(body.mapping().nested()), nullptr, {}});
+    contacts_.push_back({SurfaceCollider(body.mapping().nested(), body.trim), nullptr, {}});
     if (!model.surface) continue;
     contacts_.back().proximity = std::make_unique<SurfaceProximity>(body.mapping().nested(), *model.nested);
   }
@@ -129,8 +129,9 @@ void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& 
   if (is_surface()) return find_near(contact, body, margin, hold);
   shape_ = shape_of(tool, model, hold);
   const double thickness = body.shell_thickness_m;
-  contact.collision =
-      contact.collider.collide(body.mapping().current(), shape_, margin + thickness, !(thickness > 0.0));
+  // A trimmed skin is open: through its holes a tool comes inside.
+  const bool closed = !(thickness > 0.0) && !body.trim;
+  contact.collision = contact.collider.collide(body.mapping().current(), shape_, margin + thickness, closed);
   if (thickness > 0.0) take_face(contact, body, margin);
 }
 
@@ -175,6 +176,10 @@ void ToolContact::find_near(BodyContact& contact, const BodyState& body, double 
     const MaybeShell shell{&surface, thickness}, solid{placed_.get(), 0.0};
     proximity.keep_if([&](NearPoint& near) { return settle_shell_gap(shell, solid, margin, near); },
                       [&](NearPoint& near) { return settle_shell_gap(solid, shell, margin, near); });
+  }
+  if (body.trim) {
+    proximity.keep_if([&](const NearPoint& near) { return body.trim->contains(near.u, near.v); },
+                      [&](const NearPoint& near) { return body.trim->contains(near.other_u, near.other_v); });
   }
   contact.collision = {};
   contact.collision.overflow = proximity.overflow();

@@ -10,64 +10,12 @@ namespace spoonbill {
 
 namespace {
 
-constexpr int edge_samples = 512;
 constexpr int parts = 4;
 // Of the mean over the surface, the area that a parameter step may shrink to.
 constexpr double least_area_share = 1e-7;
 constexpr std::size_t most_spots = 16;
 // Halved once, elements of usual nets tell loops of half a cell; larger nets are fine enough already.
 constexpr std::size_t large_net = 2500;
-
-double at_share(const KnotVector& knots, double share) {
-  return knots.domain_start() + share * (knots.domain_end() - knots.domain_start());
-}
-
-// `along_u`: of the ends of u, whose edges run along v.
-EdgeGap edge_gap(const Surface& surface, bool along_u) {
-  EdgeGap gap;
-  const KnotVector& knots = along_u ? surface.u : surface.v;
-  if (knots.is_periodic()) return gap;
-  const KnotVector& across = along_u ? surface.v : surface.u;
-  const auto point = [&](double end, double share) {
-    const double t = at_share(across, share);
-    return along_u ? position(surface, end, t) : position(surface, t, end);
-  };
-  const Vector3 first_start = point(knots.domain_start(), 0.0), last_start = point(knots.domain_end(), 0.0);
-  for (int k = 0; k <= edge_samples; ++k) {
-    const double share = static_cast<double>(k) / edge_samples;
-    const Vector3 first = point(knots.domain_start(), share), last = point(knots.domain_end(), share);
-    gap.apart_m = std::max(gap.apart_m, (first - last).norm());
-    gap.first_width_m = std::max(gap.first_width_m, (first - first_start).norm());
-    gap.last_width_m = std::max(gap.last_width_m, (last - last_start).norm());
-  }
-  return gap;
-}
-
-bool runs_around(const EdgeGap& gap) {
-  return gap.apart_m <= closing_tolerance_m;
-}
-
-bool ends_in_points(const EdgeGap& gap) {
-  return gap.first_width_m <= closing_tolerance_m && gap.last_width_m <= closing_tolerance_m;
-}
-
-double widest_end(const EdgeGap& gap) {
-  return runs_around(gap) ? 0.0 : std::max(gap.first_width_m, gap.last_width_m);
-}
-
-void find_closedness(const Surface& surface, SurfaceCheck& check) {
-  check.u_gap = edge_gap(surface, true);
-  check.v_gap = edge_gap(surface, false);
-  const bool around_u = runs_around(check.u_gap), around_v = runs_around(check.v_gap);
-  const bool solid =
-      (around_u && (around_v || ends_in_points(check.v_gap))) || (around_v && ends_in_points(check.u_gap));
-  check.closedness = solid ? Closedness::solid : around_u || around_v ? Closedness::tube : Closedness::sheet;
-  if (solid) return;
-  check.gap_m = around_u   ? widest_end(check.v_gap)
-                : around_v ? widest_end(check.u_gap)
-                           : std::min(std::max(check.u_gap.apart_m, widest_end(check.v_gap)),
-                                      std::max(check.v_gap.apart_m, widest_end(check.u_gap)));
-}
 
 // Cells of a piece whose middle has no area, or whose normal turns by more than a right angle from that of
 // the piece's other cells beside it.
@@ -108,7 +56,7 @@ void find_self_meetings(const Surface& surface, SurfaceCheck& check) {
   }
   SurfaceSelfCollider collider(grid.value());
   SelfQuery query;
-  query.closed = check.closedness == Closedness::solid;
+  query.closed = check.closing.closedness == Closedness::solid;
   check.self_meetings_complete = !collider.collide(surface, query).overflow;
   for (const PairContact& contact : collider.contacts()) {
     const PairParameters& at = contact.pair.at;
@@ -120,13 +68,13 @@ void find_self_meetings(const Surface& surface, SurfaceCheck& check) {
 
 SurfaceCheck check_surface(const Surface& surface) {
   SurfaceCheck check;
-  find_closedness(surface, check);
+  check.closing = closing_of(surface);
   check.mass = enclosed_mass(surface);
   check.curvature = curvature_range(surface);
   check.bending = bending_measure(surface);
   find_bad_spots(surface, check);
   find_self_meetings(surface, check);
-  if (check.closedness == Closedness::solid && check.mass.volume_m3 > 0.0) {
+  if (check.closing.closedness == Closedness::solid && check.mass.volume_m3 > 0.0) {
     check.thinnest = ThicknessSearch(surface).smallest();
   }
   return check;

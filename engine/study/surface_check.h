@@ -7,26 +7,12 @@
 #include <vector>
 
 #include "engine/bspline/surface.h"
+#include "engine/study/closing.h"
 #include "engine/study/curvature_range.h"
 #include "engine/study/enclosed_mass.h"
 #include "engine/study/thickness.h"
 
 namespace spoonbill {
-
-// Edges nearer than this are one.
-inline constexpr double closing_tolerance_m = 1e-6;
-
-enum class Closedness {
-  solid,  // bounds a body: closed around one direction and by poles or itself along the other
-  tube,   // closed around one direction, open along the other
-  sheet,  // open both ways
-};
-
-// Along one direction: how far apart its two ends are. 0 where it is periodic.
-struct EdgeGap {
-  double apart_m = 0.0;                            // between the points of both ends that belong together
-  double first_width_m = 0.0, last_width_m = 0.0;  // how far from a single point each end is
-};
 
 // A place other than a pole where du x dv vanishes, or turns over from one side to the other.
 struct BadSpot {
@@ -41,10 +27,7 @@ struct SelfMeeting {
 };
 
 struct SurfaceCheck {
-  Closedness closedness = Closedness::sheet;
-  EdgeGap u_gap, v_gap;
-  // What is missing to a closed surface: 0 for a solid, the width of the widest open end otherwise.
-  double gap_m = 0.0;
+  Closing closing;
   EnclosedMass mass;  // volume and middle of a solid only
   CurvatureRange curvature;
   double bending = 0.0;  // see bending_measure()

@@ -67,8 +67,12 @@ TEST(Check, SaysWhatIsWrongAndEndsWellAllTheSame) {
   EXPECT_EQ(turned["sound"], false);
   EXPECT_EQ(turned["normals_outward"], false);
 
+  for (double& x : ball.scene.bodies[0].surface.net.x) x = -x;
   ball.scene.bodies[0].shell_thickness_m = 0.05;
   save(place, "thick.json", ball);
+  const Json thick = check_of(place, "thick.json")["bodies"][0];
+  ASSERT_EQ(thick["problems"].size(), 1U);
+  EXPECT_NE(thick["problems"][0].get<std::string>().find("thicker than"), std::string::npos);
   const Outcome lines = run({"check", place.text("inside-out.json")});
   EXPECT_EQ(lines.code, exit_done);
   EXPECT_NE(lines.out.find("not sound"), std::string::npos);

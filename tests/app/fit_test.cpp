@@ -135,6 +135,7 @@ class RealScans : public FitTest {
   void expect_good(const std::string& name, const std::vector<std::string>& options, double size_m) {
     const Json json = json_of_fit((scans_ / name).string(), options);
     ASSERT_TRUE(json.contains("p95_m"));
+    EXPECT_EQ(json.at("kind"), "closed") << name;
     EXPECT_LT(json.at("p95_m").get<double>(), 1e-3) << name;
     EXPECT_LT(json.at("p95_m").get<double>(), 0.01 * size_m) << name;
   }
@@ -152,6 +153,18 @@ TEST_F(RealScans, BowlWithinAMillimetre) {
 
 TEST_F(RealScans, SpoonAsTwoBodiesWithinAMillimetre) {
   expect_good("ycb_031_spoon.ply", {"--islands", "all"}, 0.184);
+}
+
+TEST_F(RealScans, SpoonBridgedIsOneBody) {
+  const Json json = json_of_fit((scans_ / "ycb_031_spoon.ply").string(), {"--islands", "bridge"});
+  ASSERT_TRUE(json.contains("bodies"));
+  EXPECT_EQ(json.at("bodies").size(), 1U);
+  EXPECT_EQ(json.at("islands"), 2);
+  EXPECT_EQ(json.at("kind"), "closed");
+}
+
+TEST_F(RealScans, DepthCameraBowlWithinAMillimetre) {
+  expect_good("blue_bowl.pcd", {}, 0.22);
 }
 
 }  // namespace

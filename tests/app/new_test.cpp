@@ -131,7 +131,10 @@ TEST(New, SaysWhatATorusCannotDo) {
   const Outcome outcome = run({"new", "torus", "--out", place.text("ring.json")});
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;
   EXPECT_NE(outcome.out.find("closed both ways"), std::string::npos);
-  EXPECT_TRUE(read_document(place.path("ring.json")).ok());
+  const Outcome info = run({"info", place.text("ring.json"), "--json"});
+  ASSERT_EQ(info.code, exit_done) << info.err;
+  EXPECT_EQ(json_of(info.out)["closedness"], "solid");
+  EXPECT_TRUE(json_of(info.out)["lattice"].is_null());
 }
 
 TEST(New, RefusesWhatMakesNoShape) {

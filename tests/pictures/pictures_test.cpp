@@ -268,8 +268,8 @@ class MergePictures : public MomentPictures {
     document.name = "handle and bowl";
     document.scene.bodies.push_back(document_of("spoon-bowl").scene.bodies[0]);
     document.view = Json::parse(
-        R"({"camera": {"yaw_deg": 30, "pitch_deg": 44, "target_mm": [84, -2, 0], "distance_mm": 330},
-            "ground_mm": -30, "overlays": {"control_net": true}})");
+        R"({"camera": {"yaw_deg": 30, "pitch_deg": 44, "target_mm": [86, -4, 0], "distance_mm": 350},
+            "ground_mm": -30, "overlays": {"control_net": true, "tool": false}})");
     return document;
   }
   static Document spoon() {

@@ -30,6 +30,12 @@ class SelfProximity {
   // each time. Costs next to nothing where the body is not folded.
   void find(const Surface& surface, double margin_m);
 
+  // Keeps those of the points that `keep` keeps.
+  template <class Keep>
+  void keep_if(const Keep& keep) {
+    near_.keep_if(keep);
+  }
+
   // Of the last find().
   const std::vector<NearPoint>& points() const { return near_.points(); }
   // A capacity was met, and points may be missing. Remedy: fewer control points or a smaller margin.

@@ -37,7 +37,9 @@ double tolerance_of(const ToolShape& tool) {
 
 }  // namespace
 
-SurfaceCollider::SurfaceCollider(const NestedGrid& nested) : levels_(nested) {
+SurfaceCollider::SurfaceCollider(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> trim)
+    : levels_(nested) {
+  if (trim) trimmed_ = std::make_shared<const TrimmedLevels>(nested, std::move(trim));
   const std::size_t count =
       static_cast<std::size_t>(nested.grid.rows()) * static_cast<std::size_t>(nested.grid.columns());
   near_at_.assign(count, 0);
@@ -55,6 +57,11 @@ double SurfaceCollider::reach(double margin) const {
 }
 
 void SurfaceCollider::offer(const ToolShape& tool, double u, double v, const Vector3& point) {
+  if (trimmed_ && !trimmed_->contains(u, v)) return;
+  take_nearer(tool, u, v, point);
+}
+
+void SurfaceCollider::take_nearer(const ToolShape& tool, double u, double v, const Vector3& point) {
   const double distance = tool.distance_within(point, best_.distance_m);
   if (distance >= best_.distance_m) return;
   best_ = {u, v, point, distance};
@@ -82,6 +89,7 @@ void SurfaceCollider::find_nearest(const Surface& surface, const ToolShape& tool
   tolerance_ = tolerance_of(tool);
   cuts_left_ = tool.is_solid() ? cut_capacity : std::numeric_limits<int>::max();
   descend(tool, margin, result);
+  if (trimmed_) offer_rims(surface, tool);
   polish(surface, tool);
   result.samples_evaluated = levels_.samples_evaluated();
   for (const LevelCell& cell : finest_) search_between_samples(surface, tool, cell, result.overflow);
@@ -163,7 +171,7 @@ void SurfaceCollider::descend(const ToolShape& tool, double margin, CollisionRes
   for (int i = 0; i + stride < grid.rows(); i += stride) {
     if (row_bound_[i / stride] > reach(margin)) continue;
     for (int j = 0; j + stride < grid.columns(); j += stride) {
-      if (column_bound_[j / stride] > reach(margin)) continue;
+      if (column_bound_[j / stride] > reach(margin) || is_away({i, j, 0})) continue;
       if (cells_.size() < cell_capacity) {
         cells_.push_back({i, j, 0});
       } else {
@@ -180,7 +188,7 @@ void SurfaceCollider::take_near_samples(const ToolShape& tool, double margin, Co
   for (const LevelCell& cell : finest_) {
     for (int corner = 0; corner < 4; ++corner) {
       const int index = (cell.i + (corner >> 1)) * columns + cell.j + (corner & 1);
-      if (near_at_[index] == query_) continue;
+      if (near_at_[index] == query_ || (trimmed_ && !trimmed_->keeps_sample(index))) continue;
       near_at_[index] = query_;
       const double distance = tool.distance_within(levels_.sample(index), margin + touch_tolerance_m);
       if (distance > margin) continue;
@@ -195,6 +203,7 @@ void SurfaceCollider::take_near_samples(const ToolShape& tool, double margin, Co
 
 void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, double reach,
                                  CollisionResult& result) {
+  if (is_away(cell)) return;
   const CoverSphere sphere = levels_.cover(cell);
   if (tool.is_beyond(sphere.centre, sphere.radius, std::max(reach, 0.0))) return;
   if (levels_.is_finest(cell)) {
@@ -233,6 +242,7 @@ double SurfaceCollider::enough() const {
 // Branch and bound below the finest samples of a cell that could still hide a nearer point.
 void SurfaceCollider::search_between_samples(const Surface& surface, const ToolShape& tool,
                                              const LevelCell& cell, bool& overflow) {
+  if (is_cut(cell)) return search_cut_cell(surface, tool, cell);
   patches_.clear();
   patches_.push_back(whole(cell));
   while (!patches_.empty()) {
@@ -287,6 +297,7 @@ void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
   const SurfaceSpot before = best_;
   if (tool.is_solid()) {
     best_ = polished_on_solid(surface, tool, best_);
+    if (trimmed_ && !trimmed_->contains(best_.u, best_.v)) best_ = before;
   } else {
     polish_by_form(surface, tool);
   }

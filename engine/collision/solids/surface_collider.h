@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "engine/bspline/surface.h"
@@ -12,6 +13,7 @@
 #include "engine/collision/solids/solid_polish.h"
 #include "engine/collision/solids/surface_contact.h"
 #include "engine/collision/solids/tool_shape.h"
+#include "engine/collision/solids/trimmed_levels.h"
 
 namespace spoonbill {
 
@@ -42,7 +44,9 @@ struct Clearance {
 // nearest point. One owner, one thread; allocates only when made. The grid must outlive it.
 class SurfaceCollider {
  public:
-  explicit SurfaceCollider(const NestedGrid& nested);
+  // Of a trimmed surface only what `trim` keeps is there. Nearest points on its loops are those of its
+  // polygons, and in cells that loops cross, what Newton's method finds from samples and loops.
+  explicit SurfaceCollider(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> trim = nullptr);
 
   // The surface must have the grid's knots. `closed` says that the surface bounds a body, so that the tool
   // may be inside it: its depth is then the way along the nearest wall's normal that takes it out. Samples
@@ -96,6 +100,19 @@ class SurfaceCollider {
   bool can_cut(const Patch& patch) const;
   void cut(const Surface& surface, const Patch& patch, const Vector3& centre);
   void offer(const ToolShape& tool, double u, double v, const Vector3& point);
+  void take_nearer(const ToolShape& tool, double u, double v, const Vector3& point);
+  bool is_away(const LevelCell& cell) const { return trimmed_ && trimmed_->is_away(cell); }
+  bool is_cut(const LevelCell& cell) const { return trimmed_ && trimmed_->is_cut(cell); }
+  // The edge of a loop that came nearest, and one that meets it there.
+  struct RimEdges {
+    const TrimmedArea::Edge* first = nullptr;
+    const TrimmedArea::Edge* second = nullptr;
+  };
+  void offer_rims(const Surface& surface, const ToolShape& tool);
+  void offer_rim(const Surface& surface, const ToolShape& tool, const LevelCell& cell, RimEdges& nearest);
+  void narrow(const Surface& surface, const ToolShape& tool, const RimEdges& nearest);
+  void search_cut_cell(const Surface& surface, const ToolShape& tool, const LevelCell& cell);
+  bool touches_cut(const Surface& surface, const ToolShape& tool, const LevelCell& cell);
   void polish(const Surface& surface, const ToolShape& tool);
   void polish_by_form(const Surface& surface, const ToolShape& tool);
   double depth_inside(const ToolShape& tool, const SurfaceContact& nearest) const;
@@ -110,6 +127,7 @@ class SurfaceCollider {
   void add_region(const Surface& surface, const ToolShape& tool, int begin, int end);
 
   SurfaceLevels levels_;
+  std::shared_ptr<const TrimmedLevels> trimmed_;  // null: all of the surface is there
   // Of the tool's distance, for the elements of each span of v and of each span of u.
   std::vector<double> column_bound_, row_bound_;
   std::vector<LevelCell> cells_, finest_;

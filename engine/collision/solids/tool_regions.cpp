@@ -63,6 +63,7 @@ int SurfaceCollider::region_at(double u, double v) const {
 
 // Cut until a corner touches or no patch can.
 bool SurfaceCollider::touches(const Surface& surface, const ToolShape& tool, const LevelCell& cell) {
+  if (is_cut(cell)) return touches_cut(surface, tool, cell);
   patches_.clear();
   patches_.push_back(whole(cell));
   while (!patches_.empty()) {
@@ -128,6 +129,11 @@ void SurfaceCollider::add_region(const Surface& surface, const ToolShape& tool, 
       offer(tool, grid.u.parameters[i], grid.v.parameters[j], levels_.sample(i * grid.columns() + j));
     }
   }
+  RimEdges rim;
+  for (int k = begin; k < end; ++k) {
+    if (is_cut(touched_[grouped_[k]].cell)) offer_rim(surface, tool, touched_[grouped_[k]].cell, rim);
+  }
+  narrow(surface, tool, rim);
   region_ = touched_[grouped_[begin]].region;
   polish(surface, tool);
   for (int k = begin; k < end; ++k) {

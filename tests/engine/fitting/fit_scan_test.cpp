@@ -55,9 +55,9 @@ TEST(FitScan, SphereIsClosedAndFacesOutward) {
   EXPECT_EQ(body.kind, ShapeKind::closed);
   EXPECT_EQ(body.folds.folds, 0U);
   // Cubic pieces of a sixteenth of the way around: their own error is below 1e-4 of the radius; what remains
-  // is the fairness.
+  // is the fairness, and more of it about the poles, where few points hold a control point.
   EXPECT_LT(body.errors.data_to_surface.p95_m, 2e-5);
-  EXPECT_LT(farthest_off(body.surface, from_sphere(0.02)), 2e-4);
+  EXPECT_LT(farthest_off(body.surface, from_sphere(0.02)), 6e-4);
   EXPECT_NEAR(volume_of(body.surface), 4.0 / 3.0 * M_PI * 8e-6, 1e-7);
 }
 
@@ -106,6 +106,14 @@ TEST(FitScan, WavesAreASheet) {
   EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 1e-4);
 }
 
+// Square and low, so that it is as round about its middle as a bowl.
+TEST(FitScan, LowWavesAreNoThinWall) {
+  const Scan scan = random_cloud(5000, 3, [](double s, double t) { return on_waves(s, t, 0.1, 0.004); });
+  const ScanFit fitted = fit(scan, 12);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::sheet);
+}
+
 TEST(FitScan, NoiseIsAveragedAndOutliersLeftOut) {
   Scan scan = ellipsoid_cloud(20000, {0.03, 0.03, 0.03});
   add_noise(scan, 4, 3e-4);
@@ -141,6 +149,37 @@ TEST(FitScan, IslandsAreFittedAsAsked) {
   const ScanFit largest = fit(scan, 10);
   ASSERT_EQ(largest.bodies.size(), 1U);
   EXPECT_EQ(largest.other_islands, 3000U);
+}
+
+TEST(FitScan, IslandsAreBridgedToOneBody) {
+  Scan scan = ellipsoid_cloud(5000, {0.01, 0.01, 0.02});
+  append(scan, ellipsoid_cloud(5000, {0.01, 0.01, 0.02}), {0.0, 0.0, 0.05});
+  const ScanFit fitted = fit(scan, 20, IslandChoice::bridge);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_EQ(fitted.islands, 2U);
+  const FittedBody& body = fitted.bodies[0];
+  EXPECT_EQ(body.kind, ShapeKind::closed);
+  EXPECT_EQ(body.folds.folds, 0U);
+  EXPECT_NEAR(body.size_m.z(), 0.09, 1e-3);
+  // The middles of both are within one body: its rings run around them.
+  EXPECT_GT(volume_of(body.surface), 2.0 * 4.0 / 3.0 * M_PI * 2e-6 * 0.9);
+  EXPECT_LT(body.errors.data_to_surface.p95_m, 1e-3);
+}
+
+// Both faces of a wall 2 mm thick, 3 mm between points: only the profile tells them apart.
+TEST(FitScan, ThinBowlWithoutNormalsHasTwoFaces) {
+  const auto bowl = [](double s, double t, double radius) {
+    const double height = t * radius, out = std::sqrt(radius * radius - height * height);
+    return Vector3(out * std::cos(2.0 * M_PI * s), out * std::sin(2.0 * M_PI * s), -height);
+  };
+  Scan scan = random_cloud(6000, 8, [&](double s, double t) { return bowl(s, t, 0.08); });
+  append(scan, random_cloud(6000, 9, [&](double s, double t) { return bowl(s, t, 0.078); }), Vector3::Zero());
+  const ScanFit fitted = fit(scan, 20);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::closed);
+  EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 4e-4);
+  const double shell = 2.0 / 3.0 * M_PI * (std::pow(0.08, 3) - std::pow(0.078, 3));
+  EXPECT_NEAR(volume_of(fitted.bodies[0].surface), shell, 0.1 * shell);
 }
 
 TEST(FitScan, TriangleSoupOfABallIsClosed) {

@@ -10,6 +10,7 @@
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
 #include "engine/merging/tube_ends.h"
+#include "engine/study/enclosed_mass.h"
 
 namespace spoonbill {
 namespace {
@@ -64,25 +65,6 @@ Surface rod(const Vector3& direction) {
   });
 }
 
-struct Distances {
-  double to_shape = 0.0;  // of the points of the merged surface to the exact one
-  double volume_m3 = 0.0;
-};
-
-double volume_m3(const Surface& surface) {
-  double six = 0.0;
-  const auto u = uniform_parameters(surface.u, 161), v = uniform_parameters(surface.v, 241);
-  const PointGrid grid = point_grid(surface, u, v);
-  const auto at = [&](std::size_t i, std::size_t j) { return grid.points_m[i * v.size() + j]; };
-  for (std::size_t i = 0; i + 1 < u.size(); ++i) {
-    for (std::size_t j = 0; j + 1 < v.size(); ++j) {
-      six += at(i, j).dot(at(i + 1, j).cross(at(i + 1, j + 1)));
-      six += at(i, j).dot(at(i + 1, j + 1).cross(at(i, j + 1)));
-    }
-  }
-  return six / 6.0;
-}
-
 // Of the union of ball and rod, with a fillet turned about the rod's axis: the distance in the half plane.
 double distance_to_union(const Vector3& point, const Vector3& direction, double fillet) {
   const double along = point.dot(direction), radius = (point - along * direction).norm();
@@ -127,7 +109,7 @@ TEST_P(RodInBall, BecomesOneSurface) {
     // The ball and the rod that are given miss the exact ones by 6e-6 m; the rest is the tolerance.
     EXPECT_LT(largest_distance(merged->surface, direction, fillet), 6e-5) << fillet;
     // Normals point outwards, and what the rod adds is a cylinder, a half ball less the ball's own.
-    const double volume = volume_m3(merged->surface);
+    const double volume = enclosed_mass(merged->surface).volume_m3;
     EXPECT_GT(volume, 4.0 / 3.0 * pi * std::pow(ball_radius, 3) + pi * rod_radius * rod_radius * 0.033);
     EXPECT_LT(volume, 4.0 / 3.0 * pi * std::pow(ball_radius, 3) + pi * rod_radius * rod_radius * 0.045);
   }

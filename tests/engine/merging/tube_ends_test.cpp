@@ -10,6 +10,7 @@
 #include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/merge.h"
+#include "engine/study/enclosed_mass.h"
 
 namespace spoonbill {
 namespace {
@@ -65,21 +66,6 @@ Surface pipe(double radius, double length) {
   return turned_profile([&](double t) { return Profile{radius, t * length}; }, 8);
 }
 
-double volume_m3(const Surface& surface) {
-  // By the divergence theorem, over the cells of a fine grid.
-  double six = 0.0;
-  const auto u = uniform_parameters(surface.u, 161), v = uniform_parameters(surface.v, 161);
-  const PointGrid grid = point_grid(surface, u, v);
-  const auto at = [&](std::size_t i, std::size_t j) { return grid.points_m[i * v.size() + j]; };
-  for (std::size_t i = 0; i + 1 < u.size(); ++i) {
-    for (std::size_t j = 0; j + 1 < v.size(); ++j) {
-      six += at(i, j).dot(at(i + 1, j).cross(at(i + 1, j + 1)));
-      six += at(i, j).dot(at(i + 1, j + 1).cross(at(i, j + 1)));
-    }
-  }
-  return std::abs(six) / 6.0;
-}
-
 JoinRequest c2() {
   return {};
 }
@@ -110,7 +96,8 @@ TEST(TubeEnds, ARoundCapIsHalfAnEllipsoid) {
     const Side other = opposite(side);
     const auto closed = with_cap(capped->surface, other, 0.0, c2());
     ASSERT_TRUE(closed.ok()) << closed.error().message;
-    EXPECT_NEAR(volume_m3(closed->surface), whole, 4e-3 * whole);  // the ring is a cubic spline's circle
+    EXPECT_NEAR(std::abs(enclosed_mass(closed->surface).volume_m3), whole,
+                4e-3 * whole);  // the ring is a cubic spline's circle
   }
 }
 

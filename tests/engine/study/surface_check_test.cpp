@@ -23,8 +23,8 @@ TEST(SurfaceCheck, StartingShapesAreSound) {
                             cylinder_shape({0.02, 0.06, 0.004}), cone_shape({0.03, 0.05, 0.0, 0.004}),
                             plate_shape({0.1, 0.06, 0.004, 0.01}), torus_shape({0.04, 0.01})}) {
     const SurfaceCheck check = check_surface(fitted(shape).surface);
-    EXPECT_EQ(check.closedness, Closedness::solid);
-    EXPECT_EQ(check.gap_m, 0.0);
+    EXPECT_EQ(check.closing.closedness, Closedness::solid);
+    EXPECT_EQ(check.closing.gap_m, 0.0);
     EXPECT_GT(check.mass.volume_m3, 0.0);
     EXPECT_TRUE(is_clean(check));
     EXPECT_TRUE(check.thinnest.has_value());
@@ -42,8 +42,8 @@ ExactShape open_tube(double radius, double length) {
 
 TEST(SurfaceCheck, TellsHowFarATubeIsOpen) {
   const SurfaceCheck check = check_surface(fitted(Result<ExactShape>(open_tube(0.01, 0.05))).surface);
-  EXPECT_EQ(check.closedness, Closedness::tube);
-  EXPECT_NEAR(check.gap_m, 0.02, 2e-5);
+  EXPECT_EQ(check.closing.closedness, Closedness::tube);
+  EXPECT_NEAR(check.closing.gap_m, 0.02, 2e-5);
   EXPECT_FALSE(check.thinnest.has_value());
   EXPECT_TRUE(is_clean(check));
   EXPECT_NEAR(check.mass.area_m2, 2.0 * pi * 0.01 * 0.05, 1e-6);
@@ -51,7 +51,7 @@ TEST(SurfaceCheck, TellsHowFarATubeIsOpen) {
 
 TEST(SurfaceCheck, ASheetIsOpenBothWays) {
   const SurfaceCheck check = check_surface(fitted(sheet_shape(0.1, 0.06)).surface);
-  EXPECT_EQ(check.closedness, Closedness::sheet);
+  EXPECT_EQ(check.closing.closedness, Closedness::sheet);
   EXPECT_TRUE(is_clean(check));
 }
 
@@ -64,8 +64,8 @@ TEST(SurfaceCheck, EdgesThatMeetCloseATube) {
     shape.u.periodic = false;
     shape.at = [=](double u, double v) { return Vector3(closed(u, v) + Vector3(0.0, 0.0, apart * u)); };
     const SurfaceCheck check = check_surface(fitted(Result<ExactShape>(shape)).surface);
-    EXPECT_EQ(check.closedness, apart > 0.0 ? Closedness::sheet : Closedness::tube);
-    EXPECT_NEAR(check.u_gap.apart_m, apart, 1e-6);  // fitted to 1e-5, and better at the ends
+    EXPECT_EQ(check.closing.closedness, apart > 0.0 ? Closedness::sheet : Closedness::tube);
+    EXPECT_NEAR(check.closing.u.apart_m, apart, 1e-6);  // fitted to 1e-5, and better at the ends
   }
 }
 
@@ -114,7 +114,7 @@ TEST(SurfaceCheck, KnowsInsideOut) {
   Surface sphere = fitted(sphere_shape(0.03)).surface;
   for (double& x : sphere.net.x) x = -x;
   const SurfaceCheck check = check_surface(sphere);
-  EXPECT_EQ(check.closedness, Closedness::solid);
+  EXPECT_EQ(check.closing.closedness, Closedness::solid);
   EXPECT_LT(check.mass.volume_m3, 0.0);
 }
 

@@ -1,0 +1,152 @@
+#include "engine/shapes/smooth_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace spoonbill {
+
+namespace {
+
+// Rows of: before * x[k - 1] + here * x[k] + after * x[k + 1] = right.
+struct TridiagonalRow {
+  double before = 0.0, here = 1.0, after = 0.0, right = 0.0;
+};
+
+// Gaussian elimination; the rows of a spline are dominated by their diagonals.
+std::vector<double> solved(std::vector<TridiagonalRow> rows) {
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const double factor = rows[k].before / rows[k - 1].here;
+    rows[k].here -= factor * rows[k - 1].after;
+    rows[k].right -= factor * rows[k - 1].right;
+  }
+  std::vector<double> x(rows.size());
+  for (std::size_t k = rows.size(); k-- > 0;) {
+    const double beyond = k + 1 < rows.size() ? rows[k].after * x[k + 1] : 0.0;
+    x[k] = (rows[k].right - beyond) / rows[k].here;
+  }
+  return x;
+}
+
+// Of rows that go around, the first row's `before` meaning the last unknown and the last's `after` the first:
+// by the formula of Sherman and Morrison (1950).
+std::vector<double> solved_around(std::vector<TridiagonalRow> rows) {
+  const std::size_t last = rows.size() - 1;
+  const double corner = rows.front().before, other = rows[last].after, shift = -rows.front().here;
+  rows.front().here -= shift;
+  rows[last].here -= corner * other / shift;
+  std::vector<TridiagonalRow> unit = rows;
+  for (TridiagonalRow& row : unit) row.right = 0.0;
+  unit.front().right = shift;
+  unit[last].right = other;
+  std::vector<double> x = solved(rows);
+  const std::vector<double> z = solved(unit);
+  const double factor = (x.front() + corner / shift * x[last]) / (1.0 + z.front() + corner / shift * z[last]);
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] -= factor * z[k];
+  return x;
+}
+
+bool is_level(const CurveEnds& ends, int axis) {
+  return axis == 0 ? ends.level_x : axis == 1 ? ends.level_y : ends.level_z;
+}
+
+// Of one coordinate; values and lengths of the pieces.
+struct SplineLine {
+  std::vector<double> values, lengths;
+
+  double slope(std::size_t piece) const {
+    return (values[(piece + 1) % values.size()] - values[piece]) / lengths[piece];
+  }
+  TridiagonalRow inner_row(std::size_t k) const {
+    const std::size_t before = (k + lengths.size() - 1) % lengths.size();
+    return {lengths[before], 2.0 * (lengths[before] + lengths[k]), lengths[k],
+            6.0 * (slope(k) - slope(before))};
+  }
+};
+
+std::vector<double> bends_of(const SplineLine& line, bool closed, bool level_first, bool level_last) {
+  const std::size_t count = line.values.size();
+  std::vector<TridiagonalRow> rows(count);
+  for (std::size_t k = closed ? 0 : 1; k + (closed ? 0 : 1) < count; ++k) rows[k] = line.inner_row(k);
+  if (closed) return solved_around(std::move(rows));
+  const std::size_t last = count - 2;  // piece
+  if (level_first) rows[0] = {0.0, 2.0 * line.lengths[0], line.lengths[0], 6.0 * line.slope(0)};
+  if (level_last) {
+    rows[count - 1] = {line.lengths[last], 2.0 * line.lengths[last], 0.0, -6.0 * line.slope(last)};
+  }
+  return solved(std::move(rows));
+}
+
+}  // namespace
+
+Result<SmoothCurve> SmoothCurve::through(std::vector<Vector3> points_m, bool closed, const CurveEnds& first,
+                                         const CurveEnds& last) {
+  const std::size_t least = closed ? 3 : 2;
+  if (points_m.size() < least) {
+    return Error{std::to_string(points_m.size()) + " points make no curve; give at least " +
+                 std::to_string(least)};
+  }
+  double size = 0.0;
+  for (const Vector3& point : points_m) size = std::max(size, (point - points_m[0]).norm());
+  std::vector<double> parameters = {0.0};
+  for (std::size_t k = 0; k + (closed ? 0 : 1) < points_m.size(); ++k) {
+    const std::size_t next = (k + 1) % points_m.size();
+    const double chord = (points_m[next] - points_m[k]).norm();
+    if (!(chord > 1e-9 * size)) {
+      return Error{"points " + std::to_string(k + 1) + " and " + std::to_string(next + 1) +
+                   " are in one place; leave one out"};
+    }
+    parameters.push_back(parameters.back() + chord);
+  }
+  return at_parameters(std::move(points_m), std::move(parameters), closed, first, last);
+}
+
+SmoothCurve SmoothCurve::at_parameters(std::vector<Vector3> points_m, std::vector<double> parameters,
+                                       bool closed, const CurveEnds& first, const CurveEnds& last) {
+  SmoothCurve curve;
+  curve.closed_ = closed;
+  curve.bends_.resize(points_m.size());
+  SplineLine line;
+  for (std::size_t k = 0; k + 1 < parameters.size(); ++k) {
+    line.lengths.push_back(parameters[k + 1] - parameters[k]);
+  }
+  line.values.resize(points_m.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < points_m.size(); ++k) line.values[k] = points_m[k][axis];
+    const auto bends = bends_of(line, closed, is_level(first, axis), is_level(last, axis));
+    for (std::size_t k = 0; k < points_m.size(); ++k) curve.bends_[k][axis] = bends[k];
+  }
+  curve.points_ = std::move(points_m);
+  curve.parameters_ = std::move(parameters);
+  return curve;
+}
+
+SmoothCurve::Place SmoothCurve::place_of(double t) const {
+  if (closed_) t -= std::floor(t / end()) * end();
+  const auto after = std::upper_bound(parameters_.begin() + 1, parameters_.end() - 1, t);
+  const std::size_t piece = static_cast<std::size_t>(after - parameters_.begin()) - 1;
+  const double length = parameters_[piece + 1] - parameters_[piece];
+  return {piece, length, std::clamp((t - parameters_[piece]) / length, 0.0, 1.0)};
+}
+
+Vector3 SmoothCurve::at(double t) const {
+  const auto [k, length, b] = place_of(t);
+  const double a = 1.0 - b, scale = length * length / 6.0;
+  return a * point(k) + b * point(k + 1) +
+         scale * ((a * a * a - a) * bend(k) + (b * b * b - b) * bend(k + 1));
+}
+
+Vector3 SmoothCurve::first_derivative(double t) const {
+  const auto [k, length, b] = place_of(t);
+  const double a = 1.0 - b;
+  return (point(k + 1) - point(k)) / length +
+         length / 6.0 * ((1.0 - 3.0 * a * a) * bend(k) + (3.0 * b * b - 1.0) * bend(k + 1));
+}
+
+Vector3 SmoothCurve::second_derivative(double t) const {
+  const auto [k, length, b] = place_of(t);
+  return (1.0 - b) * bend(k) + b * bend(k + 1);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,42 @@
+// The cases that fuzzing has found, and the first ones it grew from, whole and cut short.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "tests/engine/exchange/sample_document.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace spoonbill {
+namespace {
+
+std::vector<std::filesystem::path> cases_of(const char* target) {
+  std::vector<std::filesystem::path> cases;
+  for (const auto& file :
+       std::filesystem::directory_iterator(std::filesystem::path(SPOONBILL_CORPUS) / target)) {
+    cases.push_back(file.path());
+  }
+  std::sort(cases.begin(), cases.end());
+  return cases;
+}
+
+class Corpus : public testing::TestWithParam<FuzzTarget> {};
+
+TEST_P(Corpus, EveryCaseIsTaken) {
+  const auto cases = cases_of(GetParam().name);
+  EXPECT_FALSE(cases.empty());
+  for (const auto& file : cases) {
+    SCOPED_TRACE(file.filename().string());
+    const std::string bytes = content_of(file);
+    GetParam().take(bytes);
+    for (const std::size_t part : {2, 3, 7})
+      GetParam().take(std::string_view(bytes).substr(0, bytes.size() / part));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Readers, Corpus, testing::ValuesIn(fuzz_targets().begin(), fuzz_targets().end()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace spoonbill

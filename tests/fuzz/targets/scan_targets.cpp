@@ -1,0 +1,50 @@
+// Readers of point clouds and meshes.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <string>
+
+#include "engine/exchange/ply_check.h"
+#include "engine/exchange/points/point_cloud.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/targets/targets.h"
+
+namespace spoonbill {
+
+namespace {
+
+void take_cloud(const Result<PointCloud>& cloud, std::size_t bytes) {
+  if (!cloud) return must_be_one_line(cloud.error());
+  // Compressed ones hold more than their bytes, but no more than a hundred times.
+  must_hold(cloud->points.size() <= 100 * bytes, "a small file holds few points");
+  for (const Vector3& point : cloud->points) must_hold(point.allFinite(), "points are finite");
+}
+
+}  // namespace
+
+// The first byte chooses the form.
+void take_points(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::string_view rest = bytes.substr(1);
+  switch (bytes[0] % 4) {
+    case 0:
+      return take_cloud(ply_points(rest), bytes.size());
+    case 1:
+      return take_cloud(pcd_points(rest), bytes.size());
+    case 2:
+      return take_cloud(text_points(rest), bytes.size());
+    default:
+      return take_cloud(obj_points(rest), bytes.size());
+  }
+}
+
+void take_ply(std::string_view bytes) {
+  const int file = memfd_create("fuzzed", 0);
+  must_hold(file >= 0, "memory for a file");
+  must_hold(write(file, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()), "a written file");
+  const Status status = check_ply("/proc/self/fd/" + std::to_string(file));
+  close(file);
+  if (!status) must_be_one_line(status.error());
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,23 @@
+// The readers, each given bytes.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "engine/result.h"
+
+namespace spoonbill {
+
+void take_document(std::string_view bytes);
+void take_recording(std::string_view bytes);
+void take_script(std::string_view bytes);
+void take_points(std::string_view bytes);
+void take_ply(std::string_view bytes);
+void take_cad_stream(std::string_view bytes);
+void take_values(std::string_view bytes);
+void take_table(std::string_view bytes);
+
+// One line that says something.
+void must_be_one_line(const Error& error);
+
+}  // namespace spoonbill
