@@ -142,8 +142,9 @@ Result<std::vector<int>> parse_places(std::string_view text) {
     const std::size_t dash = part.find('-');
     const auto first = whole_number(part.substr(0, dash));
     const auto last = dash == std::string_view::npos ? first : whole_number(part.substr(dash + 1));
-    if (!first || !last || !range.contains(*first) || !range.contains(*last) || *last < *first)
+    if (!first || !last || !range.contains(*first) || !range.contains(*last) || *last < *first) {
       return refusal;
+    }
     for (int place = *first; place <= *last; ++place) {
       if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
     }

@@ -140,8 +140,9 @@ Result<CadFileContent> write_iges(const CadModel& model, const CadProgress& prog
   IGESControl_Writer writer;
   CadFileContent content;
   for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
-    if (Status added = add_to(writer, model.surfaces[k]); !added)
+    if (Status added = add_to(writer, model.surfaces[k]); !added) {
       return about(model.surfaces[k], added.error());
+    }
     ++content.open_shells;
     if (progress) progress(0.5 * static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size()));
   }

@@ -29,12 +29,11 @@ Points lines_of(const Surface& surface, Direction direction) {
   return lines;
 }
 
-Surface surface_of(const Surface& like, Direction direction, KnotVector knots, const Points& lines) {
+Surface surface_of(const Surface& like, Direction direction, const KnotVector& knots, const Points& lines) {
   const bool along_u = direction == Direction::u;
   const auto rows = static_cast<int>(along_u ? lines.rows() : lines.cols() / 3);
   const auto columns = static_cast<int>(along_u ? lines.cols() / 3 : lines.rows());
-  Surface surface{along_u ? std::move(knots) : like.u, along_u ? like.v : std::move(knots),
-                  ControlNet(rows, columns)};
+  Surface surface{along_u ? knots : like.u, along_u ? like.v : knots, ControlNet(rows, columns)};
   for (int i = 0; i < rows; ++i) {
     for (int j = 0; j < columns; ++j) {
       const auto at = [&](int axis) { return along_u ? lines(i, 3 * j + axis) : lines(j, 3 * i + axis); };
@@ -109,7 +108,7 @@ Surface closed_where_it_meets(const Surface& surface, Direction direction, doubl
     const Eigen::PartialPivLU<Eigen::MatrixXd> solver(blending_matrix(knots.value(), parameters, 0).dense());
     const Points controls = solver.solve(blending_matrix(open, parameters, 0).dense() * lines);
     if (!controls.allFinite()) continue;
-    Surface closed = surface_of(surface, direction, std::move(knots).value(), controls);
+    Surface closed = surface_of(surface, direction, knots.value(), controls);
     const Points opened = opened_lines(closed, direction);
     if (opened.rows() == lines.rows() && largest_point_distance(opened, lines) <= tolerance_m) return closed;
   }

@@ -53,8 +53,9 @@ Result<ParameterBox> box_of(const TopoDS_Face& face, const Geometry& surface) {
   BRepTools::UVBounds(face, box.u_start, box.u_end, box.v_start, box.v_end);
   surface->Bounds(own.u_start, own.u_end, own.v_start, own.v_end);
   for (const double bound : {box.u_start, box.u_end, box.v_start, box.v_end}) {
-    if (!(std::abs(bound) < longest_parameter))
+    if (!(std::abs(bound) < longest_parameter)) {
       return Error{"has no finite extent; trim it in the CAD system"};
+    }
   }
   const double u_length = box.u_end - box.u_start, v_length = box.v_end - box.v_start;
   if (!(u_length > 0.0 && v_length > 0.0)) return Error{"has no extent; leave it out in the CAD system"};
@@ -69,10 +70,12 @@ bool is_polynomial(const opencascade::handle<Geom_Curve>& curve) {
   if (const auto trimmed = opencascade::handle<Geom_TrimmedCurve>::DownCast(curve)) {
     return is_polynomial(trimmed->BasisCurve());
   }
-  if (const auto spline = opencascade::handle<Geom_BSplineCurve>::DownCast(curve))
+  if (const auto spline = opencascade::handle<Geom_BSplineCurve>::DownCast(curve)) {
     return !spline->IsRational();
-  if (const auto bezier = opencascade::handle<Geom_BezierCurve>::DownCast(curve))
+  }
+  if (const auto bezier = opencascade::handle<Geom_BezierCurve>::DownCast(curve)) {
     return !bezier->IsRational();
+  }
   return !opencascade::handle<Geom_Line>::DownCast(curve).IsNull();
 }
 

@@ -163,6 +163,7 @@ double domain_area(const KnotVector& along_u, const KnotVector& along_v) {
 std::vector<TrimLoop> turned_right(std::vector<TrimLoop> loops, const KnotVector& along_u,
                                    const KnotVector& along_v) {
   std::vector<double> areas;
+  areas.reserve(loops.size());
   for (const TrimLoop& loop : loops) areas.push_back(signed_area(polygon_of(loop, along_u, along_v)));
   const auto largest = std::max_element(areas.begin(), areas.end(),
                                         [](double a, double b) { return std::abs(a) < std::abs(b); });

@@ -277,8 +277,9 @@ int owner_of(const Outline& hole, const std::vector<Outline>& outlines) {
   int owner = -1;
   for (std::size_t k = 0; k < outlines.size(); ++k) {
     if (outlines[k].area <= 0.0 || !is_inside(hole.polygon.front(), outlines[k].polygon)) continue;
-    if (owner < 0 || outlines[k].area < outlines[static_cast<std::size_t>(owner)].area)
+    if (owner < 0 || outlines[k].area < outlines[static_cast<std::size_t>(owner)].area) {
       owner = static_cast<int>(k);
+    }
   }
   return owner;
 }
@@ -313,8 +314,9 @@ Result<std::vector<TopoDS_Face>> trimmed_faces(const Geometry& geometry, const T
     if (!added) return added.error();
   }
   if (faces.empty()) {
-    if (Status added = add(-1, BRepBuilderAPI_MakeFace(geometry, coincidence_mm)); !added)
+    if (Status added = add(-1, BRepBuilderAPI_MakeFace(geometry, coincidence_mm)); !added) {
       return added.error();
+    }
   }
   return faces;
 }
