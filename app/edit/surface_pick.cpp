@@ -43,6 +43,16 @@ double ball_radius(const TessellatedSurface& surface) {
 
 }  // namespace
 
+// Those of triangles alone: others are trimmed away.
+void SurfacePick::take_vertices(Sampled& sampled) {
+  if (sampled.topology == sampled.surface.topology_version()) return;
+  sampled.topology = sampled.surface.topology_version();
+  sampled.vertices = sampled.surface.indices();
+  std::sort(sampled.vertices.begin(), sampled.vertices.end());
+  sampled.vertices.erase(std::unique(sampled.vertices.begin(), sampled.vertices.end()),
+                         sampled.vertices.end());
+}
+
 void SurfacePick::update(const Snapshot& snapshot) {
   // The last of the bodies may be a soft tool, which is no body to bring it to.
   surfaces_.resize(snapshot.bodies.size() - (is_soft(snapshot.tool) ? 1 : 0));
@@ -54,6 +64,7 @@ void SurfacePick::update(const Snapshot& snapshot) {
                            sampled.surface.update(snapshot.bodies[i].surface, level).ok();
     if (!evaluated) sampled = Sampled();
     sampled.ball_m = ball_radius(sampled.surface);
+    take_vertices(sampled);
   }
 }
 
@@ -62,7 +73,7 @@ std::optional<PickedPoint> SurfacePick::first_touch(const Ray& ray, double radiu
   Vector3 touched = Vector3::Zero();
   for (const Sampled& sampled : surfaces_) {
     const GridSamples<float>& samples = sampled.surface.samples();
-    for (std::size_t i = 0; i < samples.x.size(); ++i) {
+    for (const std::uint32_t i : sampled.vertices) {
       const Vector3 point = position(samples, i);
       const auto t = first_crossing(ray, point, radius_m + sampled.ball_m);
       if (!t || *t >= nearest) continue;

@@ -2,6 +2,7 @@
 // tool to the surface. One owner; the thread that draws.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -30,7 +31,11 @@ class SurfacePick {
   struct Sampled {
     TessellatedSurface surface;
     double ball_m = 0.0;  // radius of the small balls: half a cell's diagonal
+    std::vector<std::uint32_t> vertices;
+    std::uint64_t topology = 0;  // of which those are
   };
+  static void take_vertices(Sampled& sampled);
+
   std::vector<Sampled> surfaces_;
 };
 

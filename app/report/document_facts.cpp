@@ -9,6 +9,7 @@
 #include "app/report/region_text.h"
 #include "app/report/surface_extent.h"
 #include "engine/bspline/surface.h"
+#include "engine/bspline/trimmed_grid.h"
 #include "engine/exchange/region_json.h"
 #include "engine/number_text.h"
 
@@ -70,10 +71,22 @@ void add_document_facts(FactSheet& facts, const Document& document) {
             Json::array({{{"u", direction_facts(body.surface.u)}, {"v", direction_facts(body.surface.v)}}}));
   const Closing closing = closing_of(body.surface);
   facts.add("Surface", closing_text(closing), "closedness", name_of(closing.closedness));
+  add_trim_facts(facts, body);
   add_material_facts(facts, body.material);
   add_region_facts(facts, body);
   facts.add("Fixing planes", std::to_string(document.scene.planes.size()), "fixing_planes",
             document.scene.planes.size());
+}
+
+void add_trim_facts(FactSheet& facts, const Body& body) {
+  const auto trim = trim_of(body);
+  if (!trim || !trim.value()) return;
+  const double away = 1.0 - kept_area_share(body.surface, *trim.value());
+  const std::string loops = body.trims.size() == 1 ? " loop" : " loops";
+  facts.add("Trimmed",
+            "by " + std::to_string(body.trims.size()) + loops + ", " + decimals_text(100.0 * away, 1) +
+                " % of the area away",
+            "trims", {{"loops", body.trims.size()}, {"area_share_away", away}});
 }
 
 void add_size_fact(FactSheet& facts, const Surface& surface) {

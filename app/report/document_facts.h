@@ -16,6 +16,9 @@ void add_document_facts(FactSheet& facts, const Document& document);
 // The surface's extents along x, y and z.
 void add_size_fact(FactSheet& facts, const Surface& surface);
 
+// How many loops trim a body's surface, and how much of its area they take away; nothing of an untrimmed one.
+void add_trim_facts(FactSheet& facts, const Body& body);
+
 void add_material_facts(FactSheet& facts, const Material& material);
 
 // What the body's regions are made of, where it has any.

@@ -5,7 +5,9 @@
 #include <map>
 #include <set>
 #include <utility>
+#include <vector>
 
+#include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_cells.h"
 
 namespace spoonbill {
@@ -162,6 +164,32 @@ class Cutter {
 
 TrimmedGrid trim_grid(const GridDirection& u, const GridDirection& v, const TrimmedArea& area) {
   return Cutter(u, v, area).cut();
+}
+
+double kept_area_share(const Surface& surface, const TrimmedArea& area) {
+  constexpr int halvings = 3;
+  const auto grid = make_grid(surface.u, surface.v, nested_parameters(surface.u, 1, halvings).parameters,
+                              nested_parameters(surface.v, 1, halvings).parameters);
+  if (!grid) return area.kept_share();
+  const TrimmedGrid trimmed = trim_grid(grid->u, grid->v, area);
+  std::vector<Vector3> points;
+  for (const double u : grid->u.parameters) {
+    for (const double v : grid->v.parameters) points.push_back(position(surface, u, v));
+  }
+  const auto twice_area = [&](std::size_t a, std::size_t b, std::size_t c) {
+    return (points[b] - points[a]).cross(points[c] - points[a]).norm();
+  };
+  double whole = 0.0, kept = 0.0;
+  const auto columns = static_cast<std::size_t>(grid->columns());
+  for (std::size_t i = 0; i + 1 < grid->u.parameters.size(); ++i) {
+    for (std::size_t j = 0; j + 1 < columns; ++j) {
+      const std::size_t a = i * columns + j;
+      whole += twice_area(a, a + columns, a + columns + 1) + twice_area(a, a + columns + 1, a + 1);
+    }
+  }
+  for (const CutVertex& cut : trimmed.vertices) points.push_back(position(surface, cut.u, cut.v));
+  for (const auto& [a, b, c] : trimmed.triangles) kept += twice_area(a, b, c);
+  return whole > 0.0 ? std::min(1.0, kept / whole) : area.kept_share();
 }
 
 }  // namespace spoonbill

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/bspline/grid.h"
+#include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_area.h"
 
 namespace spoonbill {
@@ -29,5 +30,9 @@ struct TrimmedGrid {
 // line out; its last cells then end at the first line. The parameters must include both ends of an open
 // direction.
 TrimmedGrid trim_grid(const GridDirection& u, const GridDirection& v, const TrimmedArea& area);
+
+// The share of a surface's area that is kept, to about the square of a chord: by triangles of eight cells for
+// each polynomial piece.
+double kept_area_share(const Surface& surface, const TrimmedArea& area);
 
 }  // namespace spoonbill

@@ -56,7 +56,8 @@ ContactStages SnapshotStages::find(const Snapshot& snapshot) {
     std::optional<Surface> surface = surface_of(body.surface);
     if (!surface) continue;
     surfaces.push_back(*std::move(surface));
-    bodies.push_back({&surfaces.back(), body.surface.structure, !(body.shell_thickness_m > 0.0)});
+    const bool closed = !(body.shell_thickness_m > 0.0) && !body.surface.trim;
+    bodies.push_back({&surfaces.back(), body.surface.structure, closed, body.surface.trim});
     add_hull(surfaces.back().net, stages);
   }
   if (!is_body(snapshot.tool)) {
@@ -109,7 +110,7 @@ void SnapshotStages::add_tool(const Snapshot& snapshot, const Pose& pose, const 
     const Surface& surface = *body.surface;
     ToolStages* const with =
         find_or_make(tool_stages_, body.structure, [&] { return ToolStages::make(surface.u, surface.v); });
-    if (with != nullptr) with->add(surface, shape, stage_margin_m, body.closed, stages);
+    if (with != nullptr) with->add(surface, shape, stage_margin_m, body.closed, stages, body.trim);
   }
 }
 

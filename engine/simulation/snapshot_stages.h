@@ -34,6 +34,7 @@ class SnapshotStages {
     const Surface* surface;
     std::uint64_t structure;
     bool closed = true;  // with du x dv outward
+    std::shared_ptr<const TrimmedArea> trim = {};
   };
 
   void follow(const ToolSnapshot& tool);

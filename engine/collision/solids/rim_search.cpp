@@ -1,4 +1,6 @@
 // How a tool meets a surface where trim loops end it.
+#include <span>
+
 #include "engine/collision/solids/surface_collider.h"
 #include "engine/collision/solids/tool_bounds.h"
 
@@ -26,19 +28,18 @@ void SurfaceCollider::offer_rims(const Surface& surface, const ToolShape& tool) 
   narrow(surface, tool, nearest);
 }
 
-// Both ends and the middle of each edge.
+// Where each edge begins and its middle.
 void SurfaceCollider::offer_rim(const Surface& surface, const ToolShape& tool, const LevelCell& cell,
                                 RimEdges& nearest) {
-  for (const TrimmedArea::Edge& edge : trimmed_->rim(cell)) {
-    for (const double share : {0.0, 0.5, 1.0}) {
-      const Eigen::Vector2d at = place_on(edge, share);
+  const std::span<const TrimmedArea::Edge> edges = trimmed_->rim(cell);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    for (const double share : {0.0, 0.5}) {
+      const Eigen::Vector2d at = place_on(edges[e], share);
       const double before = best_.distance_m;
       take_nearer(tool, at.x(), at.y(), position(surface, at.x(), at.y()));
-      if (best_.distance_m < before) {
-        nearest = {&edge, nullptr};
-      } else if (nearest.first != &edge && at.x() == best_.u && at.y() == best_.v) {
-        nearest.second = &edge;
-      }
+      if (!(best_.distance_m < before)) continue;
+      const bool meets_last = share == 0.0 && e > 0 && edges[e - 1].to == edges[e].from;
+      nearest = {&edges[e], meets_last ? &edges[e - 1] : nullptr};
     }
   }
 }

@@ -37,9 +37,9 @@ Result<ToolStages> ToolStages::make(const KnotVector& u, const KnotVector& v) {
 ToolStages::ToolStages(NestedGrid nested) : nested_(std::make_unique<NestedGrid>(std::move(nested))) {}
 
 void ToolStages::add(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
-                     ContactStages& stages) {
+                     ContactStages& stages, std::shared_ptr<const TrimmedArea> trim) {
   // A used one looks first where it last found a contact.
-  collider_ = std::make_unique<SurfaceCollider>(*nested_);
+  collider_ = std::make_unique<SurfaceCollider>(*nested_, std::move(trim));
   const CollisionResult result = collider_->collide(surface, tool, margin_m, closed);
   stages.overflow |= result.overflow;
   const int number = stages.surfaces++;

@@ -15,9 +15,10 @@ class ToolStages {
  public:
   static Result<ToolStages> make(const KnotVector& u, const KnotVector& v);
 
-  // Contacts are searched up to `margin_m` away; `closed` as in SurfaceCollider::collide().
-  void add(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
-           ContactStages& stages);
+  // Contacts are searched up to `margin_m` away; `closed` as in SurfaceCollider::collide(), `trim` as
+  // when one is made.
+  void add(const Surface& surface, const ToolShape& tool, double margin_m, bool closed, ContactStages& stages,
+           std::shared_ptr<const TrimmedArea> trim = nullptr);
 
  private:
   explicit ToolStages(NestedGrid nested);
