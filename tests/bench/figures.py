@@ -46,6 +46,8 @@ PAIRS = {
     "nets_crossing_us": ("nets_crossing/2",),
     "png_ms": ("png_ours", "png_stb"),
     "merge_ms": ("merge_30x30",),
+    "fit_ms": ("fit_scan_ours/100000/24",),
+    "fit_vs_occt": ("fit_grid_ours/100/24", "fit_grid_occt/100/24"),
 }
 
 HANDLE = "assets/recordings/spoon-handle-bend.recording.jsonl"
@@ -105,6 +107,11 @@ FIGURES = (
     Figure("png_ms", "ms", "ours", "at most", 8, "one frame of 1280x720 to PNG; peer: stb_image_write"),
     Figure("merge_ms", "ms", "ours", "at most", 20,
            "two patches of 30 x 30 control points that share an edge merged into one, C2"),
+    Figure("fit_ms", "ms", "ours", "at most", 2000,
+           "a cloud of 100,000 points without normals to 24 x 24 control points, errors measured, on one core"),
+    Figure("fit_vs_occt", "ms", "ratio", "at least", 1,
+           "a grid of 100 x 100 points to 24 x 24 control points; OCCT GeomAPI_PointsToBSplineSurface to 0.01 mm, "
+           "which also finds parameters and knots"),
     Figure("lattice_at_1khz", "nodes", "ours", "at least", 32768,
            "the largest block of clay whose whole tick while touching, one relaxation step, keeps its p99 of the "
            "thread's own time under 1 ms"),
