@@ -237,6 +237,8 @@ void Editor::lay_out_questions() {
   if (const auto file = files_.draw()) {
     if (files_.purpose() == FilePurpose::open_model) {
       open(*file);
+    } else if (files_.purpose() == FilePurpose::export_model) {
+      export_to(*file);
     } else {
       save_as(*file);
     }

@@ -92,6 +92,8 @@ class Editor {
   void recover();
   void save();
   void save_as(const std::filesystem::path& file);
+  std::filesystem::path export_name() const;
+  void export_to(const std::filesystem::path& file);
   void toggle_recording(const LiveFrame& frame);
   void write_screenshot();
   void look_for_left_over();

@@ -7,6 +7,7 @@
 
 #include "app/assets_folder.h"
 #include "app/edit/editor.h"
+#include "app/live/exporter.h"
 #include "app/start/shipped_materials.h"
 #include "render/image/png.h"
 
@@ -121,6 +122,19 @@ void Editor::save_as(const std::filesystem::path& file) {
   live_->set_view(view_to_json(view_));
   live_->save(file);
   ask(MarkFile{FileMarkKind::document, mark_name_of(stem_of(file))});
+}
+
+// Beside the document, as a STEP file unless another ending is typed.
+std::filesystem::path Editor::export_name() const {
+  return folder_of(document_.file()) / (stem_of(document_.file()) + ".step");
+}
+
+void Editor::export_to(const std::filesystem::path& file) {
+  if (!Exporter::writes(file)) {
+    return messages_.add_problem("not exported: the ending of the name chooses the format: " +
+                                 std::string(Exporter::endings_text()));
+  }
+  live_->save(file);
 }
 
 void Editor::toggle_recording(const LiveFrame& frame) {

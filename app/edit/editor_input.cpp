@@ -159,6 +159,9 @@ void Editor::act(EditAction action, const LiveFrame& frame) {
       leave_when_saved_ = false;
       save();
       break;
+    case EditAction::export_model:
+      files_.ask(FilePurpose::export_model, export_name());
+      break;
     case EditAction::save_as:
       leave_when_saved_ = false;
       files_.ask(FilePurpose::save_model, document_.file());

@@ -10,7 +10,27 @@ namespace spoonbill {
 namespace {
 
 constexpr const char* title_of(FilePurpose purpose) {
-  return purpose == FilePurpose::open_model ? "Open a model" : "Save the model as";
+  switch (purpose) {
+    case FilePurpose::open_model:
+      return "Open a model";
+    case FilePurpose::export_model:
+      return "Export the model to a CAD file or a mesh";
+    case FilePurpose::save_model:
+      break;
+  }
+  return "Save the model as";
+}
+
+constexpr const char* verb_of(FilePurpose purpose) {
+  switch (purpose) {
+    case FilePurpose::open_model:
+      return "Open";
+    case FilePurpose::export_model:
+      return "Export";
+    case FilePurpose::save_model:
+      break;
+  }
+  return "Save";
 }
 
 bool is_folder(const std::filesystem::path& path) {
@@ -83,7 +103,7 @@ std::optional<std::filesystem::path> FilePrompt::draw() {
   const bool entered =
       ImGui::InputText("##name", text_.data(), text_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
   if (!problem_.empty()) ImGui::TextUnformatted(problem_.c_str());
-  const bool confirmed = ImGui::Button(purpose_ == FilePurpose::open_model ? "Open" : "Save");
+  const bool confirmed = ImGui::Button(verb_of(purpose_));
   ImGui::SameLine();
   if (ImGui::Button("Cancel")) asking_ = false;
   std::optional<std::filesystem::path> result;
@@ -104,6 +124,7 @@ std::optional<std::filesystem::path> FilePrompt::chosen() {
     return std::nullopt;
   }
   if (purpose_ == FilePurpose::save_model && whole.extension().empty()) whole += ".json";
+  if (purpose_ == FilePurpose::export_model && whole.extension().empty()) whole += ".step";
   asking_ = false;
   return whole;
 }

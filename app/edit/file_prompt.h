@@ -10,7 +10,7 @@
 
 namespace spoonbill {
 
-enum class FilePurpose { open_model, save_model };
+enum class FilePurpose { open_model, save_model, export_model };
 
 class FilePrompt {
  public:

@@ -9,13 +9,14 @@ namespace {
 
 using Action = EditAction;
 
-constexpr std::array<KeyBinding, 33> bindings = {{
+constexpr std::array<KeyBinding, 34> bindings = {{
     {Action::show_keys, GLFW_KEY_F1, false, false, "F1", "Show or hide these keys"},
     {Action::open, GLFW_KEY_O, true, false, "Ctrl+O", "Open a model"},
     {Action::new_document, GLFW_KEY_N, true, false, "Ctrl+N", "Begin anew with the spoon handle"},
     {Action::new_lump, GLFW_KEY_N, true, true, "Ctrl+Shift+N", "Begin anew with a lump"},
     {Action::save, GLFW_KEY_S, true, false, "Ctrl+S", "Save"},
     {Action::save_as, GLFW_KEY_S, true, true, "Ctrl+Shift+S", "Save under another name"},
+    {Action::export_model, GLFW_KEY_E, true, false, "Ctrl+E", "Export to a CAD file or a mesh"},
     {Action::undo, GLFW_KEY_Z, true, false, "Ctrl+Z", "Undo the last stroke"},
     {Action::redo, GLFW_KEY_Z, true, true, "Ctrl+Shift+Z", "Redo it"},
     {Action::redo, GLFW_KEY_Y, true, false, "Ctrl+Y", "Redo it"},

@@ -13,6 +13,7 @@ enum class EditAction {
   open,
   save,
   save_as,
+  export_model,
   undo,
   redo,
   cancel,

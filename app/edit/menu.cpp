@@ -33,6 +33,7 @@ void draw_file(const MenuState& state, const ActionItems& item) {
   item("Open...", EditAction::open);
   item("Save", EditAction::save);
   item("Save as...", EditAction::save_as);
+  item("Export...", EditAction::export_model);
   ImGui::Separator();
   item(state.recording ? "Stop recording" : "Start recording", EditAction::toggle_recording);
   item("Picture", EditAction::screenshot);

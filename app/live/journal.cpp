@@ -12,7 +12,9 @@ constexpr std::chrono::milliseconds pause_between_looks{5};
 }  // namespace
 
 Journal::Journal(Notices& notices, const LiveScene& first)
-    : notices_(&notices), entries_(entry_capacity), scenes_(first), thread_([this] { run(); }) {}
+    : notices_(&notices), exporter_(notices), entries_(entry_capacity), scenes_(first), thread_([this] {
+        run();
+      }) {}
 
 Journal::~Journal() {
   stopping_.store(true, std::memory_order_release);
@@ -115,6 +117,7 @@ void Journal::keep(const LiveScene& scene) {
   if (save->document != scene.document) {
     return notices_->add(Notice::Kind::problem, "not saved: another document was opened meanwhile");
   }
+  if (Exporter::writes(save->file)) return exporter_.begin(document_of(scene), save->file);
   const Status written = write_document(document_of(scene), save->file);
   if (!written) return notices_->add(Notice::Kind::problem, "not saved: " + written.error().message);
   notices_->add(Notice::Kind::information, "saved " + save->file.filename().string());

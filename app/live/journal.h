@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "app/live/autosave.h"
+#include "app/live/exporter.h"
 #include "app/live/live_frame.h"
 #include "app/live/notices.h"
 #include "haptic/bounded_queue.h"
@@ -72,7 +73,8 @@ class Journal {
   void set_view(Json view);
   // Where unsaved work goes from now on; nothing for nowhere. The one before is removed.
   void set_autosave(std::optional<Autosave> autosave);
-  // Writes the scene that answers this request, or a newer one of the same document, to the file.
+  // Writes the scene that answers this request, or a newer one of the same document, to the file. Where its
+  // ending is one that the exporter writes, it is exported, which saves nothing.
   void save(AskedSave save);
   // The last document that was saved since the last call.
   std::optional<SavedDocument> take_saved();
@@ -89,6 +91,7 @@ class Journal {
   bool was_superseded(std::uint64_t autosave_count);
 
   Notices* notices_;
+  Exporter exporter_;
   BoundedQueue<JournalEntry> entries_;
   TripleBuffer<LiveScene> scenes_;
 

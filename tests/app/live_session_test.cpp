@@ -150,6 +150,37 @@ TEST(LiveSession, SavesWhatTheShapeIsNow) {
   EXPECT_EQ(saved->scene.planes.size(), 1U);
 }
 
+std::string next_notice(LiveSession& live, Notice::Kind kind) {
+  std::string text;
+  EXPECT_TRUE(wait_for(live, [&](const LiveFrame&) {
+    for (const Notice& notice : live.take_notices()) {
+      if (notice.kind == kind && notice.text.find("export") != std::string::npos) text = notice.text;
+    }
+    return !text.empty();
+  }));
+  return text;
+}
+
+TEST(LiveSession, ExportsAMeshWhichSavesNothing) {
+  const Workplace place;
+  setenv("XDG_STATE_HOME", place.text("state").c_str(), 1);
+  auto live = start_live(held_handle());
+  stroke(*live);
+  ASSERT_TRUE(live->save(place.path("bent.stl")));
+  EXPECT_EQ(next_notice(*live, Notice::Kind::information), "exported bent.stl, in mm");
+  EXPECT_FALSE(live->take_saved().has_value());
+  // Eighty bytes, a count, and fifty for each triangle.
+  std::ifstream in(place.path("bent.stl"), std::ios::binary);
+  std::uint32_t triangles = 0;
+  in.seekg(80);
+  in.read(reinterpret_cast<char*>(&triangles), sizeof triangles);
+  EXPECT_GT(triangles, 100U);
+  EXPECT_EQ(std::filesystem::file_size(place.path("bent.stl")), 84U + 50U * triangles);
+  EXPECT_TRUE(std::filesystem::is_empty(place.path("state") / "spoonbill"));
+  ASSERT_TRUE(live->save(place.path("no such folder/bent.stl")));
+  EXPECT_EQ(next_notice(*live, Notice::Kind::problem).substr(0, 14), "not exported: ");
+}
+
 // Otherwise one document would be written into another's file.
 TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
   const Workplace place;

@@ -1,0 +1,38 @@
+// Writes documents for other programs, as CAD files and meshes, on a thread of its own, so that neither
+// autosaving nor drawing waits for it.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <thread>
+
+#include "app/live/notices.h"
+#include "engine/exchange/document.h"
+
+namespace spoonbill {
+
+// One owner; begin() by one thread.
+class Exporter {
+ public:
+  // The notices must outlive it.
+  explicit Exporter(Notices& notices) : notices_(&notices) {}
+  ~Exporter();  // what is under way is left off, and an older file of that name stays
+  Exporter(const Exporter&) = delete;
+  Exporter& operator=(const Exporter&) = delete;
+
+  // Whether the ending of the file's name is one of those that are exported to.
+  static bool writes(const std::filesystem::path& file);
+  static const char* endings_text();
+
+  // Says when it is done or why not; refused, by a notice too, while another is under way.
+  void begin(Document document, std::filesystem::path file);
+
+ private:
+  void run(const Document& document, const std::filesystem::path& file);
+
+  Notices* notices_;
+  std::atomic<bool> busy_{false}, stopping_{false};
+  std::thread thread_;
+};
+
+}  // namespace spoonbill
