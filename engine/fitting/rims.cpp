@@ -32,26 +32,30 @@ void longest_first(std::vector<Rim>& rims) {
   std::sort(rims.begin(), rims.end(), [](const Rim& a, const Rim& b) { return a.length_m > b.length_m; });
 }
 
-// Without the way that leads off at a node and comes back to it.
-void append_simple(std::vector<std::uint32_t> way, const PointGraph& graph, std::vector<Rim>& rims) {
-  way.erase(std::unique(way.begin(), way.end()), way.end());
-  while (way.size() > 1 && way.front() == way.back()) way.pop_back();
-  std::map<std::uint32_t, std::size_t> seen;
-  for (std::size_t k = 0; k < way.size(); ++k) {
-    const auto [place, is_new] = seen.try_emplace(way[k], k);
-    if (is_new) continue;
-    const auto begin = way.begin() + static_cast<std::ptrdiff_t>(place->second);
-    const auto end = way.begin() + static_cast<std::ptrdiff_t>(k);
-    std::vector<std::uint32_t> loop(begin, end);
-    way.erase(begin, end);
-    append_simple(std::move(loop), graph, rims);
-    append_simple(std::move(way), graph, rims);
-    return;
-  }
-  if (way.size() < least_rim) return;
-  Rim rim{std::move(way)};
+void append_ring(std::vector<std::uint32_t> ring, const PointGraph& graph, std::vector<Rim>& rims) {
+  if (ring.size() < least_rim) return;
+  Rim rim{std::move(ring)};
   measure(graph, rim);
   rims.push_back(std::move(rim));
+}
+
+// The rings of a way that may come to a node more than once: each time what lies between is a ring.
+void append_simple(const std::vector<std::uint32_t>& way, const PointGraph& graph, std::vector<Rim>& rims) {
+  std::vector<std::uint32_t> open;
+  std::map<std::uint32_t, std::size_t> place;
+  for (const std::uint32_t node : way) {
+    const auto seen = place.find(node);
+    if (seen == place.end()) {
+      place[node] = open.size();
+      open.push_back(node);
+      continue;
+    }
+    const auto begin = open.begin() + static_cast<std::ptrdiff_t>(seen->second);
+    append_ring({begin, open.end()}, graph, rims);
+    for (auto gone = begin + 1; gone != open.end(); ++gone) place.erase(*gone);
+    open.erase(begin + 1, open.end());
+  }
+  append_ring(std::move(open), graph, rims);
 }
 
 // The widest angle around a node that holds none of its neighbours, in the plane in which they spread.
@@ -231,7 +235,7 @@ std::vector<Rim> rims_of_mesh(const std::vector<TriangleCorners>& triangles,
     }
     // The triangles over the hole see its sides the other way round.
     std::reverse(way.begin(), way.end());
-    append_simple(std::move(way), graph, rims);
+    append_simple(way, graph, rims);
   }
   longest_first(rims);
   return rims;
