@@ -8,6 +8,7 @@
 #include "engine/fitting/closest_parameters.h"
 #include "engine/fitting/nearest_points.h"
 #include "engine/fitting/refine_knots.h"
+#include "engine/fitting/surface_fitter.h"
 
 namespace spoonbill {
 namespace {
@@ -16,12 +17,6 @@ constexpr int degree = 3;
 constexpr int first_controls = 10;
 constexpr double growth = 1.35;
 constexpr double first_fairness = 1e-2, last_fairness = 3e-4;
-constexpr int projection_steps = 3;
-constexpr int fold_rounds = 30, relaxing_rounds = 10;
-constexpr double most_fairness = 10.0;
-constexpr double huber_deviations = 3.0;
-constexpr double stray_deviations = 5.0, most_strays = 0.15;
-constexpr std::size_t stray_neighbours = 15;
 constexpr int point_round_count = 3;
 // Of a node that spans a hole, against the others': it is a guess.
 constexpr double spanning_weight = 0.15;
@@ -30,61 +25,6 @@ constexpr std::size_t pole_columns = 3;
 constexpr double pole_weight = 0.5;  // of a pole, in spans' worth of points
 constexpr double least_pole_size = 0.02;
 constexpr double seen_share = 0.3, unseen_fairness = 3.0;
-
-// What is fitted: the nodes at first, then all points.
-struct Data {
-  std::span<const Vector3> points_m;
-  std::span<const double> weights;
-  std::vector<Vector2> uv;
-  std::vector<double> distance_m;
-  std::vector<double> trust;
-};
-
-double wrapped(double difference) {
-  return difference - std::round(difference);
-}
-
-class Fitter {
- public:
-  Fitter(const FitPoints& points, const Parameterisation& start, const FitSettings& settings);
-  Result<FittedSurface> run();
-
- private:
-  bool closed() const { return kind_ == ShapeKind::closed; }
-  bool periodic() const { return kind_ != ShapeKind::sheet; }
-  Status solve(Data& data);
-  void take_poles();
-  void project(Data& data, bool smooth);
-  void take_trust(Data& data) const;
-  void distrust_strays();
-  void smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const;
-  bool within_tolerance(const Data& data) const;
-  bool grow();
-  bool faces_inwards() const;
-  Status node_rounds();
-  Status point_rounds();
-  void stiffen_folds();
-  void relax_folds();
-  bool in_folded_span(const Vector2& uv) const;
-  Vector2 kept_inside(Vector2 uv) const;
-  Status unfold();
-  void set_fairness(double fairness, const Data& data);
-  bool tell(double share) const { return !settings_->watch || settings_->watch(share); }
-  FittedSurface result();
-
-  const FitPoints* points_;
-  const FitSettings* settings_;
-  ShapeKind kind_;
-  SurfaceStructure structure_;
-  std::vector<double> fairness_;
-  std::vector<double> node_weights_, all_weights_;
-  std::vector<Vector3> all_points_m_;
-  Data nodes_, all_;
-  std::vector<std::pair<Vector3, double>> poles_;  // and their v
-  Surface surface_;
-  FoldCheck folds_;
-  std::vector<double> u_breaks_, v_breaks_;  // of the last knots
-};
 
 KnotVector first_knots(bool is_periodic, int count) {
   return is_periodic ? KnotVector::periodic_uniform(degree, std::max(count, degree)).value()
@@ -100,7 +40,10 @@ KnotVector over_unit(const KnotVector& knots) {
                              : KnotVector::open(degree, std::move(scaled)).value();
 }
 
-Fitter::Fitter(const FitPoints& points, const Parameterisation& start, const FitSettings& settings)
+}  // namespace
+
+SurfaceFitter::SurfaceFitter(const FitPoints& points, const Parameterisation& start,
+                             const FitSettings& settings)
     : points_(&points), settings_(&settings), kind_(start.kind) {
   structure_.u = over_unit(first_knots(periodic(), std::min(settings.control_u, first_controls)));
   structure_.v = over_unit(first_knots(false, std::min(settings.control_v, first_controls)));
@@ -120,7 +63,7 @@ Fitter::Fitter(const FitPoints& points, const Parameterisation& start, const Fit
 }
 
 // More where there is little data: all of it where there is none.
-void Fitter::set_fairness(double fairness, const Data& data) {
+void SurfaceFitter::set_fairness(double fairness, const FittedData& data) {
   const std::size_t u_spans = span_count(structure_.u), v_spans = span_count(structure_.v);
   std::vector<double> weight(u_spans * v_spans, 0.0);
   const std::vector<double> u_breaks = structure_.u.breakpoints(), v_breaks = structure_.v.breakpoints();
@@ -151,7 +94,7 @@ void Fitter::set_fairness(double fairness, const Data& data) {
   }
 }
 
-Status Fitter::solve(Data& data) {
+Status SurfaceFitter::solve(FittedData& data) {
   std::vector<double> weights(data.weights.begin(), data.weights.end());
   for (std::size_t p = 0; p < weights.size(); ++p) weights[p] *= data.trust[p];
   std::vector<Vector3> points(data.points_m.begin(), data.points_m.end());
@@ -170,7 +113,7 @@ Status Fitter::solve(Data& data) {
 }
 
 // Where the poles were at first: else the surface may reach beyond the points there.
-void Fitter::take_poles() {
+void SurfaceFitter::take_poles() {
   constexpr double near = 0.02;
   for (const double v : {0.0, 1.0}) {
     Vector3 sum = Vector3::Zero();
@@ -191,7 +134,7 @@ void Fitter::take_poles() {
   }
 }
 
-void Fitter::smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const {
+void SurfaceFitter::smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const {
   std::vector<Vector2> shift(uv.size(), Vector2::Zero());
   std::vector<bool> known(uv.size());
   for (std::size_t n = 0; n < uv.size(); ++n) {
@@ -219,7 +162,7 @@ void Fitter::smooth_shifts(const std::vector<Vector2>& before, std::vector<Vecto
   }
 }
 
-void Fitter::project(Data& data, bool smooth) {
+void SurfaceFitter::project(FittedData& data, bool smooth) {
   const ClosestParameters closest(surface_);
   const std::vector<Vector2> before = data.uv;
   for (std::size_t p = 0; p < data.uv.size(); ++p) {
@@ -232,63 +175,7 @@ void Fitter::project(Data& data, bool smooth) {
   if (smooth) smooth_shifts(before, data.uv);
 }
 
-// What lies farther off than nearly all others weighs less, but no more than one in twenty does: at first the
-// surface is what is wrong, not the points.
-void Fitter::take_trust(Data& data) const {
-  std::vector<double> sorted(data.distance_m.begin(),
-                             data.distance_m.end() - static_cast<std::ptrdiff_t>(points_->spanning_nodes));
-  const auto at = [&](double share) {
-    const auto place =
-        sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1));
-    std::nth_element(sorted.begin(), place, sorted.end());
-    return *place;
-  };
-  const double reach =
-      std::max({huber_deviations * 1.4826 * at(0.5), at(0.95), 1e-9 * size_of(points_->scan.points_m)});
-  for (std::size_t p = 0; p < data.trust.size(); ++p) {
-    data.trust[p] = data.distance_m[p] <= reach ? 1.0 : reach / data.distance_m[p];
-  }
-}
-
-// Of a cloud, what lies off the surface otherwise than the points around it in (u, v): where the surface is
-// wrong, all of them lie off alike.
-void Fitter::distrust_strays() {
-  if (points_->is_mesh) return;
-  const Vector2 scale(static_cast<double>(span_count(structure_.u)),
-                      static_cast<double>(span_count(structure_.v)));
-  const std::size_t count = points_->scan.points_m.size();
-  std::vector<Vector3> places;
-  std::vector<double> heights;
-  for (std::size_t p = 0; p < count; ++p) {
-    const SurfacePoint at = evaluate(surface_, all_.uv[p].x(), all_.uv[p].y());
-    const Vector3 normal = at.du.cross(at.dv).normalized();
-    places.emplace_back(all_.uv[p].x() * scale.x(), all_.uv[p].y() * scale.y(), 0.0);
-    heights.push_back(normal.dot(all_.points_m[p] - at.position_m));
-  }
-  const NearestPoints nearest(places);
-  std::vector<NearestPoints::Found> found;
-  std::vector<double> near, off(count);
-  for (std::size_t p = 0; p < count; ++p) {
-    nearest.nearest(places[p], stray_neighbours, found);
-    near.clear();
-    for (const NearestPoints::Found& other : found) near.push_back(heights[other.index]);
-    const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
-    std::nth_element(near.begin(), middle, near.end());
-    off[p] = std::abs(heights[p] - *middle);
-  }
-  std::vector<double> sorted = off;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double reach = std::max(stray_deviations * 1.4826 * *middle, 1e-6 * size_of(points_->scan.points_m));
-  const auto strays = std::count_if(off.begin(), off.end(), [&](double height) { return height > reach; });
-  // More are no strays, but what the surface cannot follow.
-  if (static_cast<double>(strays) > most_strays * static_cast<double>(count)) return;
-  for (std::size_t p = 0; p < count; ++p) {
-    if (off[p] > reach) all_.trust[p] = 0.0;
-  }
-}
-
-bool Fitter::within_tolerance(const Data& data) const {
+bool SurfaceFitter::within_tolerance(const FittedData& data) const {
   if (settings_->tolerance_m <= 0.0) return false;
   for (std::size_t p = 0; p + points_->spanning_nodes < data.distance_m.size(); ++p) {
     if (data.distance_m[p] > settings_->tolerance_m && data.trust[p] > 0.25) return false;
@@ -297,7 +184,7 @@ bool Fitter::within_tolerance(const Data& data) const {
 }
 
 // More control points; false where there are enough.
-bool Fitter::grow() {
+bool SurfaceFitter::grow() {
   const int u = structure_.u.control_point_count(), v = structure_.v.control_point_count();
   if (u >= settings_->control_u && v >= settings_->control_v) return false;
   if (within_tolerance(nodes_)) return false;
@@ -314,7 +201,7 @@ bool Fitter::grow() {
 }
 
 // Against the nodes' normals or, of a closed shape without them, against its own inside.
-bool Fitter::faces_inwards() const {
+bool SurfaceFitter::faces_inwards() const {
   double along = 0.0, volume = 0.0;
   for (std::size_t n = 0; n < nodes_.uv.size(); ++n) {
     if (nodes_.uv[n].hasNaN()) continue;
@@ -332,7 +219,7 @@ bool Fitter::faces_inwards() const {
   return volume < 0.0;
 }
 
-Status Fitter::node_rounds() {
+Status SurfaceFitter::node_rounds() {
   set_fairness(first_fairness, nodes_);
   if (Status solved = solve(nodes_); !solved) return solved;
   if (faces_inwards()) {
@@ -354,7 +241,7 @@ Status Fitter::node_rounds() {
   return {};
 }
 
-Status Fitter::point_rounds() {
+Status SurfaceFitter::point_rounds() {
   const std::size_t spanning = points_->spanning_nodes, node_count = points_->graph.size();
   all_points_m_ = points_->scan.points_m;
   all_weights_ = points_->weights;
@@ -381,117 +268,7 @@ Status Fitter::point_rounds() {
   return {};
 }
 
-void Fitter::stiffen_folds() {
-  const auto u_spans = static_cast<int>(span_count(structure_.u));
-  const auto v_spans = static_cast<int>(span_count(structure_.v));
-  for (int s = 0; s < u_spans; ++s) {
-    for (int t = 0; t < v_spans; ++t) {
-      if (!folds_.span_folds[static_cast<std::size_t>(s * v_spans + t)]) continue;
-      for (int ds = -1; ds <= 1; ++ds) {
-        for (int dt = -1; dt <= 1; ++dt) {
-          const int row = periodic() ? (s + ds + u_spans) % u_spans : s + ds, column = t + dt;
-          if (row < 0 || row >= u_spans || column < 0 || column >= v_spans) continue;
-          double& fairness = fairness_[static_cast<std::size_t>(row * v_spans + column)];
-          fairness = std::min(most_fairness, fairness * (ds == 0 && dt == 0 ? 4.0 : 2.0));
-        }
-      }
-    }
-  }
-}
-
-// Parameters of points in spans that fold, moved towards the means of their neighbours': as in the harmonic
-// map that they come from, where none crosses another.
-void Fitter::relax_folds() {
-  const PointGraph& graph = points_->graph;
-  const std::size_t count = points_->scan.points_m.size(), spanning = points_->spanning_nodes;
-  std::vector<std::vector<std::uint32_t>> of_node(graph.size());
-  for (std::uint32_t p = 0; p < count; ++p) of_node[points_->node_of[p]].push_back(p);
-  for (std::uint32_t k = 0; k < spanning; ++k) {
-    of_node[graph.size() - spanning + k].push_back(static_cast<std::uint32_t>(count) + k);
-  }
-  // A node lies where its first point does.
-  const auto place = [&](std::uint32_t node) {
-    return of_node[node].empty() ? no_point : of_node[node].front();
-  };
-  std::vector<std::uint32_t> folded;
-  for (std::uint32_t n = 0; n < graph.size(); ++n) {
-    if (place(n) != no_point && in_folded_span(all_.uv[place(n)])) folded.push_back(n);
-  }
-  for (int round = 0; round < relaxing_rounds; ++round) {
-    for (const std::uint32_t n : folded) {
-      const Vector2 before = all_.uv[place(n)];
-      Vector2 shift = Vector2::Zero();
-      double near = 0.0;
-      for (const std::uint32_t other : graph.of(n)) {
-        if (place(other) == no_point) continue;
-        Vector2 way = all_.uv[place(other)] - before;
-        if (periodic()) way.x() = wrapped(way.x());
-        shift += way;
-        near += 1.0;
-      }
-      if (near == 0.0) continue;
-      for (const std::uint32_t p : of_node[n]) all_.uv[p] = kept_inside(all_.uv[p] + 0.7 / near * shift);
-    }
-  }
-}
-
-bool Fitter::in_folded_span(const Vector2& uv) const {
-  const auto span_of = [](const std::vector<double>& breaks, double at) {
-    const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, at);
-    return static_cast<std::size_t>(above - breaks.begin()) - 1;
-  };
-  const std::vector<double>&u = u_breaks_, &v = v_breaks_;
-  const std::size_t columns = v.size() - 1, rows = u.size() - 1;
-  const std::size_t row = span_of(u, uv.x()), column = span_of(v, uv.y());
-  for (std::size_t s = row + rows - 1; s <= row + rows + 1; ++s) {
-    for (std::size_t t = column == 0 ? 0 : column - 1; t <= std::min(columns - 1, column + 1); ++t) {
-      if (folds_.span_folds[s % rows * columns + t]) return true;
-    }
-  }
-  return false;
-}
-
-// Wrapped in u where it is periodic, else on the nearest edge.
-Vector2 Fitter::kept_inside(Vector2 uv) const {
-  uv.y() = std::clamp(uv.y(), 0.0, 1.0);
-  uv.x() = periodic() ? uv.x() - std::floor(uv.x()) : std::clamp(uv.x(), 0.0, 1.0);
-  return uv;
-}
-
-Status Fitter::unfold() {
-  std::vector<Vector3> normals = points_->scan.normals;
-  if (!normals.empty()) {
-    normals.insert(normals.end(),
-                   points_->node_normals.end() - static_cast<std::ptrdiff_t>(points_->spanning_nodes),
-                   points_->node_normals.end());
-  }
-  u_breaks_ = structure_.u.breakpoints();
-  v_breaks_ = structure_.v.breakpoints();
-  project(all_, false);
-  folds_ = check_folds(surface_, {all_.uv, normals});
-  Surface least_folded = surface_;
-  FoldCheck least = folds_;
-  std::vector<Vector2> least_uv = all_.uv;
-  for (int round = 0; round < fold_rounds && folds_.folds > 0; ++round) {
-    stiffen_folds();
-    relax_folds();
-    if (Status solved = solve(all_); !solved) return solved;
-    if (round % 2 == 1) project(all_, false);
-    folds_ = check_folds(surface_, {all_.uv, normals});
-    if (folds_.folds < least.folds) {
-      least_folded = surface_;
-      least = folds_;
-      least_uv = all_.uv;
-    }
-    if (!tell(0.9)) return Error{"stopped before the fit was done"};
-  }
-  surface_ = std::move(least_folded);
-  folds_ = std::move(least);
-  all_.uv = std::move(least_uv);
-  return {};
-}
-
-FittedSurface Fitter::result() {
+FittedSurface SurfaceFitter::result() {
   const std::size_t count = points_->scan.points_m.size();
   all_.uv.resize(count);
   all_.distance_m.resize(count);
@@ -506,18 +283,17 @@ FittedSurface Fitter::result() {
           std::move(folds_)};
 }
 
-Result<FittedSurface> Fitter::run() {
-  for (const auto step : {&Fitter::node_rounds, &Fitter::point_rounds, &Fitter::unfold}) {
+Result<FittedSurface> SurfaceFitter::run() {
+  for (const auto step :
+       {&SurfaceFitter::node_rounds, &SurfaceFitter::point_rounds, &SurfaceFitter::unfold}) {
     if (Status done = (this->*step)(); !done) return done.error();
   }
   return result();
 }
 
-}  // namespace
-
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings) {
-  return Fitter(points, start, settings).run();
+  return SurfaceFitter(points, start, settings).run();
 }
 
 }  // namespace spoonbill

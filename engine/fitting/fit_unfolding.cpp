@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/fitting/refine_knots.h"
+#include "engine/fitting/surface_fitter.h"
+
+namespace spoonbill {
+
+namespace {
+
+constexpr int fold_rounds = 30, relaxing_rounds = 10;
+constexpr double most_fairness = 10.0;
+
+}  // namespace
+
+void SurfaceFitter::stiffen_folds() {
+  const auto u_spans = static_cast<int>(span_count(structure_.u));
+  const auto v_spans = static_cast<int>(span_count(structure_.v));
+  for (int s = 0; s < u_spans; ++s) {
+    for (int t = 0; t < v_spans; ++t) {
+      if (!folds_.span_folds[static_cast<std::size_t>(s * v_spans + t)]) continue;
+      for (int ds = -1; ds <= 1; ++ds) {
+        for (int dt = -1; dt <= 1; ++dt) {
+          const int row = periodic() ? (s + ds + u_spans) % u_spans : s + ds, column = t + dt;
+          if (row < 0 || row >= u_spans || column < 0 || column >= v_spans) continue;
+          double& fairness = fairness_[static_cast<std::size_t>(row * v_spans + column)];
+          fairness = std::min(most_fairness, fairness * (ds == 0 && dt == 0 ? 4.0 : 2.0));
+        }
+      }
+    }
+  }
+}
+
+// Parameters of points in spans that fold, moved towards the means of their neighbours': as in the harmonic
+// map that they come from, where none crosses another.
+void SurfaceFitter::relax_folds() {
+  const PointGraph& graph = points_->graph;
+  const std::size_t count = points_->scan.points_m.size(), spanning = points_->spanning_nodes;
+  std::vector<std::vector<std::uint32_t>> of_node(graph.size());
+  for (std::uint32_t p = 0; p < count; ++p) of_node[points_->node_of[p]].push_back(p);
+  for (std::uint32_t k = 0; k < spanning; ++k) {
+    of_node[graph.size() - spanning + k].push_back(static_cast<std::uint32_t>(count) + k);
+  }
+  // A node lies where its first point does.
+  const auto place = [&](std::uint32_t node) {
+    return of_node[node].empty() ? no_point : of_node[node].front();
+  };
+  std::vector<std::uint32_t> folded;
+  for (std::uint32_t n = 0; n < graph.size(); ++n) {
+    if (place(n) != no_point && in_folded_span(all_.uv[place(n)])) folded.push_back(n);
+  }
+  for (int round = 0; round < relaxing_rounds; ++round) {
+    for (const std::uint32_t n : folded) {
+      const Vector2 before = all_.uv[place(n)];
+      Vector2 shift = Vector2::Zero();
+      double near = 0.0;
+      for (const std::uint32_t other : graph.of(n)) {
+        if (place(other) == no_point) continue;
+        Vector2 way = all_.uv[place(other)] - before;
+        if (periodic()) way.x() = wrapped(way.x());
+        shift += way;
+        near += 1.0;
+      }
+      if (near == 0.0) continue;
+      for (const std::uint32_t p : of_node[n]) all_.uv[p] = kept_inside(all_.uv[p] + 0.7 / near * shift);
+    }
+  }
+}
+
+bool SurfaceFitter::in_folded_span(const Vector2& uv) const {
+  const auto span_of = [](const std::vector<double>& breaks, double at) {
+    const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, at);
+    return static_cast<std::size_t>(above - breaks.begin()) - 1;
+  };
+  const std::vector<double>&u = u_breaks_, &v = v_breaks_;
+  const std::size_t columns = v.size() - 1, rows = u.size() - 1;
+  const std::size_t row = span_of(u, uv.x()), column = span_of(v, uv.y());
+  for (std::size_t s = row + rows - 1; s <= row + rows + 1; ++s) {
+    for (std::size_t t = column == 0 ? 0 : column - 1; t <= std::min(columns - 1, column + 1); ++t) {
+      if (folds_.span_folds[s % rows * columns + t]) return true;
+    }
+  }
+  return false;
+}
+
+// Wrapped in u where it is periodic, else on the nearest edge.
+Vector2 SurfaceFitter::kept_inside(Vector2 uv) const {
+  uv.y() = std::clamp(uv.y(), 0.0, 1.0);
+  uv.x() = periodic() ? uv.x() - std::floor(uv.x()) : std::clamp(uv.x(), 0.0, 1.0);
+  return uv;
+}
+
+Status SurfaceFitter::unfold() {
+  std::vector<Vector3> normals = points_->scan.normals;
+  if (!normals.empty()) {
+    normals.insert(normals.end(),
+                   points_->node_normals.end() - static_cast<std::ptrdiff_t>(points_->spanning_nodes),
+                   points_->node_normals.end());
+  }
+  u_breaks_ = structure_.u.breakpoints();
+  v_breaks_ = structure_.v.breakpoints();
+  project(all_, false);
+  folds_ = check_folds(surface_, {all_.uv, normals});
+  Surface least_folded = surface_;
+  FoldCheck least = folds_;
+  std::vector<Vector2> least_uv = all_.uv;
+  for (int round = 0; round < fold_rounds && folds_.folds > 0; ++round) {
+    stiffen_folds();
+    relax_folds();
+    if (Status solved = solve(all_); !solved) return solved;
+    if (round % 2 == 1) project(all_, false);
+    folds_ = check_folds(surface_, {all_.uv, normals});
+    if (folds_.folds < least.folds) {
+      least_folded = surface_;
+      least = folds_;
+      least_uv = all_.uv;
+    }
+    if (!tell(0.9)) return Error{"stopped before the fit was done"};
+  }
+  surface_ = std::move(least_folded);
+  folds_ = std::move(least);
+  all_.uv = std::move(least_uv);
+  return {};
+}
+
+}  // namespace spoonbill

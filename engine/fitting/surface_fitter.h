@@ -1,0 +1,73 @@
+// How fit_surface() works: its state from round to round. The fitting's own; one owner, outside the tick.
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "engine/fitting/fit_surface.h"
+#include "engine/fitting/folds.h"
+#include "engine/fitting/scattered_fit.h"
+
+namespace spoonbill {
+
+inline constexpr int projection_steps = 3;
+
+// What is fitted: the nodes at first, then all points.
+struct FittedData {
+  std::span<const Vector3> points_m;
+  std::span<const double> weights;
+  std::vector<Vector2> uv;
+  std::vector<double> distance_m;
+  std::vector<double> trust;
+};
+
+// A difference of parameters of a period of one, the short way around.
+inline double wrapped(double difference) {
+  return difference - std::round(difference);
+}
+
+class SurfaceFitter {
+ public:
+  SurfaceFitter(const FitPoints& points, const Parameterisation& start, const FitSettings& settings);
+  Result<FittedSurface> run();
+
+ private:
+  bool closed() const { return kind_ == ShapeKind::closed; }
+  bool periodic() const { return kind_ != ShapeKind::sheet; }
+  Status solve(FittedData& data);
+  void take_poles();
+  void project(FittedData& data, bool smooth);
+  void take_trust(FittedData& data) const;
+  void distrust_strays();
+  void smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const;
+  bool within_tolerance(const FittedData& data) const;
+  bool grow();
+  bool faces_inwards() const;
+  Status node_rounds();
+  Status point_rounds();
+  void stiffen_folds();
+  void relax_folds();
+  bool in_folded_span(const Vector2& uv) const;
+  Vector2 kept_inside(Vector2 uv) const;
+  Status unfold();
+  void set_fairness(double fairness, const FittedData& data);
+  bool tell(double share) const { return !settings_->watch || settings_->watch(share); }
+  FittedSurface result();
+
+  const FitPoints* points_;
+  const FitSettings* settings_;
+  ShapeKind kind_;
+  SurfaceStructure structure_;
+  std::vector<double> fairness_;
+  std::vector<double> node_weights_, all_weights_;
+  std::vector<Vector3> all_points_m_;
+  FittedData nodes_, all_;
+  std::vector<std::pair<Vector3, double>> poles_;  // and their v
+  Surface surface_;
+  FoldCheck folds_;
+  std::vector<double> u_breaks_, v_breaks_;  // of the last knots
+};
+
+}  // namespace spoonbill
