@@ -3,12 +3,19 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <ostream>
 #include <vector>
 
 #include "tests/engine/exchange/sample_document.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace spoonbill {
+
+// Google Test's name for it.
+void PrintTo(const FuzzTarget& target, std::ostream* out) {
+  *out << target.name;
+}
+
 namespace {
 
 std::vector<std::filesystem::path> cases_of(const char* target) {

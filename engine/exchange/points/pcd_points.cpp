@@ -112,8 +112,7 @@ Result<Header> header_of(std::string_view bytes) {
 
 // The places of x, y, z and of a normal's among the fields; -1 for those that are not there.
 std::array<int, 6> places_of(const std::vector<Field>& fields) {
-  static constexpr std::array<std::string_view, 6> names{"x",        "y",        "z",
-                                                         "normal_x", "normal_y", "normal_z"};
+  static constexpr std::array<std::string_view, 6> names{"x", "y", "z", "normal_x", "normal_y", "normal_z"};
   std::array<int, 6> places;
   places.fill(-1);
   for (std::size_t k = 0; k < names.size(); ++k) {
