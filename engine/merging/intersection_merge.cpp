@@ -68,7 +68,7 @@ struct Parts {
 };
 
 Result<Parts> fitted_parts(const CrossingPatches& patches, const IntersectionRequest& request) {
-  const auto& [first, second] = patches;
+  const Surface &first = patches.first, &second = patches.second;
   CornerLines lines(patches, request.fillet_m);
   const double tolerance_m = part_share * request.join.tolerance_m;
   const double first_start = first.v.domain_start(), second_end = second.v.domain_end();
