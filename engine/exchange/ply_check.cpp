@@ -58,6 +58,8 @@ bool skip_list(std::istream& stream) {
 }
 
 Status check_rows(std::istream& stream, const Element& element) {
+  // Rows of nothing take no bytes, however many are promised.
+  if (element.is_list.empty()) return {};
   for (std::uint64_t row = 0; row < element.rows; ++row) {
     for (const bool is_list : element.is_list) {
       if (is_list ? skip_list(stream) : skip(stream, 1)) continue;

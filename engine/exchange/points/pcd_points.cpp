@@ -83,6 +83,10 @@ Result<Header> header_from(const HeaderLines& lines, std::string_view data, std:
     }
     header.fields.push_back({lines.fields[k], *type, *numbers});
   }
+  const auto is_empty = [](const Field& field) { return field.count == 0; };
+  if (std::all_of(header.fields.begin(), header.fields.end(), is_empty)) {
+    return Error{"its fields hold nothing: each COUNT is 0"};
+  }
   if (lines.points) {
     header.points = *lines.points;
   } else if (lines.width && lines.height && *lines.width <= point_limit && *lines.height <= point_limit) {
