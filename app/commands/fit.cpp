@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -13,6 +10,7 @@
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/option_values.h"
+#include "app/commands/parsed_option.h"
 #include "app/files/error_cloud.h"
 #include "app/files/fitted_document.h"
 #include "app/files/scan_file.h"
@@ -89,35 +87,25 @@ Status fit(const FitOptions& options, Console& console) {
   return {};
 }
 
-template <class Parse, class Take>
-void add_text_option(CLI::App& parser, const std::string& name, const std::string& help, const char* form,
-                     const Parse& parse, const Take& take) {
-  const auto read = [=](const std::string& text) {
-    const auto value = parse(text);
-    if (!value) throw CLI::ValidationError(name, value.error().message);
-    take(value.value());
-  };
-  parser.add_option_function<std::string>(name, read, help)->type_name(form);
-}
-
 void add_options(CLI::App& parser, const std::shared_ptr<FitOptions>& options) {
   parser
       .add_option("SCAN", options->scan,
                   "Points (.ply, .pcd, .xyz, .txt, .csv, .asc, .pts, .obj) or triangles (.ply, .obj, .stl)")
       ->required();
   parser.add_option("--out", options->out, "The document to write (.json)")->required();
-  add_text_option(
-      parser, "--control", "At most so many control points along u and v (24x24 unless told)", "RxC",
-      [](const std::string& text) { return parse_extent(text, control_range); },
-      [options](const Extent& control) { options->control = control; });
-  add_text_option(
-      parser, "--tolerance", "No more control points once the scan lies within (outliers aside)", "LENGTH",
+  add_parsed_option(
+      parser, "--control", "RxC", [](const std::string& text) { return parse_extent(text, control_range); },
+      [options](const Extent& control) { options->control = control; },
+      "At most so many control points along u and v (24x24 unless told)");
+  add_parsed_option(
+      parser, "--tolerance", "LENGTH",
       [](const std::string& text) { return parse_length(text, tolerance_range_m); },
-      [options](double length) { options->request.settings.tolerance_m = length; });
-  add_text_option(
-      parser, "--unit", "The unit of the scan's numbers: mm, cm, m or in (PLY and PCD: m, others: mm)",
-      "UNIT", [](const std::string& text) { return parse_unit(text); },
-      [options](const LengthUnit& unit) { options->unit = unit; });
+      [options](double length) { options->request.settings.tolerance_m = length; },
+      "No more control points once the scan lies within (outliers aside)");
+  add_parsed_option(
+      parser, "--unit", "UNIT", [](const std::string& text) { return parse_unit(text); },
+      [options](const LengthUnit& unit) { options->unit = unit; },
+      "The unit of the scan's numbers: mm, cm, m or in (PLY and PCD: m, others: mm)");
   const std::map<std::string, ShapeKind> kinds{
       {"sheet", ShapeKind::sheet}, {"tube", ShapeKind::tube}, {"closed", ShapeKind::closed}};
   parser.add_option("--kind", options->request.kind, "sheet, tube or closed; found unless told")
