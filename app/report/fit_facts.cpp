@@ -55,6 +55,12 @@ void add_body(FactSheet& facts, const FittedBody& body, Json& list) {
                 ? "none"
                 : std::to_string(body.folds.folds) + " of " + std::to_string(body.folds.samples) + " samples",
             "", nullptr);
+  if (body.folds.cusps > 0) {
+    facts.add("  Cusps",
+              std::to_string(body.folds.cusps) +
+                  ": turns sharper than the knots can follow; fewer control points are smoother",
+              "", nullptr);
+  }
   list.push_back({{"kind", kind},
                   {"control", {body.surface.net.rows, body.surface.net.columns}},
                   {"size_mm", millimetres(body.size_m)},
@@ -64,7 +70,8 @@ void add_body(FactSheet& facts, const FittedBody& body, Json& list) {
                   {"surface_to_data", deviation_json(body.errors.surface_to_data)},
                   {"unseen_share", body.errors.unseen_share},
                   {"folds", body.folds.folds},
-                  {"fold_samples", body.folds.samples}});
+                  {"fold_samples", body.folds.samples},
+                  {"cusps", body.folds.cusps}});
 }
 
 }  // namespace

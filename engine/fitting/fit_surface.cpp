@@ -1,8 +1,10 @@
 #include "engine/fitting/fit_surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "engine/fitting/closest_parameters.h"
@@ -26,6 +28,24 @@ constexpr double pole_weight = 0.5;  // of a pole, in spans' worth of points
 constexpr double least_pole_size = 0.02;
 constexpr double seen_share = 0.3, unseen_fairness = 3.0;
 
+const ClosestPoint& nearer(const ClosestPoint& one, const ClosestPoint& other) {
+  return other.distance_m < one.distance_m ? other : one;
+}
+
+double usual_error(const FittedSurface& fitted) {
+  std::vector<double> sorted = fitted.distance_m;
+  const auto place =
+      sorted.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), place, sorted.end());
+  return *place;
+}
+
+// Where all fold a little, the nearest.
+bool better(const FittedSurface& one, const FittedSurface& other) {
+  if (one.folds.folds > 0 && other.folds.folds > 0) return usual_error(one) < usual_error(other);
+  return one.folds.better_than(other.folds);
+}
+
 KnotVector first_knots(bool is_periodic, int count) {
   return is_periodic ? KnotVector::periodic_uniform(degree, std::max(count, degree)).value()
                      : KnotVector::clamped_uniform(degree, std::max(count, degree + 1)).value();
@@ -43,8 +63,8 @@ KnotVector over_unit(const KnotVector& knots) {
 }  // namespace
 
 SurfaceFitter::SurfaceFitter(const FitPoints& points, const Parameterisation& start,
-                             const FitSettings& settings)
-    : points_(&points), settings_(&settings), kind_(start.kind) {
+                             const FitSettings& settings, double least_agreement)
+    : points_(&points), settings_(&settings), kind_(start.kind), least_agreement_(least_agreement) {
   structure_.u = over_unit(first_knots(periodic(), std::min(settings.control_u, first_controls)));
   structure_.v = over_unit(first_knots(false, std::min(settings.control_v, first_controls)));
   structure_.pole_at_start = structure_.pole_at_end = closed();
@@ -57,7 +77,11 @@ SurfaceFitter::SurfaceFitter(const FitPoints& points, const Parameterisation& st
   for (std::size_t n = node_weights_.size() - points.spanning_nodes; n < node_weights_.size(); ++n) {
     node_weights_[n] = spanning_weight * mean;
   }
-  nodes_ = {points.graph.points_m, node_weights_, start.uv, std::vector<double>(points.graph.size(), 0.0),
+  nodes_ = {points.graph.points_m,
+            node_weights_,
+            points.node_normals,
+            start.uv,
+            std::vector<double>(points.graph.size(), 0.0),
             std::vector<double>(points.graph.size(), 1.0)};
   if (closed()) take_poles();
 }
@@ -162,6 +186,14 @@ void SurfaceFitter::smooth_shifts(const std::vector<Vector2>& before, std::vecto
   }
 }
 
+// Nodes that span holes may: their normals are guesses.
+bool SurfaceFitter::may_go_to(const FittedData& data, std::size_t point, const Vector2& uv) const {
+  if (least_agreement_ <= -1.0 || point + points_->spanning_nodes >= data.normals.size()) return true;
+  const SurfacePoint at = evaluate(surface_, uv.x(), uv.y());
+  const double cosine = at.du.cross(at.dv).normalized().dot(data.normals[point]);
+  return data.normals[point].isZero() || !(cosine < least_agreement_);
+}
+
 void SurfaceFitter::project(FittedData& data, bool smooth) {
   const ClosestParameters closest(surface_);
   const std::vector<Vector2> before = data.uv;
@@ -169,8 +201,12 @@ void SurfaceFitter::project(FittedData& data, bool smooth) {
     const ClosestPoint found = before[p].hasNaN()
                                    ? closest.anywhere(data.points_m[p], projection_steps)
                                    : closest.from(data.points_m[p], before[p], projection_steps);
-    data.uv[p] = found.uv;
-    data.distance_m[p] = found.distance_m;
+    if (before[p].hasNaN() || may_go_to(data, p, found.uv)) {
+      data.uv[p] = found.uv;
+      data.distance_m[p] = found.distance_m;
+    } else {
+      data.distance_m[p] = closest.from(data.points_m[p], before[p], 0).distance_m;
+    }
   }
   if (smooth) smooth_shifts(before, data.uv);
 }
@@ -255,6 +291,13 @@ Status SurfaceFitter::point_rounds() {
   }
   all_.points_m = all_points_m_;
   all_.weights = all_weights_;
+  all_normals_ = points_->scan.normals;
+  if (!all_normals_.empty()) {
+    all_normals_.insert(all_normals_.end(),
+                        points_->node_normals.end() - static_cast<std::ptrdiff_t>(spanning),
+                        points_->node_normals.end());
+  }
+  all_.normals = all_normals_;
   all_.distance_m.assign(all_.uv.size(), 0.0);
   all_.trust.assign(all_.uv.size(), 1.0);
   for (int round = 0; round < point_round_count; ++round) {
@@ -268,6 +311,7 @@ Status SurfaceFitter::point_rounds() {
   return {};
 }
 
+// What was held in place, or slid to a place that is nearest only about itself, is measured from anywhere.
 FittedSurface SurfaceFitter::result() {
   const std::size_t count = points_->scan.points_m.size();
   all_.uv.resize(count);
@@ -275,7 +319,8 @@ FittedSurface SurfaceFitter::result() {
   all_.trust.resize(count);
   const ClosestParameters closest(surface_);
   for (std::size_t p = 0; p < all_.uv.size(); ++p) {
-    const ClosestPoint found = closest.from(all_.points_m[p], all_.uv[p], projection_steps);
+    const ClosestPoint found = nearer(closest.from(all_.points_m[p], all_.uv[p], projection_steps),
+                                      closest.anywhere(all_.points_m[p], projection_steps));
     all_.uv[p] = found.uv;
     all_.distance_m[p] = found.distance_m;
   }
@@ -291,9 +336,25 @@ Result<FittedSurface> SurfaceFitter::run() {
   return result();
 }
 
+// Which agreement of normals serves best differs from scan to scan: a firm one holds points in folds of the
+// first parameters, a loose one lets them slip to the other face.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings) {
-  return SurfaceFitter(points, start, settings).run();
+  constexpr std::array agreements{0.0, -0.3, -1.0};
+  FitSettings watched = settings;
+  double told = 0.0;
+  watched.watch = [&](double share) {
+    told = std::max(told, share);
+    return !settings.watch || settings.watch(told);
+  };
+  std::optional<FittedSurface> best;
+  for (const double agreement : agreements) {
+    auto fitted = SurfaceFitter(points, start, watched, agreement).run();
+    if (!fitted) return fitted.error();
+    if (!best || better(fitted.value(), *best)) best = std::move(fitted).value();
+    if (best->folds.folds + best->folds.cusps == 0 || points.scan.normals.empty()) break;
+  }
+  return *std::move(best);
 }
 
 }  // namespace spoonbill

@@ -9,17 +9,22 @@ namespace spoonbill {
 
 namespace {
 
-constexpr int fold_rounds = 30, relaxing_rounds = 10;
+constexpr int fold_rounds = 30, cusp_rounds = 60, relaxing_rounds = 10;
 constexpr double most_fairness = 10.0;
 
 }  // namespace
+
+// Cusps wait until nothing folds: they are the smaller fault.
+const std::vector<bool>& SurfaceFitter::faulty_spans() const {
+  return folds_.folds > 0 ? folds_.span_folds : folds_.span_cusps;
+}
 
 void SurfaceFitter::stiffen_folds() {
   const auto u_spans = static_cast<int>(span_count(structure_.u));
   const auto v_spans = static_cast<int>(span_count(structure_.v));
   for (int s = 0; s < u_spans; ++s) {
     for (int t = 0; t < v_spans; ++t) {
-      if (!folds_.span_folds[static_cast<std::size_t>(s * v_spans + t)]) continue;
+      if (!faulty_spans()[static_cast<std::size_t>(s * v_spans + t)]) continue;
       for (int ds = -1; ds <= 1; ++ds) {
         for (int dt = -1; dt <= 1; ++dt) {
           const int row = periodic() ? (s + ds + u_spans) % u_spans : s + ds, column = t + dt;
@@ -78,7 +83,7 @@ bool SurfaceFitter::in_folded_span(const Vector2& uv) const {
   const std::size_t row = span_of(u, uv.x()), column = span_of(v, uv.y());
   for (std::size_t s = row + rows - 1; s <= row + rows + 1; ++s) {
     for (std::size_t t = column == 0 ? 0 : column - 1; t <= std::min(columns - 1, column + 1); ++t) {
-      if (folds_.span_folds[s % rows * columns + t]) return true;
+      if (faulty_spans()[s % rows * columns + t]) return true;
     }
   }
   return false;
@@ -92,26 +97,21 @@ Vector2 SurfaceFitter::kept_inside(Vector2 uv) const {
 }
 
 Status SurfaceFitter::unfold() {
-  std::vector<Vector3> normals = points_->scan.normals;
-  if (!normals.empty()) {
-    normals.insert(normals.end(),
-                   points_->node_normals.end() - static_cast<std::ptrdiff_t>(points_->spanning_nodes),
-                   points_->node_normals.end());
-  }
   u_breaks_ = structure_.u.breakpoints();
   v_breaks_ = structure_.v.breakpoints();
   project(all_, false);
-  folds_ = check_folds(surface_, {all_.uv, normals});
+  folds_ = check_folds(surface_, {all_.uv, all_normals_});
   Surface least_folded = surface_;
   FoldCheck least = folds_;
   std::vector<Vector2> least_uv = all_.uv;
-  for (int round = 0; round < fold_rounds && folds_.folds > 0; ++round) {
+  const auto rounds = [&] { return least.folds > 0 ? fold_rounds : least.cusps > 0 ? cusp_rounds : 0; };
+  for (int round = 0; round < rounds(); ++round) {
     stiffen_folds();
     relax_folds();
     if (Status solved = solve(all_); !solved) return solved;
     if (round % 2 == 1) project(all_, false);
-    folds_ = check_folds(surface_, {all_.uv, normals});
-    if (folds_.folds < least.folds) {
+    folds_ = check_folds(surface_, {all_.uv, all_normals_});
+    if (folds_.better_than(least)) {
       least_folded = surface_;
       least = folds_;
       least_uv = all_.uv;

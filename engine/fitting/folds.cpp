@@ -9,7 +9,8 @@
 namespace spoonbill {
 namespace {
 
-constexpr int samples_a_span = 4;
+constexpr int samples_a_span = 4, cusp_samples_a_span = 12;
+constexpr double cusp_cosine = -0.5;
 
 // Normals at the middles of a sample's cell, so that no pole or seam is hit.
 struct NormalGrid {
@@ -18,19 +19,19 @@ struct NormalGrid {
   std::vector<Vector3> normals;
 };
 
-std::vector<double> middles(const KnotVector& knots) {
+std::vector<double> middles(const KnotVector& knots, int samples) {
   const std::vector<double> breaks = knots.breakpoints();
   std::vector<double> parameters;
   for (std::size_t s = 0; s + 1 < breaks.size(); ++s) {
-    for (int k = 0; k < samples_a_span; ++k) {
-      parameters.push_back(breaks[s] + (breaks[s + 1] - breaks[s]) * (k + 0.5) / samples_a_span);
+    for (int k = 0; k < samples; ++k) {
+      parameters.push_back(breaks[s] + (breaks[s + 1] - breaks[s]) * (k + 0.5) / samples);
     }
   }
   return parameters;
 }
 
-NormalGrid sample(const Surface& surface) {
-  const std::vector<double> u = middles(surface.u), v = middles(surface.v);
+NormalGrid sample(const Surface& surface, int samples) {
+  const std::vector<double> u = middles(surface.u, samples), v = middles(surface.v, samples);
   const PieceBasis u_basis(surface.u), v_basis(surface.v);
   NormalGrid grid{u.size(), v.size(), {}, {}};
   for (const double at_u : u) {
@@ -43,11 +44,11 @@ NormalGrid sample(const Surface& surface) {
   return grid;
 }
 
-bool turns_against_next(const NormalGrid& grid, bool u_closes, std::size_t i, std::size_t j) {
+bool turns_from_next(const NormalGrid& grid, bool u_closes, double cosine, std::size_t i, std::size_t j) {
   const Vector3& normal = grid.normals[i * grid.columns + j];
   const bool in_u = (i + 1 < grid.rows || u_closes) &&
-                    normal.dot(grid.normals[(i + 1) % grid.rows * grid.columns + j]) < 0.0;
-  return in_u || (j + 1 < grid.columns && normal.dot(grid.normals[i * grid.columns + j + 1]) < 0.0);
+                    normal.dot(grid.normals[(i + 1) % grid.rows * grid.columns + j]) < cosine;
+  return in_u || (j + 1 < grid.columns && normal.dot(grid.normals[i * grid.columns + j + 1]) < cosine);
 }
 
 // The data's normals by their place in (u, v), in spans; near a seam on both of its sides.
@@ -89,10 +90,23 @@ class DataNormals {
   mutable std::vector<NearestPoints::Found> found_;
 };
 
+void count_cusps(const Surface& surface, FoldCheck& check) {
+  const NormalGrid grid = sample(surface, cusp_samples_a_span);
+  const std::size_t v_spans = grid.columns / cusp_samples_a_span;
+  check.span_cusps.assign(check.span_folds.size(), false);
+  for (std::size_t i = 0; i < grid.rows; ++i) {
+    for (std::size_t j = 0; j < grid.columns; ++j) {
+      if (!turns_from_next(grid, surface.u.is_periodic(), cusp_cosine, i, j)) continue;
+      ++check.cusps;
+      check.span_cusps[i / cusp_samples_a_span * v_spans + j / cusp_samples_a_span] = true;
+    }
+  }
+}
+
 }  // namespace
 
 FoldCheck check_folds(const Surface& surface, const NormalsAtParameters& data) {
-  const NormalGrid grid = sample(surface);
+  const NormalGrid grid = sample(surface, samples_a_span);
   const DataNormals data_normals(surface, data);
   const std::size_t v_spans = grid.columns / samples_a_span;
   FoldCheck check;
@@ -102,12 +116,13 @@ FoldCheck check_folds(const Surface& surface, const NormalsAtParameters& data) {
     for (std::size_t j = 0; j < grid.columns; ++j) {
       const bool folds = data_normals.any() ? data_normals.points_against(grid.places[i * grid.columns + j],
                                                                           grid.normals[i * grid.columns + j])
-                                            : turns_against_next(grid, surface.u.is_periodic(), i, j);
+                                            : turns_from_next(grid, surface.u.is_periodic(), 0.0, i, j);
       if (!folds) continue;
       ++check.folds;
       check.span_folds[i / samples_a_span * v_spans + j / samples_a_span] = true;
     }
   }
+  count_cusps(surface, check);
   return check;
 }
 

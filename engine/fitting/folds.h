@@ -11,8 +11,12 @@
 namespace spoonbill {
 
 struct FoldCheck {
-  std::size_t samples = 0, folds = 0;
-  std::vector<bool> span_folds;  // u-major, one for each pair of spans
+  std::size_t samples = 0, folds = 0, cusps = 0;
+  std::vector<bool> span_folds, span_cusps;  // u-major, one for each pair of spans
+
+  bool better_than(const FoldCheck& other) const {
+    return folds < other.folds || (folds == other.folds && cusps < other.cusps);
+  }
 };
 
 // The normals of a scan where its points lie on the surface; normals may be none.
@@ -26,6 +30,10 @@ struct NormalsAtParameters {
 // space may lie on the other face, and over a sharp rim the data's normals turn from point to point. Of a
 // scan without normals, where it points against that of the next sample. Poles, where there is no normal, are
 // passed over.
+//
+// Cusps are counted twelve by twelve: where the normal turns by more than 120 degrees from one sample to the
+// next, the surface turns back on itself in a loop too small for the points to tell, or has an edge far
+// sharper than its knots can follow.
 FoldCheck check_folds(const Surface& surface, const NormalsAtParameters& data);
 
 }  // namespace spoonbill

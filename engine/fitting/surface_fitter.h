@@ -18,6 +18,7 @@ inline constexpr int projection_steps = 3;
 struct FittedData {
   std::span<const Vector3> points_m;
   std::span<const double> weights;
+  std::span<const Vector3> normals;  // none, or of each point; zero where it is not known
   std::vector<Vector2> uv;
   std::vector<double> distance_m;
   std::vector<double> trust;
@@ -30,7 +31,10 @@ inline double wrapped(double difference) {
 
 class SurfaceFitter {
  public:
-  SurfaceFitter(const FitPoints& points, const Parameterisation& start, const FitSettings& settings);
+  // Points keep their parameters where the surface's normal at new ones has a smaller cosine than
+  // `least_agreement` with theirs: on a thin wall the nearest place may be on the other face.
+  SurfaceFitter(const FitPoints& points, const Parameterisation& start, const FitSettings& settings,
+                double least_agreement);
   Result<FittedSurface> run();
 
  private:
@@ -39,6 +43,7 @@ class SurfaceFitter {
   Status solve(FittedData& data);
   void take_poles();
   void project(FittedData& data, bool smooth);
+  bool may_go_to(const FittedData& data, std::size_t point, const Vector2& uv) const;
   void take_trust(FittedData& data) const;
   void distrust_strays();
   void smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const;
@@ -47,6 +52,7 @@ class SurfaceFitter {
   bool faces_inwards() const;
   Status node_rounds();
   Status point_rounds();
+  const std::vector<bool>& faulty_spans() const;
   void stiffen_folds();
   void relax_folds();
   bool in_folded_span(const Vector2& uv) const;
@@ -59,10 +65,11 @@ class SurfaceFitter {
   const FitPoints* points_;
   const FitSettings* settings_;
   ShapeKind kind_;
+  double least_agreement_;
   SurfaceStructure structure_;
   std::vector<double> fairness_;
   std::vector<double> node_weights_, all_weights_;
-  std::vector<Vector3> all_points_m_;
+  std::vector<Vector3> all_points_m_, all_normals_;
   FittedData nodes_, all_;
   std::vector<std::pair<Vector3, double>> poles_;  // and their v
   Surface surface_;

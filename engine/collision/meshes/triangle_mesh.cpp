@@ -100,6 +100,26 @@ void join_and_drop(TriangleMesh& mesh, double size, MeshReport& report) {
   report.duplicates_dropped = drop_duplicates(mesh.triangles);
 }
 
+// Turned triangles have their corners in another order than their vertices came in. What is clean is cleaned
+// into itself, so that a document that holds it is written as it was read.
+void number_by_first_use(TriangleMesh& mesh) {
+  constexpr std::uint32_t none = 0xffffffffU;
+  std::vector<std::uint32_t> number(mesh.vertices_m.size(), none);
+  std::vector<Vector3> vertices_m;
+  vertices_m.reserve(mesh.vertices_m.size());
+  for (TriangleCorners& corners : mesh.triangles) {
+    for (std::uint32_t& corner : corners) {
+      std::uint32_t& mine = number[corner];
+      if (mine == none) {
+        mine = static_cast<std::uint32_t>(vertices_m.size());
+        vertices_m.push_back(mesh.vertices_m[corner]);
+      }
+      corner = mine;
+    }
+  }
+  mesh.vertices_m = std::move(vertices_m);
+}
+
 }  // namespace
 
 Result<CleanMesh> clean_mesh(TriangleMesh mesh, const std::string& source, std::size_t triangle_limit) {
@@ -127,6 +147,7 @@ Result<CleanMesh> clean_mesh(TriangleMesh mesh, const std::string& source, std::
   report.holes_filled = fill_small_holes(parts);
   report.specks_dropped = drop_specks(parts);
   turn_outward(parts.mesh, parts.parts, report);
+  number_by_first_use(parts.mesh);
   clean.mesh = std::move(parts.mesh);
   clean.parts = std::move(parts.parts);
   return clean;

@@ -66,6 +66,18 @@ TEST(TriangleMesh, TrianglesAgreeWithMostOfTheirPart) {
   EXPECT_NEAR(volume(clean), volume(cleaned(ball_mesh(10, 20, 0.02))), 1e-18);
 }
 
+TEST(TriangleMesh, WhatIsCleanIsCleanedIntoItself) {
+  TriangleMesh mesh = ball_mesh(10, 20, 0.02);
+  std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
+  std::swap(mesh.triangles[77][0], mesh.triangles[77][2]);
+  mesh.triangles.erase(mesh.triangles.begin() + 120);
+  for (const TriangleMesh& given : {mesh, turned(mesh), turned(box_of_triangles(low, high))}) {
+    const CleanMesh once = cleaned(given), twice = cleaned(once.mesh);
+    EXPECT_EQ(twice.mesh.triangles, once.mesh.triangles);
+    EXPECT_EQ(twice.mesh.vertices_m, once.mesh.vertices_m);
+  }
+}
+
 TEST(TriangleMesh, DegenerateAndRepeatedTrianglesAreDropped) {
   TriangleMesh mesh = box_of_triangles(low, high);
   mesh.vertices_m.emplace_back(0.5 * (mesh.vertices_m[0] + mesh.vertices_m[7]));
