@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/fitting/refine_knots.h"
@@ -11,6 +12,9 @@ namespace {
 
 constexpr int fold_rounds = 30, cusp_rounds = 60, relaxing_rounds = 10;
 constexpr double most_fairness = 10.0;
+// What the removal of cusps may cost, against what removed the folds.
+constexpr double error_of_smoothing = 1.2;
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -96,6 +100,10 @@ Vector2 SurfaceFitter::kept_inside(Vector2 uv) const {
   return uv;
 }
 
+double SurfaceFitter::usual_error() const {
+  return ninety_fifth(std::span(all_.distance_m).first(points_->scan.points_m.size()));
+}
+
 Status SurfaceFitter::unfold() {
   u_breaks_ = structure_.u.breakpoints();
   v_breaks_ = structure_.v.breakpoints();
@@ -104,6 +112,7 @@ Status SurfaceFitter::unfold() {
   Surface least_folded = surface_;
   FoldCheck least = folds_;
   std::vector<Vector2> least_uv = all_.uv;
+  double error_limit = least.folds > 0 ? unlimited : error_of_smoothing * usual_error();
   const auto rounds = [&] { return least.folds > 0 ? fold_rounds : least.cusps > 0 ? cusp_rounds : 0; };
   for (int round = 0; round < rounds(); ++round) {
     stiffen_folds();
@@ -112,6 +121,11 @@ Status SurfaceFitter::unfold() {
     if (round % 2 == 1) project(all_, false);
     folds_ = check_folds(surface_, {all_.uv, all_normals_});
     if (folds_.better_than(least)) {
+      if (folds_.folds == 0) {
+        project(all_, false);
+        if (least.folds > 0) error_limit = error_of_smoothing * usual_error();
+        if (usual_error() > error_limit) break;
+      }
       least_folded = surface_;
       least = folds_;
       least_uv = all_.uv;

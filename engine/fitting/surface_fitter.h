@@ -1,6 +1,7 @@
 // How fit_surface() works: its state from round to round. The fitting's own; one owner, outside the tick.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -23,6 +24,15 @@ struct FittedData {
   std::vector<double> distance_m;
   std::vector<double> trust;
 };
+
+// The distance within which 95 % of them are.
+inline double ninety_fifth(std::span<const double> distances) {
+  std::vector<double> sorted(distances.begin(), distances.end());
+  const auto place =
+      sorted.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), place, sorted.end());
+  return *place;
+}
 
 // A difference of parameters of a period of one, the short way around.
 inline double wrapped(double difference) {
@@ -57,6 +67,7 @@ class SurfaceFitter {
   void relax_folds();
   bool in_folded_span(const Vector2& uv) const;
   Vector2 kept_inside(Vector2 uv) const;
+  double usual_error() const;
   Status unfold();
   void set_fairness(double fairness, const FittedData& data);
   bool tell(double share) const { return !settings_->watch || settings_->watch(share); }

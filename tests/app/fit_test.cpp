@@ -138,6 +138,10 @@ class RealScans : public FitTest {
     EXPECT_EQ(json.at("kind"), "closed") << name;
     EXPECT_LT(json.at("p95_m").get<double>(), 1e-3) << name;
     EXPECT_LT(json.at("p95_m").get<double>(), 0.01 * size_m) << name;
+    for (const Json& body : json.at("bodies")) {
+      EXPECT_LT(body.at("data_to_surface").at("p95_m").get<double>(), 1e-3) << name;
+      EXPECT_EQ(body.at("folds"), 0) << name;
+    }
   }
 
   std::filesystem::path scans_;
