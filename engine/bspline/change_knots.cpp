@@ -174,8 +174,10 @@ Result<Fitted> fitted(const Surface& surface, Direction direction, const KnotVec
   }
   std::vector<double> parameters = telling_parameters(from, knots);
   if (knots.is_periodic()) parameters.pop_back();
-  const bool ends = !knots.is_periodic();
-  const auto inverse = constrained_inverse(knots, parameters, {{}, ends, ends});
+  const bool open = !knots.is_periodic();
+  const bool start = open && knots.knots().front() == knots.domain_start();
+  const bool end = open && knots.knots().back() == knots.domain_end();
+  const auto inverse = constrained_inverse(knots, parameters, {{}, start, end});
   if (!inverse) return Error{name_of(direction) + inverse.error().message};
   const Eigen::MatrixXd conversion =
       inverse.value().lazyProduct(blending_matrix(from, parameters, 0).dense());
@@ -189,11 +191,72 @@ double largest_of(const Difference& difference) {
   return *std::max_element(difference.largest_m.begin(), difference.largest_m.end());
 }
 
-Result<KnotVector> without_knot(const KnotVector& knots, double knot) {
+struct SpareKnot {
+  double knot, cost_m;
+};
+
+Result<KnotVector> without_knots(const KnotVector& knots, std::span<const SpareKnot> spare) {
   std::vector<double> fewer = knots.knots();
-  fewer.erase(std::find(fewer.begin(), fewer.end(), knot));
+  for (const SpareKnot& one : spare) {
+    fewer.erase(std::min_element(fewer.begin(), fewer.end(), [&](double a, double b) {
+      return std::abs(a - one.knot) < std::abs(b - one.knot);
+    }));
+  }
   return knots.is_periodic() ? KnotVector::periodic(knots.degree(), std::move(fewer))
                              : KnotVector::open(knots.degree(), std::move(fewer));
+}
+
+// The pieces around an inner knot, as far as its removal is felt, and the knot's place in them.
+struct Neighbourhood {
+  Surface surface;
+  double knot;
+};
+
+Result<Neighbourhood> around_knot(const Surface& surface, Direction direction, int breakpoint) {
+  const KnotVector& knots = knots_along(surface, direction);
+  const std::vector<double> ends = knots.breakpoints();
+  const int pieces = static_cast<int>(ends.size()) - 1, reach = 2 * (knots.degree() + 1);
+  const bool periodic = knots.is_periodic();
+  if (pieces <= 2 * reach) return Neighbourhood{surface, ends[breakpoint]};
+  const double length = knots.domain_end() - knots.domain_start();
+  int first = breakpoint - reach, last = breakpoint + reach;
+  const double turn = periodic && first < 0 ? length : 0.0;
+  const auto place = [&](int k) {
+    return k < 0 ? ends[k + pieces] : k > pieces ? ends[k - pieces] + length : ends[k] + turn;
+  };
+  if (!periodic) {
+    first = std::max(first, 0);
+    last = std::min(last, pieces);
+  }
+  const auto part = clamped_part(knots, place(first), place(last));
+  if (!part) return part.error();
+  auto near = over_finer_knots(surface, direction, part.value());
+  if (!near) return near.error();
+  return Neighbourhood{std::move(near).value(), place(breakpoint)};
+}
+
+// What each copy of an inner knot costs with those before it, the cheapest first, as far as that is within
+// the tolerance; found in the knot's neighbourhood alone, which is much faster than over the whole direction.
+std::vector<SpareKnot> spare_knots(const Surface& surface, Direction direction, double tolerance_m) {
+  std::vector<SpareKnot> spare;
+  const auto all = knot_multiplicities(knots_along(surface, direction));
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    const auto near = around_knot(surface, direction, static_cast<int>(k));
+    if (!near) continue;
+    std::vector<SpareKnot> copies;
+    double cost_m = 0.0;
+    while (static_cast<int>(copies.size()) < all[k].multiplicity) {
+      copies.push_back({near->knot, 0.0});
+      const auto fewer = without_knots(knots_along(near->surface, direction), copies);
+      const auto fit = fewer ? over_coarser_knots(near->surface, direction, fewer.value()) : fewer.error();
+      if (fit) cost_m = std::max(cost_m, fit->deviation_m);
+      if (!fit || cost_m > tolerance_m) break;
+      spare.push_back({all[k].knot, cost_m});
+    }
+  }
+  std::stable_sort(spare.begin(), spare.end(),
+                   [](const SpareKnot& a, const SpareKnot& b) { return a.cost_m < b.cost_m; });
+  return spare;
 }
 
 }  // namespace
@@ -257,29 +320,26 @@ Result<Approximation> approximated(const Surface& surface, Direction direction, 
 }
 
 Result<Approximation> without_spare_knots(const Surface& surface, Direction direction, double tolerance_m) {
-  const KnotVector& knots = knots_along(surface, direction);
-  struct Candidate {
-    double knot, deviation_m;
-  };
-  std::vector<Candidate> candidates;
-  for (const auto& [knot, multiplicity] : knot_multiplicities(knots)) {
-    if (knot == knots.domain_start()) continue;
-    for (int copy = 0; copy < multiplicity; ++copy) {
-      const auto fewer = without_knot(knots, knot);
-      const auto fit = fewer ? over_coarser_knots(surface, direction, fewer.value()) : fewer.error();
-      if (fit && fit->deviation_m <= tolerance_m) candidates.push_back({knot, fit->deviation_m});
-    }
-  }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.deviation_m < b.deviation_m; });
   Approximation best{surface, 0.0};
-  for (const Candidate& candidate : candidates) {
-    const auto fewer = without_knot(knots_along(best.surface, direction), candidate.knot);
-    if (!fewer) continue;
-    auto fit = over_coarser_knots(surface, direction, fewer.value());
-    if (fit && fit->deviation_m <= tolerance_m) best = std::move(fit).value();
+  for (;;) {
+    // As many of the cheapest as can go together; what they cost then is another matter, so once more.
+    const std::vector<SpareKnot> spare = spare_knots(best.surface, direction, tolerance_m);
+    const KnotVector knots = knots_along(best.surface, direction);
+    std::size_t few = 0, many = spare.size();
+    while (few < many) {
+      const std::size_t count = (few + many + 1) / 2;
+      const auto fewer = without_knots(knots, std::span(spare).first(count));
+      auto fit = fewer ? over_coarser_knots(surface, direction, fewer.value()) : fewer.error();
+      const bool allowed = fit && fit->deviation_m <= tolerance_m;
+      if (allowed) {
+        best = std::move(fit).value();
+        few = count;
+      } else {
+        many = count - 1;
+      }
+    }
+    if (few == 0) return best;
   }
-  return best;
 }
 
 }  // namespace spoonbill

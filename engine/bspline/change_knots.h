@@ -26,8 +26,8 @@ struct Approximation {
   double deviation_m = 0.0;
 };
 
-// Over any knots of the same domain, by least squares; open ends are kept. A periodic surface may become an
-// open one, and an open one whose edges meet a periodic one. Refused: another domain.
+// Over any knots of the same domain, by least squares; clamped ends are kept. A periodic surface may become
+// an open one, and an open one whose edges meet a periodic one. Refused: another domain.
 Result<Approximation> over_coarser_knots(const Surface& surface, Direction direction,
                                          const KnotVector& coarser);
 

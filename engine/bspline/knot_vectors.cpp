@@ -19,7 +19,7 @@ bool same_knot(double a, double b, double length) {
   return std::abs(a - b) <= same_knot_share * length;
 }
 
-// `inner` need not be sorted; open ends stand degree + 1 times.
+// `all` need not be sorted, and holds an open start degree + 1 times; an open end is added as often.
 Result<KnotVector> assemble(int degree, bool periodic, const std::vector<KnotMultiplicity>& all, double end) {
   std::vector<double> knots;
   for (const auto& [knot, multiplicity] : all) {
@@ -135,6 +135,7 @@ Result<KnotVector> with_domain(const KnotVector& knots, double start, double end
                  " is empty or not finite; give two increasing numbers"};
   }
   const double from = knots.domain_start(), to = knots.domain_end();
+  if (start == from && end == to) return knots;
   std::vector<double> all = knots.knots();
   for (double& knot : all) {
     // Both ends to the last bit.

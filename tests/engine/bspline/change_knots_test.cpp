@@ -163,6 +163,32 @@ TEST(ChangeKnots, SpareKnotsGoAndOthersStay) {
   EXPECT_LT(largest_difference(random, surface, back->surface), 1e-10);
 }
 
+TEST(ChangeKnots, SpareKnotsOfUnclampedAndOfLongDirectionsGo) {
+  Random random(40);
+  // A quartic's polynomial over many pieces, unclamped, and one bump that three of the pieces make.
+  const auto unclamped =
+      KnotVector::open(3, {-0.3, -0.2, -0.1, 0, 0.25, 0.5, 0.75, 1, 1.1, 1.2, 1.3}).value();
+  const auto single = KnotVector::open(3, {-0.3, -0.2, -0.1, 0, 1, 1.1, 1.2, 1.3}).value();
+  const Surface surface = random_surface(random, single, KnotVector::clamped_uniform(2, 4).value());
+  Surface finer = surface;
+  for (const double knot : {0.25, 0.5, 0.75}) finer = insert_knot(finer, Direction::u, knot, 1).value();
+  ASSERT_EQ(finer.u, unclamped);
+  const auto back = without_spare_knots(finer, Direction::u, 1e-10);
+  ASSERT_TRUE(back.ok());
+  EXPECT_EQ(back->surface.u, single);
+  for (const bool periodic : {false, true}) {
+    const auto coarse =
+        (periodic ? KnotVector::periodic_uniform(3, 12) : KnotVector::clamped_uniform(3, 12)).value();
+    const Surface few = random_surface(random, coarse, KnotVector::clamped_uniform(2, 4).value());
+    Surface many = few;
+    for (int k = 1; k < 80; ++k) many = insert_knot(many, Direction::u, (k + 0.37) / 80.0, 1 + k % 2).value();
+    const auto spared = without_spare_knots(many, Direction::u, 1e-9);
+    ASSERT_TRUE(spared.ok());
+    EXPECT_EQ(spared->surface.u, coarse) << periodic;
+    EXPECT_LE(largest_difference(random, few, spared->surface), 1e-9);
+  }
+}
+
 TEST(KnotVectors, UnionTakesNearlyEqualKnotsAsOne) {
   const auto a = KnotVector::open(2, {0, 0, 0, 0.3, 0.7, 0.7, 1, 1, 1}).value();
   const auto b = KnotVector::open(2, {0, 0, 0, 0.3 + 1e-13, 0.5, 0.7, 1, 1, 1}).value();
