@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/bspline/reparameterise.h"
 #include "engine/bspline/trimmed_area.h"
@@ -13,99 +15,184 @@ namespace spoonbill {
 
 namespace {
 
-using Edges = std::vector<TrimmedArea::Edge>;
+using Edge = TrimmedArea::Edge;
+// What is kept lies to their left.
+using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
 
 // A corner between chords; smooth trims turn less from chord to chord.
 constexpr double corner_cosine = 0.98;
-// Of the part's extent in u: where its last line is taken, beside an edge of constant u.
+// Of the part's extent in u: where its last line is taken, beside an edge of constant u, and what is too
+// narrow to count.
 constexpr double beside_edge = 1e-7;
 constexpr int lines_looked_at = 64;
 // Of the longest line: shorter ones at an end are a point.
 constexpr double point_share = 1e-3;
+// Of the part's extent in v: what lines change at most from beside a corner to behind it.
+constexpr double jump_share = 1e-3;
 
 struct Interval {
   double low, high;
+
+  double length() const { return high - low; }
 };
 
-// Where a line of constant u meets the kept part; none where that is not one piece.
-std::optional<Interval> kept_on_line(const Edges& edges, double u) {
-  std::vector<double> crossings;
-  for (const auto& [from, to] : edges) {
-    if ((from.x() <= u) == (to.x() <= u)) continue;
-    crossings.push_back(from.y() + (to.y() - from.y()) * (u - from.x()) / (to.x() - from.x()));
-  }
-  if (crossings.size() != 2) return std::nullopt;
-  return Interval{std::min(crossings[0], crossings[1]), std::max(crossings[0], crossings[1])};
-}
-
-Interval extent_in_u(const Edges& edges) {
-  Interval extent{edges[0].from.x(), edges[0].from.x()};
-  for (const auto& edge : edges) {
-    extent = {std::min(extent.low, edge.from.x()), std::max(extent.high, edge.from.x())};
+Interval extent(const Polygons& polygons, int axis) {
+  Interval extent{polygons[0][0][axis], polygons[0][0][axis]};
+  for (const auto& polygon : polygons) {
+    for (const Eigen::Vector2d& corner : polygon) {
+      extent = {std::min(extent.low, corner[axis]), std::max(extent.high, corner[axis])};
+    }
   }
   return extent;
 }
 
 double inside(const Interval& extent, double u) {
-  const double margin = beside_edge * (extent.high - extent.low);
+  const double margin = beside_edge * extent.length();
   return std::clamp(u, extent.low + margin, extent.high - margin);
 }
 
-bool is_cut_in_single_pieces(const Edges& edges, const Interval& extent) {
-  double longest = 0.0, first = 0.0, last = 0.0;
-  for (int k = 0; k <= lines_looked_at; ++k) {
-    const double u = extent.low + (extent.high - extent.low) * k / lines_looked_at;
-    const auto kept = kept_on_line(edges, inside(extent, u));
-    if (!kept) return false;
-    last = kept->high - kept->low;
-    if (k == 0) first = last;
-    longest = std::max(longest, last);
-  }
-  return first > point_share * longest && last > point_share * longest;
-}
-
-// The ends and the corners of the loops, where lines change their ends with a kink.
-std::vector<double> breaks_in_u(const Edges& edges, const Interval& extent) {
-  std::vector<double> breaks{extent.low, extent.high};
-  for (std::size_t k = 0; k < edges.size(); ++k) {
-    for (const auto& next : edges) {
-      if (next.from != edges[k].to) continue;
-      const Eigen::Vector2d along = (edges[k].to - edges[k].from).normalized();
-      if (along.dot((next.to - next.from).normalized()) < corner_cosine) breaks.push_back(next.from.x());
+class KeptPart {
+ public:
+  explicit KeptPart(Polygons polygons)
+      : polygons_(std::move(polygons)), along_u_(extent(polygons_, 0)), along_v_(extent(polygons_, 1)) {
+    for (const auto& polygon : polygons_) {
+      for (std::size_t c = 0; c < polygon.size(); ++c) {
+        edges_.push_back({polygon[c], polygon[(c + 1) % polygon.size()]});
+      }
     }
   }
-  std::sort(breaks.begin(), breaks.end());
-  const double near = 1e-6 * (extent.high - extent.low);
-  const auto same = [&](double a, double b) { return b - a <= near; };
-  breaks.erase(std::unique(breaks.begin(), breaks.end(), same), breaks.end());
-  breaks.back() = extent.high;
-  return breaks;
+
+  const Interval& along_u() const { return along_u_; }
+
+  // Where a line of constant u meets the part; none where that is not one piece.
+  std::optional<Interval> on_line(double u) const {
+    std::optional<double> enters, leaves;
+    for (const auto& [from, to] : edges_) {
+      const bool rightwards = from.x() <= u && u < to.x(), leftwards = to.x() <= u && u < from.x();
+      if (!rightwards && !leftwards) continue;
+      std::optional<double>& crossing = rightwards ? enters : leaves;
+      if (crossing) return std::nullopt;
+      crossing = from.y() + (to.y() - from.y()) * (u - from.x()) / (to.x() - from.x());
+    }
+    if (!enters || !leaves || !(*enters <= *leaves)) return std::nullopt;
+    return Interval{*enters, *leaves};
+  }
+
+  bool is_cut_in_single_pieces() const {
+    if (!meets_all_lines_twice()) return false;
+    double longest = 0.0, first = 0.0, last = 0.0;
+    for (int k = 0; k <= lines_looked_at; ++k) {
+      const auto kept = on_line(inside(along_u_, along_u_.low + along_u_.length() * k / lines_looked_at));
+      if (!kept) return false;
+      last = kept->length();
+      if (k == 0) first = last;
+      longest = std::max(longest, last);
+    }
+    return first > point_share * longest && last > point_share * longest && changes_steadily();
+  }
+
+  // The ends and the corners of the loops, where lines change their ends with a kink.
+  std::vector<double> breaks_in_u() const {
+    std::vector<double> breaks{along_u_.low, along_u_.high};
+    const Eigen::Vector2d lengths(along_u_.length(), along_v_.length());
+    for (const auto& polygon : polygons_) {
+      const std::size_t count = polygon.size();
+      for (std::size_t c = 0; c < count; ++c) {
+        const Eigen::Vector2d &at = polygon[c], &before = polygon[(c + count - 1) % count],
+                              &after = polygon[(c + 1) % count];
+        const Eigen::Vector2d to = (at - before).cwiseQuotient(lengths).normalized();
+        if (to.dot((after - at).cwiseQuotient(lengths).normalized()) < corner_cosine)
+          breaks.push_back(at.x());
+      }
+    }
+    std::sort(breaks.begin(), breaks.end());
+    const double near = 1e-6 * along_u_.length();
+    const auto same = [&](double a, double b) { return b - a <= near; };
+    breaks.erase(std::unique(breaks.begin(), breaks.end(), same), breaks.end());
+    breaks.back() = along_u_.high;
+    return breaks;
+  }
+
+ private:
+  // Whether no line is longer or elsewhere by a jump than the one beside it, as at a step.
+  bool changes_steadily() const {
+    const double beside = 2.0 * beside_edge * along_u_.length();
+    for (const double at : breaks_in_u()) {
+      if (at == along_u_.low || at == along_u_.high) continue;
+      const auto before = on_line(at - beside), after = on_line(at + beside);
+      if (!before || !after) return false;
+      const double jump = std::max(std::abs(before->low - after->low), std::abs(before->high - after->high));
+      if (jump > jump_share * along_v_.length()) return false;
+    }
+    return true;
+  }
+
+  // Counted from one end of an edge to the next, so that nothing is missed between two lines looked at.
+  bool meets_all_lines_twice() const {
+    std::vector<std::pair<double, int>> changes;  // of how many edges a line meets
+    for (const auto& [from, to] : edges_) {
+      changes.emplace_back(std::min(from.x(), to.x()), 1);
+      changes.emplace_back(std::max(from.x(), to.x()), -1);
+    }
+    std::sort(changes.begin(), changes.end());
+    const double margin = beside_edge * along_u_.length();
+    int met = 0;
+    for (std::size_t k = 0; k + 1 < changes.size(); ++k) {
+      met += changes[k].second;
+      const double start = std::max(changes[k].first, along_u_.low + margin);
+      const double end = std::min(changes[k + 1].first, along_u_.high - margin);
+      if (met != 2 && end - start > margin) return false;
+    }
+    return true;
+  }
+
+  Polygons polygons_;
+  std::vector<Edge> edges_;
+  Interval along_u_, along_v_;
+};
+
+Error no_single_pieces() {
+  return Error{
+      "its trims leave no part that lines of constant u, or of constant v, cross in one piece each; fill its "
+      "holes, and cut it off where it ends in a point"};
 }
 
-Result<FittedShape> resampled_between(const Surface& surface, const Edges& edges, double low, double high,
+Result<FittedShape> resampled_between(const Surface& surface, const KeptPart& part, const Interval& piece,
                                       double tolerance_m) {
-  const Interval piece{low, high};
+  bool missed = false;
   ExactShape shape;
-  shape.u = {false, {low, high}};
+  shape.u = {false, {piece.low, piece.high}};
   shape.v = {false, {0.0, 1.0}};
   shape.at = [&](double u, double share) {
-    const Interval kept = kept_on_line(edges, inside(piece, u)).value_or(Interval{0.0, 0.0});
-    return position(surface, u, kept.low + share * (kept.high - kept.low));
+    const auto kept = part.on_line(inside(piece, u));
+    missed = missed || !kept;
+    return kept ? position(surface, u, kept->low + share * kept->length()) : position(surface, u, share);
   };
   ShapeFit fit;
   fit.tolerance_m = tolerance_m;
   fit.least_spans = 4;
   fit.keeps_parameters = true;
-  return fit_shape(shape, fit);
+  auto fitted = fit_shape(shape, fit);
+  if (missed) return no_single_pieces();
+  return fitted;
 }
 
+// Of the tolerance, for resampling; joining the pieces takes the rest.
+constexpr double piece_share = 0.3;
+// Of six control points at least, of which one patch has 200.
+constexpr std::size_t most_pieces = 33;
+
 // Piece by piece between the corners, where the lines' ends have a kink, and the pieces edge to edge.
-Result<FittedShape> resampled(const Surface& surface, const Edges& edges, double tolerance_m) {
-  const std::vector<double> breaks = breaks_in_u(edges, extent_in_u(edges));
+Result<FittedShape> resampled(const Surface& surface, const KeptPart& part, double tolerance_m) {
+  const std::vector<double> breaks = part.breaks_in_u();
+  if (breaks.size() > most_pieces + 1) {
+    return Error{"its trims have corners on " + std::to_string(breaks.size() - 2) +
+                 " lines, more than one patch can hold; simplify them"};
+  }
   std::vector<Surface> pieces;
   double deviation_m = 0.0;
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-    auto piece = resampled_between(surface, edges, breaks[k], breaks[k + 1], 0.5 * tolerance_m);
+    auto piece = resampled_between(surface, part, {breaks[k], breaks[k + 1]}, piece_share * tolerance_m);
     if (!piece) return piece.error();
     deviation_m = std::max(deviation_m, piece->deviation_m);
     pieces.push_back(exchanged(piece->surface));
@@ -113,15 +200,21 @@ Result<FittedShape> resampled(const Surface& surface, const Edges& edges, double
   if (pieces.size() == 1) return FittedShape{exchanged(pieces[0]), deviation_m};
   JoinRequest request;
   request.continuity = 0;
-  request.tolerance_m = tolerance_m;
+  request.tolerance_m = tolerance_m - deviation_m;
   auto whole = join_row(std::move(pieces), request);
   if (!whole) return whole.error();
   return FittedShape{exchanged(whole->surface), deviation_m + whole->deviation_m};
 }
 
-Edges exchanged_edges(const Edges& edges) {
-  Edges result;
-  for (const auto& edge : edges) result.push_back({edge.from.reverse(), edge.to.reverse()});
+// Run through backwards, so that what is kept stays on the left.
+Polygons exchanged_polygons(const Polygons& polygons) {
+  Polygons result;
+  for (const auto& polygon : polygons) {
+    auto& exchanged = result.emplace_back();
+    for (auto corner = polygon.rbegin(); corner != polygon.rend(); ++corner) {
+      exchanged.emplace_back(corner->y(), corner->x());
+    }
+  }
   return result;
 }
 
@@ -132,17 +225,15 @@ Result<FittedShape> untrimmed(const Surface& surface, const std::vector<TrimLoop
   const auto area = TrimmedArea::make(surface.u, surface.v, trims);
   if (!area) return area.error();
   if (area->is_whole()) return FittedShape{surface, 0.0};
-  const Edges& edges = area->edges();
-  if (is_cut_in_single_pieces(edges, extent_in_u(edges))) return resampled(surface, edges, tolerance_m);
-  const Edges turned = exchanged_edges(edges);
-  if (is_cut_in_single_pieces(turned, extent_in_u(turned))) {
-    auto result = resampled(exchanged(surface), turned, tolerance_m);
-    if (result) result->surface = exchanged(result->surface);
-    return result;
-  }
-  return Error{
-      "its trims leave no part whose lines of constant u or v are each in one piece; fill its holes, or "
-      "split it at them"};
+  Polygons polygons;
+  for (const TrimLoop& loop : trims) polygons.push_back(polygon_of(loop, surface.u, surface.v));
+  const KeptPart part(polygons);
+  if (part.is_cut_in_single_pieces()) return resampled(surface, part, tolerance_m);
+  const KeptPart turned(exchanged_polygons(polygons));
+  if (!turned.is_cut_in_single_pieces()) return no_single_pieces();
+  auto result = resampled(exchanged(surface), turned, tolerance_m);
+  if (result) result->surface = exchanged(result->surface);
+  return result;
 }
 
 }  // namespace spoonbill

@@ -12,10 +12,10 @@
 namespace spoonbill {
 
 // What the loops keep, its edges in v on the trims, u ending where the kept part does; C0 along lines through
-// corners of the trims. Lines of constant u must
-// each meet the kept part in one piece; where they do not, lines of constant v are tried. Without loops the
-// surface itself. Refused: holes and other parts that neither cuts into single pieces, a part that ends in a
-// point where no line is left of it.
+// corners of the trims, which are taken as their polygons (polygon_of). Lines of constant u must each meet
+// the kept part in one piece; where they do not, lines of constant v are tried. Without loops the surface
+// itself. Refused: holes and other parts that neither cuts into single pieces, a part that ends in a point
+// where no line is left of it.
 Result<FittedShape> untrimmed(const Surface& surface, const std::vector<TrimLoop>& trims, double tolerance_m);
 
 }  // namespace spoonbill

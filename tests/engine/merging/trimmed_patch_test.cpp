@@ -83,5 +83,49 @@ TEST(TrimmedPatch, HolesAreRefused) {
   EXPECT_EQ(untrimmed(wave(), {}, 1e-5)->deviation_m, 0.0);
 }
 
+TEST(TrimmedPatch, WhatLiesOutsideAHoleIsNotTakenForIt) {
+  const auto refused = untrimmed(wave(), {polygon({{0.3, 0.3}, {0.3, 0.6}, {0.7, 0.6}, {0.7, 0.3}})}, 2e-5);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("fill its holes"), std::string::npos);
+}
+
+// Narrower than the steps in which lines are looked at.
+TEST(TrimmedPatch, NarrowGapsAndSlitsAreNotMissed) {
+  const TrimLoop left = polygon({{0.1, 0.1}, {0.4003, 0.1}, {0.4003, 0.9}, {0.1, 0.9}});
+  const TrimLoop right = polygon({{0.4004, 0.1}, {0.9, 0.1}, {0.9, 0.9}, {0.4004, 0.9}});
+  EXPECT_FALSE(untrimmed(wave(), {left, right}, 2e-5).ok());
+  // Lines of constant v are in two pieces beside the slit, those of constant u jump at it.
+  const TrimLoop slit = polygon({{0.1, 0.1},
+                                 {0.403, 0.1},
+                                 {0.403, 0.5},
+                                 {0.4035, 0.5},
+                                 {0.4035, 0.1},
+                                 {0.9, 0.1},
+                                 {0.9, 0.9},
+                                 {0.1, 0.9}});
+  EXPECT_FALSE(untrimmed(wave(), {slit}, 2e-5).ok());
+}
+
+TEST(TrimmedPatch, ALoopMayCrossTheSeam) {
+  const auto u = KnotVector::periodic_uniform(3, 24).value();
+  const auto v = KnotVector::clamped_uniform(3, 6).value();
+  PointGrid points{uniform_parameters_without_seam(u, 96), uniform_parameters(v, 20), {}};
+  for (const double a : points.u) {
+    for (const double b : points.v) {
+      points.points_m.emplace_back(0.02 * std::cos(2 * M_PI * a), 0.06 * b, 0.02 * std::sin(2 * M_PI * a));
+    }
+  }
+  const Surface pipe = fit_grid(u, v, points).value();
+  const TrimLoop loop =
+      make_polygon_loop(pipe.u, pipe.v, {{0.8, 0.2}, {1.1, 0.2}, {1.1, 0.7}, {0.8, 0.7}}).value();
+  const auto whole = untrimmed(pipe, {loop}, 1e-5);
+  ASSERT_TRUE(whole.ok()) << whole.error().message;
+  const KnotVector& along = whole->surface.u;
+  const Vector3 first = position(whole->surface, along.domain_start(), whole->surface.v.domain_start());
+  EXPECT_NEAR((first - position(pipe, 0.8, 0.2)).norm(), 0.0, 1e-5);
+  const Vector3 last = position(whole->surface, along.domain_end(), whole->surface.v.domain_end());
+  EXPECT_NEAR((last - position(pipe, 0.1, 0.7)).norm(), 0.0, 1e-5);
+}
+
 }  // namespace
 }  // namespace spoonbill
