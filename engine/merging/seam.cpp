@@ -33,6 +33,8 @@ Result<KnotVector> period_of(const KnotVector& knots, int continuity) {
     if (knot == knots.domain_start()) continue;
     period.insert(period.end(), static_cast<std::size_t>(multiplicity), knot);
   }
+  // A period takes two control points at least.
+  if (period.size() < 2) period.push_back(0.5 * (knots.domain_start() + knots.domain_end()));
   period.push_back(knots.domain_end());
   return KnotVector::periodic(knots.degree(), std::move(period));
 }

@@ -37,5 +37,23 @@ TEST(Seam, EdgesThatDoNotMeetAreRefused) {
             "the direction is closed already; choose the other one");
 }
 
+TEST(Seam, ASinglePieceIsClosedToo) {
+  ControlNet net(4, 2);
+  for (int j = 0; j < 2; ++j) {
+    const double y = 0.02 * j;
+    for (const int i : {0, 3}) net.set_point(i, j, {0, y, 0});
+    net.set_point(1, j, {0.04, y, 0});
+    net.set_point(2, j, {0, y, 0.04});
+  }
+  const Surface drop{KnotVector::clamped_uniform(3, 4).value(), KnotVector::clamped_uniform(1, 2).value(),
+                     net};
+  const auto closed = closed_around(drop, Direction::u, 2, 1e-4);
+  ASSERT_TRUE(closed.ok()) << closed.error().message;
+  EXPECT_TRUE(closed->surface.u.is_periodic());
+  for (double u = 0.0; u < 1.0; u += 0.01) {
+    EXPECT_LE((position(closed->surface, u, 0.5) - position(drop, u, 0.5)).norm(), 1e-4);
+  }
+}
+
 }  // namespace
 }  // namespace spoonbill
