@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -48,10 +49,10 @@ double line_length_m(const Surface& patch, double u, double from, double to) {
   return length;
 }
 
-// What a patch's lines say of the other: how many cross it, whether what is kept lies before the crossing,
-// and where they cross.
+// What a patch's lines say of the other: how many cross it and more than once, whether what is kept lies
+// before the crossing, and where they cross.
 struct Crossed {
-  int lines = 0;
+  int lines = 0, repeatedly = 0;
   double kept_before = 0.0;  // votes
   std::vector<LineCrossing> crossings;
 };
@@ -63,6 +64,7 @@ Crossed look(const Surface& patch, const Surface& other, const CrossingFinder& f
     const auto found = finder.of_line(patch, u);
     if (found.empty()) continue;
     ++crossed.lines;
+    if (found.size() > 1) ++crossed.repeatedly;
     const LineCrossing& crossing = found.front();
     crossed.crossings.push_back(crossing);
     const SurfacePoint here = evaluate(patch, u, crossing.along);
@@ -94,31 +96,59 @@ Error not_crossed() {
       "give the patches in the other order, or move it through"};
 }
 
-Result<Surface> with_pole_at_crossing(const Surface& body, const std::vector<LineCrossing>& crossings,
-                                      double tolerance_m) {
+Error goes_through() {
+  return Error{
+      "the first patch goes through the other and would lose what is on the far side; cut it where it is "
+      "inside, "
+      "and merge the two parts one after the other"};
+}
+
+Error not_side_by_side() {
+  return Error{
+      "lines of constant u of the two patches do not follow each other along the crossing, as a closed one "
+      "does "
+      "not on a sheet; exchange u and v of one, or name closed bodies"};
+}
+
+Result<FittedShape> with_pole_at_crossing(const Surface& body, const std::vector<LineCrossing>& crossings,
+                                          double tolerance_m) {
   Vector3 place = Vector3::Zero();
   for (const LineCrossing& crossing : crossings)
     place += crossing.point_m / static_cast<double>(crossings.size());
-  auto placed = with_pole_towards(body, (place - middle_of(body)).normalized(), tolerance_m);
-  if (!placed) return placed.error();
-  return std::move(placed->surface);
+  return with_pole_towards(body, (place - middle_of(body)).normalized(), tolerance_m);
 }
 
-// So that the second's u increases with the first's.
-Surface running_along(const Surface& first, const Surface& second) {
+// How far the second's u moves from each of the first's lines that cross it to the next, the short way
+// around.
+std::vector<double> steps_along(const Surface& first, const Surface& second) {
   const CrossingFinder finder(second);
-  const double period = second.u.is_periodic() ? second.u.domain_end() - second.u.domain_start() : 0.0;
-  double forwards = 0.0, last = 0.0;
-  bool any = false;
+  std::vector<double> crossed;
   for (const double u : lines_of(first)) {
     const auto found = finder.of_line(first, u);
-    if (found.empty()) continue;
-    double step = found.front().other_u - last;
-    if (period > 0.0) step -= period * std::round(step / period);
-    if (any) forwards += step;
-    last = found.front().other_u;
-    any = true;
+    if (!found.empty()) crossed.push_back(found.front().other_u);
   }
+  if (first.u.is_periodic() && !crossed.empty()) crossed.push_back(crossed.front());
+  const double period = second.u.is_periodic() ? second.u.domain_end() - second.u.domain_start() : 0.0;
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < crossed.size(); ++k) {
+    const double step = crossed[k] - crossed[k - 1];
+    steps.push_back(period > 0.0 ? step - period * std::round(step / period) : step);
+  }
+  return steps;
+}
+
+// So that the second's u increases with the first's, once around where they are closed.
+Result<Surface> running_along(const Surface& first, const Surface& second) {
+  const std::vector<double> steps = steps_along(first, second);
+  const double length = second.u.domain_end() - second.u.domain_start();
+  const double forwards = std::accumulate(steps.begin(), steps.end(), 0.0);
+  const double sign = forwards < 0.0 ? -1.0 : 1.0;
+  constexpr double rounding_share = 1e-6;
+  const bool returns =
+      std::any_of(steps.begin(), steps.end(), [&](double s) { return sign * s < -rounding_share * length; });
+  const bool once_around = !first.u.is_periodic() ||
+                           (second.u.is_periodic() && std::abs(std::abs(forwards) - length) < 0.5 * length);
+  if (returns || !once_around) return not_side_by_side();
   return forwards < 0.0 ? reversed(second, Direction::u) : second;
 }
 
@@ -128,16 +158,20 @@ Result<CrossingPatches> facing_each_other(const Surface& first, const Surface& s
   CrossingPatches patches{along_v(first), along_v(second)};
   Crossed of_first = look(patches.first, patches.second, CrossingFinder(patches.second));
   if (of_first.lines < lines_looked_at) return not_crossed();
+  if (is_closed_body(patches.second) && 2 * of_first.repeatedly > lines_looked_at) return goes_through();
   if (is_closed_body(patches.second) && !goes_around_pole(patches.second, of_first.crossings)) {
     auto placed = with_pole_at_crossing(patches.second, of_first.crossings, tolerance_m);
     if (!placed) return placed.error();
-    patches.second = std::move(placed).value();
+    patches.second = std::move(placed->surface);
+    patches.deviation_m = placed->deviation_m;
   }
   if (of_first.kept_before < 0.0) patches.first = turned_around(patches.first);
   const Crossed of_second = look(patches.second, patches.first, CrossingFinder(patches.first));
   if (of_second.lines == 0) return not_crossed();
   if (of_second.kept_before > 0.0) patches.second = turned_around(patches.second);
-  patches.second = running_along(patches.first, patches.second);
+  auto along = running_along(patches.first, patches.second);
+  if (!along) return along.error();
+  patches.second = std::move(along).value();
   return patches;
 }
 
@@ -148,7 +182,7 @@ CornerLines::CornerLines(const CrossingPatches& patches, double fillet_m)
 
 // The ball lies where both kept parts are: on each surface on the side to which the other's kept part leads.
 void CornerLines::choose_sides() {
-  const auto& [first, second] = *patches_;
+  const Surface &first = patches_->first, &second = patches_->second;
   double on_first = 0.0, on_second = 0.0;
   for (const double u : lines_of(first)) {
     const auto found = second_.of_line(first, u);

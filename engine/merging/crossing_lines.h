@@ -14,6 +14,7 @@ namespace spoonbill {
 // Both patches run along v: the first towards the crossing, the second away from it.
 struct CrossingPatches {
   Surface first, second;
+  double deviation_m = 0.0;  // of poles placed anew
 };
 
 // Turned (and, where they do not, poles placed anew) so that they do. Refused as merge_crossing() says.

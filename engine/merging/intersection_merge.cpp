@@ -16,8 +16,9 @@ namespace spoonbill {
 
 namespace {
 
-// Of the tolerance, for each of the parts; joining them takes the rest.
-constexpr double part_share = 0.3;
+// Of the tolerance, for new poles and for each of the parts, whose edges then meet within twice of it;
+// joining them takes the rest.
+constexpr double part_share = 0.2;
 
 using LineShape = std::function<Vector3(double u, const CornerLine& line, double s)>;
 
@@ -58,7 +59,7 @@ double between(double from, double to, double share) {
 Vector3 on_arc(const Vector3& from, const Vector3& to, const Vector3& centre, double share) {
   const Vector3 a = from - centre, b = to - centre;
   const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
-  if (!(std::sin(angle) > 1e-12)) return between(0.0, 1.0, 1.0 - share) * from + share * to;
+  if (!(std::sin(angle) > 1e-12)) return (1.0 - share) * from + share * to;
   return centre + (std::sin((1.0 - share) * angle) * a + std::sin(share * angle) * b) / std::sin(angle);
 }
 
@@ -108,12 +109,14 @@ Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& se
   if (!patches) return patches.error();
   auto parts = fitted_parts(patches.value(), request);
   if (!parts) return parts.error();
+  const double before_m = patches->deviation_m + parts->deviation_m;
   JoinRequest join = request.join;
+  join.tolerance_m -= before_m;
   join.blend_m = 0.0;
   if (request.fillet_m == 0.0) join.continuity = 0;
   auto joined = join_row(std::move(parts->surfaces), join);
   if (!joined) return joined.error();
-  return IntersectionMerge{std::move(joined->surface), parts->deviation_m + joined->deviation_m};
+  return IntersectionMerge{std::move(joined->surface), before_m + joined->deviation_m};
 }
 
 }  // namespace spoonbill

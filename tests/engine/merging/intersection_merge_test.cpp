@@ -158,5 +158,29 @@ TEST(IntersectionMerge, RefusesWhatDoesNotCross) {
   EXPECT_NE(too_large.error().message.find("choose a smaller fillet"), std::string::npos);
 }
 
+TEST(IntersectionMerge, TheToleranceHoldsWithNewPoles) {
+  IntersectionRequest request;
+  request.fillet_m = 0.003;
+  const auto merged = merge_crossing(rod(Vector3(std::sin(1.3), 0.0, std::cos(1.3))), ball(), request);
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_LE(merged->deviation_m, request.join.tolerance_m);
+  EXPECT_GT(merged->deviation_m, 0.0);
+}
+
+TEST(IntersectionMerge, WhatGoesThroughIsRefused) {
+  const Surface through = fitted(true, 24, 8, [](double u, double v) {
+    const double turn = -2 * pi * u;
+    return Vector3(rod_radius * std::cos(turn), rod_radius * std::sin(turn), 0.1 * v - 0.05);
+  });
+  const auto lost = merge_crossing(through, ball(), {});
+  ASSERT_FALSE(lost.ok());
+  EXPECT_NE(lost.error().message.find("far side"), std::string::npos) << lost.error().message;
+  // A rod that stands on a sheet: the sheet's lines run over each other across its foot.
+  const auto folded = merge_crossing(through, plane({-0.05, -0.05, 0}, {0.1, 0, 0}, {0, 0.1, 0}), {});
+  ASSERT_FALSE(folded.ok());
+  EXPECT_NE(folded.error().message.find("do not follow each other"), std::string::npos)
+      << folded.error().message;
+}
+
 }  // namespace
 }  // namespace spoonbill
