@@ -1,6 +1,7 @@
 #include "engine/merging/merge.h"
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -24,6 +25,7 @@ namespace {
 constexpr Range<double> tolerance_range_m{1e-9, 0.1};
 constexpr Range<double> blend_range_m{0.0, 1.0};
 constexpr Range<double> fillet_range_m{0.0, 1.0};
+constexpr Range<double> twist_range{-1.0, 1.0};
 // Of the tolerance, for making a trimmed patch whole.
 constexpr double trimmed_share = 0.25;
 constexpr int highest_continuity = max_degree - 1;
@@ -44,17 +46,24 @@ Result<int> parse_continuity(const std::string& text) {
       text[1] <= '0' + highest_continuity) {
     return text[1] - '0';
   }
-  return Error{"'" + text.substr(0, 20) + "' is not a continuity from C0 to C" +
-               std::to_string(highest_continuity)};
+  return Error{quoted(text, 20) + " is not a continuity from C0 to C" + std::to_string(highest_continuity)};
+}
+
+// "-0.25"
+Result<double> parse_twist(const std::string& text) {
+  double share = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), share);
+  if (error == std::errc() && end == text.data() + text.size() && twist_range.contains(share)) return share;
+  return Error{quoted(text, 20) + " is not a share of a turn from -1 to 1"};
 }
 
 // "2.v_start": the second patch's edge.
 Result<PatchEdge> parse_edge(const std::string& text) {
   const std::size_t dot = text.find('.');
   if (dot == 0 || dot == std::string::npos || dot > 3 || text.find_first_not_of("0123456789") != dot) {
-    return Error{"'" + text.substr(0, 40) + "' is not an edge like 2.v_start, the second patch's"};
+    return Error{quoted(text, 40) + " is not an edge like 2.v_start, the second patch's"};
   }
-  const auto side = side_of_name(text.substr(dot + 1));
+  const auto side = parse_side(text.substr(dot + 1));
   if (!side) return side.error();
   return PatchEdge{std::stoi(text.substr(0, dot)) - 1, side.value()};
 }
@@ -63,7 +72,7 @@ Result<PatchEdge> parse_edge(const std::string& text) {
 Result<ChosenEdges> parse_edges(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {
-    return Error{"'" + text.substr(0, 40) + "' is not a pair of edges like 1.v_end:2.v_start"};
+    return Error{quoted(text, 40) + " is not a pair of edges like 1.v_end:2.v_start"};
   }
   std::string second = text.substr(colon + 1);
   ChosenEdges edges;
@@ -75,7 +84,7 @@ Result<ChosenEdges> parse_edges(const std::string& text) {
   if (!a) return a.error();
   if (!b) return b.error();
   if (a->patch == b->patch) {
-    return Error{"'" + text.substr(0, 40) + "' joins a patch to itself; name two patches"};
+    return Error{quoted(text, 40) + " joins a patch to itself; name two patches"};
   }
   edges.a = a.value();
   edges.b = b.value();
@@ -146,12 +155,19 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   return document;
 }
 
-// Those that cross are merged one after the other.
-Result<Merged> merged_surface(const std::vector<Surface>& patches, const MergeOptions& options) {
-  if (!options.crossing) return merge(patches, options.request);
+// Those that cross are merged one after the other, each by its share of the tolerance.
+Result<Merged> merged_surface(const std::vector<Surface>& patches, const MergeOptions& options,
+                              double spent_m) {
+  MergeRequest request = options.request;
+  if (!options.crossing) {
+    request.join.spent_m = spent_m;
+    return merge(patches, request);
+  }
+  if (patches.size() < 2) return Error{"one body alone crosses none; name another one"};
   Merged merged{patches[0], 0.0, {}};
+  request.join.tolerance_m = (request.join.tolerance_m - spent_m) / static_cast<double>(patches.size() - 1);
   for (std::size_t p = 1; p < patches.size(); ++p) {
-    auto next = merge_crossing(merged.surface, patches[p], {options.request.join, options.fillet_m});
+    auto next = merge_crossing(merged.surface, patches[p], {request.join, options.fillet_m});
     if (!next) return Error{"patch " + std::to_string(p + 1) + ": " + next.error().message};
     merged.surface = std::move(next->surface);
     merged.deviation_m += next->deviation_m;
@@ -176,7 +192,7 @@ Status merge_models(const MergeOptions& options, Console& console) {
     }
     if (!first) first = std::move(document).value();
   }
-  auto merged = merged_surface(patches, options);
+  auto merged = merged_surface(patches, options, untrimmed_m);
   if (!merged) return merged.error();
   merged->deviation_m += untrimmed_m;
   const Document document = merged_document(*first, bodies, options, merged->surface);
@@ -232,11 +248,10 @@ CommandEntry add_merge(CLI::App& root) {
           "Join these edges, instead of those found: 1.v_end:2.v_start, or 1.v_end:-2.v_start where the "
           "second runs against the first and 1.v_end:+2.v_start where along it; once for each joint")
       ->type_name("EDGE:EDGE");
-  parser
-      ->add_option("--twist", options->request.join.twist,
-                   "Turn each ring by this share of a turn from where it fits the one before best")
-      ->check(CLI::Range(-1.0, 1.0))
-      ->type_name("SHARE");
+  CLI::Option* twist = add_parsed_option(
+      *parser, "--twist", "SHARE", parse_twist,
+      [options](double share) { options->request.join.twist = share; },
+      "Turn each ring by this share of a turn from where it fits the one before best");
   CLI::Option* crossing = parser->add_flag("--intersect", options->crossing,
                                            "The patches cross: each keeps what lies before the other");
   add_parsed_option(
@@ -246,6 +261,7 @@ CommandEntry add_merge(CLI::App& root) {
       ->needs(crossing);
   crossing->excludes(parser->get_option("--edges"));
   crossing->excludes(parser->get_option("--blend"));
+  crossing->excludes(twist);
   add_json_option(*parser, options->json);
   return {parser, [options](Console& console) { return merge_models(*options, console); }};
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/files/length_unit.h"
+#include "engine/merging/patch_edge.h"
 #include "engine/pose.h"
 #include "engine/range.h"
 #include "engine/result.h"
@@ -16,6 +17,9 @@ struct Extent {
   int width = 0;
   int height = 0;
 };
+
+// The beginning of what was given, in quotes and on one line, for a message.
+std::string quoted(std::string_view text, std::size_t longest);
 
 // "1280x720", both numbers within the range.
 Result<Extent> parse_extent(std::string_view text, Range<int> range);
@@ -33,6 +37,9 @@ Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t cou
 
 // "1,3-5": places counted from 1, at most 1000 of them, each once and in the order given.
 Result<std::vector<int>> parse_places(std::string_view text);
+
+// "u_start", "u_end", "v_start" or "v_end".
+Result<Side> parse_side(std::string_view text);
 
 // "mm", "cm", "m" or "in"; "inch" too.
 Result<LengthUnit> parse_unit(std::string_view text);

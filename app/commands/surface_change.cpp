@@ -35,14 +35,14 @@ struct Change {
 Result<Direction> direction_of(const std::string& text) {
   if (text == "u") return Direction::u;
   if (text == "v") return Direction::v;
-  return Error{"'" + text.substr(0, 20) + "' is not a direction; say u or v"};
+  return Error{quoted(text, 20) + " is not a direction; say u or v"};
 }
 
 Result<double> number_of(const std::string& text) {
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) {
-    return Error{"'" + text.substr(0, 20) + "' is not a number"};
+    return Error{quoted(text, 20) + " is not a number"};
   }
   return number;
 }
@@ -51,7 +51,7 @@ Result<int> whole_number_of(const std::string& text) {
   const auto number = number_of(text);
   if (!number) return number.error();
   if (number.value() != std::floor(number.value()) || std::abs(number.value()) > 1000.0) {
-    return Error{"'" + text.substr(0, 20) + "' is not a whole number"};
+    return Error{quoted(text, 20) + " is not a whole number"};
   }
   return static_cast<int>(number.value());
 }
@@ -63,7 +63,7 @@ struct Place {
 };
 
 Result<Place> place_of(const std::string& text) {
-  const Error refusal{"'" + text.substr(0, 40) + "' is not a place like v=0.3, in the knots' domain"};
+  const Error refusal{quoted(text, 40) + " is not a place like v=0.3, in the knots' domain"};
   if (text.size() < 3 || text[1] != '=') return refusal;
   const auto direction = direction_of(text.substr(0, 1));
   const auto parameter = number_of(text.substr(2));
@@ -156,7 +156,7 @@ Result<ChangedSurfaces> close_around(const Call& call) {
 }
 
 Result<ChangedSurfaces> cap(const Call& call) {
-  const auto side = side_of_name(call.values[0]);
+  const auto side = parse_side(call.values[0]);
   if (!side) return side.error();
   const auto height_m =
       call.values.size() > 1 ? parse_length(call.values[1], cap_height_range_m) : Result(0.0);
@@ -169,7 +169,7 @@ Result<ChangedSurfaces> cap(const Call& call) {
 }
 
 Result<ChangedSurfaces> open_end(const Call& call) {
-  const auto side = side_of_name(call.values[0]);
+  const auto side = parse_side(call.values[0]);
   if (!side) return side.error();
   return exactly(opened_pole(call.surface, side.value(), HUGE_VAL), false);
 }
@@ -236,7 +236,7 @@ Result<ChangedSurfaces> changed(const Surface& surface, const std::vector<TrimLo
     if (Status status = turn_trims(change, call, trims, result.value()); !status) return status.error();
     return result;
   }
-  return Error{"'" + (words.empty() ? "" : words[0].substr(0, 20)) + "' is no change; choose from " + known};
+  return Error{quoted(words.empty() ? "" : words[0], 20) + " is no change; choose from " + known};
 }
 
 std::string changes_text() {

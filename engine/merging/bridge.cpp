@@ -9,6 +9,7 @@
 #include "engine/bspline/blossom.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/number_text.h"
 
 namespace spoonbill {
 
@@ -40,7 +41,8 @@ void continue_into(const Surface& patch, bool from_end, const KnotVector& strip,
 }
 
 constexpr double tightening = 0.75;
-constexpr int tightenings = 5;
+constexpr int tightenings_for_waist = 5, most_tightenings = 12;
+constexpr int steps_along = 24;
 
 double mean_radius_m(const Surface& tube, double v) {
   const std::vector<double> around = uniform_parameters_without_seam(tube.u, 32);
@@ -55,27 +57,43 @@ double mean_radius_m(const Surface& tube, double v) {
   return radius;
 }
 
-Result<bool> has_waist(const Surface& before, const Surface& after, const BridgeLength& length,
-                       int continuity) {
-  const double start = before.v.domain_end() + length.parameter;
-  const double of_after = after.v.domain_end() - after.v.domain_start();
-  const auto moved = with_domain(after, Direction::v, start, start + length.stretch_of_after * of_after);
-  if (!moved) return moved.error();
-  const auto strip = bridge(before, moved.value(), continuity);
-  if (!strip) return strip.error();
-  const double first = strip->v.domain_start(), last = strip->v.domain_end();
-  const double narrowest = std::min(mean_radius_m(strip.value(), first), mean_radius_m(strip.value(), last));
-  constexpr int steps = 16;
+bool has_waist(const Surface& strip) {
+  const double first = strip.v.domain_start(), last = strip.v.domain_end();
+  const double narrowest = std::min(mean_radius_m(strip, first), mean_radius_m(strip, last));
   constexpr double unseen = 0.99;
-  for (int k = 1; k < steps; ++k) {
-    if (mean_radius_m(strip.value(), first + (last - first) * k / steps) < unseen * narrowest) return true;
+  for (int k = 1; k < steps_along; ++k) {
+    if (mean_radius_m(strip, first + (last - first) * k / steps_along) < unseen * narrowest) return true;
   }
   return false;
 }
 
-}  // namespace
+// Whether the normal turns over from one place to the next on a line across the gap.
+bool folds_over(const Surface& strip) {
+  const double first = strip.v.domain_start(), last = strip.v.domain_end();
+  constexpr int lines = 32;
+  for (const double u : uniform_parameters(strip.u, lines + 1)) {
+    Vector3 before = Vector3::Zero();
+    for (int k = 0; k <= steps_along; ++k) {
+      const SurfacePoint at = evaluate(strip, u, first + (last - first) * k / steps_along);
+      const Vector3 normal = at.du.cross(at.dv);
+      if (normal.dot(before) < 0.0) return true;
+      if (!normal.isZero(0.0)) before = normal;
+    }
+  }
+  return false;
+}
 
-Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, int continuity) {
+Result<Surface> strip_of_length(const Surface& before, const Surface& after, const BridgeLength& length,
+                                int continuity) {
+  const double start = before.v.domain_end() + length.parameter;
+  const double of_after = after.v.domain_end() - after.v.domain_start();
+  const auto moved = with_domain(after, Direction::v, start, start + length.stretch_of_after * of_after);
+  if (!moved) return moved.error();
+  return bridge(before, moved.value(), continuity);
+}
+
+// The gap crossed at the speed that the patches have at its edges.
+Result<BridgeLength> at_even_speed(const Surface& before, const Surface& after) {
   double chord = 0.0, speed_before = 0.0, speed_after = 0.0;
   const std::vector<double> along = uniform_parameters_without_seam(before.u, 64);
   for (const double u : along) {
@@ -88,14 +106,28 @@ Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, 
   if (!(speed_before > 0.0) || !(speed_after > 0.0)) {
     return Error{"a patch has no direction at the edge to bridge from; cut a piece off there"};
   }
-  BridgeLength length{chord / speed_before, speed_after / speed_before, chord};
-  for (int attempt = 0; before.u.is_periodic() && attempt < tightenings; ++attempt) {
-    const auto waisted = has_waist(before, after, length, continuity);
-    if (!waisted) return waisted.error();
-    if (!waisted.value()) return length;
+  return BridgeLength{chord / speed_before, speed_after / speed_before, chord};
+}
+
+}  // namespace
+
+Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, int continuity,
+                                   bool may_fold) {
+  auto even = at_even_speed(before, after);
+  if (!even) return even.error();
+  BridgeLength length = even.value();
+  for (int attempt = 0; attempt <= most_tightenings; ++attempt) {
+    const auto strip = strip_of_length(before, after, length, continuity);
+    if (!strip) return strip.error();
+    const bool folds = !may_fold && folds_over(strip.value());
+    const bool waisted =
+        before.u.is_periodic() && attempt < tightenings_for_waist && has_waist(strip.value());
+    if (!folds && !waisted) return length;
     length.parameter *= tightening;
   }
-  return length;
+  return Error{"the gap of " + short_length_text(length.chord_m) +
+               " cannot be bridged without a fold: its edges run into each other, or their parameters lie "
+               "askew; cut a piece off, or allow a larger tolerance"};
 }
 
 Result<Surface> bridge(const Surface& before, const Surface& after, int continuity) {

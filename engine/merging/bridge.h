@@ -9,14 +9,16 @@ namespace spoonbill {
 
 // How long the strip's parameter along v must be, and by what factor `after`'s domain must be stretched, for
 // both patches to run across the gap at one speed: derived from the chords from edge to edge and the mean
-// derivatives there. Between rings the strip is made tauter, down to a quarter, until it is nowhere narrower
-// than both of them.
+// derivatives there. The strip is made tauter where it would fold over, which it does where the chords are
+// short or lie askew; and between rings, down to a quarter, until it is nowhere narrower than both of them.
+// Refused: edges without a direction across, and strips that fold however taut, unless they may.
 struct BridgeLength {
   double parameter = 0.0;
   double stretch_of_after = 1.0;
   double chord_m = 0.0;  // the mean distance of the edges
 };
-Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, int continuity);
+Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, int continuity,
+                                   bool may_fold = false);
 
 // From before's end along v to after's start, over [before's end, after's start] as its domain; both of one
 // degree and one knot vector along u. Of the patches' degree along v: as many pieces as the continuity needs,

@@ -27,13 +27,6 @@ Result<Surface> over_domain_of(const Surface& first, const Surface& patch) {
   return with_domain(patch, Direction::u, start, end);
 }
 
-Result<Surface> with_seam_beside(const Surface& before, const Surface& patch, double twist) {
-  const auto match = match_edges({before, patch}, {0, Side::v_end}, {1, Side::v_start}, false);
-  if (!match) return match.error();
-  const double period = patch.u.domain_end() - patch.u.domain_start();
-  return with_seam_at(patch, Direction::u, match->seam + twist * period);
-}
-
 // The parameter of the point of the curve nearest to a point, from a guess.
 double nearest_parameter(const EdgeCurve& curve, const Vector3& point, double guess) {
   double t = guess;
@@ -48,7 +41,8 @@ double nearest_parameter(const EdgeCurve& curve, const Vector3& point, double gu
   return t;
 }
 
-// Where on b's edge each of a's parameters lies; the guess is at an equal share of the way.
+// Where on b's edge each of a's parameters lies; the guess is at an equal share of the way. Both are open, or
+// have their seams beside each other.
 std::vector<double> parameters_beside(const EdgeCurve& a, const EdgeCurve& b,
                                       const std::vector<double>& along) {
   constexpr int steps = 129;
@@ -67,73 +61,122 @@ std::vector<double> parameters_beside(const EdgeCurve& a, const EdgeCurve& b,
   return beside;
 }
 
-// Five to a piece; not on the far end of a period.
-std::vector<double> dense_parameters(const KnotVector& knots) {
-  std::vector<double> dense = nested_parameters(knots, 5, 0).parameters;
-  if (knots.is_periodic()) dense.pop_back();
+// The largest distance from a to b at the parameters.
+double largest_apart_m(const EdgeCurve& a, const EdgeCurve& b, const std::vector<double>& along,
+                       const std::vector<double>& beside) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < along.size(); ++k) {
+    largest = std::max(largest, (position(a, along[k]) - position(b, beside[k])).norm());
+  }
+  return largest;
+}
+
+// The parameter of the ring's point nearest to a point.
+double nearest_around(const EdgeCurve& ring, const Vector3& point) {
+  const std::vector<double> around = nested_parameters(ring.knots, 16, 0).parameters;
+  const auto distance = [&](double t) { return (position(ring, t) - point).squaredNorm(); };
+  const double guess = *std::min_element(around.begin(), around.end(),
+                                         [&](double a, double b) { return distance(a) < distance(b); });
+  return nearest_parameter(ring, point, guess);
+}
+
+Result<Surface> with_seam_beside(const Surface& before, const Surface& patch, const JoinRequest& request) {
+  const auto match = match_edges({before, patch}, {0, Side::v_end}, {1, Side::v_start}, false);
+  if (!match) return match.error();
+  double seam = match->seam;
+  if (match->gap_m > request.tolerance_m) {
+    const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
+    const Vector3 of_a = position(a, a.knots.domain_start());
+    const double nearest = nearest_around(b, of_a);
+    if ((position(b, nearest) - of_a).norm() <= request.tolerance_m) seam = nearest;
+  }
+  const double period = patch.u.domain_end() - patch.u.domain_start();
+  return with_seam_at(patch, Direction::u, seam + request.twist * period);
+}
+
+// The first of every two is fitted to, all are looked at; not on the far end of a period.
+struct DenseParameters {
+  std::vector<double> fitted, all;
+};
+
+DenseParameters dense_parameters(const KnotVector& knots) {
+  constexpr int fitted_in_piece = 5;
+  DenseParameters dense{nested_parameters(knots, fitted_in_piece, 0).parameters,
+                        nested_parameters(knots, 2 * fitted_in_piece, 0).parameters};
+  if (!knots.is_periodic()) return dense;
+  dense.fitted.pop_back();
+  dense.all.pop_back();
   return dense;
 }
 
 struct Matched {
   Surface surface;
-  double deviation_m;
+  std::vector<double> apart_m;  // at all the parameters
 };
 
-// The surface with its u replaced by a function of u, given at `dense`, over `knots`.
-Result<Matched> composed(const Surface& surface, const KnotVector& knots, const std::vector<double>& dense,
+// The surface with its u replaced by a function of u, given at the dense parameters, over `knots`.
+Result<Matched> composed(const Surface& surface, const KnotVector& knots, const DenseParameters& dense,
                          const std::vector<double>& beside) {
   const bool open = !knots.is_periodic();
-  const auto inverse = constrained_inverse(knots, dense, {{}, open, open});
+  const auto inverse = constrained_inverse(knots, dense.fitted, {{}, open, open});
   if (!inverse) return inverse.error();
-  const Eigen::MatrixXd there = blending_matrix(surface.u, beside, 0).dense();
-  const Eigen::MatrixXd weights = inverse.value().lazyProduct(there);
-  Surface result = mixed_along(surface, Direction::u, weights, knots);
-  const Eigen::MatrixXd apart = blending_matrix(knots, dense, 0).dense().lazyProduct(weights) - there;
-  double deviation_m = 0.0;
-  for (int j = 0; j < surface.net.columns; ++j) {
-    for (Eigen::Index k = 0; k < apart.rows(); ++k) {
+  std::vector<double> beside_fitted;
+  for (std::size_t k = 0; k < beside.size(); k += 2) beside_fitted.push_back(beside[k]);
+  const Eigen::MatrixXd weights =
+      inverse.value().lazyProduct(blending_matrix(surface.u, beside_fitted, 0).dense());
+  Matched matched{mixed_along(surface, Direction::u, weights, knots), {}};
+  const Eigen::MatrixXd apart = blending_matrix(knots, dense.all, 0).dense().lazyProduct(weights) -
+                                blending_matrix(surface.u, beside, 0).dense();
+  for (Eigen::Index k = 0; k < apart.rows(); ++k) {
+    double largest = 0.0;
+    for (int j = 0; j < surface.net.columns; ++j) {
       Vector3 sum = Vector3::Zero();
       for (int i = 0; i < surface.net.rows; ++i) sum += apart(k, i) * surface.net.point(i, j);
-      deviation_m = std::max(deviation_m, sum.norm());
+      largest = std::max(largest, sum.norm());
     }
+    matched.apart_m.push_back(largest);
   }
-  return Matched{std::move(result), deviation_m};
+  return matched;
 }
 
 // The same surface with the parameters that `before` has on the edge they share.
-Result<Matched> with_parameters_of(const Surface& before, const Surface& patch, double tolerance_m) {
+Result<CompatiblePatches> with_parameters_of(const Surface& before, const Surface& patch, double tolerance_m,
+                                             int largest_count) {
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
   KnotVector knots = before.u;
-  for (int attempt = 0; attempt < 6; ++attempt) {
-    const std::vector<double> dense = dense_parameters(knots);
-    const std::vector<double> beside = parameters_beside(a, b, dense);
-    if (a.knots.is_periodic() ? false : !std::is_sorted(beside.begin(), beside.end())) break;
+  while (knots.control_point_count() <= largest_count) {
+    const DenseParameters dense = dense_parameters(knots);
+    const std::vector<double> beside = parameters_beside(a, b, dense.all);
+    if (!std::is_sorted(beside.begin(), beside.end())) break;
     auto matched = composed(patch, knots, dense, beside);
     if (!matched) return matched.error();
-    if (matched->deviation_m <= tolerance_m) return matched;
-    auto finer = with_pieces_halved(knots, dense);
+    const double deviation_m = *std::max_element(matched->apart_m.begin(), matched->apart_m.end());
+    if (deviation_m <= tolerance_m) return CompatiblePatches{{std::move(matched->surface)}, deviation_m};
+    std::vector<double> where;
+    for (std::size_t k = 0; k < dense.all.size(); ++k) {
+      if (matched->apart_m[k] > tolerance_m) where.push_back(dense.all[k]);
+    }
+    auto finer = with_pieces_halved(knots, where);
     if (!finer) return finer.error();
+    if (finer.value() == knots) break;
     knots = std::move(finer).value();
   }
   return Error{"the parameters of its edge cannot be matched within " + short_length_text(tolerance_m) +
                "; allow a larger tolerance"};
 }
 
-double edge_gap_m(const Surface& before, const Surface& patch) {
-  double largest = 0.0;
-  for (int i = 0; i < before.net.rows; ++i) {
-    largest = std::max(largest, (before.net.point(i, before.net.columns - 1) - patch.net.point(i, 0)).norm());
-  }
-  return largest;
-}
-
 // Over the union of their u knots.
-Status make_one_structure(std::vector<Surface>& patches) {
+Status make_one_structure(std::vector<Surface>& patches, int largest_count) {
   KnotVector all = patches[0].u;
   for (const Surface& patch : patches) {
     auto both = knot_union(all, patch.u);
     if (!both) return both.error();
     all = std::move(both).value();
+  }
+  if (const int count = all.control_point_count(); count > largest_count) {
+    return Error{"the patches' knots across make " + std::to_string(count) +
+                 " control points together, more than " + std::to_string(largest_count) +
+                 "; simplify them first, or merge fewer"};
   }
   for (Surface& patch : patches) {
     auto finer = over_finer_knots(patch, Direction::u, all);
@@ -152,16 +195,33 @@ Result<Surface> with_degrees(const Surface& patch, int degree_u, int degree_v) {
   return over_finer_knots(along_u.value(), Direction::v, v.value());
 }
 
-Status match_parameters(std::vector<Surface>& patches, double tolerance_m, double& deviation_m) {
+// Of the tolerance, how far edges that coincide may be apart, and what matching their parameters may leave.
+constexpr double apart_share = 0.75, matching_share = 0.25;
+
+// Whether the edges are one curve run through at other parameters.
+bool needs_matching(const Surface& before, const Surface& patch, double tolerance_m) {
+  const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
+  std::vector<double> along = nested_parameters(a.knots, 4, 0).parameters;
+  if (a.knots.is_periodic()) along.pop_back();
+  const double length_a = a.knots.domain_end() - a.knots.domain_start();
+  const double length_b = b.knots.domain_end() - b.knots.domain_start();
+  std::vector<double> same;
+  for (const double t : along) {
+    same.push_back(b.knots.domain_start() + (t - a.knots.domain_start()) / length_a * length_b);
+  }
+  const double apart_m = largest_apart_m(a, b, along, parameters_beside(a, b, along));
+  return apart_m <= apart_share * tolerance_m &&
+         largest_apart_m(a, b, along, same) > apart_m + matching_share * tolerance_m;
+}
+
+Status match_parameters(std::vector<Surface>& patches, const JoinRequest& request, double& deviation_m) {
   for (std::size_t p = 1; p < patches.size(); ++p) {
-    std::vector<Surface> pair{patches[p - 1], patches[p]};
-    if (Status status = make_one_structure(pair); !status) return status;
-    const auto match = match_edges(pair, {0, Side::v_end}, {1, Side::v_start}, false);
-    if (!match) return match.error();
-    if (match->mean_gap_m > tolerance_m || edge_gap_m(pair[0], pair[1]) <= tolerance_m) continue;
-    auto matched = with_parameters_of(patches[p - 1], patches[p], tolerance_m);
+    if (request.twist != 0.0 && patches[p].u.is_periodic()) continue;
+    if (!needs_matching(patches[p - 1], patches[p], request.tolerance_m)) continue;
+    auto matched = with_parameters_of(patches[p - 1], patches[p], matching_share * request.tolerance_m,
+                                      request.largest_count);
     if (!matched) return Error{name_of(p) + ": " + matched.error().message};
-    patches[p] = std::move(matched->surface);
+    patches[p] = std::move(matched->patches[0]);
     deviation_m = std::max(deviation_m, matched->deviation_m);
   }
   return {};
@@ -169,9 +229,8 @@ Status match_parameters(std::vector<Surface>& patches, double tolerance_m, doubl
 
 }  // namespace
 
-Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, double tolerance_m, int degree_v,
-                                             double twist) {
-  int degree_u = 1;
+Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, const JoinRequest& request) {
+  int degree_u = 1, degree_v = request.continuity + 1;
   for (const Surface& patch : patches) {
     degree_u = std::max(degree_u, patch.u.degree());
     degree_v = std::max(degree_v, patch.v.degree());
@@ -187,15 +246,16 @@ Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, doubl
     if (!raised) return Error{name_of(p) + ": " + raised.error().message};
     patches[p] = std::move(raised).value();
     if (p == 0 || !patches[p].u.is_periodic()) continue;
-    auto turned = with_seam_beside(patches[p - 1], patches[p], twist);
+    auto turned = with_seam_beside(patches[p - 1], patches[p], request);
     if (!turned) return Error{name_of(p) + ": " + turned.error().message};
     patches[p] = std::move(turned).value();
   }
   CompatiblePatches result{std::move(patches), 0.0};
-  if (Status status = match_parameters(result.patches, 0.25 * tolerance_m, result.deviation_m); !status) {
+  if (Status status = match_parameters(result.patches, request, result.deviation_m); !status) {
     return status.error();
   }
-  if (Status status = make_one_structure(result.patches); !status) return status.error();
+  if (Status status = make_one_structure(result.patches, request.largest_count); !status)
+    return status.error();
   return result;
 }
 

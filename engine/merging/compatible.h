@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/bspline/surface.h"
+#include "engine/merging/join_request.h"
 #include "engine/result.h"
 
 namespace spoonbill {
@@ -15,11 +16,11 @@ struct CompatiblePatches {
   double deviation_m = 0.0;  // zero but where parameters had to be matched
 };
 
-// Edges that are at most `tolerance_m` apart coincide. `degree_v` is the least degree along v. The first
-// patch keeps its domain along u; the seam of each ring lies where it fits the ring before best, and `twist`
-// of a turn further. Refused: a closed patch beside an open one, parameters that cannot be matched within the
-// tolerance.
-Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, double tolerance_m, int degree_v,
-                                             double twist = 0.0);
+// Edges that are at most the tolerance apart coincide, wherever their parameters are. The degree along v is
+// at least one more than the continuity. The first patch keeps its domain along u; the seam of each ring lies
+// beside that of the ring before where they coincide, else where it fits that best, and the twist further.
+// Refused: a closed patch beside an open one, parameters that cannot be matched within the tolerance, more
+// than the largest count of control points.
+Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, const JoinRequest& request);
 
 }  // namespace spoonbill

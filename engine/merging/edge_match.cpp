@@ -1,11 +1,15 @@
 #include "engine/merging/edge_match.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <utility>
+
+#include "engine/bspline/grid.h"
 
 namespace spoonbill {
 
@@ -29,45 +33,91 @@ Gaps gaps_between(const std::vector<Vector3>& a, const std::vector<Vector3>& b) 
   return gaps;
 }
 
-EdgeMatch match_open(PatchEdge a, PatchEdge b, const EdgeCurve& of_a, const EdgeCurve& of_b,
-                     std::optional<bool> asked) {
-  const std::vector<Vector3> along = edge_samples(of_a, samples_of_open).points_m;
-  std::vector<Vector3> beside = edge_samples(of_b, samples_of_open).points_m;
+// An edge, prepared to be compared with several others.
+struct Edge {
+  PatchEdge name;
+  EdgeCurve curve;
+  std::vector<Vector3> points_m;      // at equal shares of the way along an open one
+  Vector3 outward = Vector3::Zero();  // of a ring
+};
+
+Edge prepared(const std::vector<Surface>& patches, PatchEdge name) {
+  Edge edge{name, edge_curve(patches[name.patch], name.side), {}, Vector3::Zero()};
+  if (edge.curve.knots.is_periodic()) {
+    edge.outward = outward(patches[name.patch], name.side);
+  } else {
+    edge.points_m = edge_samples(edge.curve, samples_of_open).points_m;
+  }
+  return edge;
+}
+
+EdgeMatch match_open(const Edge& a, const Edge& b, std::optional<bool> asked) {
+  const std::vector<Vector3>& along = a.points_m;
+  std::vector<Vector3> beside = b.points_m;
   const Gaps direct = gaps_between(along, beside);
   std::reverse(beside.begin(), beside.end());
   const Gaps against = gaps_between(along, beside);
   const bool reversed = asked.value_or(against.mean < direct.mean);
   const Gaps& gaps = reversed ? against : direct;
-  return {a, b, reversed, 0.0, gaps.largest, gaps.mean};
+  return {a.name, b.name, reversed, 0.0, gaps.largest, gaps.mean};
 }
 
-// A ring seen from its middle, so that a gap between rings does not tell how they are turned.
+// A ring seen from its middle, so that a gap between rings does not tell how they are turned; the second one
+// as it is when it has been turned towards the first.
 class Ring {
  public:
   explicit Ring(const EdgeCurve& curve) : curve_(curve) {
-    const std::vector<Vector3> points = edge_samples(curve, samples_of_ring).points_m;
-    centre_ = std::accumulate(points.begin(), points.end(), Vector3(Vector3::Zero())) /
-              static_cast<double>(points.size());
+    for (const double t : uniform_parameters_without_seam(curve.knots, samples_of_ring)) {
+      centre_ += position(curve, t) / samples_of_ring;
+    }
+    for (const double t : uniform_parameters_without_seam(curve.knots, samples_of_ring)) {
+      radius_ = std::max(radius_, (position(curve, t) - centre_).norm());
+    }
   }
+  void turn(const Eigen::Matrix3d& turn) { turn_ = turn; }
+
   // At a share of the way around from a parameter, forwards or backwards.
   double parameter(double from, double share, bool backwards) const {
     const double length = curve_.knots.domain_end() - curve_.knots.domain_start();
     return from + (backwards ? -share : share) * length;
   }
-  Vector3 at(double t) const { return position(curve_, t) - centre_; }
-  Vector3 derivative_at(double t) const { return derivative(curve_, t); }
-  const EdgeCurve& curve() const { return curve_; }
+  double seam() const { return curve_.knots.domain_start(); }
+  Vector3 at(double t) const { return turn_ * (position(curve_, t) - centre_); }
+  Vector3 derivative_at(double t) const { return turn_ * derivative(curve_, t); }
+  const Vector3& centre() const { return centre_; }
+  double radius() const { return radius_; }  // the largest
 
  private:
   const EdgeCurve& curve_;
   Vector3 centre_ = Vector3::Zero();
+  double radius_ = 0.0;
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
 };
+
+// Turns what leads out of the second ring into what leads into the first: least far, and where they face the
+// same way in the plane in which a bend joins them. None for rings that lie within each other, such as those
+// of a cup's two walls at its rim, or that lead nowhere.
+Eigen::Matrix3d turn_towards(const Ring& a, const Vector3& outward_a, const Ring& b,
+                             const Vector3& outward_b) {
+  const Vector3 inward_b = -outward_b, apart = b.centre() - a.centre();
+  const double cosine = inward_b.dot(outward_a);
+  const bool within = apart.norm() < std::max(a.radius(), b.radius());
+  if (outward_a.isZero() || outward_b.isZero() || (cosine < 0.0 && within))
+    return Eigen::Matrix3d::Identity();
+  constexpr double facing_the_same_way = -0.999;
+  if (cosine > facing_the_same_way) {
+    return Eigen::Quaterniond::FromTwoVectors(inward_b, outward_a).toRotationMatrix();
+  }
+  const Vector3 axis = apart.cross(outward_a);
+  if (!(axis.norm() > 1e-6 * apart.norm())) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(std::numbers::pi, axis.normalized()).toRotationMatrix();
+}
 
 double misfit(const Ring& a, const Ring& b, double seam, bool backwards) {
   double sum = 0.0;
   for (int k = 0; k < samples_of_ring; ++k) {
     const double share = static_cast<double>(k) / samples_of_ring;
-    const double of_a = a.parameter(a.curve().knots.domain_start(), share, false);
+    const double of_a = a.parameter(a.seam(), share, false);
     sum += (a.at(of_a) - b.at(b.parameter(seam, share, backwards))).squaredNorm();
   }
   return sum;
@@ -80,52 +130,80 @@ double better_seam(const Ring& a, const Ring& b, double seam, bool backwards) {
     const double share = static_cast<double>(k) / samples_of_ring;
     const double of_b = b.parameter(seam, share, backwards);
     const Vector3 slope = b.derivative_at(of_b);
-    const Vector3 apart = a.at(a.parameter(a.curve().knots.domain_start(), share, false)) - b.at(of_b);
+    const Vector3 apart = a.at(a.parameter(a.seam(), share, false)) - b.at(of_b);
     along += apart.dot(slope);
     squared += slope.squaredNorm();
   }
   return squared > 0.0 ? seam + along / squared : seam;
 }
 
-EdgeMatch match_rings(PatchEdge a, PatchEdge b, const EdgeCurve& of_a, const EdgeCurve& of_b,
-                      std::optional<bool> asked) {
-  const Ring ring_a(of_a), ring_b(of_b);
-  double least = std::numeric_limits<double>::infinity();
-  EdgeMatch best{a, b, false, 0.0, 0.0, 0.0};
+struct RingFit {
+  double seam = 0.0;
+  bool reversed = false;
+  double misfit = std::numeric_limits<double>::infinity();
+};
+
+RingFit best_fit(const Ring& a, const Ring& b, std::optional<bool> asked) {
+  RingFit best;
   for (const bool backwards : {false, true}) {
     if (asked.value_or(backwards) != backwards) continue;
     for (int k = 0; k < seams_tried; ++k) {
-      const double seam =
-          ring_b.parameter(of_b.knots.domain_start(), static_cast<double>(k) / seams_tried, false);
-      const double sum = misfit(ring_a, ring_b, seam, backwards);
-      if (sum < least * (1.0 - 1e-9)) {
-        least = sum;
-        best.seam = seam;
-        best.reversed = backwards;
-      }
+      const double seam = b.parameter(b.seam(), static_cast<double>(k) / seams_tried, false);
+      const double sum = misfit(a, b, seam, backwards);
+      if (sum < best.misfit * (1.0 - 1e-9)) best = {seam, backwards, sum};
     }
   }
   for (int step = 0; step < 30; ++step) {
-    const double seam = better_seam(ring_a, ring_b, best.seam, best.reversed);
-    if (misfit(ring_a, ring_b, seam, best.reversed) >= misfit(ring_a, ring_b, best.seam, best.reversed))
-      break;
+    const double seam = better_seam(a, b, best.seam, best.reversed);
+    const double sum = misfit(a, b, seam, best.reversed);
+    if (sum >= best.misfit) break;
     best.seam = seam;
+    best.misfit = sum;
   }
-  best.seam = of_b.knots.into_domain(best.seam);
+  return best;
+}
+
+// Rings that lie upon each other are taken as they lie, which is exact where they are one; others turned.
+RingFit best_turned_fit(const Edge& a, const Edge& b, std::optional<bool> asked) {
+  constexpr double upon_share = 0.02;  // of the radius
+  const Ring ring_a(a.curve);
+  Ring ring_b(b.curve);
+  const RingFit as_they_lie = best_fit(ring_a, ring_b, asked);
+  const double upon_m = upon_share * ring_a.radius();
+  const bool upon = (ring_b.centre() - ring_a.centre()).norm() <= upon_m &&
+                    as_they_lie.misfit <= samples_of_ring * upon_m * upon_m;
+  if (upon) return as_they_lie;
+  const Eigen::Matrix3d turn = turn_towards(ring_a, a.outward, ring_b, b.outward);
+  if (turn.isIdentity(0.0)) return as_they_lie;
+  ring_b.turn(turn);
+  return best_fit(ring_a, ring_b, asked);
+}
+
+EdgeMatch match_rings(const Edge& a, const Edge& b, std::optional<bool> asked) {
+  const RingFit best = best_turned_fit(a, b, asked);
+  const double seam = b.curve.knots.into_domain(best.seam);
+  const Ring ring_a(a.curve), ring_b(b.curve);
   std::vector<Vector3> along, beside;
   for (int k = 0; k < samples_of_ring; ++k) {
     const double share = static_cast<double>(k) / samples_of_ring;
-    along.push_back(position(of_a, ring_a.parameter(of_a.knots.domain_start(), share, false)));
-    beside.push_back(position(of_b, ring_b.parameter(best.seam, share, best.reversed)));
+    along.push_back(position(a.curve, ring_a.parameter(ring_a.seam(), share, false)));
+    beside.push_back(position(b.curve, ring_b.parameter(seam, share, best.reversed)));
   }
   const Gaps gaps = gaps_between(along, beside);
-  best.gap_m = gaps.largest;
-  best.mean_gap_m = gaps.mean;
-  return best;
+  return {a.name, b.name, best.reversed, seam, gaps.largest, gaps.mean};
 }
 
 std::string text_of(PatchEdge edge) {
   return "patch " + std::to_string(edge.patch + 1) + "'s " + side_name(edge.side);
+}
+
+Result<EdgeMatch> match_prepared(const Edge& a, const Edge& b, std::optional<bool> reversed) {
+  const bool ring = a.curve.knots.is_periodic();
+  if (ring != b.curve.knots.is_periodic()) {
+    return Error{text_of(a.name) + " and " + text_of(b.name) +
+                 " do not fit: one is a closed ring and the other is not"};
+  }
+  return ring ? match_rings(a, b, reversed) : Result(match_open(a, b, reversed));
 }
 
 std::vector<PatchEdge> free_edges(const std::vector<Surface>& patches) {
@@ -159,12 +237,13 @@ class Groups {
 };
 
 std::vector<EdgeMatch> candidates(const std::vector<Surface>& patches) {
-  const std::vector<PatchEdge> edges = free_edges(patches);
+  std::vector<Edge> edges;
+  for (const PatchEdge& name : free_edges(patches)) edges.push_back(prepared(patches, name));
   std::vector<EdgeMatch> found;
   for (std::size_t a = 0; a < edges.size(); ++a) {
     for (std::size_t b = a + 1; b < edges.size(); ++b) {
-      if (edges[a].patch == edges[b].patch) continue;
-      const auto match = match_edges(patches, edges[a], edges[b]);
+      if (edges[a].name.patch == edges[b].name.patch) continue;
+      const auto match = match_prepared(edges[a], edges[b], std::nullopt);
       if (match) found.push_back(match.value());
     }
   }
@@ -183,13 +262,7 @@ bool shares_edge(const std::vector<EdgeMatch>& taken, const EdgeMatch& match) {
 
 Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b,
                               std::optional<bool> reversed) {
-  const EdgeCurve of_a = edge_curve(patches[a.patch], a.side), of_b = edge_curve(patches[b.patch], b.side);
-  if (of_a.knots.is_periodic() != of_b.knots.is_periodic()) {
-    return Error{text_of(a) + " and " + text_of(b) +
-                 " do not fit: one is a closed ring and the other is not"};
-  }
-  return of_a.knots.is_periodic() ? match_rings(a, b, of_a, of_b, reversed)
-                                  : match_open(a, b, of_a, of_b, reversed);
+  return match_prepared(prepared(patches, a), prepared(patches, b), reversed);
 }
 
 Result<std::vector<EdgeMatch>> matches_of(const std::vector<Surface>& patches, double together_m) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/merging/patch_edge.h"
+#include "engine/result.h"
 
 namespace spoonbill {
 
@@ -14,11 +15,14 @@ struct EdgeMatch {
   PatchEdge a, b;
   bool reversed = false;  // b runs against a
   double seam = 0.0;      // of periodic edges: b's parameter beside a's seam
-  double gap_m = 0.0;     // the largest distance between points at equal shares of the way along
+  // The largest distance between points at equal shares of the way along; of rings, of the period from their
+  // seams on.
+  double gap_m = 0.0;
   double mean_gap_m = 0.0;
 };
 
 // How two edges lie beside each other at best, or at best where b runs along or against a as `reversed` says.
+// Rings that lie apart are compared as a bend from one to the other would bring them together.
 // Refused: a ring beside an open edge.
 Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b,
                               std::optional<bool> reversed = std::nullopt);

@@ -7,6 +7,7 @@
 
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/tube_ends.h"
+#include "engine/number_text.h"
 
 namespace spoonbill {
 
@@ -21,25 +22,6 @@ struct Grid {
     return oriented(patches[arrangement.patches[cell]], arrangement.orientations[cell]);
   }
 };
-
-// The mean over the rows, so that all of them keep their joints at the same parameter.
-void share_measures(std::vector<PreparedRow>& rows) {
-  const double count = static_cast<double>(rows.size());
-  for (std::size_t j = 0; j < rows[0].joints.size(); ++j) {
-    double gap = 0.0, stretch = 0.0;
-    bool bridged = false;
-    for (const PreparedRow& row : rows) {
-      bridged = bridged || row.joints[j].bridged;
-      gap += row.joints[j].gap_parameter / count;
-      stretch += row.joints[j].stretch_of_after / count;
-    }
-    for (PreparedRow& row : rows) {
-      row.joints[j].bridged = bridged;
-      row.joints[j].gap_parameter = gap;
-      row.joints[j].stretch_of_after = stretch;
-    }
-  }
-}
 
 // The side that a patch turns to its neighbour in the grid.
 Side own_side(Side in_grid, const Orientation& orientation) {
@@ -62,17 +44,14 @@ MergedJoint described(const Grid& grid, int a, int b, Direction along, const Joi
 
 // Every row along v is joined; what results lies one after the other along u.
 Result<std::vector<Joined>> joined_along_v(const Grid& grid, const JoinRequest& request) {
-  std::vector<PreparedRow> rows;
+  std::vector<std::vector<Surface>> rows(static_cast<std::size_t>(grid.arrangement.rows));
   for (int a = 0; a < grid.arrangement.rows; ++a) {
-    std::vector<Surface> patches;
-    for (int b = 0; b < grid.arrangement.columns; ++b) patches.push_back(grid.at(a, b));
-    auto row = prepare_row(std::move(patches), request);
-    if (!row) return row.error();
-    rows.push_back(std::move(row).value());
+    for (int b = 0; b < grid.arrangement.columns; ++b) rows[a].push_back(grid.at(a, b));
   }
-  share_measures(rows);
+  const auto prepared = prepare_rows(std::move(rows), request);
+  if (!prepared) return prepared.error();
   std::vector<Joined> joined;
-  for (const PreparedRow& row : rows) {
+  for (const PreparedRow& row : prepared.value()) {
     auto result = join_prepared(row, request);
     if (!result) return result.error();
     joined.push_back(std::move(result).value());
@@ -80,8 +59,13 @@ Result<std::vector<Joined>> joined_along_v(const Grid& grid, const JoinRequest& 
   return joined;
 }
 
+// Of the tolerance, for joining along u what was joined along v.
+constexpr double second_share = 0.5;
+
 Result<Merged> merge_grid(const Grid& grid, const JoinRequest& request) {
-  auto rows = joined_along_v(grid, request);
+  JoinRequest along_v = request;
+  if (grid.arrangement.rows > 1) along_v.spent_m += second_share * request.tolerance_m;
+  auto rows = joined_along_v(grid, along_v);
   if (!rows) return rows.error();
   Merged merged;
   std::vector<Surface> strips;
@@ -98,7 +82,9 @@ Result<Merged> merge_grid(const Grid& grid, const JoinRequest& request) {
     merged.surface = std::move(rows.value()[0].surface);
     return merged;
   }
-  auto whole = join_row(std::move(strips), request);
+  JoinRequest along_u = request;
+  along_u.spent_m += merged.deviation_m;
+  auto whole = join_row(std::move(strips), along_u);
   if (!whole) return whole.error();
   merged.deviation_m += whole->deviation_m;
   for (std::size_t a = 0; a < whole->joints.size(); ++a) {
@@ -155,9 +141,16 @@ Result<std::vector<EdgeMatch>> matches_for(std::vector<Surface>& patches, const 
   return matches;
 }
 
+constexpr int most_patches = 64;
+constexpr double rounding_m = 1e-12;
+
 Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
   const int count = static_cast<int>(patches.size());
   if (count == 0) return Error{"there is no patch to merge; name at least one"};
+  if (count > most_patches) {
+    return Error{std::to_string(count) + " patches are more than the " + std::to_string(most_patches) +
+                 " that are merged at once; merge parts of them first"};
+  }
   for (const ChosenEdges& edges : request.chosen) {
     for (const PatchEdge& edge : {edges.a, edges.b}) {
       const std::string name = "patch " + std::to_string(edge.patch + 1);
@@ -181,7 +174,16 @@ Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& re
   if (!matches) return matches.error();
   const auto arrangement = arrange(ready, matches.value());
   if (!arrangement) return arrangement.error();
-  return merge_grid({ready, arrangement.value()}, request.join);
+  JoinRequest join = request.join;
+  join.bridges_may_fold = std::any_of(request.chosen.begin(), request.chosen.end(),
+                                      [](const ChosenEdges& edges) { return edges.reversed.has_value(); });
+  auto merged = merge_grid({ready, arrangement.value()}, join);
+  if (!merged) return merged;
+  if (merged->deviation_m > join.tolerance_m - join.spent_m + rounding_m) {
+    return Error{"the patches can be merged within " + short_length_text(merged->deviation_m + join.spent_m) +
+                 "; allow a larger tolerance than " + short_length_text(join.tolerance_m)};
+  }
+  return merged;
 }
 
 }  // namespace spoonbill

@@ -36,8 +36,16 @@ Vector3 blended(const EdgeCurve& curve, double t, int derivative_order) {
   return sum;
 }
 
-// Steps of the parameter that a chord follows well enough to tell arc lengths by.
-constexpr int chords = 256;
+// At least so many chords, and in every piece some, tell the arc length well enough.
+constexpr int least_chords = 256, least_chords_in_piece = 8;
+
+std::vector<double> fine_parameters(const KnotVector& knots) {
+  const int pieces = static_cast<int>(knots.breakpoints().size()) - 1;
+  const int in_piece = std::max(least_chords_in_piece, (least_chords + pieces - 1) / pieces);
+  return nested_parameters(knots, in_piece, 0).parameters;
+}
+
+constexpr int directions_looked_at = 48;
 
 }  // namespace
 
@@ -65,13 +73,6 @@ Side opposite(Side side) {
 
 const char* side_name(Side side) {
   return names[static_cast<int>(side)];
-}
-
-Result<Side> side_of_name(const std::string& name) {
-  for (const Side side : all_sides) {
-    if (name == side_name(side)) return side;
-  }
-  return Error{"edge '" + name + "' is unknown; choose u_start, u_end, v_start or v_end"};
 }
 
 EdgeCurve edge_curve(const Surface& surface, Side side) {
@@ -109,8 +110,20 @@ bool is_joinable(const Surface& surface, Side side) {
   return longest > pole_share * reach(surface);
 }
 
+Vector3 outward(const Surface& surface, Side side) {
+  const bool across_u = across(side) == Direction::u;
+  const KnotVector &fixed = knots_along(surface, across(side)), &along = across_u ? surface.v : surface.u;
+  const double at = is_start(side) ? fixed.domain_start() : fixed.domain_end();
+  Vector3 sum = Vector3::Zero();
+  for (const double t : uniform_parameters_without_seam(along, directions_looked_at)) {
+    const Vector3 slope = across_u ? evaluate(surface, at, t).du : evaluate(surface, t, at).dv;
+    sum += (is_start(side) ? -1.0 : 1.0) * slope.normalized();
+  }
+  return sum.norm() > 1e-3 * directions_looked_at ? Vector3(sum.normalized()) : Vector3(Vector3::Zero());
+}
+
 EdgeSamples edge_samples(const EdgeCurve& curve, int count) {
-  const std::vector<double> fine = uniform_parameters(curve.knots, chords + 1);
+  const std::vector<double> fine = fine_parameters(curve.knots);
   std::vector<double> lengths{0.0};
   std::vector<Vector3> points;
   for (const double t : fine) {
@@ -118,10 +131,9 @@ EdgeSamples edge_samples(const EdgeCurve& curve, int count) {
     if (points.size() > 1) lengths.push_back(lengths.back() + (points.back() - points.end()[-2]).norm());
   }
   EdgeSamples samples{{}, {}, lengths.back()};
-  samples.parameters =
-      curve.knots.is_periodic() ? uniform_parameters_without_seam(curve.knots, count) : std::vector<double>();
-  for (int k = 0; !curve.knots.is_periodic() && k < count; ++k) {
-    const double wanted = lengths.back() * k / (count - 1);
+  const int steps = curve.knots.is_periodic() ? count : count - 1;
+  for (int k = 0; k < count; ++k) {
+    const double wanted = lengths.back() * k / steps;
     const auto after = std::lower_bound(lengths.begin() + 1, lengths.end() - 1, wanted);
     const std::size_t chord = static_cast<std::size_t>(after - lengths.begin()) - 1;
     const double step = lengths[chord + 1] - lengths[chord];

@@ -1,12 +1,10 @@
 // The edges of a patch, where patches are joined. Pure functions, outside the tick; any thread.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "engine/bspline/knot_insertion.h"
 #include "engine/bspline/surface.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 
@@ -22,7 +20,6 @@ Side opposite(Side side);
 
 // "u_start" and so on, as files and commands name them.
 const char* side_name(Side side);
-Result<Side> side_of_name(const std::string& name);
 
 // One of several patches, counted from 0.
 struct PatchEdge {
@@ -46,8 +43,11 @@ Vector3 derivative(const EdgeCurve& curve, double t);
 // Whether the side is one to join: the direction across is open and the edge longer than nothing.
 bool is_joinable(const Surface& surface, Side side);
 
-// `count` points at equal steps of the arc length, ends included; of a periodic edge at equal steps of the
-// parameter, without repeating the seam.
+// The mean unit direction out of the patch across an edge; zero where the directions cancel.
+Vector3 outward(const Surface& surface, Side side);
+
+// `count` points at equal steps of the arc length, ends included; of a periodic edge from its seam on,
+// without repeating it.
 struct EdgeSamples {
   std::vector<double> parameters;
   std::vector<Vector3> points_m;

@@ -46,14 +46,6 @@ Surface turned_back(const Surface& along, Side side) {
   return across(side) == Direction::u ? exchanged(tube) : tube;
 }
 
-Vector3 outward_at_end(const Surface& tube) {
-  Vector3 sum = Vector3::Zero();
-  for (const double u : uniform_parameters_without_seam(tube.u, samples_around)) {
-    sum += evaluate(tube, u, tube.v.domain_end()).dv.normalized();
-  }
-  return sum.norm() > 1e-3 * samples_around ? Vector3(sum.normalized()) : Vector3(Vector3::Zero());
-}
-
 // From the tube's ring to the pole; the first control points beside the ring continue the tube's sides.
 Result<Surface> cap_of(const Surface& tube, double height_m) {
   const double end = tube.v.domain_end();
@@ -64,6 +56,9 @@ Result<Surface> cap_of(const Surface& tube, double height_m) {
   }
   if (!(speed > 0.0)) return Error{"the tube's sides have no direction at the end to cap; cut a piece off"};
   const bool round = height_m > 0.0;
+  if (round && ring.outward.isZero()) {
+    return Error{"the tube's sides lead out of its end in no common direction; cap it flat"};
+  }
   const double length = (round ? 3.0 * quarter_circle * height_m : ring.radius_m) / speed;
   const auto knots = KnotVector::open(3, {0, 0, 0, 0, length, length, length, length});
   if (!knots) return knots.error();
@@ -104,7 +99,7 @@ TubeEnd tube_end(const Surface& surface, Side side) {
   const Surface along = with_end_at_v_end(surface, side);
   const double start = along.v.domain_start(), end = along.v.domain_end();
   const RingShape ring = ring_at(along, end);
-  if (!is_pole(surface, side)) return {ring.middle_m, ring.radius_m, outward_at_end(along)};
+  if (!is_pole(surface, side)) return {ring.middle_m, ring.radius_m, outward(surface, side)};
   const Vector3 inside = ring_at(along, end - 0.02 * (end - start)).middle_m;
   return {ring.middle_m, 0.0, (ring.middle_m - inside).normalized()};
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "engine/bspline/grid.h"
@@ -289,6 +290,239 @@ TEST(Merge, DirectionsAndSeamsAreChosenByHand) {
     return a.x() * b.y() - a.y() * b.x();
   };
   EXPECT_LT(turn(0.0) * turn(crossed->surface.v.domain_end()), 0.0);
+}
+
+// Over the domain [from, to] along v, of a plane sheet that is as long.
+Surface level_sheet(double from, double to, int columns = 8) {
+  const auto u = KnotVector::clamped_uniform(3, 6).value();
+  const auto v = with_domain(KnotVector::clamped_uniform(3, columns).value(), from, to).value();
+  PointGrid points{uniform_parameters(u, 20), uniform_parameters(v, 3 * columns), {}};
+  for (const double a : points.u) {
+    for (const double b : points.v) points.points_m.emplace_back(0.06 * a, 0.0, b);
+  }
+  return fit_grid(u, v, points).value();
+}
+
+TEST(Merge, AGapAsLongAsTheParametersSayIsBridged) {
+  const auto merged = merge({level_sheet(0.0, 0.04), level_sheet(0.06, 0.1)}, request_of(2));
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_TRUE(merged->joints[0].joint.bridged);
+  EXPECT_NEAR(merged->joints[0].joint.gap_m, 0.02, 1e-12);
+  EXPECT_NEAR(position(merged->surface, 0.5, 0.05).z(), 0.05, 1e-12);
+}
+
+// Sheets between two curves over x.
+Surface sheet_between(const std::function<double(double)>& low, const std::function<double(double)>& high,
+                      double warp = 0.0) {
+  const auto knots = KnotVector::clamped_uniform(3, 12).value();
+  PointGrid points{uniform_parameters(knots, 60), uniform_parameters(knots, 30), {}};
+  for (const double a : points.u) {
+    const double t = a + warp * a * (1.0 - a), x = 0.06 * t;
+    for (const double b : points.v) points.points_m.emplace_back(x, 0.0, low(x) + (high(x) - low(x)) * b);
+  }
+  return fit_grid(knots, knots, points).value();
+}
+
+bool is_monotone_in_z(const Surface& surface) {
+  const double start = surface.v.domain_start(), end = surface.v.domain_end();
+  for (double u = 0.0; u <= 1.0; u += 0.05) {
+    double last = position(surface, u, start).z();
+    for (int k = 1; k <= 400; ++k) {
+      const double next = position(surface, u, start + (end - start) * k / 400).z();
+      if (next < last) return false;
+      last = next;
+    }
+  }
+  return true;
+}
+
+TEST(Merge, AWedgeShapedGapIsBridgedWithoutAFold) {
+  const auto flat = [](double z) { return [z](double) { return z; }; };
+  const Surface low = sheet_between(flat(0.0), flat(0.04));
+  // From 0.1 mm to 4.1 mm wide.
+  const auto merged =
+      merge({low, sheet_between([](double x) { return 0.0401 + x / 15.0; }, flat(0.09))}, request_of(2));
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_TRUE(is_monotone_in_z(merged->surface));
+  // The same edge, whose parameters slide by 3 mm, and a tolerance within which the fits do not agree.
+  const auto askew = merge({low, sheet_between(flat(0.04), flat(0.09), 0.2)}, request_of(2, 1e-16));
+  ASSERT_FALSE(askew.ok());
+  EXPECT_NE(askew.error().message.find("without a fold"), std::string::npos) << askew.error().message;
+}
+
+// Around a line from one point to another; u starts at `seam` and runs around it as a right-handed screw
+// does, or against it, unevenly by `warp`.
+Surface pipe(const Vector3& from, const Vector3& to, const Vector3& seam, bool left_handed = false,
+             double warp = 0.0) {
+  const auto u = KnotVector::periodic_uniform(3, 24).value();
+  const auto v = KnotVector::clamped_uniform(3, 6).value();
+  PointGrid points{uniform_parameters_without_seam(u, 96), uniform_parameters(v, 20), {}};
+  const Vector3 along = (to - from).normalized(), side = along.cross(seam) * (left_handed ? -1.0 : 1.0);
+  for (const double a : points.u) {
+    const double angle = 2.0 * std::numbers::pi * a + warp * std::sin(2.0 * std::numbers::pi * a);
+    for (const double b : points.v) {
+      points.points_m.push_back(from + b * (to - from) +
+                                0.008 * (std::cos(angle) * seam + std::sin(angle) * side));
+    }
+  }
+  return fit_grid(u, v, points).value();
+}
+
+// Whether normals turn by less than a right angle from each sample along v to the next.
+bool is_without_folds(const Surface& surface) {
+  const double start = surface.v.domain_start(), end = surface.v.domain_end();
+  for (double u = 0.0; u < 1.0; u += 0.02) {
+    Vector3 last = unit_normal(surface, u, start);
+    for (int k = 1; k <= 200; ++k) {
+      const Vector3 next = unit_normal(surface, u, start + (end - start) * k / 200);
+      if (next.dot(last) < 0.0) return false;
+      last = next;
+    }
+  }
+  return true;
+}
+
+TEST(Merge, PipesSideBySideAreJoinedByABend) {
+  for (const bool left_handed : {false, true}) {
+    MergeRequest request = request_of(2);
+    request.chosen = {{{0, Side::v_end}, {1, Side::v_end}}};
+    const Vector3 x(1, 0, 0);
+    const auto merged = merge({pipe({0, 0, 0}, {0, 0.06, 0}, x),
+                               pipe({0.06, 0, 0}, {0.06, 0.06, 0}, Vector3(0.6, 0, 0.8), left_handed)},
+                              request);
+    ASSERT_TRUE(merged.ok()) << merged.error().message;
+    const Surface& surface = merged->surface;
+    EXPECT_TRUE(is_without_folds(surface));
+    for (double u = 0.0; u < 1.0; u += 0.1) {
+      const Vector3 start = position(surface, u, 0.0), end = position(surface, u, surface.v.domain_end());
+      // Mirrored: what is inside of the bend on one pipe is so on the other.
+      EXPECT_NEAR(end.x(), 0.06 - start.x(), 1e-5);
+      EXPECT_NEAR(end.z(), start.z(), 1e-5);
+    }
+  }
+}
+
+TEST(Merge, PipesAtARightAngleAreJoinedByABend) {
+  for (const bool left_handed : {false, true}) {
+    for (const double seam : {0.0, 1.0, 2.5}) {
+      const auto merged =
+          merge({pipe({0, 0, 0}, {0, 0.06, 0}, {1, 0, 0}),
+                 pipe({0.04, 0.1, 0}, {0.09, 0.1, 0}, {0, std::cos(seam), std::sin(seam)}, left_handed)},
+                request_of(2));
+      ASSERT_TRUE(merged.ok()) << merged.error().message;
+      EXPECT_TRUE(is_without_folds(merged->surface));
+      const Vector3 inner = position(merged->surface, 0.0, merged->surface.v.domain_end());
+      EXPECT_NEAR(inner.y(), 0.1 - 0.008, 1e-5);
+    }
+  }
+}
+
+TEST(Merge, ACupsTwoWallsAreJoinedAtItsRim) {
+  Surface inner = pipe({0, 0, 0}, {0, 0.06, 0}, {1, 0, 0});
+  for (double& x : inner.net.x) x *= 0.5;
+  for (double& z : inner.net.z) z *= 0.5;
+  MergeRequest request = request_of(2);
+  request.chosen = {{{0, Side::v_end}, {1, Side::v_end}}};
+  const auto merged = merge({pipe({0, 0, 0}, {0, 0.06, 0}, {1, 0, 0}), inner}, request);
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_TRUE(is_without_folds(merged->surface));
+  const Vector3 end = position(merged->surface, 0.0, merged->surface.v.domain_end());
+  EXPECT_NEAR((end - Vector3(0.004, 0, 0)).norm(), 0.0, 1e-5);
+}
+
+TEST(Merge, RingsWhoseParametersDifferAreMatched) {
+  const auto merged = merge({pipe({0, 0, 0}, {0, 0.03, 0}, {1, 0, 0}),
+                             pipe({0, 0.03, 0}, {0, 0.06, 0}, Vector3(0.8, 0, 0.6), false, 0.4)},
+                            request_of(2));
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_FALSE(merged->joints[0].joint.bridged);
+  EXPECT_LE(merged->deviation_m, 5e-5);
+  for (double u = 0.0; u < 1.0; u += 0.05) {
+    const Vector3 low = position(merged->surface, u, 0.0);
+    const Vector3 high = position(merged->surface, u, merged->surface.v.domain_end());
+    EXPECT_NEAR((high - low - Vector3(0, 0.06, 0)).norm(), 0.0, 1e-4) << u;
+  }
+}
+
+TEST(Merge, PatchesOfAGridOverOtherDomains) {
+  Random random(76);
+  const Surface whole = smooth_sheet(random, 3, 10, 11);
+  std::vector<Surface> parts;
+  for (const auto& [u_from, u_to] : {std::pair(0.0, 0.4), std::pair(0.4, 1.0)}) {
+    const Surface strip = part_of(whole, Direction::u, u_from, u_to).value();
+    for (const auto& [v_from, v_to] : {std::pair(0.0, 0.6), std::pair(0.6, 1.0)}) {
+      parts.push_back(part_of(strip, Direction::v, v_from, v_to).value());
+    }
+  }
+  parts[1] = with_domain(parts[1], Direction::u, -2.0, 7.0).value();
+  parts[3] = with_domain(parts[3], Direction::v, 3.0, 4.0).value();
+  const auto merged = merge(parts, request_of(2));
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_LT(merged->deviation_m, 1e-11);
+  EXPECT_LT(largest_difference(whole, merged->surface), 1e-11);
+}
+
+// A roof over a quarter whose ridge fades out towards half of the width; over the other half it is level.
+std::vector<Surface> fading_roof(double lift) {
+  std::vector<Surface> parts;
+  for (const double x : {0.0, 0.03}) {
+    for (const double z : {0.0, 0.05}) {
+      const auto knots = KnotVector::clamped_uniform(3, 9).value();
+      PointGrid points{uniform_parameters(knots, 40), uniform_parameters(knots, 40), {}};
+      for (const double a : points.u) {
+        for (const double b : points.v) {
+          const double at_x = x + 0.03 * a, at_z = z + 0.05 * b, left = std::max(0.0, 0.03 - at_x);
+          const double up = lift * (z > 0.0 ? left / 0.03 : 0.0);
+          points.points_m.emplace_back(at_x, up - std::max(0.0, at_z - 0.05) * 300.0 * left * left, at_z);
+        }
+      }
+      parts.push_back(fit_grid(knots, knots, points).value());
+    }
+  }
+  return parts;
+}
+
+TEST(Merge, AGridIsBlendedInAllRowsAlike) {
+  MergeRequest request = request_of(2);
+  request.join.blend_m = 0.01;
+  const auto merged = merge(fading_roof(0.0), request);
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_TRUE(is_without_folds(merged->surface));
+  int along_v = 0;
+  for (const MergedJoint& joint : merged->joints) {
+    if (joint.along != Direction::v) continue;
+    ++along_v;
+    EXPECT_TRUE(joint.joint.bridged);
+    EXPECT_NEAR(joint.joint.gap_m, 0.01, 1e-4);
+  }
+  EXPECT_EQ(along_v, 2);
+  // Apart by 1 mm at one end of the joint, together at the other.
+  const auto mixed = merge(fading_roof(0.001), request_of(2));
+  ASSERT_FALSE(mixed.ok());
+  EXPECT_NE(mixed.error().message.find("ask for a blend"), std::string::npos) << mixed.error().message;
+}
+
+TEST(Merge, TheToleranceHoldsForAllOfADeviation) {
+  for (const Vector3& moved : {Vector3(0, 0, 4.5e-5), Vector3(0, 4.5e-5, 0), Vector3(0, 0, -4.5e-5),
+                               Vector3(0, -4.5e-5, 0), Vector3(4.5e-5, 0, 0)}) {
+    std::vector<Surface> parts = roof();
+    parts[1] = placed(parts[1], {moved, Quaternion::Identity()});
+    const auto merged = merge(parts, request_of(2, 5e-5));
+    ASSERT_TRUE(merged.ok()) << merged.error().message;
+    EXPECT_LE(merged->deviation_m, 5e-5);
+  }
+}
+
+TEST(Merge, MoreThanCanBeHandledIsRefusedAtOnce) {
+  std::vector<Surface> parts{level_sheet(0.0, 0.04, 150), level_sheet(0.04, 0.1, 150)};
+  const auto merged = merge(parts, request_of(2));
+  ASSERT_FALSE(merged.ok());
+  EXPECT_EQ(merged.error().message,
+            "the patches of a row have 297 control points together, more than 200; simplify them first, or "
+            "merge fewer");
+  const auto many = merge(std::vector<Surface>(65, parts[0]), request_of(2));
+  ASSERT_FALSE(many.ok());
+  EXPECT_NE(many.error().message.find("65 patches"), std::string::npos);
 }
 
 TEST(Merge, RefusesWhatMakesNoGrid) {

@@ -144,5 +144,13 @@ TEST(TubeEnds, ClosedBodiesAreBridgedAtTheirNearestPoles) {
   }
 }
 
+TEST(TubeEnds, AWasherIsCappedFlatAlone) {
+  const Surface washer = turned_profile([](double t) { return Profile{0.01 + 0.02 * t, 0.0}; }, 8);
+  const auto refused = with_cap(washer, Side::v_start, 0.003, c2());
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("cap it flat"), std::string::npos) << refused.error().message;
+  EXPECT_TRUE(with_cap(washer, Side::v_start, 0.0, c2()).ok());
+}
+
 }  // namespace
 }  // namespace spoonbill
