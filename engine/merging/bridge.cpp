@@ -9,6 +9,7 @@
 #include "engine/bspline/blossom.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/merging/ring_bend.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -43,6 +44,7 @@ void continue_into(const Surface& patch, bool from_end, const KnotVector& strip,
 constexpr double tightening = 0.75;
 constexpr int tightenings_for_waist = 5, most_tightenings = 12;
 constexpr int steps_along = 24;
+constexpr int columns_in_bend = 5;
 
 double mean_radius_m(const Surface& tube, double v) {
   const std::vector<double> around = uniform_parameters_without_seam(tube.u, 32);
@@ -109,6 +111,14 @@ Result<BridgeLength> at_even_speed(const Surface& before, const Surface& after) 
   return BridgeLength{chord / speed_before, speed_after / speed_before, chord};
 }
 
+// The turn of the ring after towards that before; none where a strip need not bend.
+Eigen::Matrix3d bend_between(const Surface& before, const Surface& after) {
+  if (!before.u.is_periodic()) return Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d turn =
+      turn_towards(ring_place(before, Side::v_end), ring_place(after, Side::v_start));
+  return is_bend(turn) ? turn : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+}
+
 }  // namespace
 
 Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, int continuity,
@@ -116,12 +126,14 @@ Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, 
   auto even = at_even_speed(before, after);
   if (!even) return even.error();
   BridgeLength length = even.value();
+  const Eigen::Matrix3d bend = bend_between(before, after);
+  length.parameter *= bend_stretch(bend);
   for (int attempt = 0; attempt <= most_tightenings; ++attempt) {
     const auto strip = strip_of_length(before, after, length, continuity);
     if (!strip) return strip.error();
     const bool folds = !may_fold && folds_over(strip.value());
-    const bool waisted =
-        before.u.is_periodic() && attempt < tightenings_for_waist && has_waist(strip.value());
+    const bool waisted = before.u.is_periodic() && bend.isIdentity() && attempt < tightenings_for_waist &&
+                         has_waist(strip.value());
     if (!folds && !waisted) return length;
     length.parameter *= tightening;
   }
@@ -134,7 +146,9 @@ Result<Surface> bridge(const Surface& before, const Surface& after, int continui
   const int degree = before.v.degree();
   // More continuity than asked where the degree gives it without further pieces.
   const int order = std::max(continuity, degree / 2);
-  const int count = std::max(2 * (order + 1), degree + 1);
+  const Eigen::Matrix3d bend = bend_between(before, after);
+  const int between = bend.isIdentity() ? 0 : columns_in_bend;
+  const int count = std::max(2 * (order + 1), degree + 1) + between;
   auto knots = strip_knots(degree, count, before.v.domain_end(), after.v.domain_start());
   if (!knots) return Error{"the gap to bridge has no length; merge without a bridge"};
   ControlNet net(before.net.rows, count);
@@ -142,6 +156,7 @@ Result<Surface> bridge(const Surface& before, const Surface& after, int continui
     continue_into(before, true, knots.value(), j, net);
     continue_into(after, false, knots.value(), count - 1 - j, net);
   }
+  if (between > 0) fill_bend(net, order, count - 1 - order, outward(before, Side::v_end), bend);
   return make_surface(before.u, std::move(knots).value(), std::move(net));
 }
 

@@ -1,15 +1,13 @@
 #include "engine/merging/edge_match.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <string>
 #include <utility>
 
-#include "engine/bspline/grid.h"
+#include "engine/merging/ring_bend.h"
 
 namespace spoonbill {
 
@@ -37,14 +35,14 @@ Gaps gaps_between(const std::vector<Vector3>& a, const std::vector<Vector3>& b) 
 struct Edge {
   PatchEdge name;
   EdgeCurve curve;
-  std::vector<Vector3> points_m;      // at equal shares of the way along an open one
-  Vector3 outward = Vector3::Zero();  // of a ring
+  std::vector<Vector3> points_m;  // at equal shares of the way along an open one
+  RingPlace place;                // of a ring
 };
 
 Edge prepared(const std::vector<Surface>& patches, PatchEdge name) {
-  Edge edge{name, edge_curve(patches[name.patch], name.side), {}, Vector3::Zero()};
+  Edge edge{name, edge_curve(patches[name.patch], name.side), {}, {}};
   if (edge.curve.knots.is_periodic()) {
-    edge.outward = outward(patches[name.patch], name.side);
+    edge.place = ring_place(patches[name.patch], name.side);
   } else {
     edge.points_m = edge_samples(edge.curve, samples_of_open).points_m;
   }
@@ -66,14 +64,7 @@ EdgeMatch match_open(const Edge& a, const Edge& b, std::optional<bool> asked) {
 // as it is when it has been turned towards the first.
 class Ring {
  public:
-  explicit Ring(const EdgeCurve& curve) : curve_(curve) {
-    for (const double t : uniform_parameters_without_seam(curve.knots, samples_of_ring)) {
-      centre_ += position(curve, t) / samples_of_ring;
-    }
-    for (const double t : uniform_parameters_without_seam(curve.knots, samples_of_ring)) {
-      radius_ = std::max(radius_, (position(curve, t) - centre_).norm());
-    }
-  }
+  explicit Ring(const Edge& edge) : curve_(edge.curve), centre_(edge.place.middle_m) {}
   void turn(const Eigen::Matrix3d& turn) { turn_ = turn; }
 
   // At a share of the way around from a parameter, forwards or backwards.
@@ -84,34 +75,12 @@ class Ring {
   double seam() const { return curve_.knots.domain_start(); }
   Vector3 at(double t) const { return turn_ * (position(curve_, t) - centre_); }
   Vector3 derivative_at(double t) const { return turn_ * derivative(curve_, t); }
-  const Vector3& centre() const { return centre_; }
-  double radius() const { return radius_; }  // the largest
 
  private:
   const EdgeCurve& curve_;
-  Vector3 centre_ = Vector3::Zero();
-  double radius_ = 0.0;
+  Vector3 centre_;
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
 };
-
-// Turns what leads out of the second ring into what leads into the first: least far, and where they face the
-// same way in the plane in which a bend joins them. None for rings that lie within each other, such as those
-// of a cup's two walls at its rim, or that lead nowhere.
-Eigen::Matrix3d turn_towards(const Ring& a, const Vector3& outward_a, const Ring& b,
-                             const Vector3& outward_b) {
-  const Vector3 inward_b = -outward_b, apart = b.centre() - a.centre();
-  const double cosine = inward_b.dot(outward_a);
-  const bool within = apart.norm() < std::max(a.radius(), b.radius());
-  if (outward_a.isZero() || outward_b.isZero() || (cosine < 0.0 && within))
-    return Eigen::Matrix3d::Identity();
-  constexpr double facing_the_same_way = -0.999;
-  if (cosine > facing_the_same_way) {
-    return Eigen::Quaterniond::FromTwoVectors(inward_b, outward_a).toRotationMatrix();
-  }
-  const Vector3 axis = apart.cross(outward_a);
-  if (!(axis.norm() > 1e-6 * apart.norm())) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(std::numbers::pi, axis.normalized()).toRotationMatrix();
-}
 
 double misfit(const Ring& a, const Ring& b, double seam, bool backwards) {
   double sum = 0.0;
@@ -166,14 +135,14 @@ RingFit best_fit(const Ring& a, const Ring& b, std::optional<bool> asked) {
 // Rings that lie upon each other are taken as they lie, which is exact where they are one; others turned.
 RingFit best_turned_fit(const Edge& a, const Edge& b, std::optional<bool> asked) {
   constexpr double upon_share = 0.02;  // of the radius
-  const Ring ring_a(a.curve);
-  Ring ring_b(b.curve);
+  const Ring ring_a(a);
+  Ring ring_b(b);
   const RingFit as_they_lie = best_fit(ring_a, ring_b, asked);
-  const double upon_m = upon_share * ring_a.radius();
-  const bool upon = (ring_b.centre() - ring_a.centre()).norm() <= upon_m &&
+  const double upon_m = upon_share * a.place.radius_m;
+  const bool upon = (b.place.middle_m - a.place.middle_m).norm() <= upon_m &&
                     as_they_lie.misfit <= samples_of_ring * upon_m * upon_m;
   if (upon) return as_they_lie;
-  const Eigen::Matrix3d turn = turn_towards(ring_a, a.outward, ring_b, b.outward);
+  const Eigen::Matrix3d turn = turn_towards(a.place, b.place);
   if (turn.isIdentity(0.0)) return as_they_lie;
   ring_b.turn(turn);
   return best_fit(ring_a, ring_b, asked);
@@ -182,7 +151,7 @@ RingFit best_turned_fit(const Edge& a, const Edge& b, std::optional<bool> asked)
 EdgeMatch match_rings(const Edge& a, const Edge& b, std::optional<bool> asked) {
   const RingFit best = best_turned_fit(a, b, asked);
   const double seam = b.curve.knots.into_domain(best.seam);
-  const Ring ring_a(a.curve), ring_b(b.curve);
+  const Ring ring_a(a), ring_b(b);
   std::vector<Vector3> along, beside;
   for (int k = 0; k < samples_of_ring; ++k) {
     const double share = static_cast<double>(k) / samples_of_ring;

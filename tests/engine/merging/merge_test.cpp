@@ -368,6 +368,23 @@ Surface pipe(const Vector3& from, const Vector3& to, const Vector3& seam, bool l
   return fit_grid(u, v, points).value();
 }
 
+// The area that the ring at v encloses, of the least of all rings.
+double least_section_m2(const Surface& tube) {
+  const double start = tube.v.domain_start(), end = tube.v.domain_end();
+  double least = 1.0;
+  for (int k = 0; k <= 200; ++k) {
+    Vector3 twice = Vector3::Zero();
+    Vector3 last = position(tube, 0.0, start + (end - start) * k / 200);
+    for (int i = 1; i <= 64; ++i) {
+      const Vector3 next = position(tube, i / 64.0, start + (end - start) * k / 200);
+      twice += last.cross(next);
+      last = next;
+    }
+    least = std::min(least, 0.5 * twice.norm());
+  }
+  return least;
+}
+
 // Whether normals turn by less than a right angle from each sample along v to the next.
 bool is_without_folds(const Surface& surface) {
   const double start = surface.v.domain_start(), end = surface.v.domain_end();
@@ -393,6 +410,7 @@ TEST(Merge, PipesSideBySideAreJoinedByABend) {
     ASSERT_TRUE(merged.ok()) << merged.error().message;
     const Surface& surface = merged->surface;
     EXPECT_TRUE(is_without_folds(surface));
+    EXPECT_GT(least_section_m2(surface), 0.8 * std::numbers::pi * 6.4e-5);
     for (double u = 0.0; u < 1.0; u += 0.1) {
       const Vector3 start = position(surface, u, 0.0), end = position(surface, u, surface.v.domain_end());
       // Mirrored: what is inside of the bend on one pipe is so on the other.
@@ -411,6 +429,7 @@ TEST(Merge, PipesAtARightAngleAreJoinedByABend) {
                 request_of(2));
       ASSERT_TRUE(merged.ok()) << merged.error().message;
       EXPECT_TRUE(is_without_folds(merged->surface));
+      EXPECT_GT(least_section_m2(merged->surface), 0.8 * std::numbers::pi * 6.4e-5);
       const Vector3 inner = position(merged->surface, 0.0, merged->surface.v.domain_end());
       EXPECT_NEAR(inner.y(), 0.1 - 0.008, 1e-5);
     }
