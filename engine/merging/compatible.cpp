@@ -206,6 +206,7 @@ bool needs_matching(const Surface& before, const Surface& patch, double toleranc
   const double length_a = a.knots.domain_end() - a.knots.domain_start();
   const double length_b = b.knots.domain_end() - b.knots.domain_start();
   std::vector<double> same;
+  same.reserve(along.size());
   for (const double t : along) {
     same.push_back(b.knots.domain_start() + (t - a.knots.domain_start()) / length_a * length_b);
   }
@@ -254,8 +255,9 @@ Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, const
   if (Status status = match_parameters(result.patches, request, result.deviation_m); !status) {
     return status.error();
   }
-  if (Status status = make_one_structure(result.patches, request.largest_count); !status)
+  if (Status status = make_one_structure(result.patches, request.largest_count); !status) {
     return status.error();
+  }
   return result;
 }
 

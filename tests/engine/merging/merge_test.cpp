@@ -521,14 +521,22 @@ TEST(Merge, AGridIsBlendedInAllRowsAlike) {
   EXPECT_NE(mixed.error().message.find("ask for a blend"), std::string::npos) << mixed.error().message;
 }
 
+// Edges that touch within the tolerance, brought together, and a kink beside them.
 TEST(Merge, TheToleranceHoldsForAllOfADeviation) {
-  for (const Vector3& moved : {Vector3(0, 0, 4.5e-5), Vector3(0, 4.5e-5, 0), Vector3(0, 0, -4.5e-5),
-                               Vector3(0, -4.5e-5, 0), Vector3(4.5e-5, 0, 0)}) {
-    std::vector<Surface> parts = roof();
-    parts[1] = placed(parts[1], {moved, Quaternion::Identity()});
-    const auto merged = merge(parts, request_of(2, 5e-5));
+  for (const Vector3& moved : {Vector3(2.63e-5, -2.72e-5, -3.25e-5), Vector3(0, 4.5e-5, 0),
+                               Vector3(0, 0, -4.5e-5), Vector3(4.5e-5, 0, 0)}) {
+    const auto slope = [&](double side, const Vector3& shift) {
+      Surface sheet = sheet_between([](double) { return 0.0; }, [](double) { return 0.05; });
+      for (std::size_t k = 0; k < sheet.net.size(); ++k) {
+        sheet.net.y[k] = 0.725 * (side > 0.0 ? 0.05 - sheet.net.z[k] : sheet.net.z[k]);
+        if (side > 0.0) sheet.net.z[k] += 0.05;
+      }
+      return placed(sheet, {shift, Quaternion::Identity()});
+    };
+    const auto merged = merge({slope(-1.0, Vector3::Zero()), slope(1.0, moved)}, request_of(2, 5e-5));
     ASSERT_TRUE(merged.ok()) << merged.error().message;
     EXPECT_LE(merged->deviation_m, 5e-5);
+    EXPECT_FALSE(merged->joints[0].joint.bridged);
   }
 }
 
