@@ -84,12 +84,14 @@ Result<Surface> with_seam_beside(const Surface& before, const Surface& patch, co
   const auto match = match_edges({before, patch}, {0, Side::v_end}, {1, Side::v_start}, false);
   if (!match) return match.error();
   double seam = match->seam;
-  if (match->gap_m > request.tolerance_m) {
-    const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
-    const Vector3 of_a = position(a, a.knots.domain_start());
-    const double nearest = nearest_around(b, of_a);
-    if ((position(b, nearest) - of_a).norm() <= request.tolerance_m) seam = nearest;
-  }
+  const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
+  const Vector3 of_a = position(a, a.knots.domain_start());
+  const double nearest = nearest_around(b, of_a);
+  // What fits best is beside it where parameters differ, and where rings with corners are one, not to
+  // rounding.
+  constexpr double one_share = 1e-6;
+  const double near_m = request.tolerance_m * (match->gap_m > request.tolerance_m ? 1.0 : one_share);
+  if ((position(b, nearest) - of_a).norm() <= near_m) seam = nearest;
   const double period = patch.u.domain_end() - patch.u.domain_start();
   return with_seam_at(patch, Direction::u, seam + request.twist * period);
 }

@@ -113,8 +113,9 @@ Error not_side_by_side() {
 Result<FittedShape> with_pole_at_crossing(const Surface& body, const std::vector<LineCrossing>& crossings,
                                           double tolerance_m) {
   Vector3 place = Vector3::Zero();
-  for (const LineCrossing& crossing : crossings)
+  for (const LineCrossing& crossing : crossings) {
     place += crossing.point_m / static_cast<double>(crossings.size());
+  }
   return with_pole_towards(body, (place - middle_of(body)).normalized(), tolerance_m);
 }
 

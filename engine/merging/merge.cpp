@@ -42,15 +42,20 @@ MergedJoint described(const Grid& grid, int a, int b, Direction along, const Joi
           joint};
 }
 
-// Every row along v is joined; what results lies one after the other along u.
+// Every row along v is joined; what results lies one after the other along u. A single column is left as it
+// is: it may be closed along v.
 Result<std::vector<Joined>> joined_along_v(const Grid& grid, const JoinRequest& request) {
+  std::vector<Joined> joined;
+  if (grid.arrangement.columns == 1) {
+    for (int a = 0; a < grid.arrangement.rows; ++a) joined.push_back({grid.at(a, 0), 0.0, {}});
+    return joined;
+  }
   std::vector<std::vector<Surface>> rows(static_cast<std::size_t>(grid.arrangement.rows));
   for (int a = 0; a < grid.arrangement.rows; ++a) {
     for (int b = 0; b < grid.arrangement.columns; ++b) rows[a].push_back(grid.at(a, b));
   }
   const auto prepared = prepare_rows(std::move(rows), request);
   if (!prepared) return prepared.error();
-  std::vector<Joined> joined;
   for (const PreparedRow& row : prepared.value()) {
     auto result = join_prepared(row, request);
     if (!result) return result.error();
@@ -64,7 +69,8 @@ constexpr double second_share = 0.5;
 
 Result<Merged> merge_grid(const Grid& grid, const JoinRequest& request) {
   JoinRequest along_v = request;
-  if (grid.arrangement.rows > 1) along_v.spent_m += second_share * request.tolerance_m;
+  if (grid.arrangement.rows > 1 && grid.arrangement.columns > 1)
+    along_v.spent_m += second_share * request.tolerance_m;
   auto rows = joined_along_v(grid, along_v);
   if (!rows) return rows.error();
   Merged merged;

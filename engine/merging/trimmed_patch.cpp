@@ -101,8 +101,9 @@ class KeptPart {
         const Eigen::Vector2d &at = polygon[c], &before = polygon[(c + count - 1) % count],
                               &after = polygon[(c + 1) % count];
         const Eigen::Vector2d to = (at - before).cwiseQuotient(lengths).normalized();
-        if (to.dot((after - at).cwiseQuotient(lengths).normalized()) < corner_cosine)
+        if (to.dot((after - at).cwiseQuotient(lengths).normalized()) < corner_cosine) {
           breaks.push_back(at.x());
+        }
       }
     }
     std::sort(breaks.begin(), breaks.end());

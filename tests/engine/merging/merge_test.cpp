@@ -463,6 +463,28 @@ TEST(Merge, RingsWhoseParametersDifferAreMatched) {
   }
 }
 
+TEST(Merge, GivesASplitPipeBackHoweverItIsHeld) {
+  Random random(77);
+  for (int repeat = 0; repeat < 60; ++repeat) {
+    const int degree = 1 + repeat % 5;
+    const Surface whole = random_surface(random, KnotVector::periodic_uniform(degree, 9).value(),
+                                         KnotVector::clamped_uniform(3, 8).value());
+    const double cut = random.uniform(0.1, 0.9);
+    std::vector<Surface> parts{part_of(whole, Direction::v, 0.0, cut).value(),
+                               part_of(whole, Direction::v, cut, 1.0).value()};
+    const double seam = random.uniform(0.0, 1.0);
+    parts[1] = with_seam_at(parts[1], Direction::u, seam).value();
+    const Orientation of_first{repeat % 2 == 1, false, false};
+    parts[0] = oriented(parts[0], of_first);
+    parts[1] = oriented(parts[1], any_orientation(random));
+    const auto merged = merge(parts, request_of(2));
+    ASSERT_TRUE(merged.ok()) << merged.error().message;
+    EXPECT_LT(merged->deviation_m, 1e-11) << degree;
+    EXPECT_LT(largest_difference(oriented(whole, of_first), merged->surface), 1e-11) << degree;
+    EXPECT_EQ((of_first.exchanged ? merged->surface.v : merged->surface.u).degree(), degree);
+  }
+}
+
 TEST(Merge, PatchesOfAGridOverOtherDomains) {
   Random random(76);
   const Surface whole = smooth_sheet(random, 3, 10, 11);
