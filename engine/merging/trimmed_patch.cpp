@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -161,11 +162,15 @@ Error no_single_pieces() {
 Result<FittedShape> resampled_between(const Surface& surface, const KeptPart& part, const Interval& piece,
                                       double tolerance_m) {
   bool missed = false;
+  // A fit asks for the same lines again.
+  std::map<double, std::optional<Interval>> lines;
   ExactShape shape;
   shape.u = {false, {piece.low, piece.high}};
   shape.v = {false, {0.0, 1.0}};
   shape.at = [&](double u, double share) {
-    const auto kept = part.on_line(inside(piece, u));
+    auto known = lines.find(u);
+    if (known == lines.end()) known = lines.emplace(u, part.on_line(inside(piece, u))).first;
+    const std::optional<Interval>& kept = known->second;
     missed = missed || !kept;
     return kept ? position(surface, u, kept->low + share * kept->length()) : position(surface, u, share);
   };

@@ -106,6 +106,16 @@ TEST(TrimmedPatch, NarrowGapsAndSlitsAreNotMissed) {
   EXPECT_FALSE(untrimmed(wave(), {slit}, 2e-5).ok());
 }
 
+TEST(TrimmedPatch, MoreCornersThanAPatchHoldsAreRefusedAtOnce) {
+  std::vector<Eigen::Vector2d> saw;
+  for (int k = 0; k <= 100; ++k) saw.emplace_back(0.1 + 0.008 * k, 0.1 + 0.05 * (k % 2));
+  saw.insert(saw.end(), {{0.9, 0.9}, {0.1, 0.9}});
+  const auto refused = untrimmed(wave(), {polygon(saw)}, 2e-5);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message,
+            "its trims have corners on 99 lines, more than one patch can hold; simplify them");
+}
+
 TEST(TrimmedPatch, ALoopMayCrossTheSeam) {
   const auto u = KnotVector::periodic_uniform(3, 24).value();
   const auto v = KnotVector::clamped_uniform(3, 6).value();
