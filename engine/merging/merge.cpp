@@ -69,8 +69,8 @@ constexpr double second_share = 0.5;
 
 Result<Merged> merge_grid(const Grid& grid, const JoinRequest& request) {
   JoinRequest along_v = request;
-  if (grid.arrangement.rows > 1 && grid.arrangement.columns > 1)
-    along_v.spent_m += second_share * request.tolerance_m;
+  const bool both = grid.arrangement.rows > 1 && grid.arrangement.columns > 1;
+  if (both) along_v.spent_m += second_share * request.tolerance_m;
   auto rows = joined_along_v(grid, along_v);
   if (!rows) return rows.error();
   Merged merged;
