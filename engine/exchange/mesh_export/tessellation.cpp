@@ -251,13 +251,16 @@ TriangleMesh kept_mesh(const Sheet& sheet, const Welding& welding, const Trimmed
 Result<Tessellation> finished(const Sheet& sheet, const Surface& surface, const std::vector<TrimLoop>& trims,
                               double chord_error_m) {
   const Welding welding(sheet);
+  TriangleMesh whole = mesh_of(sheet, {}, whole_cells(sheet, welding));
+  const bool is_inside_out = welding.closed() && enclosed_volume_m3(whole) < 0.0;
+  Tessellation result{std::move(whole), welding.closed(), chord_error_m};
   if (!trims.empty()) {
     const auto area = TrimmedArea::make(surface.u, surface.v, trims);
     if (!area) return area.error();
-    return Tessellation{kept_mesh(sheet, welding, area.value()), false, chord_error_m};
+    result.mesh = kept_mesh(sheet, welding, area.value());
+    result.closed = false;
   }
-  Tessellation result{mesh_of(sheet, {}, whole_cells(sheet, welding)), welding.closed(), chord_error_m};
-  if (result.closed && enclosed_volume_m3(result.mesh) < 0.0) {
+  if (is_inside_out) {
     for (TriangleCorners& corners : result.mesh.triangles) std::swap(corners[1], corners[2]);
   }
   return result;

@@ -13,9 +13,9 @@
 namespace spoonbill {
 
 struct Tessellation {
-  TriangleMesh mesh;  // seams and poles are welded
-  // It is whole and every side of the surface is a seam or a pole; normals are outward then.
-  bool closed = false;
+  // Seams and poles are welded. Normals are outward where every side of the surface is a seam or a pole.
+  TriangleMesh mesh;
+  bool closed = false;  // it is so, and whole
   // No point of the surface is farther from the point of its triangle at the same parameters.
   double chord_error_m = 0.0;
 };

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/bspline/evaluate.h"
+#include "engine/bspline/reparameterise.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"
@@ -151,6 +152,18 @@ TEST(Tessellation, ATrimmedSurfaceStaysTrimmed) {
   part.trims = {loop};
   EXPECT_NEAR(area_of(cut->mesh), kept_area_m2(part), 5e-3 * area_of(cut->mesh));
   EXPECT_LT(area_of(cut->mesh), 0.99 * area_of(whole->mesh));
+}
+
+// A small hole leaves most of the flux through a body's surface.
+TEST(Tessellation, NormalsOfATrimmedBodyAreOutward) {
+  const Surface tube = ellipsoid_tube(10, 10);
+  for (const Surface& surface : {tube, reversed(tube, Direction::u)}) {
+    const auto loop = round_loop(surface.u, surface.v, {0.5, 0.5}, 0.1, 12, true);
+    const auto cut = tessellate(surface, {loop}, 1e-4);
+    ASSERT_TRUE(cut) << cut.error().message;
+    EXPECT_FALSE(cut->closed);
+    EXPECT_GT(enclosed_volume_m3(cut->mesh), 0.0);
+  }
 }
 
 TEST(Tessellation, MoreTrianglesThanTheLimitAreRefused) {
