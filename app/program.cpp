@@ -15,8 +15,17 @@ const char* const description =
     "Spoonbill: shape B-spline surfaces by touch.\n"
     "`spoonbill COMMAND --help` tells all about a command.";
 
+// Without what a terminal would obey: messages quote files, whose content may be anything.
 std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
+  std::string line = text.substr(0, text.find('\n'));
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    const auto letter = static_cast<unsigned char>(line[k]);
+    const bool is_wide_control =
+        letter == 0xc2 && k + 1 < line.size() && static_cast<unsigned char>(line[k + 1]) < 0xa0;
+    if (letter < ' ' || letter == 127) line[k] = '?';
+    if (is_wide_control) line.replace(k, 2, "?");
+  }
+  return line;
 }
 
 int explain_wrong_use(const CLI::App& root, const CLI::ParseError& error, Console& console) {
