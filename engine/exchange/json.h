@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 // JSON text to a value. `source` names the file in messages, which give line and column. Besides syntax
 // errors refused: NaN and infinities, numbers beyond a double, a field given twice, nesting deeper than 64,
-// more than a million fields or elements, more than 1,000 fields in one object.
+// more than two million values, more than 1,000 fields in one object.
 Result<Json> parse_json(std::string_view text, const std::string& source);
 
 // On one line, without spaces. Bytes that are not UTF-8 are replaced.
