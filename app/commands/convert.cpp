@@ -60,8 +60,9 @@ CommandEntry add_convert(CLI::App& root) {
   parser->footer(
       "Read: documents (.json), STEP (.step, .stp) and IGES (.iges, .igs). Written: those, and meshes "
       "(.stl,\n"
-      ".obj, .ply, .3mf). Bodies that close become solids in STEP and watertight meshes; each face of a CAD\n"
-      "file becomes a body. OUT appears whole or not at all.\n"
+      ".obj, .ply, .3mf). Bodies that close become solids in STEP and IGES, and watertight meshes; each "
+      "face\n"
+      "of a CAD file becomes a body, those of one solid too. OUT appears whole or not at all.\n"
       "Example: spoonbill convert assets/models/spoon-handle.json handle.step --schema ap242");
   parser->add_option("IN", options->request.in, "A document or a CAD file")->required();
   parser->add_option("OUT", options->request.out, "The file to write; its ending is its format")->required();

@@ -7,11 +7,12 @@
 
 #include "app/convert/cad_document.h"
 #include "app/files/output_file.h"
-#include "engine/exchange/cad_stream.h"
+#include "engine/exchange/cad_names.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/mesh_export/mesh_writer.h"
 #include "engine/exchange/mesh_export/tessellation.h"
 #include "engine/exchange/mesh_import.h"
+#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {
@@ -82,17 +83,21 @@ Status check_options(const ConversionRequest& request) {
   return {};
 }
 
-Result<CadModel> read_native(const ConversionRequest& request, ConversionReport& report) {
-  auto document = read_document(request.in);
-  if (!document) return document.error();
+CadModel model_of(std::vector<Body> bodies, ConversionReport& report) {
+  std::vector<std::string> names;
+  for (const Body& body : bodies) names.push_back(body.name);
+  names = told_apart(names, "body");
   CadModel model;
-  model.unit = "mm";
-  for (Body& body : document->scene.bodies) {
+  model.unit = millimetre.name;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    Body& body = bodies[k];
     if (body.shell_thickness_m) {
-      report.notes.push_back("'" + body.name + "' is a shell; the surface that it lies behind is written");
+      report.notes.push_back("'" + names[k] + "' is a shell of " +
+                             number_text(1e3 * *body.shell_thickness_m) +
+                             " mm; the surface that it lies behind is written, without the thickness");
     }
     CadSurface surface;
-    surface.name = clean_cad_name(body.name, "body");
+    surface.name = std::move(names[k]);
     surface.surface = std::move(body.surface);
     surface.trims = std::move(body.trims);
     model.surfaces.push_back(std::move(surface));
@@ -102,7 +107,11 @@ Result<CadModel> read_native(const ConversionRequest& request, ConversionReport&
 
 Result<CadModel> read_model(const ConversionRequest& request, const CadChild& child,
                             ConversionReport& report) {
-  if (kind_of(request.in) == ModelKind::document) return read_native(request, report);
+  if (kind_of(request.in) == ModelKind::document) {
+    auto document = read_document(request.in);
+    if (!document) return document.error();
+    return model_of(std::move(document->scene.bodies), report);
+  }
   CadReading reading;
   reading.format = cad_format_of(request.in);
   reading.tolerance_m = request.tolerance_m.value_or(usual_tolerance_m);
@@ -145,6 +154,7 @@ Status write_model(const CadModel& model, const ConversionRequest& request, cons
   report.unit_out = writing.unit;
   report.solids = content->solids;
   report.open_shells = content->open_shells;
+  report.notes.insert(report.notes.end(), content->notes.begin(), content->notes.end());
   return store(request.out, content->text);
 }
 
@@ -172,11 +182,14 @@ Status write_mesh_file(const CadModel& model, const ConversionRequest& request, 
   report.unit_out = unit.name;
   auto out = OutputFile::create(request.out);
   if (!out) return out.error();
-  const Status written = write_meshes(meshes, format, unit.metres, [&](std::string_view bytes) -> Status {
-    if (watch.stop && watch.stop()) return about(request.out, "stopped");
-    return out->write(bytes);
+  // What the file refuses names it, what the writer refuses does not.
+  Status taken;
+  const Status written = write_meshes(meshes, format, unit.metres, [&](std::string_view bytes) {
+    taken = watch.stop && watch.stop() ? Status(about(request.out, "stopped")) : out->write(bytes);
+    return taken;
   });
-  return written ? out->commit() : written;
+  if (!taken) return taken;
+  return written ? out->commit() : Status(about(request.out, written.error().message));
 }
 
 Status write_native(const CadModel& model, const ConversionRequest& request, ConversionReport& report) {
@@ -198,7 +211,42 @@ CadChild child_of(const ConversionRequest& request, const ConversionWatch& watch
   return child;
 }
 
+// Into a report that already tells what was read.
+Result<ConversionReport> written_report(CadModel model, const ConversionRequest& request,
+                                        const ConversionWatch& watch, ConversionReport report) {
+  report.unit_in = model.unit;
+  report.unit_declared = model.unit_declared;
+  report.notes.insert(report.notes.end(), model.notes.begin(), model.notes.end());
+  if (watch.progress) watch.progress(share_of_reading);
+  if (watch.stop && watch.stop()) return about(request.out, "stopped");
+  const ModelKind out = kind_of(request.out);
+  const Status written =
+      out == ModelKind::document ? write_native(model, request, report)
+      : out == ModelKind::cad
+          ? write_model(model, request, child_of(request, watch, share_of_reading, 1.0), report)
+          : write_mesh_file(model, request, watch, report);
+  if (!written) return written.error();
+  report.surfaces = std::move(model.surfaces);
+  if (watch.progress) watch.progress(1.0);
+  return report;
+}
+
 }  // namespace
+
+bool is_exported_to(const std::filesystem::path& file) {
+  const ModelKind kind = kind_of(file);
+  return kind == ModelKind::cad || kind == ModelKind::mesh;
+}
+
+Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::filesystem::path& out,
+                                       const ConversionWatch& watch) {
+  ConversionRequest request;
+  request.out = out;
+  if (!is_exported_to(out)) return about(out, "names no format that bodies are exported to");
+  ConversionReport report;
+  CadModel model = model_of(std::move(bodies), report);
+  return written_report(std::move(model), request, watch, std::move(report));
+}
 
 Result<ConversionReport> convert_file(const ConversionRequest& request, const ConversionWatch& watch) {
   if (Status kinds = check_kinds(request); !kinds) return kinds.error();
@@ -207,22 +255,7 @@ Result<ConversionReport> convert_file(const ConversionRequest& request, const Co
   auto model = read_model(request, child_of(request, watch, 0.0, share_of_reading), report);
   if (!model) return model.error();
   if (Status chosen = choose(request, model.value()); !chosen) return chosen.error();
-  report.unit_in = model->unit;
-  report.unit_declared = model->unit_declared;
-  report.notes.insert(report.notes.end(), model->notes.begin(), model->notes.end());
-  if (watch.progress) watch.progress(share_of_reading);
-  if (watch.stop && watch.stop()) return about(request.out, "stopped");
-
-  const ModelKind out = kind_of(request.out);
-  const Status written =
-      out == ModelKind::document ? write_native(model.value(), request, report)
-      : out == ModelKind::cad
-          ? write_model(model.value(), request, child_of(request, watch, share_of_reading, 1.0), report)
-          : write_mesh_file(model.value(), request, watch, report);
-  if (!written) return written.error();
-  report.surfaces = std::move(model->surfaces);
-  if (watch.progress) watch.progress(1.0);
-  return report;
+  return written_report(std::move(model).value(), request, watch, std::move(report));
 }
 
 }  // namespace spoonbill

@@ -11,6 +11,7 @@
 #include "app/files/length_unit.h"
 #include "engine/exchange/cad_model.h"
 #include "engine/result.h"
+#include "engine/simulation/scene.h"
 
 namespace spoonbill {
 
@@ -46,5 +47,12 @@ struct ConversionWatch {
 // anything fails. Refused: a mesh to come in, two documents, options that say nothing to these files, and
 // whatever the readers and writers refuse.
 Result<ConversionReport> convert_file(const ConversionRequest& request, const ConversionWatch& watch);
+
+// Whether the ending is that of a CAD file or a mesh.
+bool is_exported_to(const std::filesystem::path& file);
+
+// Bodies that stand in memory go out as convert_file() writes those of a document.
+Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::filesystem::path& out,
+                                       const ConversionWatch& watch);
 
 }  // namespace spoonbill

@@ -15,7 +15,9 @@
 
 #include "app/files/foreign_file.h"
 #include "app/process/child_output.h"
+#include "engine/exchange/cad_names.h"
 #include "engine/exchange/cad_stream.h"
+#include "engine/exchange/field_reader.h"
 #include "engine/exchange/mesh_import.h"
 #include "engine/number_text.h"
 
@@ -23,7 +25,10 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t file_bytes_limit = std::size_t{512} << 20;
+// What to do about a file that is too much for the child.
 const char* const smaller = "export fewer or simpler faces";
+const char* const fewer = "write fewer or simpler bodies (--bodies)";
+constexpr Range<int> note_count_range{0, 1000}, count_range{0, 1000000};
 
 std::string program_of(const CadChild& child) {
   if (!child.program.empty()) return child.program.string();
@@ -36,8 +41,10 @@ std::string program_of(const CadChild& child) {
 // it is welcome.
 class Conversation {
  public:
-  Conversation(ChildOutput output, const std::filesystem::path& file, const CadChild& child)
-      : output_(std::move(output)), file_(file), child_(child) {
+  enum class Work { reading, writing };
+
+  Conversation(ChildOutput output, const std::filesystem::path& file, const CadChild& child, Work work)
+      : output_(std::move(output)), file_(file), child_(child), work_(work) {
     if (child.stop) output_.give_up_when(child.stop);
   }
 
@@ -66,33 +73,55 @@ class Conversation {
 
   Error end_without_answer() {
     if (child_.stop && child_.stop()) return Error{file_.string() + ": stopped"};
-    return explain_end(file_, output_.wait(), child_.patience, "model", smaller);
+    const ChildEnd end = output_.wait();
+    if (work_ == Work::reading) return explain_end(file_, end, child_.patience, "model", smaller);
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(child_.patience).count();
+    const std::string name = file_.string(), remedy = std::string("; ") + fewer;
+    if (end.out_of_time) {
+      return Error{name + ": writing it took longer than " + std::to_string(seconds) + " s" + remedy};
+    }
+    if (end.signal != 0) {
+      return Error{name + ": the writer crashed (signal " + std::to_string(end.signal) + ")" + remedy};
+    }
+    return Error{name + ": the writer ended without a file (exit code " + std::to_string(end.exit_code) +
+                 ")" + remedy};
   }
 
   Error refusal(const std::string& reason) const {
     if (reason.find("bad alloc") != std::string::npos) {
       return Error{file_.string() + ": takes more than " + std::to_string(ChildOutput::memory_limit >> 30) +
-                   " GiB; " + smaller};
+                   " GiB; " + (work_ == Work::reading ? smaller : fewer)};
     }
-    return Error{file_.string() + ": " + clean_cad_name(reason, "cannot be read; export it anew")};
+    return Error{file_.string() + ": " +
+                 clean_cad_name(reason, "the program that handles CAD files refuses it")};
   }
 
   ChildOutput output_;
   const std::filesystem::path& file_;
   const CadChild& child_;
+  Work work_;
 };
 
-Result<Json> parsed_ending(const std::string& text, const std::filesystem::path& file) {
-  auto json = parse_json(text, file.string());
-  if (!json) return json.error();
-  if (!json->is_object()) return Error{file.string() + ": the reader did not answer in its own form"};
-  return json;
+Error not_in_form(const std::filesystem::path& file) {
+  return Error{file.string() +
+               ": the program that handles CAD files did not answer in its own form; build it anew"};
 }
 
-std::vector<std::string> notes_of(const Json& ending) {
+// What the child says last. Whatever a hostile file made of it, its answer is data.
+template <class Read>
+Status read_ending(const std::string& text, const std::filesystem::path& file, const Read& read) {
+  const auto json = parse_json(text, file.string());
+  if (!json) return not_in_form(file);
+  FieldReader reader(json.value(), file.string());
+  read(reader);
+  reader.finish();
+  return reader.status() ? Status() : not_in_form(file);
+}
+
+std::vector<std::string> read_notes(FieldReader& reader) {
   std::vector<std::string> notes;
-  for (const Json& note : ending.value("notes", Json::array())) {
-    if (note.is_string()) notes.push_back(clean_cad_name(note.get<std::string>(), ""));
+  for (const Json& note : reader.list("notes", note_count_range)) {
+    if (note.is_string()) notes.push_back(clean_cad_name(note.get<std::string>(), "..."));
   }
   return notes;
 }
@@ -159,11 +188,11 @@ Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReadi
        number_text(reading.unit_m), number_text(reading.tolerance_m), std::to_string(reading.face_limit)},
       child.patience);
   if (!output) return Error{file.string() + ": " + output.error().message};
-  Conversation conversation(std::move(output).value(), file, child);
+  Conversation conversation(std::move(output).value(), file, child, Conversation::Work::reading);
   CadModel model;
   const auto ending = conversation.listen([&](const CadFrame& frame) -> Status {
     if (frame.kind != CadFrameKind::surface || model.surfaces.size() >= reading.face_limit) {
-      return Error{file.string() + ": the reader did not answer in its own form; build the program anew"};
+      return not_in_form(file);
     }
     auto surface = cad_surface_from_json(frame.content, file.string());
     if (!surface) return surface.error();
@@ -171,11 +200,12 @@ Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReadi
     return {};
   });
   if (!ending) return ending.error();
-  const auto json = parsed_ending(ending.value(), file);
-  if (!json) return json.error();
-  model.unit = clean_cad_name(json->value("unit", ""), "mm");
-  model.unit_declared = json->value("unit_declared", true);
-  model.notes = notes_of(json.value());
+  const Status read = read_ending(ending.value(), file, [&](FieldReader& reader) {
+    model.unit = clean_cad_name(reader.text("unit"), "mm");
+    model.unit_declared = reader.boolean("unit_declared");
+    model.notes = read_notes(reader);
+  });
+  if (!read) return read.error();
   for (const CadSurface& surface : model.surfaces) {
     if (surface.trim_problem.empty()) continue;
     model.notes.push_back("'" + surface.name + "' is whole, without its trims: " + surface.trim_problem);
@@ -192,21 +222,22 @@ Result<CadFileContent> make_cad_file(const CadModel& model, const CadWriting& wr
                                     writing.schema == StepSchema::ap242 ? "ap242" : "ap214", writing.unit},
                                    child.patience, input.descriptor());
   if (!output) return Error{file.string() + ": " + output.error().message};
-  Conversation conversation(std::move(output).value(), file, child);
+  Conversation conversation(std::move(output).value(), file, child, Conversation::Work::writing);
   CadFileContent content;
   const auto ending = conversation.listen([&](CadFrame& frame) -> Status {
     if (frame.kind != CadFrameKind::file) {
-      return Error{file.string() + ": the writer did not answer in its own form; build the program anew"};
+      return not_in_form(file);
     }
     content.text = std::move(frame.content);
     return {};
   });
   if (!ending) return ending.error();
-  const auto json = parsed_ending(ending.value(), file);
-  if (!json) return json.error();
-  content.solids = json->value("solids", 0);
-  content.open_shells = json->value("open_shells", 0);
-  content.notes = notes_of(json.value());
+  const Status read = read_ending(ending.value(), file, [&](FieldReader& reader) {
+    content.solids = reader.integer("solids", count_range);
+    content.open_shells = reader.integer("open_shells", count_range);
+    content.notes = read_notes(reader);
+  });
+  if (!read) return read.error();
   if (content.text.empty()) return Error{file.string() + ": the writer made nothing of it"};
   return content;
 }

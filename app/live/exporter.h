@@ -1,13 +1,14 @@
-// Writes documents for other programs, as CAD files and meshes, on a thread of its own, so that neither
+// Writes bodies for other programs, as CAD files and meshes, on a thread of its own, so that neither
 // autosaving nor drawing waits for it.
 #pragma once
 
 #include <atomic>
 #include <filesystem>
 #include <thread>
+#include <vector>
 
 #include "app/live/notices.h"
-#include "engine/exchange/document.h"
+#include "engine/simulation/scene.h"
 
 namespace spoonbill {
 
@@ -25,10 +26,10 @@ class Exporter {
   static const char* endings_text();
 
   // Says when it is done or why not; refused, by a notice too, while another is under way.
-  void begin(Document document, std::filesystem::path file);
+  void begin(std::vector<Body> bodies, std::filesystem::path file);
 
  private:
-  void run(const Document& document, const std::filesystem::path& file);
+  void run(std::vector<Body> bodies, const std::filesystem::path& file);
 
   Notices* notices_;
   std::atomic<bool> busy_{false}, stopping_{false};

@@ -117,7 +117,7 @@ void Journal::keep(const LiveScene& scene) {
   if (save->document != scene.document) {
     return notices_->add(Notice::Kind::problem, "not saved: another document was opened meanwhile");
   }
-  if (Exporter::writes(save->file)) return exporter_.begin(document_of(scene), save->file);
+  if (Exporter::writes(save->file)) return exporter_.begin(scene.scene.bodies, save->file);
   const Status written = write_document(document_of(scene), save->file);
   if (!written) return notices_->add(Notice::Kind::problem, "not saved: " + written.error().message);
   notices_->add(Notice::Kind::information, "saved " + save->file.filename().string());

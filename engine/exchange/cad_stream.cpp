@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/exchange/cad_names.h"
 #include "engine/exchange/scene_json.h"
 
 namespace spoonbill {
 namespace {
 
-constexpr std::size_t longest_failure = 400, longest_name = 200;
+constexpr std::size_t longest_failure = 400;
 
 struct Head {
   std::uint64_t letters = 0;
@@ -21,28 +22,6 @@ bool is_known(std::uint64_t letters) {
     if (letters == static_cast<std::uint64_t>(kind)) return true;
   }
   return false;
-}
-
-// How many bytes of UTF-8 begin at `start`; 0 where none do.
-std::size_t letter_bytes(const std::string& text, std::size_t start) {
-  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-  const unsigned first = byte(start);
-  const std::size_t count = first < 0x80                     ? 1
-                            : first >= 0xc2 && first <= 0xdf ? 2
-                            : first >= 0xe0 && first <= 0xef ? 3
-                            : first >= 0xf0 && first <= 0xf4 ? 4
-                                                             : 0;
-  if (count == 0 || start + count > text.size()) return 0;
-  for (std::size_t k = start + 1; k < start + count; ++k) {
-    if ((byte(k) & 0xc0) != 0x80) return 0;
-  }
-  // Overlong forms, surrogates, beyond Unicode.
-  const unsigned second = count > 2 ? byte(start + 1) : 0x80;
-  if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
-      (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f)) {
-    return 0;
-  }
-  return count;
 }
 
 }  // namespace
@@ -104,20 +83,6 @@ Result<CadSurface> cad_surface_from_json(std::string_view text, const std::strin
   if (!surface || !reader.status().ok()) return reader.status().error();
   result.surface = *std::move(surface);
   return result;
-}
-
-std::string clean_cad_name(const std::string& name, const std::string& instead) {
-  std::string clean;
-  for (std::size_t k = 0; k < name.size();) {
-    const std::size_t count = letter_bytes(name, k);
-    const bool shown = count > 1 || (count == 1 && name[k] >= ' ' && name[k] != '\x7f');
-    if (clean.size() + std::max<std::size_t>(count, 1) > longest_name) break;
-    clean += shown ? name.substr(k, count) : std::string(1, ' ');
-    k += std::max<std::size_t>(count, 1);
-  }
-  const std::size_t first = clean.find_first_not_of(' ');
-  if (first == std::string::npos) return instead;
-  return clean.substr(first, clean.find_last_not_of(' ') - first + 1);
 }
 
 }  // namespace spoonbill

@@ -45,8 +45,4 @@ Json cad_surface_to_json(const CadSurface& surface);
 // `source` names the CAD file in messages. Refused: what no document could hold.
 Result<CadSurface> cad_surface_from_json(std::string_view text, const std::string& source);
 
-// UTF-8 of at most 200 bytes without control characters, which other bytes than UTF-8 become; `instead` of
-// what is empty then.
-std::string clean_cad_name(const std::string& name, const std::string& instead);
-
 }  // namespace spoonbill

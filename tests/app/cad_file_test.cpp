@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <sstream>
 
+#include "engine/exchange/cad_stream.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/effort.h"
@@ -190,6 +192,41 @@ TEST_F(CadFileTest, AReaderThatFailsIsExplained) {
   CadChild absent;
   absent.program = folder_.path() / "absent";
   expect_refusal(file, "does not start", absent);
+}
+
+// A hostile file that has taken the child over says what it likes.
+TEST_F(CadFileTest, AnswersOfAnotherFormAreRefused) {
+  std::ostringstream surface;
+  write_frame(surface, CadFrameKind::surface, json_to_line(cad_surface_to_json(two_tubes().surfaces[0])));
+  const std::string file = write("a.step", text_of(CadFormat::step));
+  for (const char* ending : {"", "7", "[]", "{", R"({"unit": 5, "unit_declared": true, "notes": []})",
+                             R"({"unit": "mm", "unit_declared": "yes", "notes": []})",
+                             R"({"unit": "mm", "unit_declared": true, "notes": 3})", R"({"unit": "mm"})"}) {
+    SCOPED_TRACE(ending);
+    std::ostringstream answer;
+    answer << surface.str();
+    write_frame(answer, CadFrameKind::ending, ending);
+    expect_refusal(file, "did not answer in its own form",
+                   instead("cat " + folder_.write("answer", answer.str()).string()));
+    std::ostringstream made;
+    write_frame(made, CadFrameKind::file, "ISO-10303-21;");
+    write_frame(made, CadFrameKind::ending, ending);
+    const auto content = make_cad_file(two_tubes(), {}, "b.step",
+                                       instead("cat " + folder_.write("made", made.str()).string()));
+    ASSERT_FALSE(content);
+    EXPECT_NE(content.error().message.find("did not answer in its own form"), std::string::npos);
+  }
+}
+
+TEST_F(CadFileTest, AWriterThatFailsIsExplained) {
+  const auto reason = [&](const std::string& script) {
+    const auto content = make_cad_file(two_tubes(), {}, "b.step", instead(script));
+    EXPECT_FALSE(content);
+    return content ? "" : content.error().message;
+  };
+  EXPECT_EQ(reason("kill -SEGV $$").substr(0, 44), "b.step: the writer crashed (signal 11); writ");
+  EXPECT_EQ(reason("sleep 20").substr(0, 38), "b.step: writing it took longer than 2 ");
+  EXPECT_EQ(reason("exit 3").substr(0, 40), "b.step: the writer ended without a file ");
 }
 
 TEST_F(CadFileTest, AReaderIsStoppedSoon) {

@@ -244,6 +244,55 @@ TEST_F(ConvertTest, AnOlderFileStaysWhenAConversionFails) {
   }
 }
 
+// Otherwise a CAD system takes two products of one name for one product.
+TEST_F(ConvertTest, BodiesOfOneNameAreToldApart) {
+  Json document = json_of(two_bodies());
+  document["other_bodies"][0]["name"] = document["body"]["name"];
+  const std::string name = document["body"]["name"].get<std::string>();
+  place_.write("same.json", json_to_page(document));
+  for (const char* out : {"a.step", "a.igs", "a.obj"}) {
+    SCOPED_TRACE(out);
+    const Json facts = convert_for_facts({place_.text("same.json"), place_.text(out)});
+    EXPECT_EQ(facts["bodies"][0]["name"], name + " 1");
+    const std::string text = content_of(place_.path(out));
+    for (const char* number : {" 1", " 2"}) {
+      EXPECT_NE(text.find(name + number), std::string::npos) << number;
+    }
+  }
+}
+
+TEST_F(ConvertTest, WhatDoesNotGoOutIsSaid) {
+  Json document = json_of(content_of(place_.path("model.json")));
+  document["body"]["shell_thickness_mm"] = 0.5;
+  place_.write("shell.json", json_to_page(document));
+  const std::string name = document["body"]["name"].get<std::string>();
+  for (const char* out : {"a.step", "a.igs", "a.stl"}) {
+    const Json facts = convert_for_facts({place_.text("shell.json"), place_.text(out)});
+    EXPECT_EQ(facts["notes"],
+              Json::array({"'" + name +
+                           "' is a shell of 0.5 mm; the surface that it lies behind is written, without the "
+                           "thickness"}));
+  }
+}
+
+TEST_F(ConvertTest, ALinkIsFollowedAndPermissionsStay) {
+  const auto file = place_.write("real.stl", "older");
+  std::filesystem::permissions(file,
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  std::filesystem::create_symlink("real.stl", place_.path("link.stl"));
+  convert_for_facts({handle_, place_.text("link.stl")});
+  EXPECT_TRUE(std::filesystem::is_symlink(place_.path("link.stl")));
+  EXPECT_GT(std::filesystem::file_size(file), 1000u);
+  EXPECT_EQ(std::filesystem::status(file).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+TEST_F(ConvertTest, NoMessageCommandsTheTerminal) {
+  const Outcome outcome = convert({place_.text("\x1b[31mred\xc2\x9b.txt"), place_.text("a.step")});
+  EXPECT_EQ(outcome.code, exit_failed);
+  EXPECT_NE(outcome.err.find("?[31mred?.txt: is no model by its name"), std::string::npos) << outcome.err;
+}
+
 // With Ctrl+C pressed before it begins, which waits for the first place where it can stop.
 int exit_code_when_interrupted(const std::string& in, const std::string& out) {
   const pid_t process = fork();

@@ -12,8 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/exchange/cad/external_files.h"
 #include "engine/exchange/cad/face_surface.h"
 #include "engine/exchange/cad/file_unit.h"
+#include "engine/exchange/cad/lost_faces.h"
 #include "engine/exchange/cad/named_faces.h"
 
 namespace spoonbill {
@@ -26,6 +28,8 @@ using OcctDocument = opencascade::handle<TDocStd_Document>;
 struct Content {
   OcctDocument document;
   FileUnit unit;
+  FaceCount faces = {};
+  int external_files = 0;
 };
 
 OcctDocument new_document() {
@@ -42,7 +46,9 @@ Result<Content> read_step(const std::filesystem::path& file, const CadProgress& 
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return Error{"is no STEP file, or a damaged one"};
   if (progress) progress(share_of_parsing);
   Content content{new_document(), unit_of(reader.Reader().StepModel())};
+  content.external_files = forget_external_files(reader.Reader().StepModel());
   if (!reader.Transfer(content.document)) return Error{"holds no shape"};
+  content.faces = count_faces(reader.Reader().WS(), CadFormat::step);
   return content;
 }
 
@@ -55,6 +61,7 @@ Result<Content> read_iges(const std::filesystem::path& file, const CadProgress& 
   if (progress) progress(share_of_parsing);
   Content content{new_document(), unit_of(reader.IGESModel(), file)};
   if (!reader.Transfer(content.document)) return Error{"holds no shape"};
+  content.faces = count_faces(reader.WS(), CadFormat::iges);
   return content;
 }
 
@@ -64,8 +71,38 @@ void say_unit(const FileUnit& unit, const CadReading& reading, CadModel& model) 
   if (!unit.declared && reading.unit_m == 0.0) {
     model.unit = "mm";
     model.notes.push_back(
-        "the file declares no unit of length; millimetres are taken (--unit names another)");
+        "the file declares no unit of length that is known; millimetres are taken (--unit names another)");
   }
+}
+
+Error no_surface(const Content& content) {
+  if (content.faces.all > 0) {
+    return Error{"has " + std::to_string(content.faces.all) +
+                 " faces, none of which can be read; export it anew"};
+  }
+  if (content.external_files > 0) return Error{"holds no surface but names other files; export all as one"};
+  return Error{"holds no surface"};
+}
+
+void say_losses(const Content& content, CadModel& model) {
+  if (content.faces.lost > 0) {
+    model.notes.push_back(std::to_string(content.faces.lost) + " of the file's " +
+                          std::to_string(content.faces.all) +
+                          " faces cannot be read and are missing; repair them in the CAD system");
+  }
+  if (content.external_files > 0) {
+    model.notes.push_back("the file names " + std::to_string(content.external_files) +
+                          " others, which are not opened: their parts are missing; export all as one file");
+  }
+}
+
+// A body of ours is one surface.
+void say_solids(const NamedFaces& named, CadModel& model) {
+  if (named.solids == 0) return;
+  const std::string faces = std::to_string(named.faces_of_solids);
+  model.notes.push_back("the " + faces + " faces of " +
+                        (named.solids == 1 ? "a solid" : std::to_string(named.solids) + " solids") +
+                        " come as a body each, not joined");
 }
 
 // Metres for each of what OpenCASCADE made of the file's numbers, which are millimetres if the unit is right.
@@ -100,14 +137,17 @@ Result<CadModel> read(const std::filesystem::path& file, const CadReading& readi
       reading.format == CadFormat::step ? read_step(file, progress) : read_iges(file, progress);
   if (!content) return content.error();
   if (progress) progress(share_of_transfer);
-  const std::vector<NamedFace> faces = named_faces(content->document);
-  if (faces.empty()) return Error{"holds no surface"};
+  const NamedFaces named = named_faces(content->document);
+  const std::vector<NamedFace>& faces = named.faces;
+  if (faces.empty()) return no_surface(content.value());
   if (faces.size() > reading.face_limit) {
     return Error{"has " + std::to_string(faces.size()) + " faces, more than the " +
                  std::to_string(reading.face_limit) + " that are read; export fewer"};
   }
   CadModel model;
   say_unit(content->unit, reading, model);
+  say_losses(content.value(), model);
+  say_solids(named, model);
   if (Status taken = take_faces(faces, scale_of(content->unit, reading), reading, take, progress); !taken) {
     return taken.error();
   }

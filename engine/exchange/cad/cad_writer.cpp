@@ -1,8 +1,10 @@
 #include "engine/exchange/cad/cad_writer.h"
 
 #include <APIHeaderSection_MakeHeader.hxx>
+#include <BRepToIGESBRep_Entity.hxx>
 #include <IGESBasic_Name.hxx>
 #include <IGESControl_Writer.hxx>
+#include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
 #include <IGESData_IGESWriter.hxx>
@@ -31,6 +33,7 @@
 #include "engine/exchange/cad/occt_surface.h"
 #include "engine/exchange/cad/session.h"
 #include "engine/exchange/cad/step_text.h"
+#include "engine/exchange/cad/trimmed_face.h"
 
 namespace spoonbill {
 namespace {
@@ -63,10 +66,42 @@ std::string text_of(const opencascade::handle<IGESData_IGESModel>& model) {
   return std::move(text).str();
 }
 
+opencascade::handle<TCollection_HAsciiString> text(const char* letters) {
+  return new TCollection_HAsciiString(letters);
+}
+
+const char* const program_name = "Spoonbill";
+
+// OpenCASCADE fills in itself, and in IGES files the name that the person is logged in by.
 void fill_header(const opencascade::handle<StepData_StepModel>& model) {
   APIHeaderSection_MakeHeader header(model);
-  header.SetName(new TCollection_HAsciiString("Spoonbill model"));
-  header.SetOriginatingSystem(new TCollection_HAsciiString("Spoonbill"));
+  header.SetDescriptionValue(1, text("Spoonbill model"));
+  header.SetName(text("Spoonbill model"));
+  header.SetAuthorValue(1, text(""));
+  header.SetOrganizationValue(1, text(""));
+  header.SetOriginatingSystem(text(program_name));
+}
+
+void fill_header(const opencascade::handle<IGESData_IGESModel>& model) {
+  IGESData_GlobalSection header = model->GlobalSection();
+  header.SetSendName(text("Spoonbill model"));
+  header.SetReceiveName(text("Spoonbill model"));
+  header.SetFileName(text(""));
+  header.SetSystemId(text(program_name));
+  header.SetInterfaceVersion(text(program_name));
+  header.SetAuthorName(text(""));
+  header.SetCompanyName(text(""));
+  model->SetGlobalSection(header);
+}
+
+// With a note where it is not what one expects of a body that closes.
+void tell_of(const CadSurface& surface, const BodyShape& body, CadFileContent& content) {
+  ++(body.solid ? content.solids : content.open_shells);
+  if (body.solid || !has_no_edge(surface.surface)) return;
+  content.notes.push_back("'" + surface.name +
+                          (surface.trims.empty()
+                               ? "' closes, but OpenCASCADE finds no solid in it; an open shell is written"
+                               : "' would close, but is trimmed; an open shell of what is left is written"));
 }
 
 Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writing,
@@ -80,7 +115,7 @@ Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writi
     const CadSurface& surface = model.surfaces[k];
     const auto body = body_shape(surface);
     if (!body) return about(surface, body.error());
-    ++(body->solid ? content.solids : content.open_shells);
+    tell_of(surface, body.value(), content);
     const TDF_Label label = shapes->AddShape(body->shape, false);
     TDataStd_Name::Set(label, TCollection_ExtendedString(surface.name.c_str(), true));
     if (progress) progress(0.5 * static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size()));
@@ -104,35 +139,49 @@ void name_entity(const opencascade::handle<IGESData_IGESModel>& model,
   model->AddEntity(property);
 }
 
-// The entities that stand for a surface are among those after `before`: of type 144 if it is trimmed.
-void name_entities(const opencascade::handle<IGESData_IGESModel>& model, int before,
-                   const CadSurface& surface) {
-  constexpr int untrimmed = 128, trimmed = 144;
-  const int wanted = surface.trims.empty() ? untrimmed : trimmed;
+// The entities that stand for a surface are among those after `before`, of this type.
+void name_entities(const opencascade::handle<IGESData_IGESModel>& model, int before, int type,
+                   const std::string& name) {
   for (int k = before + 1, count = model->NbEntities(); k <= count; ++k) {
     const opencascade::handle<IGESData_IGESEntity> entity = model->Entity(k);
-    if (entity->TypeNumber() == wanted) name_entity(model, entity, surface.name);
+    if (entity->TypeNumber() == type) name_entity(model, entity, name);
   }
 }
 
-Status add_to(IGESControl_Writer& writer, const CadSurface& surface) {
-  const int before = writer.Model()->NbEntities();
-  bool added = false;
-  if (surface.trims.empty()) {
-    const auto geometry = to_occt(surface.surface);
-    if (!geometry) return geometry.error();
-    added = writer.AddGeom(geometry.value());
-  } else {
-    const auto body = body_shape(surface);
-    if (!body) return body.error();
-    // Each by itself: a name within a group is not read.
-    for (TopExp_Explorer faces(body->shape, TopAbs_FACE); faces.More(); faces.Next()) {
-      added = writer.AddShape(faces.Current());
-      if (!added) break;
-    }
+// IGESControl_Writer makes all of a file solids, or none.
+bool add_solid(IGESControl_Writer& writer, const TopoDS_Shape& solid) {
+  BRepToIGESBRep_Entity maker;
+  maker.SetModel(writer.Model());
+  const auto entity = maker.TransferShape(solid);
+  return !entity.IsNull() && writer.AddEntity(entity);
+}
+
+// Each by itself: a name within a group is not read.
+bool add_faces(IGESControl_Writer& writer, const TopoDS_Shape& shape) {
+  for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next()) {
+    if (!writer.AddShape(faces.Current())) return false;
   }
+  return true;
+}
+
+bool add_surface(IGESControl_Writer& writer, const Surface& surface) {
+  const auto geometry = to_occt(surface);
+  return geometry && writer.AddGeom(geometry.value());
+}
+
+Status add_to(IGESControl_Writer& writer, const CadSurface& surface, CadFileContent& content) {
+  constexpr int solid = 186, untrimmed = 128, trimmed = 144;
+  const auto body = body_shape(surface);
+  if (!body) return body.error();
+  const bool is_whole = surface.trims.empty();
+  const int type = body->solid ? solid : is_whole ? untrimmed : trimmed;
+  const int before = writer.Model()->NbEntities();
+  const bool added = type == solid       ? add_solid(writer, body->shape)
+                     : type == untrimmed ? add_surface(writer, surface.surface)
+                                         : add_faces(writer, body->shape);
   if (!added) return Error{"OpenCASCADE makes no IGES entity of it"};
-  name_entities(writer.Model(), before, surface);
+  name_entities(writer.Model(), before, type, surface.name);
+  tell_of(surface, body.value(), content);
   return {};
 }
 
@@ -140,13 +189,13 @@ Result<CadFileContent> write_iges(const CadModel& model, const CadProgress& prog
   IGESControl_Writer writer;
   CadFileContent content;
   for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
-    if (Status added = add_to(writer, model.surfaces[k]); !added) {
+    if (Status added = add_to(writer, model.surfaces[k], content); !added) {
       return about(model.surfaces[k], added.error());
     }
-    ++content.open_shells;
     if (progress) progress(0.5 * static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size()));
   }
   writer.ComputeModel();
+  fill_header(writer.Model());
   content.text = text_of(writer.Model());
   return content;
 }

@@ -1,8 +1,10 @@
 #include "engine/exchange/cad/iges_globals.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fstream>
+#include <string_view>
 
 namespace spoonbill {
 namespace {
@@ -61,9 +63,15 @@ std::vector<std::string> iges_global_parameters(const std::filesystem::path& fil
 }
 
 bool declares_iges_unit(const std::filesystem::path& file) {
-  const std::vector<std::string> parameters = iges_global_parameters(file);
-  const auto has = [&](std::size_t place) { return parameters.size() > place && !parameters[place].empty(); };
-  return has(unit_flag) || has(unit_name);
+  static constexpr std::array<std::string_view, 10> flags{"1", "2", "4", "5", "6", "7", "8", "9", "10", "11"};
+  static constexpr std::array<std::string_view, 11> names{"2HIN", "4HINCH", "2HMM", "2HFT", "2HMI", "1HM",
+                                                          "2HKM", "3HMIL",  "2HUM", "2HCM", "3HUIN"};
+  static constexpr std::string_view as_named = "3";
+  std::vector<std::string> parameters = iges_global_parameters(file);
+  parameters.resize(std::max(parameters.size(), unit_name + 1));
+  const std::string& flag = parameters[unit_flag];
+  if (!flag.empty() && flag != as_named) return std::find(flags.begin(), flags.end(), flag) != flags.end();
+  return std::find(names.begin(), names.end(), parameters[unit_name]) != names.end();
 }
 
 }  // namespace spoonbill

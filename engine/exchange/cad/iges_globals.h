@@ -12,7 +12,7 @@ namespace spoonbill {
 // section of reasonable length. None of what is no IGES file.
 std::vector<std::string> iges_global_parameters(const std::filesystem::path& file);
 
-// Whether it has a unit's flag or name.
+// Whether it has the flag of a unit or, in its place, a unit's name, of those that the standard knows.
 bool declares_iges_unit(const std::filesystem::path& file);
 
 }  // namespace spoonbill

@@ -9,9 +9,12 @@
 #include <TopoDS.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
-#include <map>
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
 
-#include "engine/exchange/cad_stream.h"
+#include "engine/exchange/cad_names.h"
 
 namespace spoonbill {
 namespace {
@@ -20,7 +23,6 @@ using Shapes = opencascade::handle<XCAFDoc_ShapeTool>;
 
 // Assemblies nested deeper are no assemblies.
 constexpr int deepest = 64;
-constexpr std::size_t longest_shared_name = 190;  // bytes
 
 std::string name_of(const TDF_Label& label) {
   opencascade::handle<TDataStd_Name> name;
@@ -28,23 +30,14 @@ std::string name_of(const TDF_Label& label) {
   return TCollection_AsciiString(name->Get()).ToCString();
 }
 
-// OpenCASCADE calls by these what has no name.
+// What OpenCASCADE calls shapes, and the use of a part in an assembly, that have no name.
 bool says_nothing(const std::string& name) {
-  static const char* const kinds[] = {"SOLID",
-                                      "SHELL",
-                                      "FACE",
-                                      "COMPOUND",
-                                      "COMPSOLID",
-                                      "WIRE",
-                                      "NAUO",
-                                      "=>",
-                                      "ASSEMBLY",
-                                      "OPEN CASCADE",
-                                      "Open CASCADE STEP translator"};
-  for (const char* kind : kinds) {
-    if (name.rfind(kind, 0) == 0) return true;
-  }
-  return name.empty();
+  static constexpr std::array<std::string_view, 9> kinds{
+      "", "SOLID", "SHELL", "FACE", "COMPOUND", "COMPSOLID", "WIRE", "ASSEMBLY", "OPEN CASCADE"};
+  static constexpr std::string_view use = "NAUO";
+  return std::find(kinds.begin(), kinds.end(), name) != kinds.end() || name.starts_with("=>") ||
+         name.starts_with("Open CASCADE STEP translator") ||
+         (name.starts_with(use) && name.find_first_not_of("0123456789", use.size()) == std::string::npos);
 }
 
 class Collector {
@@ -72,18 +65,12 @@ class Collector {
     }
   }
 
-  std::vector<NamedFace> take() {
-    std::map<std::string, int> uses;
-    for (NamedFace& face : faces_) {
-      // With room for a number.
-      face.name = clean_cad_name(face.name.substr(0, longest_shared_name), "face");
-      ++uses[face.name];
-    }
-    std::map<std::string, int> given;
-    for (NamedFace& face : faces_) {
-      if (uses[face.name] > 1) face.name += " " + std::to_string(++given[face.name]);
-    }
-    return std::move(faces_);
+  NamedFaces take() {
+    std::vector<std::string> names;
+    for (const NamedFace& face : found_.faces) names.push_back(face.name);
+    names = told_apart(names, "face");
+    for (std::size_t k = 0; k < names.size(); ++k) found_.faces[k].name = std::move(names[k]);
+    return std::move(found_);
   }
 
  private:
@@ -91,8 +78,13 @@ class Collector {
     const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
     if (shape.IsNull()) return;
     for (TopExp_Explorer solids(shape, TopAbs_SOLID); solids.More(); solids.Next()) {
+      const std::size_t before = found_.faces.size();
       add_faces(label, TopExp_Explorer(solids.Current(), TopAbs_FACE), place,
                 better_name(label, solids.Current(), part_name));
+      const auto count = static_cast<int>(found_.faces.size() - before);
+      if (count < 2) continue;
+      ++found_.solids;
+      found_.faces_of_solids += count;
     }
     add_faces(label, TopExp_Explorer(shape, TopAbs_FACE, TopAbs_SOLID), place, part_name);
   }
@@ -101,7 +93,7 @@ class Collector {
                  const std::string& body_name) {
     for (; faces.More(); faces.Next()) {
       const std::string name = better_name(label, faces.Current(), body_name);
-      faces_.push_back({TopoDS::Face(faces.Current().Moved(place)), name});
+      found_.faces.push_back({TopoDS::Face(faces.Current().Moved(place)), name});
     }
   }
 
@@ -113,12 +105,12 @@ class Collector {
   }
 
   Shapes shapes_;
-  std::vector<NamedFace> faces_;
+  NamedFaces found_;
 };
 
 }  // namespace
 
-std::vector<NamedFace> named_faces(const opencascade::handle<TDocStd_Document>& document) {
+NamedFaces named_faces(const opencascade::handle<TDocStd_Document>& document) {
   const Shapes shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
   TDF_LabelSequence roots;
   shapes->GetFreeShapes(roots);

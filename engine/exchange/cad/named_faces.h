@@ -13,6 +13,12 @@ struct NamedFace {
   std::string name;  // its own, its body's or its product's; a number follows where several share it
 };
 
-std::vector<NamedFace> named_faces(const opencascade::handle<TDocStd_Document>& document);
+struct NamedFaces {
+  std::vector<NamedFace> faces;
+  int solids = 0;           // of more than one face
+  int faces_of_solids = 0;  // of these
+};
+
+NamedFaces named_faces(const opencascade::handle<TDocStd_Document>& document);
 
 }  // namespace spoonbill

@@ -111,15 +111,6 @@ bool is_pole(const ControlNet& net, Direction along_edge, int line) {
   return true;
 }
 
-// Whether it closes: each direction is periodic, or its two ends are poles and the other is periodic.
-bool has_no_edge(const Surface& surface) {
-  const ControlNet& net = surface.net;
-  const bool u = surface.u.is_periodic(), v = surface.v.is_periodic();
-  const bool poles_of_v = is_pole(net, Direction::u, 0) && is_pole(net, Direction::u, net.columns - 1);
-  const bool poles_of_u = is_pole(net, Direction::v, 0) && is_pole(net, Direction::v, net.rows - 1);
-  return (u && v) || (u && poles_of_v) || (v && poles_of_u);
-}
-
 bool has_holes_alone(const TrimmedSurface& part) {
   return std::all_of(part.trims.begin(), part.trims.end(), [&](const TrimLoop& loop) {
     return signed_area(polygon_of(loop, part.surface.u, part.surface.v)) < 0.0;
@@ -285,6 +276,14 @@ int owner_of(const Outline& hole, const std::vector<Outline>& outlines) {
 }
 
 }  // namespace
+
+bool has_no_edge(const Surface& surface) {
+  const ControlNet& net = surface.net;
+  const bool u = surface.u.is_periodic(), v = surface.v.is_periodic();
+  const bool poles_of_v = is_pole(net, Direction::u, 0) && is_pole(net, Direction::u, net.columns - 1);
+  const bool poles_of_u = is_pole(net, Direction::v, 0) && is_pole(net, Direction::v, net.rows - 1);
+  return (u && v) || (u && poles_of_v) || (v && poles_of_u);
+}
 
 Result<std::vector<TrimmedSurface>> opened_parts(const Surface& surface, const std::vector<TrimLoop>& trims) {
   TrimmedSurface part{surface, trims};

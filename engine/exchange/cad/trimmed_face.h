@@ -16,6 +16,9 @@ struct TrimmedSurface {
   std::vector<TrimLoop> trims;
 };
 
+// Whether it closes: each direction is periodic, or its two ends are poles and the other is periodic.
+bool has_no_edge(const Surface& surface);
+
 // The same with the seams of periodic directions where no loop crosses them. A surface that closes and has
 // nothing but holes becomes two parts of it: CAD systems know no face between poles without an outer edge.
 // Refused: loops that leave no such place.

@@ -128,6 +128,8 @@ TEST_F(CadReader, AssembliesArePlacedAndNamed) {
   EXPECT_EQ(count("wheel"), 3);
   EXPECT_EQ(count("spare wheel"), 3);
   EXPECT_EQ(count("deck"), 6);
+  EXPECT_EQ(found.model.notes,
+            std::vector<std::string>{"the 12 faces of 3 solids come as a body each, not joined"});
   // To what a cylinder of 5 mm may deviate.
   EXPECT_LT((middle_of(found.surfaces, "wheel") - Vector3(0.1, 0.0, 0.001)).norm(), 2e-5);
   EXPECT_LT((middle_of(found.surfaces, "spare wheel") - Vector3(0.1, 0.0, 0.031)).norm(), 2e-5);
@@ -162,20 +164,89 @@ TEST_F(CadReader, UnitsAreThoseDeclared) {
   }
 }
 
-TEST_F(CadReader, AnIgesFileWithoutAUnitIsInMillimetresAndSaysSo) {
-  std::string text = content_of(box_in("in", "box.igs"));
+// The global section with other words for the unit, in as many lines.
+std::string with_unit(std::string text, const std::string& unit) {
   const std::string declared = ",1,4HINCH,";
   const std::size_t at = text.find(declared);
-  ASSERT_NE(at, std::string::npos) << text.substr(0, 600);
-  text.replace(at, declared.size(), ",,,");
+  EXPECT_NE(at, std::string::npos) << text.substr(0, 600);
+  text.replace(at, declared.size(), unit);
   const std::size_t end = text.find_first_of("SGDP", text.find("G000000", at) - 1);
-  text.insert(end, declared.size() - 3, ' ');
-  const Found found = read(folder_.write("none.igs", text));
-  EXPECT_FALSE(found.model.unit_declared);
-  EXPECT_EQ(found.model.unit, "mm");
-  ASSERT_EQ(found.model.notes.size(), 1u);
-  EXPECT_NE(found.model.notes[0].find("declares no unit"), std::string::npos);
-  EXPECT_LT((middle_of(found.surfaces, "") - Vector3(0.015, 0.01, 0.005) / 25.4).norm(), 1e-9);
+  text.insert(end, declared.size() - unit.size(), ' ');
+  return text;
+}
+
+TEST_F(CadReader, AnIgesFileWithoutAUnitIsInMillimetresAndSaysSo) {
+  const std::string text = content_of(box_in("in", "box.igs"));
+  // None, none by its flag, and a name that the standard does not know.
+  for (const char* unit : {",,,", ",0,,", ",3,4HFOOT,", ",3,2Hmm,", ",3,,"}) {
+    SCOPED_TRACE(unit);
+    const Found found = read(folder_.write("none.igs", with_unit(text, unit)));
+    EXPECT_FALSE(found.model.unit_declared);
+    EXPECT_EQ(found.model.unit, "mm");
+    ASSERT_EQ(found.model.notes.size(), 1u);
+    EXPECT_NE(found.model.notes[0].find("declares no unit"), std::string::npos);
+    EXPECT_LT((middle_of(found.surfaces, "") - Vector3(0.015, 0.01, 0.005) / 25.4).norm(), 1e-9);
+  }
+}
+
+TEST_F(CadReader, AnIgesFileMayNameItsUnit) {
+  const std::string text = content_of(box_in("in", "box.igs"));
+  for (const auto& [unit, metres] :
+       {std::pair(",3,2HMM,", 1e-3), std::pair(",3,2HFT,", 0.3048), std::pair(",10,,", 1e-2)}) {
+    SCOPED_TRACE(unit);
+    const Found found = read(folder_.write("named.igs", with_unit(text, unit)));
+    EXPECT_TRUE(found.model.unit_declared);
+    const Vector3 in_file = Vector3(0.015, 0.01, 0.005) / 0.0254;
+    EXPECT_LT((middle_of(found.surfaces, "") - metres * in_file).norm(), 1e-9);
+  }
+}
+
+// OpenCASCADE leaves such a face out and calls the file read.
+TEST_F(CadReader, FacesThatCannotBeReadAreCounted) {
+  const std::string text = content_of(box_in("mm", "box.step"));
+  const std::string begin = "ADVANCED_FACE('',(";
+  const std::size_t face = text.find(begin), surface = text.find(",#", text.find(')', face)) + 1;
+  ASSERT_NE(face, std::string::npos);
+  for (const char* other : {"#99999", "#1"}) {
+    SCOPED_TRACE(other);
+    std::string damaged = text;
+    damaged.replace(surface, text.find(',', surface) - surface, other);
+    const Found found = read(folder_.write("damaged.step", damaged));
+    EXPECT_EQ(found.surfaces.size(), 5u);
+    ASSERT_FALSE(found.model.notes.empty());
+    EXPECT_EQ(found.model.notes[0],
+              "1 of the file's 6 faces cannot be read and are missing; repair them in the CAD system");
+  }
+}
+
+// Two parts at a place each, in files of their own.
+std::filesystem::path write_in_parts(const std::filesystem::path& folder) {
+  opencascade::handle<TDocStd_Document> document;
+  XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+  const auto shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  const TDF_Label part = shapes->AddShape(BRepPrimAPI_MakeBox(40, 20, 1).Shape(), false);
+  TDataStd_Name::Set(part, "deck");
+  const TDF_Label whole = shapes->NewShape();
+  shapes->AddComponent(whole, part, moved(0, 0, 0));
+  shapes->AddComponent(whole, part, moved(0, 0, 30));
+  shapes->UpdateAssemblies();
+  STEPCAFControl_Writer writer;
+  EXPECT_TRUE(writer.Transfer(document, STEPControl_AsIs, (folder / "part").c_str()));
+  const auto file = folder / "whole.step";
+  EXPECT_EQ(writer.Write(file.c_str()), IFSelect_RetDone);
+  return file;
+}
+
+// Which OpenCASCADE would open, wherever they lie and whatever they are.
+TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
+  const auto file = write_in_parts(folder_.path());
+  const std::string text = content_of(file), before = "DOCUMENT_FILE('";
+  ASSERT_NE(text.find(before), std::string::npos);
+  const std::size_t name = text.find(before) + before.size();
+  ASSERT_TRUE(std::filesystem::exists(folder_.path() / text.substr(name, text.find('\'', name) - name)));
+  const auto found = read_cad(file, {}, [](const CadSurface&) { FAIL() << "a surface of another file"; });
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().message, "holds no surface but names other files; export all as one");
 }
 
 TEST_F(CadReader, MoreFacesThanTheLimitAreRefused) {

@@ -4,6 +4,7 @@
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepGProp.hxx>
 #include <GProp_GProps.hxx>
+#include <IGESControl_Reader.hxx>
 #include <STEPControl_Reader.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS_Shape.hxx>
@@ -15,8 +16,10 @@
 #include "engine/exchange/cad/body_shape.h"
 #include "engine/exchange/cad/cad_reader.h"
 #include "engine/exchange/cad/cad_writer.h"
+#include "engine/exchange/cad/iges_globals.h"
 #include "engine/exchange/cad/occt_surface.h"
 #include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad_names.h"
 #include "engine/exchange/cad_stream.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"
@@ -59,8 +62,7 @@ class CadRoundTrip : public testing::Test {
     EXPECT_TRUE(back[0].trims.empty());
     EXPECT_EQ(back[0].trim_problem, "");
     // A solid's face turns outwards whichever way the surface did.
-    const bool turned = known.closes && writing.format == CadFormat::step &&
-                        volume_by_quadrature_m3(known.surface.surface) < 0.0;
+    const bool turned = known.closes && volume_by_quadrature_m3(known.surface.surface) < 0.0;
     if (turned) {
       EXPECT_NEAR(volume_by_quadrature_m3(back[0].surface), -volume_by_quadrature_m3(known.surface.surface),
                   1e-12);
@@ -110,10 +112,15 @@ TEST_F(CadRoundTrip, PeriodicTubesComeBackPeriodicWithTheSameControlPoints) {
 TEST_F(CadRoundTrip, NamesAndTheirOrderAreKept) {
   for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
     CadModel model;
-    const std::vector<std::string> names = {"handle", "a long name with spaces, 'quotes' and (brackets)",
+    const std::vector<std::string> names = {"handle",
+                                            "a long name with spaces, 'quotes' and (brackets)",
                                             "L\xc3\xb6"
                                             "ffel \xe5\x8c\x99",
-                                            "back\\slash"};
+                                            "back\\slash",
+                                            "FACEPLATE",
+                                            "WIRE rack",
+                                            "SOLID oak",
+                                            "4711"};
     for (const std::string& name : names) model.surfaces.push_back({name, ellipsoid_tube(8, 8), 0.0, {}, {}});
     CadReading reading;
     reading.format = format;
@@ -155,30 +162,58 @@ TEST_F(CadRoundTrip, StepFilesHoldOnlyAscii) {
   EXPECT_NE(content->text.find("L\\X2\\00F6\\X0\\ffel"), std::string::npos);
 }
 
+template <class Reader>
+TopoDS_Shape shape_in(const std::filesystem::path& file) {
+  Reader reader;
+  EXPECT_EQ(reader.ReadFile(file.c_str()), IFSelect_RetDone);
+  reader.TransferRoots();
+  return reader.OneShape();
+}
+
 TEST_F(CadRoundTrip, BodiesThatCloseAreValidSolidsOfTheirVolume) {
-  for (const KnownSurface& known : known_surfaces()) {
-    SCOPED_TRACE(known.surface.name);
-    CadModel model;
-    model.surfaces.push_back(known.surface);
-    const auto content = write_cad(model, {});
-    ASSERT_TRUE(content) << content.error().message;
-    EXPECT_EQ(content->solids, known.closes ? 1 : 0);
-    EXPECT_EQ(content->open_shells, known.closes ? 0 : 1);
-    const auto file = folder_.write("solid.step", content->text);
-    STEPControl_Reader reader;
-    ASSERT_EQ(reader.ReadFile(file.c_str()), IFSelect_RetDone);
-    reader.TransferRoots();
-    const TopoDS_Shape shape = reader.OneShape();
-    EXPECT_TRUE(BRepCheck_Analyzer(shape).IsValid());
-    EXPECT_EQ(TopExp_Explorer(shape, TopAbs_SOLID).More(), known.closes);
-    if (!known.closes) continue;
-    GProp_GProps properties;
-    BRepGProp::VolumeProperties(shape, properties, 1e-8);
-    const double ours = std::abs(volume_by_quadrature_m3(known.surface.surface));
-    // Ours is exact to rounding for cubic pieces, OpenCASCADE's adapts to its own 1e-8.
-    EXPECT_NEAR(properties.Mass() * 1e-9, ours, 1e-6 * ours);
-    EXPECT_GT(properties.Mass(), 0.0);
+  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+    for (const KnownSurface& known : known_surfaces()) {
+      SCOPED_TRACE(known.surface.name + (format == CadFormat::step ? ", STEP" : ", IGES"));
+      CadModel model;
+      model.surfaces.push_back(known.surface);
+      const auto content = write_cad(model, {format, StepSchema::ap214, "mm"});
+      ASSERT_TRUE(content) << content.error().message;
+      EXPECT_EQ(content->solids, known.closes ? 1 : 0);
+      EXPECT_EQ(content->open_shells, known.closes ? 0 : 1);
+      EXPECT_TRUE(content->notes.empty());
+      const auto file = folder_.write("solid", content->text);
+      const TopoDS_Shape shape =
+          format == CadFormat::step ? shape_in<STEPControl_Reader>(file) : shape_in<IGESControl_Reader>(file);
+      EXPECT_TRUE(BRepCheck_Analyzer(shape).IsValid());
+      EXPECT_EQ(TopExp_Explorer(shape, TopAbs_SOLID).More(), known.closes);
+      if (!known.closes) continue;
+      GProp_GProps properties;
+      BRepGProp::VolumeProperties(shape, properties, 1e-8);
+      const double ours = std::abs(volume_by_quadrature_m3(known.surface.surface));
+      // Ours is exact to rounding for cubic pieces, OpenCASCADE's adapts to its own 1e-8.
+      EXPECT_NEAR(properties.Mass() * 1e-9, ours, 1e-6 * ours);
+      EXPECT_GT(properties.Mass(), 0.0);
+    }
   }
+}
+
+TEST_F(CadRoundTrip, FilesSayTheProgramAndNotThePerson) {
+  CadModel model;
+  model.surfaces.push_back({"tube", ellipsoid_tube(8, 8), 0.0, {}, {}});
+  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+    const std::string text = write_cad(model, {format, StepSchema::ap214, "mm"})->text;
+    EXPECT_NE(text.find("Spoonbill"), std::string::npos);
+    // The words that OpenCASCADE would put there.
+    for (const char* word : {"'Author'", "Open CASCADE Model", "Filename.iges"}) {
+      EXPECT_EQ(text.find(word), std::string::npos) << word;
+    }
+  }
+  const std::string text = write_cad(model, {CadFormat::iges, StepSchema::ap214, "mm"})->text;
+  // The parameters 21, the author, and 22, the organization.
+  const auto parameters = iges_global_parameters(folder_.write("named.igs", text));
+  ASSERT_GT(parameters.size(), 22u);
+  EXPECT_EQ(parameters[20], "");
+  EXPECT_EQ(parameters[21], "");
 }
 
 TEST_F(CadRoundTrip, SchemaAndUnitAreDeclared) {
@@ -214,7 +249,17 @@ TEST(CadStream, SurfacesComeBackToTheBit) {
   }
 }
 
-TEST(CadStream, NamesAreCleaned) {
+TEST(CadNames, SharedOnesAreNumberedAndNoTwoEqual) {
+  EXPECT_EQ(told_apart({"a", "b", "", "a", ""}, "x"),
+            (std::vector<std::string>{"a 1", "b", "x 1", "a 2", "x 2"}));
+  EXPECT_EQ(told_apart({"a", "a", "a 1"}, "x"), (std::vector<std::string>{"a 2", "a 3", "a 1"}));
+  const auto apart = told_apart(std::vector<std::string>(11, std::string(300, 'n')), "x");
+  for (const std::string& name : apart) EXPECT_LE(name.size(), 200u);
+  EXPECT_NE(apart[0], apart[10]);
+}
+
+TEST(CadNames, AreCleaned) {
+  EXPECT_EQ(clean_cad_name("a\xc2\x9bz", "x"), "a z");  // a control of a terminal
   EXPECT_EQ(clean_cad_name("  a\nb\t ", "x"), "a b");
   EXPECT_EQ(clean_cad_name("", "x"), "x");
   EXPECT_EQ(clean_cad_name("\x01\x7f", "x"), "x");

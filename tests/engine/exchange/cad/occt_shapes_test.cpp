@@ -152,6 +152,10 @@ class OcctShapes : public testing::TestWithParam<CadFormat> {
       back.surfaces.push_back(std::move(part));
     });
     EXPECT_TRUE(model) << model.error().message;
+    if (!model) return back;
+    for (const std::string& note : model->notes) {
+      EXPECT_EQ(note.find("missing"), std::string::npos) << note;
+    }
     return back;
   }
 

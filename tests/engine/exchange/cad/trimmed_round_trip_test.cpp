@@ -1,9 +1,15 @@
 // Trimmed surfaces out to STEP and IGES and back.
 #include <gtest/gtest.h>
 
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepGProp.hxx>
+#include <GProp_GProps.hxx>
+#include <TopExp_Explorer.hxx>
 #include <cmath>
 
 #include "engine/bspline/evaluate.h"
+#include "engine/bspline/reparameterise.h"
+#include "engine/exchange/cad/body_shape.h"
 #include "engine/exchange/cad/cad_reader.h"
 #include "engine/exchange/cad/cad_writer.h"
 #include "engine/exchange/cad/session.h"
@@ -132,10 +138,49 @@ TEST_P(TrimmedRoundTrip, ASurfaceWithOneFaceKeepsItsParameters) {
   EXPECT_NEAR(after->kept_share(), before.kept_share(), 1e-6);
 }
 
+// Of a sheet nobody expects a solid.
+TEST_P(TrimmedRoundTrip, WhatWouldCloseButForItsTrimsIsSaid) {
+  CadModel model;
+  for (const CadSurface& part : trimmed_surfaces()) model.surfaces.push_back(part);
+  const auto content = write_cad(model, {GetParam(), StepSchema::ap214, "mm"});
+  ASSERT_TRUE(content) << content.error().message;
+  EXPECT_EQ(content->solids, 0);
+  EXPECT_EQ(content->open_shells, 6);
+  ASSERT_EQ(content->notes.size(), 3u);
+  EXPECT_EQ(content->notes[0],
+            "'tube with a hole' would close, but is trimmed; an open shell of what is left is written");
+}
+
 INSTANTIATE_TEST_SUITE_P(Both, TrimmedRoundTrip, testing::Values(CadFormat::step, CadFormat::iges),
                          [](const auto& format) {
                            return std::string(format.param == CadFormat::step ? "Step" : "Iges");
                          });
+
+// A small hole leaves most of the flux through a body's surface.
+TEST(BodyShape, FacesOfWhatWouldCloseAreTurnedOutwards) {
+  for (const Surface& tube : {ellipsoid_tube(10, 10), reversed(ellipsoid_tube(10, 10), Direction::u)}) {
+    CadSurface part = named("tube", tube);
+    add_circle(part, 0.5, 0.5, 0.1, true);
+    const auto body = body_shape(part);
+    ASSERT_TRUE(body) << body.error().message;
+    GProp_GProps properties;
+    BRepGProp::VolumeProperties(body->shape, properties, 1e-3);
+    EXPECT_GT(properties.Mass(), 0.0);
+  }
+}
+
+// A surface that closes goes out cut in two, whose faces share their edges.
+TEST(BodyShape, FacesOfOneSurfaceAreOneShell) {
+  for (const CadSurface& part : trimmed_surfaces()) {
+    SCOPED_TRACE(part.name);
+    const auto body = body_shape(part);
+    ASSERT_TRUE(body) << body.error().message;
+    int shells = 0;
+    for (TopExp_Explorer each(body->shape, TopAbs_SHELL); each.More(); each.Next()) ++shells;
+    EXPECT_EQ(shells, part.name == "two islands" ? 2 : 1);
+    EXPECT_TRUE(BRepCheck_Analyzer(body->shape).IsValid());
+  }
+}
 
 TEST(CadStream, TrimsComeBackToTheBit) {
   for (const CadSurface& part : trimmed_surfaces()) {
