@@ -1,7 +1,9 @@
 #include "engine/exchange/cad/cad_writer.h"
 
 #include <APIHeaderSection_MakeHeader.hxx>
+#include <BRepBndLib.hxx>
 #include <BRepToIGESBRep_Entity.hxx>
+#include <Bnd_Box.hxx>
 #include <IGESBasic_Name.hxx>
 #include <IGESControl_Writer.hxx>
 #include <IGESData_GlobalSection.hxx>
@@ -83,7 +85,7 @@ void fill_header(const opencascade::handle<StepData_StepModel>& model) {
 }
 
 void fill_header(const opencascade::handle<IGESData_IGESModel>& model) {
-  IGESData_GlobalSection header = model->GlobalSection();
+  IGESData_GlobalSection& header = model->ChangeGlobalSection();
   header.SetSendName(text("Spoonbill model"));
   header.SetReceiveName(text("Spoonbill model"));
   header.SetFileName(text(""));
@@ -91,7 +93,6 @@ void fill_header(const opencascade::handle<IGESData_IGESModel>& model) {
   header.SetInterfaceVersion(text(program_name));
   header.SetAuthorName(text(""));
   header.SetCompanyName(text(""));
-  model->SetGlobalSection(header);
 }
 
 // With a note where it is not what one expects of a body that closes.
@@ -148,11 +149,21 @@ void name_entities(const opencascade::handle<IGESData_IGESModel>& model, int bef
   }
 }
 
+// Other than its own shapes the writer does not count those in.
+void count_in_extent(const TopoDS_Shape& shape, const opencascade::handle<IGESData_IGESModel>& model) {
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box);
+  IGESData_GlobalSection& header = model->ChangeGlobalSection();
+  const double unit_mm = header.UnitValue();
+  for (const gp_Pnt& corner : {box.CornerMin(), box.CornerMax()}) header.MaxMaxCoords(corner.XYZ() / unit_mm);
+}
+
 // IGESControl_Writer makes all of a file solids, or none.
 bool add_solid(IGESControl_Writer& writer, const TopoDS_Shape& solid) {
   BRepToIGESBRep_Entity maker;
   maker.SetModel(writer.Model());
   const auto entity = maker.TransferShape(solid);
+  count_in_extent(solid, writer.Model());
   return !entity.IsNull() && writer.AddEntity(entity);
 }
 

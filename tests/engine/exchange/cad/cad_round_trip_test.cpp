@@ -13,6 +13,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "engine/bspline/grid.h"
 #include "engine/exchange/cad/body_shape.h"
 #include "engine/exchange/cad/cad_reader.h"
 #include "engine/exchange/cad/cad_writer.h"
@@ -193,6 +194,35 @@ TEST_F(CadRoundTrip, BodiesThatCloseAreValidSolidsOfTheirVolume) {
       // Ours is exact to rounding for cubic pieces, OpenCASCADE's adapts to its own 1e-8.
       EXPECT_NEAR(properties.Mass() * 1e-9, ours, 1e-6 * ours);
       EXPECT_GT(properties.Mass(), 0.0);
+    }
+  }
+}
+
+// IGES 5.3, parameter 20: systems size their models by it.
+TEST_F(CadRoundTrip, IgesFilesTellTheirLargestCoordinate) {
+  for (const auto& [unit, metres] : {std::pair("mm", 1e-3), std::pair("in", 0.0254)}) {
+    for (const KnownSurface& known : known_surfaces()) {
+      SCOPED_TRACE(known.surface.name);
+      CadModel model;
+      model.surfaces.push_back(known.surface);
+      const auto file = write(model, {CadFormat::iges, StepSchema::ap214, unit});
+      const auto parameters = iges_global_parameters(file);
+      ASSERT_GT(parameters.size(), 19u);
+      double largest_m = 0.0, largest_control_m = 0.0;
+      const Surface& surface = known.surface.surface;
+      for (const double u : uniform_parameters(surface.u, 40)) {
+        for (const double v : uniform_parameters(surface.v, 40)) {
+          largest_m = std::max(largest_m, position(surface, u, v).cwiseAbs().maxCoeff());
+        }
+      }
+      for (const auto* coordinates : {&surface.net.x, &surface.net.y, &surface.net.z}) {
+        for (const double x : *coordinates) largest_control_m = std::max(largest_control_m, std::abs(x));
+      }
+      const double told_m = metres * std::strtod(parameters[19].c_str(), nullptr);
+      // OpenCASCADE's boxes hold the surface and lie within that of its control points, but for its 1e-7 mm
+      // and the seven digits that stand in the file.
+      EXPECT_GE(told_m, largest_m * (1.0 - 1e-6));
+      EXPECT_LE(told_m, largest_control_m * (1.0 + 1e-5));
     }
   }
 }
