@@ -9,9 +9,9 @@
 #include "app/files/output_file.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/document.h"
+#include "engine/exchange/file_format.h"
 #include "engine/exchange/mesh_export/mesh_writer.h"
 #include "engine/exchange/mesh_export/tessellation.h"
-#include "engine/exchange/mesh_import.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {

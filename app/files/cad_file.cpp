@@ -18,7 +18,7 @@
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/cad_stream.h"
 #include "engine/exchange/field_reader.h"
-#include "engine/exchange/mesh_import.h"
+#include "engine/exchange/file_format.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {

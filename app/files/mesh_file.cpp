@@ -8,7 +8,7 @@
 #include "app/files/foreign_file.h"
 #include "app/files/mesh_stream.h"
 #include "app/process/child_output.h"
-#include "engine/exchange/mesh_import.h"
+#include "engine/exchange/file_format.h"
 
 namespace spoonbill {
 namespace {
@@ -53,11 +53,12 @@ Status check_counts(const std::filesystem::path& file, const MeshStreamHead& hea
 }  // namespace
 
 bool is_mesh_file(const std::filesystem::path& file) {
-  return is_mesh_name(file);
+  const std::string format = format_of(file);
+  return format == "obj" || format == "stl" || format == "ply";
 }
 
 Result<MeshFile> read_mesh_file(const std::filesystem::path& file, const MeshReading& reading) {
-  if (!is_mesh_name(file)) {
+  if (!is_mesh_file(file)) {
     return Error{file.string() + ": is no mesh by its name; .obj, .stl and .ply are read"};
   }
   if (Status status = check_foreign_file(file, file_bytes_limit, "reduce the mesh"); !status)

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/exchange/file.h"
-#include "engine/exchange/mesh_import.h"
+#include "engine/exchange/file_format.h"
 #include "engine/exchange/points/point_cloud.h"
 #include "engine/number_text.h"
 #include "engine/simulation/checks.h"

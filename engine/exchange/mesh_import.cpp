@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <cstdint>
 #include <fstream>
 #include <sstream>
@@ -16,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/exchange/file_format.h"
 #include "engine/exchange/ply_check.h"
 
 namespace spoonbill {
@@ -132,19 +132,6 @@ Result<TriangleMesh> gather(const aiScene& scene) {
 }
 
 }  // namespace
-
-std::string format_of(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  ending.erase(0, 1);
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return ending;
-}
-
-bool is_mesh_name(const std::filesystem::path& file) {
-  const std::string format = format_of(file);
-  return format == "obj" || format == "stl" || format == "ply";
-}
 
 Result<TriangleMesh> import_mesh(const std::filesystem::path& file) {
   if (format_of(file) == "ply") {

@@ -3,18 +3,11 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/result.h"
 
 namespace spoonbill {
-
-// The ending of a file's name in small letters, without the point.
-std::string format_of(const std::filesystem::path& file);
-
-// Whether the name ends in .obj, .stl or .ply, which alone decides the format.
-bool is_mesh_name(const std::filesystem::path& file);
 
 // The triangles as they stand in the file, polygons cut, points and lines left out, coordinates in the file's
 // own unit (not yet metres) and single precision. No other file is opened, whatever this one names. The Error

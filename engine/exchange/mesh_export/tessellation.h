@@ -26,7 +26,8 @@ inline constexpr std::size_t exported_triangle_limit = 10'000'000;
 // A grid over the polynomial pieces, finer where the surface bends. A cell of sides h_u and h_v lies within
 // (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of the bilinear patch through its corners (surface_bounds.h), and that
 // within |P00 - P10 - P01 + P11| / 4 of its triangles, those that trim loops cut too, whose corners lie on
-// the patch. Refused: more triangles than the limit, loops that bound nothing.
+// the patch. An edge that a loop makes is that of its polygon, within trim_chord_share of the domain of the
+// loop. Refused: more triangles than the limit, loops that bound nothing.
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
                                 std::size_t triangle_limit = exported_triangle_limit);
 

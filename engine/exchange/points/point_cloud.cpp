@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
+
+#include "engine/exchange/file_format.h"
 
 namespace spoonbill {
 namespace {
@@ -11,13 +12,6 @@ namespace {
 Error too_many(std::uint64_t count) {
   return Error{"has " + std::to_string(count) + " points, more than the " + std::to_string(point_limit) +
                " that are read; thin it out"};
-}
-
-std::string ending_of(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return ending;
 }
 
 }  // namespace
@@ -55,17 +49,17 @@ Result<PointCloud> PointGatherer::done() && {
 }
 
 bool is_point_name(const std::filesystem::path& file) {
-  static constexpr std::array<std::string_view, 8> endings{".ply", ".pcd", ".xyz", ".txt",
-                                                           ".csv", ".asc", ".pts", ".obj"};
-  return std::find(endings.begin(), endings.end(), ending_of(file)) != endings.end();
+  static constexpr std::array<std::string_view, 8> endings{"ply", "pcd", "xyz", "txt",
+                                                           "csv", "asc", "pts", "obj"};
+  return std::find(endings.begin(), endings.end(), format_of(file)) != endings.end();
 }
 
 Result<PointCloud> points_of(std::string_view bytes, const std::filesystem::path& file) {
-  const std::string ending = ending_of(file);
-  auto cloud = ending == ".ply"   ? ply_points(bytes)
-               : ending == ".pcd" ? pcd_points(bytes)
-               : ending == ".obj" ? obj_points(bytes)
-                                  : text_points(bytes);
+  const std::string format = format_of(file);
+  auto cloud = format == "ply"   ? ply_points(bytes)
+               : format == "pcd" ? pcd_points(bytes)
+               : format == "obj" ? obj_points(bytes)
+                                 : text_points(bytes);
   if (!cloud) return Error{file.string() + ": " + cloud.error().message};
   return cloud;
 }
