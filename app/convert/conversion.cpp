@@ -85,6 +85,7 @@ Status check_options(const ConversionRequest& request) {
 
 CadModel model_of(std::vector<Body> bodies, ConversionReport& report) {
   std::vector<std::string> names;
+  names.reserve(bodies.size());
   for (const Body& body : bodies) names.push_back(body.name);
   names = told_apart(names, "body");
   CadModel model;

@@ -28,6 +28,7 @@ constexpr std::size_t file_bytes_limit = std::size_t{512} << 20;
 // What to do about a file that is too much for the child.
 const char* const smaller = "export fewer or simpler faces";
 const char* const fewer = "write fewer or simpler bodies (--bodies)";
+constexpr std::size_t longest_line = 400;  // of a note, in bytes
 constexpr Range<int> note_count_range{0, 1000}, count_range{0, 1000000};
 
 std::string program_of(const CadChild& child) {
@@ -93,7 +94,7 @@ class Conversation {
                    " GiB; " + (work_ == Work::reading ? smaller : fewer)};
     }
     return Error{file_.string() + ": " +
-                 clean_cad_name(reason, "the program that handles CAD files refuses it")};
+                 clean_cad_name(reason, "the program that handles CAD files refuses it", longest_line)};
   }
 
   ChildOutput output_;
@@ -121,7 +122,7 @@ Status read_ending(const std::string& text, const std::filesystem::path& file, c
 std::vector<std::string> read_notes(FieldReader& reader) {
   std::vector<std::string> notes;
   for (const Json& note : reader.list("notes", note_count_range)) {
-    if (note.is_string()) notes.push_back(clean_cad_name(note.get<std::string>(), "..."));
+    if (note.is_string()) notes.push_back(clean_cad_name(note.get<std::string>(), "...", longest_line));
   }
   return notes;
 }

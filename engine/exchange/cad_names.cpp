@@ -8,8 +8,8 @@
 namespace spoonbill {
 namespace {
 
-// Bytes; what is numbered leaves room for it.
-constexpr std::size_t longest_name = 200, longest_shared_name = 190;
+// Bytes that leave room for a number.
+constexpr std::size_t longest_shared_name = longest_cad_name - 10;
 
 // How many bytes of UTF-8 begin at `start`; 0 where none do.
 std::size_t letter_bytes(const std::string& text, std::size_t start) {
@@ -40,13 +40,13 @@ bool is_control(std::string_view letter) {
 
 }  // namespace
 
-std::string clean_cad_name(const std::string& name, const std::string& instead) {
+std::string clean_cad_name(const std::string& name, const std::string& instead, std::size_t longest) {
   std::string clean;
   for (std::size_t k = 0; k < name.size();) {
     const std::size_t count = letter_bytes(name, k);
     const bool shown =
         count > 1 ? !is_control(name.substr(k, count)) : count == 1 && name[k] >= ' ' && name[k] != '\x7f';
-    if (clean.size() + std::max<std::size_t>(count, 1) > longest_name) break;
+    if (clean.size() + std::max<std::size_t>(count, 1) > longest) break;
     clean += shown ? name.substr(k, count) : std::string(1, ' ');
     k += std::max<std::size_t>(count, 1);
   }

@@ -183,6 +183,26 @@ TEST_F(CadFileTest, NumbersBeyondAllBoundsAreRefused) {
   }
 }
 
+// One bad face of a hundred is no reason to have none.
+TEST_F(CadFileTest, AFaceThatCannotBeTakenIsLeftOutAndNamed) {
+  std::string text = text_of(CadFormat::step);
+  const std::string begin = "CARTESIAN_POINT('',(";
+  std::size_t at = 0;
+  const auto spoil_next_surface = [&] {
+    at = text.find(begin, text.find("B_SPLINE_SURFACE_WITH_KNOTS", at)) + begin.size();
+    text.replace(at, text.find(',', at) - at, "NAN");
+  };
+  spoil_next_surface();
+  const auto model = read(write("one.step", text));
+  ASSERT_TRUE(model) << model.error().message;
+  ASSERT_EQ(model->surfaces.size(), 1u);
+  EXPECT_EQ(model->surfaces[0].name, "two");
+  ASSERT_EQ(model->notes.size(), 1u);
+  EXPECT_TRUE(model->notes[0].starts_with("'one' is left out: ")) << model->notes[0];
+  spoil_next_surface();
+  expect_refusal(write("none.step", text), "'one': ");
+}
+
 TEST_F(CadFileTest, AReaderThatFailsIsExplained) {
   const std::string file = write("a.step", text_of(CadFormat::step));
   expect_refusal(file, "crashed on it (signal 11)", instead("kill -SEGV $$"));

@@ -8,6 +8,7 @@
 #include <XSControl_WorkSession.hxx>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -111,24 +112,36 @@ double scale_of(const FileUnit& unit, const CadReading& reading) {
   return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
 }
 
+CadSurface surface_of(const NamedFace& face, FaceSurface found) {
+  CadSurface surface;
+  surface.name = face.name;
+  surface.surface = std::move(found.surface);
+  surface.deviation_m = found.deviation_m;
+  surface.trims = std::move(found.trims);
+  surface.trim_problem = std::move(found.trim_problem);
+  return surface;
+}
+
+// Those that are no surfaces of ours are told in notes. Refused: when all are.
 Status take_faces(const std::vector<NamedFace>& faces, double scale, const CadReading& reading,
-                  const TakeSurface& take, const CadProgress& progress) {
+                  const TakeSurface& take, const CadProgress& progress, CadModel& model) {
+  std::optional<Error> first;
+  std::size_t taken = 0;
   for (std::size_t k = 0; k < faces.size(); ++k) {
     auto found = face_surface(faces[k].face, scale, reading.tolerance_m);
-    if (!found) return Error{"'" + faces[k].name + "': " + found.error().message};
-    CadSurface surface;
-    surface.name = faces[k].name;
-    surface.surface = std::move(found->surface);
-    surface.deviation_m = found->deviation_m;
-    surface.trims = std::move(found->trims);
-    surface.trim_problem = std::move(found->trim_problem);
-    take(std::move(surface));
+    if (found) {
+      take(surface_of(faces[k], std::move(found).value()));
+      ++taken;
+    } else {
+      if (!first) first = Error{"'" + faces[k].name + "': " + found.error().message};
+      model.notes.push_back("'" + faces[k].name + "' is left out: " + found.error().message);
+    }
     if (progress) {
       progress(share_of_transfer +
                (1.0 - share_of_transfer) * static_cast<double>(k + 1) / static_cast<double>(faces.size()));
     }
   }
-  return {};
+  return taken > 0 ? Status() : *first;
 }
 
 Result<CadModel> read(const std::filesystem::path& file, const CadReading& reading, const TakeSurface& take,
@@ -148,9 +161,8 @@ Result<CadModel> read(const std::filesystem::path& file, const CadReading& readi
   say_unit(content->unit, reading, model);
   say_losses(content.value(), model);
   say_solids(named, model);
-  if (Status taken = take_faces(faces, scale_of(content->unit, reading), reading, take, progress); !taken) {
-    return taken.error();
-  }
+  const Status taken = take_faces(faces, scale_of(content->unit, reading), reading, take, progress, model);
+  if (!taken) return taken.error();
   return model;
 }
 

@@ -18,8 +18,9 @@ using Entity = opencascade::handle<Standard_Transient>;
 constexpr std::array iges_faces{143, 144, 510};
 
 bool is_face(const Entity& entity, CadFormat format) {
-  if (format == CadFormat::step)
+  if (format == CadFormat::step) {
     return !opencascade::handle<StepShape_FaceSurface>::DownCast(entity).IsNull();
+  }
   const auto iges = opencascade::handle<IGESData_IGESEntity>::DownCast(entity);
   return !iges.IsNull() &&
          std::find(iges_faces.begin(), iges_faces.end(), iges->TypeNumber()) != iges_faces.end();

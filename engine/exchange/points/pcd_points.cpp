@@ -160,9 +160,8 @@ Result<PointCloud> text_body(Header header) {
     numbers += field.count;
   }
   // A number and what parts it from the next take two bytes.
-  if (header.points <= point_limit && header.points > header.body.size() / (2 * numbers) + 1) {
-    return ends_early(header.body.size() / (2 * numbers), header.points);
-  }
+  const std::uint64_t held = numbers == 0 ? 0 : header.body.size() / (2 * numbers);
+  if (header.points <= point_limit && header.points > held + 1) return ends_early(held, header.points);
   std::vector<double> row(numbers);
   std::uint64_t rows_read = 0;
   std::string_view rest = header.body;

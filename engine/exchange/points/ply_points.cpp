@@ -152,7 +152,7 @@ class Numbers {
     if (!property.list_count) return take(property.type, number);
     double length = 0.0;
     if (!take(*property.list_count, length) || !(length >= 0.0 && length <= 1e9)) return false;
-    for (double k = 0.0; k < length; ++k) {
+    for (auto left = static_cast<std::uint64_t>(length); left > 0; --left) {
       if (!take(property.type, number)) return false;
     }
     return true;
