@@ -91,7 +91,7 @@ Status free_a_seam(Direction direction, TrimmedSurface& part) {
   const KnotVector knots = direction == Direction::u ? part.surface.u : part.surface.v;
   if (!knots.is_periodic() || !leaves(knots, direction, part.trims)) return {};
   const auto seam = free_seam(knots, direction, part.trims);
-  if (!seam) return Error{"its trim loops cross its seam everywhere"};
+  if (!seam) return Error{"its trim loops cross its seam wherever that is laid; make one smaller"};
   auto moved = with_seam_at(part.surface, direction, *seam);
   if (!moved) return moved.error();
   for (TrimLoop& loop : part.trims) loop = with_seam_at(loop, direction, knots, *seam);
@@ -131,7 +131,7 @@ Result<std::vector<TrimmedSurface>> halves_of(const TrimmedSurface& part, Direct
   for (const TrimLoop& loop : part.trims) {
     if (*reach(loop).first >= low) high = std::min(high, *reach(loop).first);
     if (*reach(loop).first<low&& * reach(loop).second> low) {
-      return Error{"its holes leave no place to cut it in two"};
+      return Error{"its holes leave no place to cut it in two; make one smaller"};
     }
   }
   const double cut = 0.5 * (low + high);
