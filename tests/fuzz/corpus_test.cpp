@@ -1,4 +1,5 @@
-// The cases that fuzzing has found, and the first ones it grew from, whole and cut short.
+// The cases that fuzzing has found, and the first ones it grew from, whole and cut short; and those it has grown,
+// which go every way it knows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,12 +19,9 @@ void PrintTo(const FuzzTarget& target, std::ostream* out) {
 
 namespace {
 
-std::vector<std::filesystem::path> cases_of(const char* target) {
+std::vector<std::filesystem::path> cases_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> cases;
-  for (const auto& file :
-       std::filesystem::directory_iterator(std::filesystem::path(SPOONBILL_CORPUS) / target)) {
-    cases.push_back(file.path());
-  }
+  for (const auto& file : std::filesystem::directory_iterator(folder)) cases.push_back(file.path());
   std::sort(cases.begin(), cases.end());
   return cases;
 }
@@ -31,7 +29,7 @@ std::vector<std::filesystem::path> cases_of(const char* target) {
 class Corpus : public testing::TestWithParam<FuzzTarget> {};
 
 TEST_P(Corpus, EveryCaseIsTaken) {
-  const auto cases = cases_of(GetParam().name);
+  const auto cases = cases_in(std::filesystem::path(SPOONBILL_CORPUS) / GetParam().name);
   EXPECT_FALSE(cases.empty());
   for (const auto& file : cases) {
     SCOPED_TRACE(file.filename().string());
@@ -39,6 +37,15 @@ TEST_P(Corpus, EveryCaseIsTaken) {
     GetParam().take(bytes);
     for (const std::size_t part : {2, 3, 7})
       GetParam().take(std::string_view(bytes).substr(0, bytes.size() / part));
+  }
+}
+
+TEST_P(Corpus, EveryGrownCaseIsTaken) {
+  const auto cases = cases_in(std::filesystem::path(SPOONBILL_GROWN_CORPUS) / GetParam().name);
+  EXPECT_GT(cases.size(), 100U);
+  for (const auto& file : cases) {
+    SCOPED_TRACE(file.filename().string());
+    GetParam().take(content_of(file));
   }
 }
 
