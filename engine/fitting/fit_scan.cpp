@@ -60,6 +60,7 @@ Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
   Islands islands = split_islands(points.value());
   ScanFit result;
   result.islands = islands.islands.size();
+  result.joined = points->joined;
   result.outliers = points->outliers;
   result.dust = islands.dust_points;
   if (islands.islands.empty())
