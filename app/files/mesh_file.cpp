@@ -60,8 +60,9 @@ Result<MeshFile> read_mesh_file(const std::filesystem::path& file, const MeshRea
   if (!is_mesh_name(file)) {
     return Error{file.string() + ": is no mesh by its name; .obj, .stl and .ply are read"};
   }
-  if (Status status = check_foreign_file(file, file_bytes_limit, "reduce the mesh"); !status)
+  if (Status status = check_foreign_file(file, file_bytes_limit, "reduce the mesh"); !status) {
     return status.error();
+  }
   auto child =
       ChildOutput::start({reading.program.string(), "read-mesh", "--", file.string()}, reading.patience);
   if (!child) return Error{file.string() + ": " + child.error().message};

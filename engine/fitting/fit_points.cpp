@@ -119,8 +119,9 @@ std::vector<bool> lie_apart(const Scan& scan) {
     return *place;
   };
   const double median = at(0.5), deviation = std::max((at(0.84) - median), 0.1 * median);
-  for (std::size_t p = 0; p < apart.size(); ++p)
+  for (std::size_t p = 0; p < apart.size(); ++p) {
     apart[p] = reach[p] > median + outlier_deviations * deviation;
+  }
   return apart;
 }
 
@@ -249,8 +250,9 @@ std::vector<Vector2> take_points_as_nodes(FitPoints& points, const std::vector<V
     places.emplace_back(uv[p].x(), uv[p].y(), 0.0);
   }
   const NearestPoints nearest(places);
-  for (std::size_t p = 0; p < count; ++p)
+  for (std::size_t p = 0; p < count; ++p) {
     points.node_of[p] = nearest.nearest({uv[p].x(), uv[p].y(), 0.0}).index;
+  }
   points.node_normals.assign(nodes.size(), Vector3::Zero());
   points.rims.clear();
   points.graph = make_point_graph(std::move(nodes), {});

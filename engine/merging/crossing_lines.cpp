@@ -97,8 +97,9 @@ Error not_crossed() {
 Result<Surface> with_pole_at_crossing(const Surface& body, const std::vector<LineCrossing>& crossings,
                                       double tolerance_m) {
   Vector3 place = Vector3::Zero();
-  for (const LineCrossing& crossing : crossings)
+  for (const LineCrossing& crossing : crossings) {
     place += crossing.point_m / static_cast<double>(crossings.size());
+  }
   auto placed = with_pole_towards(body, (place - middle_of(body)).normalized(), tolerance_m);
   if (!placed) return placed.error();
   return std::move(placed->surface);

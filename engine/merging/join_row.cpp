@@ -117,8 +117,9 @@ Result<std::vector<Surface>> placed_in_row(const PreparedRow& row) {
     const double length = patch.v.domain_end() - patch.v.domain_start();
     double end = start + stretch * length;
     // What was split keeps its knots to the last bit.
-    if (std::abs(start - patch.v.domain_start()) <= same_knot_share * length)
+    if (std::abs(start - patch.v.domain_start()) <= same_knot_share * length) {
       start = placed.back().v.domain_end();
+    }
     if (std::abs(end - patch.v.domain_end()) <= same_knot_share * length) end = patch.v.domain_end();
     auto moved = with_domain(patch, Direction::v, start, end);
     if (!moved) return moved.error();
@@ -229,8 +230,9 @@ Result<PreparedRow> prepare_row(std::vector<Surface> patches, const JoinRequest&
     Surface &before = row.patches[p - 1], &after = row.patches[p];
     auto joint = measure(before, after, request);
     if (joint && request.blend_m > 0.0) {
-      if (Status status = cut_for_blend(before, after, joint.value(), request); !status)
+      if (Status status = cut_for_blend(before, after, joint.value(), request); !status) {
         return status.error();
+      }
       joint = measure(before, after, request);
     }
     if (!joint) return joint.error();

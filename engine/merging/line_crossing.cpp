@@ -138,8 +138,9 @@ std::vector<LineCrossing> CrossingFinder::of_ray(const Vector3& from_m, const Ve
   const double step = length_m / ray_chords;
   for (int k = 0; k < ray_chords; ++k) {
     for (const Start& start : of_chord(from_m + k * step * direction, from_m + (k + 1) * step * direction)) {
-      if (const auto crossing = polished(curve, (k + start.share) * step, start))
+      if (const auto crossing = polished(curve, (k + start.share) * step, start)) {
         crossings.push_back(*crossing);
+      }
     }
   }
   drop_repeated(crossings, 1e-9 * length_m);

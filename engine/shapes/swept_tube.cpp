@@ -97,8 +97,9 @@ class SweptTube {
 
 Result<ExactShape> tube_shape(const TubeSize& size) {
   if (Status status = check_size("half the tube's width", size.half_width_m); !status) return status.error();
-  if (Status status = check_size("half the tube's height", size.half_height_m); !status)
+  if (Status status = check_size("half the tube's height", size.half_height_m); !status) {
     return status.error();
+  }
   if (Status status = check_size("the tube's length", size.middle.end()); !status) return status.error();
   const auto tube = std::make_shared<const SweptTube>(size);
   double worst = 0.0, sharpest = 0.0;
