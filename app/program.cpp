@@ -7,6 +7,7 @@
 
 #include "app/commands/command.h"
 #include "app/version.h"
+#include "engine/excerpt.h"
 
 namespace spoonbill {
 namespace {
@@ -28,11 +29,34 @@ std::string first_line(const std::string& text) {
   return line;
 }
 
+// As a person would say it.
+std::string complaint(const CLI::App& parser, const CLI::ParseError& error) {
+  const std::string text = first_line(error.what());
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && parser.get_require_subcommand_min() > 0) {
+    const std::vector<std::string> words = parser.remaining();
+    return words.empty() ? "a command is missing" : "'" + excerpt(words.front()) + "' is no command";
+  }
+  const std::size_t twice = text.find(": At Most 1 required but received");
+  return twice == std::string::npos ? text : text.substr(0, twice) + " is given more than once";
+}
+
 int explain_wrong_use(const CLI::App& root, const CLI::ParseError& error, Console& console) {
-  const auto chosen = root.get_subcommands();
-  const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
-  console.err << "spoonbill: " << first_line(error.what()) << "; see `spoonbill" << command << " --help`\n";
+  const CLI::App* parser = &root;
+  std::string command = "spoonbill";
+  while (!parser->get_subcommands().empty()) {
+    parser = parser->get_subcommands().front();
+    command += " " + parser->get_name();
+  }
+  console.err << "spoonbill: " << complaint(*parser, error) << "; see `" << command << " --help`\n";
   return exit_wrong_use;
+}
+
+// Their names say what they are; that they are text says nothing.
+void hide_types_of_positionals(CLI::App& parser) {
+  for (CLI::Option* option : parser.get_options({})) {
+    if (option->get_positional()) option->type_name("");
+  }
+  for (CLI::App* command : parser.get_subcommands({})) hide_types_of_positionals(*command);
 }
 
 int act(const CommandEntry& entry, Console& console) {
@@ -59,6 +83,7 @@ int run_program(const std::vector<std::string>& arguments, Console& console) {
       add_edit(root),    add_replay(root), add_record(root),  add_info(root),     add_sample(root),
       add_collide(root), add_rest(root),   add_new(root),     add_fit(root),      add_merge(root),
       add_change(root),  add_check(root),  add_convert(root), add_read_mesh(root)};
+  hide_types_of_positionals(root);
   try {
     root.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::Success& request) {  // --help, --version

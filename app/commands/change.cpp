@@ -6,11 +6,13 @@
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
+#include "app/commands/left_out.h"
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
 #include "app/commands/surface_change.h"
+#include "app/files/document_file.h"
 #include "app/report/fact_sheet.h"
-#include "engine/exchange/document.h"
+#include "app/report/quantity_text.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -20,20 +22,16 @@ constexpr Range<double> tolerance_range_m{1e-9, 0.1};
 
 struct ChangeOptions {
   std::filesystem::path model, out;
-  std::vector<std::string> words;
+  AskedChange change;
   int body = 1;
   double tolerance_m = 1e-5;
   bool json = false;
 };
 
-void replace_body(std::vector<Body>& bodies, std::size_t place, ChangedSurfaces changed) {
+void replace_body(std::vector<Body>& bodies, std::size_t place, ChangedSurfaces changed,
+                  std::vector<std::string>& remarks) {
   Body body = bodies[place];
-  if (!changed.keeps_parameters) {
-    // Told as shares of the surface as it was.
-    body.regions.clear();
-    body.loads.clear();
-    body.supports.clear();
-  }
+  if (!changed.keeps_parameters) leave_out_shares(body, remarks);
   bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(place));
   for (std::size_t k = 0; k < changed.surfaces.size(); ++k) {
     Body part = body;
@@ -45,11 +43,10 @@ void replace_body(std::vector<Body>& bodies, std::size_t place, ChangedSurfaces 
 }
 
 void report(const ChangeOptions& options, const std::vector<Body>& bodies, double deviation_m,
-            Console& console) {
+            const std::vector<std::string>& remarks, Console& console) {
   FactSheet facts;
   facts.add("File", options.out.string(), "file", options.out.string());
-  facts.add("Deviation", deviation_m == 0.0 ? "none" : "at most " + short_length_text(deviation_m),
-            "deviation_m", deviation_m);
+  facts.add("Deviation", deviation_text(deviation_m), "deviation_m", deviation_m);
   Json list = Json::array();
   for (const Body& body : bodies) {
     const KnotVector &u = body.surface.u, &v = body.surface.v;
@@ -65,25 +62,28 @@ void report(const ChangeOptions& options, const std::vector<Body>& bodies, doubl
                     {"periodic", {u.is_periodic(), v.is_periodic()}}});
   }
   facts.add("", "", "bodies", list);
+  add_remarks(facts, remarks);
   facts.print(console.out, options.json);
 }
 
 Status change(const ChangeOptions& options, Console& console) {
-  auto document = read_document(options.model);
+  auto document = read_document_file(options.model);
   if (!document) return document.error();
   std::vector<Body>& bodies = document->scene.bodies;
-  if (Status status = check_range("--body", options.body, {1, static_cast<int>(bodies.size())}); !status) {
-    return status;
+  if (options.body > static_cast<int>(bodies.size())) {
+    return Error{options.model.string() + ": has " + count_text(bodies.size(), "body", "bodies") +
+                 ", and --body names " + std::to_string(options.body)};
   }
   const std::size_t place = static_cast<std::size_t>(options.body) - 1;
-  auto result = changed(bodies[place].surface, bodies[place].trims, options.words, options.tolerance_m);
+  auto result = changed(bodies[place].surface, bodies[place].trims, options.change, options.tolerance_m);
   if (!result) {
     return Error{options.model.string() + ": body \"" + bodies[place].name + "\": " + result.error().message};
   }
   const double deviation_m = result->deviation_m;
-  replace_body(bodies, place, std::move(result).value());
+  std::vector<std::string> remarks;
+  replace_body(bodies, place, std::move(result).value(), remarks);
   if (Status written = write_document(document.value(), options.out); !written) return written;
-  report(options, bodies, deviation_m, console);
+  report(options, bodies, deviation_m, remarks, console);
   return {};
 }
 
@@ -98,9 +98,20 @@ CommandEntry add_change(CLI::App& root) {
       "supports stay where the change keeps the parameters, and are left out where it does not.\n"
       "Example: spoonbill change assets/models/spoon-handle.json split v=50 --out halves.json");
   parser->add_option("MODEL", options->model, "A document (.json)")->required();
-  parser->add_option("CHANGE", options->words, "What to do, as below")->required()->expected(1, 3);
-  parser->add_option("--out", options->out, "The changed document")->required();
-  parser->add_option("--body", options->body, "Which body, counted from 1; the first unless told");
+  parser
+      ->add_option_function<std::vector<std::string>>(
+          "CHANGE",
+          [options](const std::vector<std::string>& words) {
+            const auto change = parse_change(words);
+            if (!change) throw CLI::ValidationError("CHANGE", change.error().message);
+            options->change = change.value();
+          },
+          "What to do, as below")
+      ->required();
+  add_document_output(*parser, options->out, "The changed document (.json)")->required();
+  parser->add_option("--body", options->body, "Which body, counted from 1; the first unless told")
+      ->check(CLI::Range(body_count_range.low, body_count_range.high).description(""))
+      ->type_name("NUMBER");
   add_parsed_option(
       *parser, "--tolerance", "LENGTH",
       [](const std::string& text) { return parse_length(text, tolerance_range_m); },

@@ -5,10 +5,24 @@
 #include <CLI/Formatter.hpp>
 #include <string>
 
+#include "engine/excerpt.h"
+#include "engine/exchange/file_format.h"
+
 namespace spoonbill {
 
 void add_json_option(CLI::App& parser, bool& json) {
   parser.add_flag("--json", json, "Print one JSON object instead of lines for people");
+}
+
+CLI::Option* add_document_output(CLI::App& parser, std::filesystem::path& out, const std::string& help) {
+  const auto take = [&out](const std::string& text) {
+    out = text;
+    if (format_of(out) == "json") return;
+    throw CLI::ValidationError("--out", "'" + excerpt(text) +
+                                            "' does not end in .json, as documents do; `spoonbill convert` "
+                                            "makes CAD files and meshes of them");
+  };
+  return parser.add_option_function<std::string>("--out", take, help)->type_name("FILE");
 }
 
 void add_instruction_set_option(CLI::App& parser, InstructionSet& set) {

@@ -37,7 +37,7 @@ CommandEntry add_edit(CLI::App& root) {
       ->add_option_function<std::string>(
           "--size",
           [settings](const std::string& text) {
-            const auto size = parse_extent(text, window_side_range);
+            const auto size = parse_extent(text, window_side_range, "1280x720");
             if (!size) throw CLI::ValidationError("--size", size.error().message);
             settings->width = size->width;
             settings->height = size->height;
@@ -45,7 +45,7 @@ CommandEntry add_edit(CLI::App& root) {
           "The window's size; 1280x720 unless told")
       ->type_name("WxH");
   parser->add_option("--scale", settings->scale, "The interface's scale, where the display does not tell it")
-      ->check(CLI::Range(1.0, 4.0));
+      ->check(CLI::Range(1.0, 4.0).description(""));
   parser
       ->add_option_function<std::string>(
           "--navigation",

@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "app/assets_folder.h"
 #include "app/commands/command.h"
@@ -17,6 +18,7 @@
 #include "app/interrupt.h"
 #include "app/report/fit_facts.h"
 #include "app/report/progress_bar.h"
+#include "engine/exchange/file_format.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -58,6 +60,10 @@ Result<ScanFit> fit_with_progress(const FitOptions& options, Scan scan, Console&
 }
 
 Status fit(const FitOptions& options, Console& console) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(options.scan, options.errors, ignored)) {
+    return Error{options.errors.string() + ": is the scan itself; choose another name"};
+  }
   const auto clay = read_material(std::filesystem::path(assets_folder) / "materials/modelling-clay.json");
   if (!clay) return clay.error();
   MeshReading reading;
@@ -68,6 +74,8 @@ Status fit(const FitOptions& options, Console& console) {
   if (!fitted) return fitted.error();
   const auto document = fitted_document(fitted.value(), options.scan.stem().string(), clay.value());
   if (!document) return Error{options.scan.string() + ": " + document.error().message};
+  // Files become whole: what asks to stop now waits for them.
+  const InterruptWatch until_written;
   if (Status written = write_document(document->document, options.out); !written) return written;
   FactSheet facts;
   facts.add("File", options.out.string(), "file", options.out.string());
@@ -81,10 +89,27 @@ Status fit(const FitOptions& options, Console& console) {
               options.errors.string());
     facts.add("", "", "errors_full_m", full);
   }
-  for (const std::string& remark : document->remarks) facts.add("Note", remark, "", nullptr);
-  facts.add("", "", "remarks", document->remarks);
+  std::vector<std::string> remarks = document->remarks;
+  if (const auto remark = size_remark(file.value(), fitted.value())) remarks.push_back(*remark);
+  add_remarks(facts, remarks);
   facts.print(console.out, options.json);
   return {};
+}
+
+Result<ShapeKind> parse_kind(const std::string& text) {
+  return parse_choice<ShapeKind>(
+      text, {{"sheet", ShapeKind::sheet}, {"tube", ShapeKind::tube}, {"closed", ShapeKind::closed}});
+}
+
+Result<IslandChoice> parse_islands(const std::string& text) {
+  return parse_choice<IslandChoice>(
+      text,
+      {{"largest", IslandChoice::largest}, {"bridge", IslandChoice::bridge}, {"all", IslandChoice::all}});
+}
+
+Result<std::filesystem::path> parse_cloud_name(const std::string& text) {
+  if (format_of(text) == "ply") return std::filesystem::path(text);
+  return Error{"'" + excerpt(text) + "' does not end in .ply, as a cloud with colours does"};
 }
 
 void add_options(CLI::App& parser, const std::shared_ptr<FitOptions>& options) {
@@ -92,9 +117,10 @@ void add_options(CLI::App& parser, const std::shared_ptr<FitOptions>& options) {
       .add_option("SCAN", options->scan,
                   "Points (.ply, .pcd, .xyz, .txt, .csv, .asc, .pts, .obj) or triangles (.ply, .obj, .stl)")
       ->required();
-  parser.add_option("--out", options->out, "The document to write (.json)")->required();
+  add_document_output(parser, options->out)->required();
   add_parsed_option(
-      parser, "--control", "RxC", [](const std::string& text) { return parse_extent(text, control_range); },
+      parser, "--control", "UxV",
+      [](const std::string& text) { return parse_extent(text, control_range, "24x24"); },
       [options](const Extent& control) { options->control = control; },
       "At most so many control points along u and v (24x24 unless told)");
   add_parsed_option(
@@ -106,20 +132,17 @@ void add_options(CLI::App& parser, const std::shared_ptr<FitOptions>& options) {
       parser, "--unit", "UNIT", [](const std::string& text) { return parse_unit(text); },
       [options](const LengthUnit& unit) { options->unit = unit; },
       "The unit of the scan's numbers: mm, cm, m or in (PLY and PCD: m, others: mm)");
-  const std::map<std::string, ShapeKind> kinds{
-      {"sheet", ShapeKind::sheet}, {"tube", ShapeKind::tube}, {"closed", ShapeKind::closed}};
-  parser.add_option("--kind", options->request.kind, "sheet, tube or closed; found unless told")
-      ->transform(CLI::CheckedTransformer(kinds))
-      ->option_text("KIND");
-  const std::map<std::string, IslandChoice> islands{
-      {"largest", IslandChoice::largest}, {"bridge", IslandChoice::bridge}, {"all", IslandChoice::all}};
-  parser
-      .add_option("--islands", options->request.islands,
-                  "Of a scan in several parts: largest alone, one body to bridge them, or all as bodies")
-      ->transform(CLI::CheckedTransformer(islands))
-      ->option_text("CHOICE");
-  parser.add_option("--errors", options->errors,
-                    "A cloud of the scan's points coloured by their distance (.ply)");
+  add_parsed_option(
+      parser, "--kind", "KIND", parse_kind, [options](ShapeKind kind) { options->request.kind = kind; },
+      "sheet, tube or closed; found unless told");
+  add_parsed_option(
+      parser, "--islands", "CHOICE", parse_islands,
+      [options](IslandChoice islands) { options->request.islands = islands; },
+      "Of a scan in several parts: largest alone (unless told), one body to bridge them, or all as bodies");
+  add_parsed_option(
+      parser, "--errors", "FILE", parse_cloud_name,
+      [options](const std::filesystem::path& file) { options->errors = file; },
+      "A cloud of the scan's points coloured by their distance (.ply)");
   add_json_option(parser, options->json);
 }
 

@@ -61,8 +61,7 @@ Status add_simulated(FactSheet& facts, const Document& document, const std::stri
   write_snapshot(session.value(), snapshot);
   add_simulation_facts(facts, snapshot);
   add_elasticity_facts(facts, session->simulation);
-  for (const std::string& remark : session->simulation.remarks()) facts.add("Note", remark, "", nullptr);
-  facts.add("", "", "remarks", session->simulation.remarks());
+  add_remarks(facts, session->simulation.remarks());
   const bool has_map = document.scene.bodies[0].lattice.feature_map.has_value();
   add_cell_facts(facts, session->simulation.lattice().mesh(), has_map ? maps.report() : std::nullopt);
   return {};

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,10 +13,15 @@
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
+#include "app/commands/left_out.h"
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
+#include "app/files/document_file.h"
+#include "app/interrupt.h"
 #include "app/report/fact_sheet.h"
-#include "engine/exchange/document.h"
+#include "app/report/progress_bar.h"
+#include "app/report/quantity_text.h"
+#include "engine/excerpt.h"
 #include "engine/merging/intersection_merge.h"
 #include "engine/merging/trimmed_patch.h"
 #include "engine/number_text.h"
@@ -29,6 +36,7 @@ constexpr Range<double> twist_range{-1.0, 1.0};
 // Of the tolerance, for making a trimmed patch whole.
 constexpr double trimmed_share = 0.25;
 constexpr int highest_continuity = max_degree - 1;
+constexpr Range<int> model_count_range{1, 64};
 
 struct MergeOptions {
   std::vector<std::filesystem::path> models;
@@ -46,7 +54,8 @@ Result<int> parse_continuity(const std::string& text) {
       text[1] <= '0' + highest_continuity) {
     return text[1] - '0';
   }
-  return Error{quoted(text, 20) + " is not a continuity from C0 to C" + std::to_string(highest_continuity)};
+  return Error{"'" + excerpt(text) + "' is not a continuity from C0 to C" +
+               std::to_string(highest_continuity)};
 }
 
 // "-0.25"
@@ -54,14 +63,14 @@ Result<double> parse_twist(const std::string& text) {
   double share = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), share);
   if (error == std::errc() && end == text.data() + text.size() && twist_range.contains(share)) return share;
-  return Error{quoted(text, 20) + " is not a share of a turn from -1 to 1"};
+  return Error{"'" + excerpt(text) + "' is not a share of a turn from -1 to 1"};
 }
 
 // "2.v_start": the second patch's edge.
 Result<PatchEdge> parse_edge(const std::string& text) {
   const std::size_t dot = text.find('.');
   if (dot == 0 || dot == std::string::npos || dot > 3 || text.find_first_not_of("0123456789") != dot) {
-    return Error{quoted(text, 40) + " is not an edge like 2.v_start, the second patch's"};
+    return Error{"'" + excerpt(text) + "' is not an edge like 2.v_start, the second patch's"};
   }
   const auto side = parse_side(text.substr(dot + 1));
   if (!side) return side.error();
@@ -72,7 +81,7 @@ Result<PatchEdge> parse_edge(const std::string& text) {
 Result<ChosenEdges> parse_edges(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {
-    return Error{quoted(text, 40) + " is not a pair of edges like 1.v_end:2.v_start"};
+    return Error{"'" + excerpt(text) + "' is not a pair of edges like 1.v_end:2.v_start"};
   }
   std::string second = text.substr(colon + 1);
   ChosenEdges edges;
@@ -84,7 +93,7 @@ Result<ChosenEdges> parse_edges(const std::string& text) {
   if (!a) return a.error();
   if (!b) return b.error();
   if (a->patch == b->patch) {
-    return Error{quoted(text, 40) + " joins a patch to itself; name two patches"};
+    return Error{"'" + excerpt(text) + "' joins a patch to itself; name two patches"};
   }
   edges.a = a.value();
   edges.b = b.value();
@@ -113,13 +122,21 @@ void add_joint(FactSheet& facts, const MergedJoint& merged, Json& list) {
                   {"blend_length_m", joint.blend_length_m}});
 }
 
-void report(const MergeOptions& options, const std::vector<Body>& patches, const Merged& merged,
-            Console& console) {
+// What is to be merged, and what the merged document takes from the first model.
+struct Parts {
+  std::optional<Document> first;
+  std::vector<Body> bodies;
+  std::vector<Surface> patches;  // of the bodies, whole
+  double untrimmed_m = 0.0;      // how far making them whole moved them
+  std::vector<std::string> remarks;
+};
+
+void report(const MergeOptions& options, const Parts& parts, const Merged& merged, Console& console) {
   FactSheet facts;
   facts.add("File", options.out.string(), "file", options.out.string());
   Json names = Json::array();
-  for (const Body& patch : patches) names.push_back(patch.name);
-  facts.add("Patches", std::to_string(patches.size()), "patches", names);
+  for (const Body& patch : parts.bodies) names.push_back(patch.name);
+  facts.add("Patches", std::to_string(parts.bodies.size()), "patches", names);
   const KnotVector &u = merged.surface.u, &v = merged.surface.v;
   facts.add("Control points",
             std::to_string(u.control_point_count()) + " x " + std::to_string(v.control_point_count()) +
@@ -128,11 +145,12 @@ void report(const MergeOptions& options, const std::vector<Body>& patches, const
   facts.add("", "", "degrees", {u.degree(), v.degree()});
   const int continuity = options.crossing && options.fillet_m == 0.0 ? 0 : options.request.join.continuity;
   facts.add("Continuity", "C" + std::to_string(continuity), "continuity", continuity);
-  facts.add("Deviation", "at most " + short_length_text(merged.deviation_m) + " outside blends",
-            "deviation_m", merged.deviation_m);
+  facts.add("Deviation", deviation_text(merged.deviation_m) + " outside blends", "deviation_m",
+            merged.deviation_m);
   Json joints = Json::array();
   for (const MergedJoint& joint : merged.joints) add_joint(facts, joint, joints);
   facts.add("", "", "joints", joints);
+  add_remarks(facts, parts.remarks);
   facts.print(console.out, options.json);
 }
 
@@ -142,10 +160,6 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   document.name = options.name.empty() ? options.out.stem().string() : options.name;
   Body body = patches[0];
   body.surface = std::move(surface);
-  // Told as shares of surfaces that are no more.
-  body.regions.clear();
-  body.loads.clear();
-  body.supports.clear();
   body.trims.clear();
   if (patches.size() > 1) {
     body.name = document.name;
@@ -155,18 +169,42 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   return document;
 }
 
-// Those that cross are merged one after the other, each by its share of the tolerance.
-Result<Merged> merged_surface(const std::vector<Surface>& patches, const MergeOptions& options,
-                              double spent_m) {
+Result<Parts> read_parts(const MergeOptions& options) {
+  Parts parts;
+  for (const auto& model : options.models) {
+    auto document = read_document_file(model);
+    if (!document) return document.error();
+    for (Body& body : document->scene.bodies) {
+      auto whole = untrimmed(body.surface, body.trims, trimmed_share * options.request.join.tolerance_m);
+      if (!whole) return Error{model.string() + ": body \"" + body.name + "\": " + whole.error().message};
+      parts.untrimmed_m = std::max(parts.untrimmed_m, whole->deviation_m);
+      leave_out_shares(body, parts.remarks);
+      parts.bodies.push_back(body);
+      parts.patches.push_back(std::move(whole->surface));
+    }
+    if (!parts.first) parts.first = std::move(document).value();
+  }
+  return parts;
+}
+
+// Those that cross are merged one after the other, each by its share of the tolerance. `go_on` is asked
+// before each with the share that is done.
+Result<Merged> merged_surface(const Parts& parts, const MergeOptions& options,
+                              const std::function<bool(double)>& go_on) {
+  const std::vector<Surface>& patches = parts.patches;
   MergeRequest request = options.request;
+  const Error stopped{"stopped; " + options.out.string() + " was not written"};
+  if (!go_on(0.0)) return stopped;
   if (!options.crossing) {
-    request.join.spent_m = spent_m;
+    request.join.spent_m = parts.untrimmed_m;
     return merge(patches, request);
   }
   if (patches.size() < 2) return Error{"one body alone crosses none; name another one"};
   Merged merged{patches[0], 0.0, {}};
-  request.join.tolerance_m = (request.join.tolerance_m - spent_m) / static_cast<double>(patches.size() - 1);
+  request.join.tolerance_m =
+      (request.join.tolerance_m - parts.untrimmed_m) / static_cast<double>(patches.size() - 1);
   for (std::size_t p = 1; p < patches.size(); ++p) {
+    if (!go_on(static_cast<double>(p - 1) / static_cast<double>(patches.size() - 1))) return stopped;
     auto next = merge_crossing(merged.surface, patches[p], {request.join, options.fillet_m});
     if (!next) return Error{"patch " + std::to_string(p + 1) + ": " + next.error().message};
     merged.surface = std::move(next->surface);
@@ -175,29 +213,33 @@ Result<Merged> merged_surface(const std::vector<Surface>& patches, const MergeOp
   return merged;
 }
 
+Result<Merged> merge_with_progress(const MergeOptions& options, const Parts& parts, Console& console) {
+  InterruptWatch interrupt;
+  ProgressBar bar(console, "Merging", false);
+  const auto go_on = [&](double share) {
+    bar.show(static_cast<std::uint64_t>(1000.0 * share), 1000);
+    return !interrupt.requested();
+  };
+  auto merged = merged_surface(parts, options, go_on);
+  // The last step may have been long.
+  if (merged && !go_on(1.0)) merged = Error{"stopped; " + options.out.string() + " was not written"};
+  if (interrupt.requested()) interrupt.answer();
+  return merged;
+}
+
 Status merge_models(const MergeOptions& options, Console& console) {
-  std::optional<Document> first;
-  std::vector<Body> bodies;
-  std::vector<Surface> patches;
-  double untrimmed_m = 0.0;
-  for (const auto& model : options.models) {
-    auto document = read_document(model);
-    if (!document) return document.error();
-    for (const Body& body : document->scene.bodies) {
-      auto whole = untrimmed(body.surface, body.trims, trimmed_share * options.request.join.tolerance_m);
-      if (!whole) return Error{model.string() + ": body \"" + body.name + "\": " + whole.error().message};
-      untrimmed_m = std::max(untrimmed_m, whole->deviation_m);
-      bodies.push_back(body);
-      patches.push_back(std::move(whole->surface));
-    }
-    if (!first) first = std::move(document).value();
-  }
-  auto merged = merged_surface(patches, options, untrimmed_m);
+  const int models = static_cast<int>(options.models.size());
+  if (Status few = check_range("the number of models", models, model_count_range); !few) return few;
+  const auto parts = read_parts(options);
+  if (!parts) return parts.error();
+  auto merged = merge_with_progress(options, parts.value(), console);
   if (!merged) return merged.error();
-  merged->deviation_m += untrimmed_m;
-  const Document document = merged_document(*first, bodies, options, merged->surface);
+  merged->deviation_m += parts->untrimmed_m;
+  const Document document = merged_document(*parts->first, parts->bodies, options, merged->surface);
+  // A file becomes whole: what asks to stop now waits for it.
+  const InterruptWatch until_written;
   if (Status written = write_document(document, options.out); !written) return written;
-  report(options, bodies, merged.value(), console);
+  report(options, parts.value(), merged.value(), console);
   return {};
 }
 
@@ -216,8 +258,8 @@ CommandEntry add_merge(CLI::App& root) {
       "Material and tool are the first model's;\n"
       "regions, loads and supports of the patches are left out.\n"
       "Example: spoonbill merge bowl.json handle.json --continuity C2 --out spoon.json");
-  parser->add_option("MODEL", options->models, "Documents (.json)")->required()->expected(1, 64);
-  parser->add_option("--out", options->out, "The merged document")->required();
+  parser->add_option("MODEL", options->models, "Documents (.json)")->required();
+  add_document_output(*parser, options->out, "The merged document (.json)")->required();
   parser->add_option("--name", options->name, "Of the result; the file's unless told");
   const JoinRequest& join = options->request.join;
   const auto length_in = [](Range<double> range) {

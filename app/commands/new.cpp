@@ -1,11 +1,10 @@
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
@@ -18,6 +17,7 @@
 #include "app/start/starting_document.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 #include "engine/number_text.h"
+#include "engine/place_text.h"
 #include "engine/shapes/fit_shape.h"
 #include "engine/shapes/lump.h"
 #include "engine/study/enclosed_mass.h"
@@ -36,10 +36,6 @@ struct NewOptions {
   bool json = false;
 };
 
-bool is_closed(const ExactShape& shape) {
-  return shape.u.periodic && (shape.v.periodic || (shape.pole_at_start && shape.pole_at_end));
-}
-
 // Lines and profiles may lead a shape through itself.
 Status check_apart(const Surface& surface, bool closed) {
   const auto grid = make_nested_grid(surface.u, surface.v, 0);
@@ -49,10 +45,8 @@ Status check_apart(const Surface& surface, bool closed) {
   query.closed = closed;
   if (!collider.collide(surface, query).touching) return {};
   if (collider.contacts().empty()) return Error{"the shape passes through itself; make it thinner or wider"};
-  const Vector3 place = 1e3 * collider.contacts()[0].pair.first_m;
-  return Error{"the shape passes through itself near " + number_text(std::round(place.x())) + ", " +
-               number_text(std::round(place.y())) + ", " + number_text(std::round(place.z())) +
-               " mm; make it thinner or its line wider there"};
+  return Error{"the shape passes through itself near " + place_text(collider.contacts()[0].pair.first_m) +
+               "; make it thinner or its line wider there"};
 }
 
 void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShape& fitted,
@@ -60,11 +54,10 @@ void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShap
   const int rows = fitted.surface.net.rows, columns = fitted.surface.net.columns;
   facts.add("Control points", std::to_string(rows) + " x " + std::to_string(columns), "control_points",
             {rows, columns});
-  facts.add("Deviation", "at most " + short_length_text(fitted.deviation_m), "deviation_m",
-            fitted.deviation_m);
+  facts.add("Deviation", deviation_text(fitted.deviation_m), "deviation_m", fitted.deviation_m);
   facts.add("", "", "tolerance_m", tolerance_m);
   const EnclosedMass mass = enclosed_mass(fitted.surface);
-  const bool closed = is_closed(shape);
+  const bool closed = shape.is_closed();
   facts.add("", "", "closed", closed);
   facts.add("Area", area_text(mass.area_m2), "area_m2", mass.area_m2);
   if (closed) facts.add("Volume", volume_text(mass.volume_m3), "volume_m3", mass.volume_m3);
@@ -80,7 +73,7 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   if (options.control) fit.control_counts = {{options.control->width, options.control->height}};
   auto fitted = fit_shape(made->shape, fit);
   if (!fitted) return fitted.error();
-  if (Status alone = check_apart(fitted->surface, is_closed(made->shape)); !alone) return alone;
+  if (Status alone = check_apart(fitted->surface, made->shape.is_closed()); !alone) return alone;
   const std::string name = options.name.empty() ? kind.parser->get_name() : options.name;
   const Document document =
       starting_document(name, fitted->surface, material.value(), made->shell_thickness_m);
@@ -91,17 +84,20 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   facts.add("Kind", kind.parser->get_name(), "kind", kind.parser->get_name());
   add_size_fact(facts, fitted->surface);
   add_shape_facts(facts, made->shape, fitted.value(), fit.tolerance_m);
-  if (is_closed(made->shape) && made->shape.v.periodic) {
-    facts.add("Note", "closed both ways, which no lattice fills: to look at, merge and export, not to press",
-              "", nullptr);
+  std::vector<std::string> remarks;
+  if (made->shape.is_closed() && made->shape.v.periodic) {
+    remarks.emplace_back(
+        "closed both ways, which no lattice fills: to look at, merge and export, not to press");
   }
+  add_remarks(facts, remarks);
   facts.print(console.out, options.json);
   return {};
 }
 
 void add_fit_options(CLI::App& parser, NewOptions& options) {
   add_parsed_option(
-      parser, "--control", "UxV", [](const std::string& text) { return parse_extent(text, control_range); },
+      parser, "--control", "UxV",
+      [](const std::string& text) { return parse_extent(text, control_range, "24x24"); },
       [&options](const Extent& control) { options.control = control; },
       "So many control points along u and v; as many as the tolerance needs unless told");
   add_parsed_option(
@@ -129,7 +125,7 @@ CommandEntry add_new(CLI::App& root) {
                             "One that comes with the program, or a part of its name; modelling-clay unless "
                             "told");
     kind.parser->add_option("--name", options->name, "Of the body and the document; its kind unless told");
-    kind.parser->add_option("--out", options->out, "The document to write (.json)")->required();
+    add_document_output(*kind.parser, options->out)->required();
     add_json_option(*kind.parser, options->json);
   }
   return {parser, [options, kinds = std::move(kinds)](Console& console) {

@@ -7,6 +7,7 @@
 #include "app/commands/parsed_option.h"
 #include "engine/material/lattice/shell_lattice.h"
 #include "engine/shapes/lump.h"
+#include "engine/shapes/shape_sizes.h"
 
 namespace spoonbill {
 namespace {
@@ -94,14 +95,14 @@ NewKind add_plate(CLI::App& root) {
                                    "The radius of its four corners, seen from above, at least the thickness; "
                                    "a tenth of its width unless told");
   auto sheet = std::make_shared<bool>(false);
-  parser->add_flag("--sheet", *sheet, "An open surface, whose body is a shell of the thickness below it");
+  parser->add_flag("--sheet", *sheet, "An open surface, whose body is a shell of the thickness below it")
+      ->excludes(parser->get_option("--corner"));
   return {parser, [=]() -> Result<NewShape> {
             PlateSize size{(*sides)[0], (*sides)[1]};
             size.thickness_m = thickness->value_or(size.thickness_m);
             size.corner_m = corner->value_or(usual_corner_m(size));
             if (!*sheet) return new_shape(size);
-            if (*corner) return Error{"--corner is of a closed plate; leave it out with --sheet"};
-            if (Status status = check_range("thickness in m", size.thickness_m, shell_thickness_range_m);
+            if (Status status = check_length("thickness", size.thickness_m, shell_thickness_range_m);
                 !status) {
               return status.error();
             }

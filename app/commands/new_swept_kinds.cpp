@@ -11,6 +11,7 @@
 #include "engine/material/lattice/shell_lattice.h"
 #include "engine/shapes/lathe.h"
 #include "engine/shapes/loft.h"
+#include "engine/shapes/shape_sizes.h"
 #include "engine/shapes/swept_tube.h"
 
 namespace spoonbill {
@@ -21,14 +22,14 @@ Length add_thickness(CLI::App& parser) {
 }
 
 // An open shape is a shell; a closed one has no use for a thickness.
-Result<NewShape> with_thickness(ExactShape shape, bool open, const Length& thickness) {
+Result<NewShape> with_thickness(ExactShape shape, const Length& thickness) {
   constexpr double usual_m = 0.002;
+  const bool open = !shape.is_closed();
   if (!open && *thickness) return Error{"--thickness is of an open shape, and this one is closed"};
   NewShape made{std::move(shape)};
   if (!open) return made;
   made.shell_thickness_m = thickness->value_or(usual_m);
-  if (Status status = check_range("thickness in m", *made.shell_thickness_m, shell_thickness_range_m);
-      !status) {
+  if (Status status = check_length("thickness", *made.shell_thickness_m, shell_thickness_range_m); !status) {
     return status.error();
   }
   return made;
@@ -55,10 +56,12 @@ NewKind add_tube(CLI::App& root) {
   const Length radius = add_length(*parser, "--radius", "Of a round section; 5mm unless told");
   const Length width = add_length(*parser, "--width", "Of an elliptic section, level at its start");
   const Length height = add_length(*parser, "--height", "Of an elliptic section");
+  CLI::Option *round = parser->get_option("--radius"), *wide = parser->get_option("--width"),
+              *high = parser->get_option("--height");
+  round->excludes(wide)->excludes(high);
+  wide->needs(high);
+  high->needs(wide);
   return {parser, [=]() -> Result<NewShape> {
-            if (width->has_value() != height->has_value() || (*width && *radius)) {
-              return Error{"a section is given by --radius, or by --width and --height"};
-            }
             const auto points = read_path(*path);
             if (!points) return points.error();
             auto middle = SmoothCurve::through(points.value(), false);
@@ -90,8 +93,7 @@ NewKind add_lathe(CLI::App& root) {
             for (const auto& row : table->rows_m) points.emplace_back(row[0], row[1]);
             auto shape = lathe_shape(points);
             if (!shape) return Error{*profile + ": " + shape.error().message};
-            const bool closed = shape->v.periodic || (shape->pole_at_start && shape->pole_at_end);
-            return with_thickness(std::move(shape).value(), !closed, thickness);
+            return with_thickness(std::move(shape).value(), thickness);
           }};
 }
 
@@ -118,10 +120,12 @@ NewKind add_loft(CLI::App& root) {
       ->required()
       ->type_name("FILE");
   const auto open = std::make_shared<bool>(false), no_caps = std::make_shared<bool>(false);
-  parser->add_flag("--open", *open, "Sections are lines, not rings: the shape is a sheet");
-  parser->add_flag("--no-caps", *no_caps, "Leave both ends open");
+  CLI::Option* sheet =
+      parser->add_flag("--open", *open, "Sections are lines, not rings: the shape is a sheet");
+  CLI::Option* pipe = parser->add_flag("--no-caps", *no_caps, "Leave both ends open")->excludes(sheet);
   const Length cap = add_length(*parser, "--cap",
                                 "How far the ends bulge; half the mean radius of the ring there unless told");
+  parser->get_option("--cap")->excludes(sheet)->excludes(pipe);
   const Length thickness = add_thickness(*parser);
   return {parser, [=]() -> Result<NewShape> {
             auto sections = read_sections(*file);
@@ -129,8 +133,7 @@ NewKind add_loft(CLI::App& root) {
             LoftSections loft{std::move(sections).value(), !*open, *cap, !*no_caps};
             auto shape = loft_shape(std::move(loft));
             if (!shape) return Error{*file + ": " + shape.error().message};
-            const bool closed = shape->pole_at_start && shape->pole_at_end;
-            return with_thickness(std::move(shape).value(), !closed, thickness);
+            return with_thickness(std::move(shape).value(), thickness);
           }};
 }
 

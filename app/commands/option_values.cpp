@@ -36,10 +36,8 @@ std::optional<double> length_m(std::string_view text) {
   const auto length = leading_number(text);
   if (!length) return {};
   if (length->rest.empty() && length->number == 0.0) return 0.0;
-  for (const LengthUnit& unit : length_units) {
-    if (length->rest == unit.name) return length->number * unit.metres;
-  }
-  return {};
+  const auto unit = unit_named(length->rest);
+  return unit ? std::optional(length->number * unit->metres) : std::nullopt;
 }
 
 std::optional<double> plain_number(std::string_view text) {
@@ -62,19 +60,12 @@ std::optional<std::array<std::string_view, count>> split(std::string_view text) 
 
 }  // namespace
 
-std::string quoted(std::string_view text, std::size_t longest) {
-  std::string line(text.substr(0, longest));
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char letter) { return letter < ' ' || letter == 127; }, '?');
-  return "'" + line + "'";
-}
-
-Result<Extent> parse_extent(std::string_view text, Range<int> range) {
+Result<Extent> parse_extent(std::string_view text, Range<int> range, const char* example) {
   const std::size_t cross = text.find('x');
   const auto width = whole_number(text.substr(0, cross));
   const auto height = cross == std::string_view::npos ? std::nullopt : whole_number(text.substr(cross + 1));
   if (!width || !height || !range.contains(*width) || !range.contains(*height)) {
-    return Error{quoted(text, 40) + " is not a size like 1280x720 with sides from " +
+    return Error{"'" + excerpt(text) + "' is not two numbers like " + example + ", each from " +
                  std::to_string(range.low) + " to " + std::to_string(range.high)};
   }
   return Extent{*width, *height};
@@ -82,18 +73,20 @@ Result<Extent> parse_extent(std::string_view text, Range<int> range) {
 
 Result<double> parse_length(std::string_view text, Range<double> range_m) {
   const auto length = length_m(text);
-  if (!length || !range_m.contains(*length)) {
-    return Error{quoted(text, 40) +
-                 " is not a length with a unit, like 5mm (mm, cm, m or "
-                 "in), from " +
-                 short_length_text(range_m.low) + " to " + short_length_text(range_m.high)};
+  if (!length) {
+    return Error{"'" + excerpt(text) + "' is not a length with a unit, like 5mm (mm, cm, m or in)"};
+  }
+  if (!range_m.contains(*length)) {
+    return Error{"'" + excerpt(text) + "' must be " + length_text(range_m.low) + " to " +
+                 length_text(range_m.high)};
   }
   return *length;
 }
 
 Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t count, Range<double> range_m) {
-  const Error refusal{quoted(text, 40) + " is not " + std::to_string(count) + " lengths with a unit, like " +
-                      (count == 2 ? "60x40mm" : "60x40x20mm") + " (mm, cm, m or in)"};
+  const Error refusal{"'" + excerpt(text) + "' is not " + std::to_string(count) +
+                      " lengths with a unit, like " + (count == 2 ? "60x40mm" : "60x40x20mm") +
+                      " (mm, cm, m or in)"};
   std::vector<double> lengths(count);
   double unit = 0.0;
   for (std::size_t k = count; k-- > 0;) {
@@ -101,12 +94,13 @@ Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t cou
     if ((cross == std::string_view::npos) != (k == 0)) return refusal;
     const auto length = leading_number(k == 0 ? text : text.substr(cross + 1));
     if (!length) return refusal;
-    for (const LengthUnit& known : length_units) {
-      if (length->rest == known.name) unit = known.metres;
+    if (!length->rest.empty()) {
+      const auto named = unit_named(length->rest);
+      if (!named) return refusal;
+      unit = named->metres;
     }
-    const bool known_unit = length->rest.empty() || parse_unit(length->rest).ok();
     lengths[k] = length->number * unit;
-    if (!known_unit || !(unit > 0.0) || !range_m.contains(lengths[k])) return refusal;
+    if (!(unit > 0.0) || !range_m.contains(lengths[k])) return refusal;
     text = text.substr(0, cross);
   }
   return lengths;
@@ -114,8 +108,8 @@ Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t cou
 
 Result<Pose> parse_pose(std::string_view text) {
   const Error refusal{
-      quoted(text, 80) +
-      " is not a pose like 10mm,0,0,1,0,0,0: a position of at most 100 m with units (mm, cm, m "
+      "'" + excerpt(text, 80) +
+      "' is not a pose like 10mm,0,0,1,0,0,0: a position of at most 100 m with units (mm, cm, m "
       "or in), then a quaternion w,x,y,z"};
   const auto parts = split<7>(text);
   if (!parts) return refusal;
@@ -140,7 +134,7 @@ Result<Pose> parse_pose(std::string_view text) {
 
 Result<std::vector<int>> parse_places(std::string_view text) {
   constexpr Range<int> range{1, 1000};
-  const Error refusal{quoted(text, 40) + " is not a list like 1,3-5 of places from 1 to 1000"};
+  const Error refusal{"'" + excerpt(text) + "' is not a list like 1,3-5 of places from 1 to 1000"};
   std::vector<int> places;
   for (std::string_view rest = text;;) {
     const std::string_view part = rest.substr(0, rest.find(','));
@@ -162,15 +156,12 @@ Result<Side> parse_side(std::string_view text) {
   for (const Side side : all_sides) {
     if (text == side_name(side)) return side;
   }
-  return Error{"edge " + quoted(text, 20) + " is unknown; choose u_start, u_end, v_start or v_end"};
+  return Error{"edge '" + excerpt(text) + "' is unknown; choose u_start, u_end, v_start or v_end"};
 }
 
 Result<LengthUnit> parse_unit(std::string_view text) {
-  if (text == "inch") text = "in";
-  for (const LengthUnit& unit : length_units) {
-    if (text == unit.name) return unit;
-  }
-  return Error{quoted(text, 40) + " is not a unit of length: mm, cm, m or in"};
+  if (const auto unit = unit_named(text)) return *unit;
+  return Error{"'" + excerpt(text) + "' is not a unit of length: mm, cm, m or in"};
 }
 
 }  // namespace spoonbill

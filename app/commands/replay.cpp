@@ -214,14 +214,14 @@ void add_picture_options(CLI::App& parser, const std::shared_ptr<ReplayOptions>&
       .add_option_function<std::string>(
           "--size",
           [options](const std::string& text) {
-            const auto size = parse_extent(text, picture_side_range);
+            const auto size = parse_extent(text, picture_side_range, "1280x720");
             if (!size) throw CLI::ValidationError("--size", size.error().message);
             options->size = size.value();
           },
           "The frames' size in pixels; 1280x720 unless told. The panel needs 750x700")
       ->type_name("WxH");
   parser.add_option("--every", options->every, "Draw only each N-th frame; 1 unless told")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}))
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
       ->type_name("N");
   parser
       .add_option("--video", options->video,

@@ -8,11 +8,12 @@
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
+#include "app/files/document_file.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/progress_bar.h"
 #include "app/report/quantity_text.h"
-#include "engine/exchange/document.h"
 #include "engine/number_text.h"
+#include "engine/place_text.h"
 #include "engine/simulation/rest_shape.h"
 
 namespace spoonbill {
@@ -25,14 +26,6 @@ struct RestOptions {
 
 Json numbers(const Vector3& vector) {
   return Json::array({vector.x(), vector.y(), vector.z()});
-}
-
-std::string place_text(const Vector3& point_m) {
-  const auto text = [](double metres) {
-    std::string in_mm = millimetres_text(metres + 0.0);
-    return in_mm.substr(0, in_mm.find(' '));
-  };
-  return "(" + text(point_m.x()) + ", " + text(point_m.y()) + ", " + text(point_m.z()) + ") mm";
 }
 
 void add_if_not_elastic(const Material& material, FactSheet& facts) {
@@ -83,7 +76,7 @@ void leave_unloaded(Scene& scene) {
 }
 
 Status rest(const RestOptions& options, Console& console) {
-  auto document = read_document(options.model);
+  auto document = read_document_file(options.model);
   if (!document) return document.error();
   Scene& scene = document->scene;
   FactSheet facts;
@@ -126,8 +119,8 @@ CommandEntry add_rest(CLI::App& root) {
       "ground and other bodies do nothing here, and what flows or creeps counts as elastic.\n"
       "Example: spoonbill rest assets/models/loaded-handle.json");
   parser->add_option("MODEL", options->model, "A document (.json)")->required();
-  parser->add_option("--out", options->out,
-                     "A document with the bodies as they rest, without the loads that bent them");
+  add_document_output(*parser, options->out,
+                      "A document with the bodies as they rest, without the loads that bent them");
   add_json_option(*parser, options->json);
   return {parser, [options](Console& console) { return rest(*options, console); }};
 }

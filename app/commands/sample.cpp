@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/commands/command.h"
 #include "app/commands/option_values.h"
+#include "app/files/document_file.h"
 #include "app/files/output_file.h"
+#include "app/interrupt.h"
 #include "engine/bspline/evaluate.h"
-#include "engine/exchange/document.h"
 
 namespace spoonbill {
 namespace {
@@ -41,7 +43,7 @@ void append_number(std::string& line, double number) {
   line.append(text.data(), end);
 }
 
-// Hands the table to `write` in chunks and stops at its first failure.
+// Hands the body's rows to `write` in chunks and stops at its first failure.
 template <class Write>
 Status sample_body(const Body& body, Extent counts, Write write) {
   const Surface& surface = body.surface;
@@ -54,7 +56,7 @@ Status sample_body(const Body& body, Extent counts, Write write) {
   evaluator.points_and_normals(surface.net.x.data(), surface.net.y.data(), surface.net.z.data(), samples);
 
   const std::string place = csv_field(body.name) + ",0";
-  std::string text = "body,surface,u,v,x_m,y_m,z_m,nx,ny,nz\n";
+  std::string text;
   for (std::size_t i = 0, sample = 0; i < grid->u.parameters.size(); ++i) {
     for (std::size_t j = 0; j < grid->v.parameters.size(); ++j, ++sample) {
       text += place;
@@ -73,12 +75,21 @@ Status sample_body(const Body& body, Extent counts, Write write) {
   return {};
 }
 
+template <class Write>
+Status sample_all(const std::vector<Body>& bodies, Extent counts, Write write) {
+  if (Status begun = write(std::string("body,surface,u,v,x_m,y_m,z_m,nx,ny,nz\n")); !begun) return begun;
+  for (const Body& body : bodies) {
+    if (Status sampled = sample_body(body, counts, write); !sampled) return sampled;
+  }
+  return {};
+}
+
 Status sample(const SampleOptions& options, Console& console) {
-  const auto document = read_document(options.model);
+  const auto document = read_document_file(options.model);
   if (!document) return document.error();
-  const Body& body = document->scene.bodies[0];
+  const std::vector<Body>& bodies = document->scene.bodies;
   if (options.out == "-") {
-    return sample_body(body, options.grid, [&](const std::string& text) -> Status {
+    return sample_all(bodies, options.grid, [&](const std::string& text) -> Status {
       console.out << text;
       return {};
     });
@@ -89,8 +100,12 @@ Status sample(const SampleOptions& options, Console& console) {
   }
   auto file = OutputFile::create(options.out);
   if (!file) return file.error();
-  const Status sampled =
-      sample_body(body, options.grid, [&](const std::string& text) { return file->write(text); });
+  InterruptWatch interrupt;
+  const Status sampled = sample_all(bodies, options.grid, [&](const std::string& text) -> Status {
+    if (!interrupt.requested()) return file->write(text);
+    interrupt.answer();
+    return Error{"stopped; " + options.out.string() + " was not written"};
+  });
   return sampled ? file->commit() : sampled;
 }
 
@@ -109,7 +124,7 @@ CommandEntry add_sample(CLI::App& root) {
       ->add_option_function<std::string>(
           "--grid",
           [options](const std::string& text) {
-            const auto grid = parse_extent(text, grid_side_range);
+            const auto grid = parse_extent(text, grid_side_range, "50x50");
             if (!grid) throw CLI::ValidationError("--grid", grid.error().message);
             options->grid = grid.value();
           },

@@ -6,6 +6,7 @@
 
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
+#include "engine/merging/patch_edge.h"
 #include "engine/result.h"
 
 namespace spoonbill {
@@ -17,10 +18,25 @@ struct ChangedSurfaces {
   bool keeps_parameters = true;  // so that regions, loads and supports stay where they were
 };
 
-// `words` such as {"insert", "v=0.3", "2"}; `tolerance_m` for the changes that cannot be exact. Trims stay or
-// turn with the surface; changes that would lose them are refused.
+enum class ChangeKind { split, insert, degree, simplify, reverse, exchange, seam, close, cap, open };
+
+// What the words mean; only what the kind asks for has a meaning.
+struct AskedChange {
+  ChangeKind kind = ChangeKind::simplify;
+  Direction direction = Direction::u;
+  double parameter = 0.0;  // of the direction
+  int number = 1;          // a degree, or how many knots
+  Side side = Side::v_end;
+  double height_m = 0.0;  // of a cap
+};
+
+// Of words such as {"insert", "v=0.3", "2"}. Refused: those that no surface could make sense of.
+Result<AskedChange> parse_change(const std::vector<std::string>& words);
+
+// `tolerance_m` is for the changes that cannot be exact. Trims stay or turn with the surface; changes that
+// would lose them are refused.
 Result<ChangedSurfaces> changed(const Surface& surface, const std::vector<TrimLoop>& trims,
-                                const std::vector<std::string>& words, double tolerance_m);
+                                const AskedChange& asked, double tolerance_m);
 
 // One line for each change, for --help.
 std::string changes_text();

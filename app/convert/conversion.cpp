@@ -7,6 +7,7 @@
 
 #include "app/convert/cad_document.h"
 #include "app/files/output_file.h"
+#include "app/report/quantity_text.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/file_format.h"
@@ -128,8 +129,8 @@ Status choose(const ConversionRequest& request, CadModel& model) {
   std::vector<CadSurface> chosen;
   for (const int place : request.bodies) {
     if (static_cast<std::size_t>(place) > model.surfaces.size()) {
-      return about(request.in, "has " + std::to_string(model.surfaces.size()) +
-                                   " bodies, and --bodies names " + std::to_string(place));
+      return about(request.in, "has " + count_text(model.surfaces.size(), "body", "bodies") +
+                                   ", and --bodies names " + std::to_string(place));
     }
     chosen.push_back(model.surfaces[static_cast<std::size_t>(place) - 1]);
   }

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <string>
 
+#include "app/files/document_file.h"
 #include "engine/exchange/file.h"
 #include "engine/exchange/json.h"
 
@@ -22,6 +23,7 @@ bool starts_like_recording(const std::filesystem::path& file) {
 }  // namespace
 
 Result<FileKind> kind_of_file(const std::filesystem::path& file) {
+  if (Status native = check_native_name(file); !native) return native.error();
   if (starts_like_recording(file)) return FileKind::recording;
   const auto text = read_text_file(file, bytes_limit);
   if (!text) return text.error();

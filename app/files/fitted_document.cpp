@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "app/start/starting_document.h"
+
 namespace spoonbill {
 namespace {
 
@@ -46,7 +48,8 @@ Result<FittedDocument> fitted_document(const ScanFit& fit, const std::string& na
                  std::to_string(most) + " bodies; use --islands largest"};
   }
   FittedDocument result;
-  result.document.name = name;
+  result.document = starting_document(name, fit.bodies.front().surface, clay);
+  result.document.scene.bodies.clear();
   for (std::size_t b = 0; b < fit.bodies.size(); ++b) {
     const FittedBody& fitted = fit.bodies[b];
     Body body;

@@ -15,8 +15,9 @@ struct FittedDocument {
   std::vector<std::string> remarks;  // what the program will not do with a body, and why
 };
 
-// Each body of clay: solid where it is closed, else a shell behind the surface, a hundredth of its size thick
-// or as thin as its curvature asks for. Refused: more bodies than a document holds.
+// A starting_document() of bodies of clay, held and with a tool as suits the first: solid where they are
+// closed, else shells behind their surfaces, a hundredth of their size thick or as thin as their curvature
+// asks for. Refused: more bodies than a document holds.
 Result<FittedDocument> fitted_document(const ScanFit& fit, const std::string& name, const Material& clay);
 
 }  // namespace spoonbill

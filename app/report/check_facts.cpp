@@ -1,10 +1,15 @@
 #include "app/report/check_facts.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "app/report/closing_text.h"
 #include "app/report/quantity_text.h"
 #include "engine/number_text.h"
+#include "engine/place_text.h"
+#include "engine/study/material_mix.h"
 #include "engine/study/shell_mass.h"
 
 namespace spoonbill {
@@ -12,15 +17,6 @@ namespace {
 
 Json numbers(const Vector3& vector) {
   return Json::array({vector.x(), vector.y(), vector.z()});
-}
-
-std::string place_text(const Vector3& point_m) {
-  const auto text = [](double metres) {
-    // Without the sign of a zero.
-    const std::string in_mm = millimetres_text(std::round(1e4 * metres) / 1e4 + 0.0);
-    return in_mm.substr(0, in_mm.find(' '));
-  };
-  return "(" + text(point_m.x()) + ", " + text(point_m.y()) + ", " + text(point_m.z()) + ") mm";
 }
 
 Json place_json(const CurvaturePlace& place) {
@@ -51,8 +47,9 @@ Json curvature_facts(FactSheet& facts, const CurvatureRange& range) {
 void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
   if (!check.thinnest) return;
   const Thickness& thin = *check.thinnest;
-  facts.add("  Thinnest", short_length_text(thin.thickness_m) + " at " + place_text(thin.position_m), "",
-            nullptr);
+  // Where sides meet, rounding alone is between them.
+  const double thickness_m = thin.thickness_m > 1e-12 ? thin.thickness_m : 0.0;
+  facts.add("  Thinnest", short_length_text(thickness_m) + " at " + place_text(thin.position_m), "", nullptr);
   json["smallest_thickness_m"] = thin.thickness_m;
   json["thinnest"] = {{"u", thin.u},
                       {"v", thin.v},
@@ -62,25 +59,48 @@ void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
                       {"opposite_m", numbers(thin.opposite_m)}};
 }
 
-void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector3& middle_m, Json& json) {
-  const double mass_kg = volume_m3 * body.material.density_kg_per_m3;
-  facts.add("  Volume", volume_text(volume_m3), "", nullptr);
-  facts.add("  Mass", grams_text(mass_kg) + ", all of it taken as " + body.material.name, "", nullptr);
-  facts.add("  Centre of mass", place_text(middle_m), "", nullptr);
-  json["volume_m3"] = volume_m3;
-  json["mass_kg"] = mass_kg;
-  json["centre_of_mass_m"] = numbers(middle_m);
+bool has_material_regions(const Body& body) {
+  return std::any_of(body.regions.begin(), body.regions.end(),
+                     [](const MaterialRegion& region) { return region.material.has_value(); });
 }
 
-void add_content(FactSheet& facts, const Body& body, const SurfaceCheck& check, Json& json) {
+std::string names_text(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+// Where regions have no cells, and so no share, all is the body's own material.
+void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector3& middle_m, Json& json) {
+  MaterialMix mix{body.material.density_kg_per_m3, Vector3::Zero(), {body.material.name}};
+  std::string remark;
+  if (has_material_regions(body)) {
+    const auto found = material_mix(body);
+    if (found) mix = found.value();
+    if (!found) remark = ", its regions left out: " + found.error().message;
+  }
+  const double mass_kg = volume_m3 * mix.density_kg_per_m3;
+  const Vector3 centre_m = middle_m + mix.from_middle_m;
+  facts.add("  Volume", volume_text(volume_m3), "", nullptr);
+  facts.add("  Mass", grams_text(mass_kg) + " of " + names_text(mix.materials) + remark, "", nullptr);
+  facts.add("  Centre of mass", place_text(centre_m), "", nullptr);
+  json["volume_m3"] = volume_m3;
+  json["mass_kg"] = mass_kg;
+  json["materials"] = mix.materials;
+  json["centre_of_mass_m"] = numbers(centre_m);
+}
+
+void add_content(FactSheet& facts, const Body& body, const TrimmedArea& area, const SurfaceCheck& check,
+                 Json& json) {
   facts.add("  Area", area_text(check.mass.area_m2), "", nullptr);
   json["area_m2"] = check.mass.area_m2;
   if (body.shell_thickness_m) {
-    const ShellMass shell = shell_mass(body.surface, *body.shell_thickness_m);
+    const ShellMass shell = shell_mass(body.surface, *body.shell_thickness_m, area);
+    facts.add("  Shell", length_text(*body.shell_thickness_m) + " thick", "", nullptr);
     json["shell_thickness_m"] = *body.shell_thickness_m;
     return add_mass(facts, body, shell.volume_m3, shell.middle_m, json);
   }
-  if (check.closing.closedness != Closedness::solid) return;
+  if (!check.encloses()) return;
   json["normals_outward"] = check.mass.volume_m3 > 0.0;
   add_mass(facts, body, std::abs(check.mass.volume_m3), check.mass.middle_m, json);
   add_thickness(facts, check, json);
@@ -108,15 +128,18 @@ void add_places(const SurfaceCheck& check, Json& json) {
 
 std::vector<std::string> problems_of(const Body& body, const SurfaceCheck& check) {
   std::vector<std::string> problems;
-  const bool solid = check.closing.closedness == Closedness::solid;
-  if (!solid && !body.shell_thickness_m) {
+  const bool closed = check.closing.closedness == Closedness::solid;
+  if (check.is_trimmed && !body.shell_thickness_m) {
+    problems.emplace_back("open where it is trimmed, and no shell with a thickness");
+  } else if (!closed && !body.shell_thickness_m) {
     problems.push_back("open by " + short_length_text(check.closing.gap_m) +
                        ", and no shell with a thickness");
   }
-  if (solid && !(check.mass.volume_m3 > 0.0)) problems.emplace_back("its normals point inwards");
+  if (check.encloses() && !(check.mass.volume_m3 > 0.0)) problems.emplace_back("its normals point inwards");
   if (!check.self_meetings.empty()) {
-    problems.push_back("passes through itself in " + std::to_string(check.self_meetings.size()) +
-                       " places, one at " + place_text(check.self_meetings[0].position_m));
+    problems.push_back("passes through itself in " +
+                       count_text(check.self_meetings.size(), "place", "places") + ", one at " +
+                       place_text(check.self_meetings[0].position_m));
   }
   if (!check.self_meetings_complete) {
     problems.emplace_back("may pass through itself: too many places are near each other to be searched");
@@ -134,15 +157,18 @@ std::vector<std::string> problems_of(const Body& body, const SurfaceCheck& check
   return problems;
 }
 
-Json add_check_facts(FactSheet& facts, const Body& body, const SurfaceCheck& check) {
+Json add_check_facts(FactSheet& facts, const Body& body, const TrimmedArea& area, const SurfaceCheck& check) {
   const std::vector<std::string> problems = problems_of(body, check);
   Json json = {{"name", body.name}, {"sound", problems.empty()}, {"problems", problems}};
   facts.add("Body", body.name + ": " + (problems.empty() ? "sound" : "not sound"), "", nullptr);
   for (const std::string& problem : problems) facts.add("  Problem", problem, "", nullptr);
-  facts.add("  Surface", closing_text(check.closing), "", nullptr);
+  const std::string trimmed =
+      check.is_trimmed ? ", trimmed by " + count_text(body.trims.size(), "loop", "loops") : "";
+  facts.add("  Surface", closing_text(check.closing) + trimmed, "", nullptr);
+  json["trim_loops"] = body.trims.size();
   json["closedness"] = name_of(check.closing.closedness);
   json["gap_m"] = check.closing.gap_m;
-  add_content(facts, body, check, json);
+  add_content(facts, body, area, check, json);
   json["curvature"] = curvature_facts(facts, check.curvature);
   json["smallest_convex_radius_m"] = radius_json(check.curvature.largest.curvature_per_m);
   json["smallest_concave_radius_m"] = radius_json(-check.curvature.smallest.curvature_per_m);

@@ -14,6 +14,7 @@ namespace spoonbill {
 std::vector<std::string> problems_of(const Body& body, const SurfaceCheck& check);
 
 // Lines go to the sheet, the body's JSON is returned.
-Json add_check_facts(FactSheet& facts, const Body& body, const SurfaceCheck& check);
+// `area` is what trims keep of the body's surface.
+Json add_check_facts(FactSheet& facts, const Body& body, const TrimmedArea& area, const SurfaceCheck& check);
 
 }  // namespace spoonbill

@@ -74,7 +74,7 @@ void add_conversion_facts(FactSheet& facts, const ConversionReport& report) {
   add_surface_facts(facts, report.surfaces);
   if (report.solids) {
     facts.add("Solids", std::to_string(*report.solids), "solids", *report.solids);
-    facts.add("Open", std::to_string(*report.open_shells), "open_shells", *report.open_shells);
+    facts.add("Not solid", std::to_string(*report.open_shells), "open_shells", *report.open_shells);
   }
   if (report.triangles) {
     facts.add("Triangles",

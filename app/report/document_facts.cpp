@@ -25,10 +25,43 @@ Json direction_facts(const KnotVector& knots) {
           {"domain", {knots.domain_start(), knots.domain_end()}}};
 }
 
+// Short enough to read; the JSON has every digit.
+std::string place_on(double parameter) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", parameter + 0.0);
+  return text.data();
+}
+
 std::string direction_text(const KnotVector& knots) {
   return "degree " + std::to_string(knots.degree()) + ", " + std::to_string(knots.control_point_count()) +
          " control points, " + std::to_string(knots.breakpoints().size() - 1) + " spans, " +
-         (knots.is_periodic() ? "periodic" : "open");
+         (knots.is_periodic() ? "periodic" : "open") + ", from " + place_on(knots.domain_start()) + " to " +
+         place_on(knots.domain_end());
+}
+
+Json surface_facts(const Surface& surface) {
+  return {{"u", direction_facts(surface.u)}, {"v", direction_facts(surface.v)}};
+}
+
+std::string kind_text(const Body& body) {
+  return body.shell_thickness_m ? ", a shell of " + length_text(*body.shell_thickness_m) : "";
+}
+
+// Those after the first, which alone is told of at length.
+void add_other_bodies(FactSheet& facts, const std::vector<Body>& bodies) {
+  Json names = Json::array();
+  for (const Body& body : bodies) names.push_back(body.name);
+  facts.add("", "", "bodies", names);
+  for (std::size_t b = 1; b < bodies.size(); ++b) {
+    const Box extent = extent_of(bodies[b].surface);
+    const KnotVector &u = bodies[b].surface.u, &v = bodies[b].surface.v;
+    facts.add("Body " + std::to_string(b + 1),
+              bodies[b].name + kind_text(bodies[b]) + ": " + size_text(extent.high - extent.low) +
+                  ", degrees " + std::to_string(u.degree()) + " and " + std::to_string(v.degree()) + ", " +
+                  std::to_string(u.control_point_count()) + " x " + std::to_string(v.control_point_count()) +
+                  " control points",
+              "", nullptr);
+  }
 }
 
 // 1 is a box, 0 a cell about to fold over.
@@ -61,19 +94,19 @@ void add_document_facts(FactSheet& facts, const Document& document) {
   facts.add("Name", document.name, "name", document.name);
   facts.add("Unit", "mm (of the file's lengths)", "unit", "mm");
   add_size_fact(facts, body.surface);
-  const std::string kind =
-      body.shell_thickness_m ? ", a shell of " + number_text(1e3 * *body.shell_thickness_m) + " mm" : "";
-  facts.add("Body", body.name + kind, "body", body.name);
+  facts.add("Body", body.name + kind_text(body), "body", body.name);
   if (body.shell_thickness_m) facts.add("", "", "shell_thickness_m", *body.shell_thickness_m);
   facts.add("Along u", direction_text(body.surface.u), "", nullptr);
   facts.add("Along v", direction_text(body.surface.v), "", nullptr);
-  facts.add("", "", "surfaces",
-            Json::array({{{"u", direction_facts(body.surface.u)}, {"v", direction_facts(body.surface.v)}}}));
+  Json surfaces = Json::array();
+  for (const Body& one : document.scene.bodies) surfaces.push_back(surface_facts(one.surface));
+  facts.add("", "", "surfaces", surfaces);
   const Closing closing = closing_of(body.surface);
   facts.add("Surface", closing_text(closing), "closedness", name_of(closing.closedness));
   add_trim_facts(facts, body);
   add_material_facts(facts, body.material);
   add_region_facts(facts, body);
+  add_other_bodies(facts, document.scene.bodies);
   facts.add("Fixing planes", std::to_string(document.scene.planes.size()), "fixing_planes",
             document.scene.planes.size());
 }
@@ -154,7 +187,7 @@ void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot) {
             std::to_string(lattice.count[0]) + " x " + std::to_string(lattice.count[1]) + " x " +
                 std::to_string(lattice.count[2]) + " nodes, " + std::to_string(fixed) + " of them fixed",
             "lattice", {{"nodes", counts}, {"node_count", lattice.x.size()}, {"fixed_node_count", fixed}});
-  facts.add("Mass", grams_text(snapshot.bodies[0].material.mass_kg), "mass_kg",
+  facts.add("Mass", grams_text(snapshot.bodies[0].material.mass_kg) + " (the lattice's)", "mass_kg",
             snapshot.bodies[0].material.mass_kg);
   facts.add("Felt E", modulus_text(snapshot.bodies[0].material.felt_youngs_modulus_pa),
             "felt_youngs_modulus_pa", snapshot.bodies[0].material.felt_youngs_modulus_pa);

@@ -21,4 +21,9 @@ void FactSheet::print(std::ostream& out, bool as_json) const {
   }
 }
 
+void add_remarks(FactSheet& facts, const std::vector<std::string>& remarks) {
+  for (const std::string& remark : remarks) facts.add("Note", remark, "", nullptr);
+  facts.add("", "", "remarks", remarks);
+}
+
 }  // namespace spoonbill

@@ -23,4 +23,7 @@ class FactSheet {
   Json json_ = Json::object();
 };
 
+// What is to be said besides: a line each, and the field "remarks", a list of them.
+void add_remarks(FactSheet& facts, const std::vector<std::string>& remarks);
+
 }  // namespace spoonbill

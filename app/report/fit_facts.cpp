@@ -1,10 +1,12 @@
 #include "app/report/fit_facts.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "app/report/quantity_text.h"
 #include "engine/number_text.h"
+#include "engine/range.h"
 
 namespace spoonbill {
 namespace {
@@ -102,6 +104,7 @@ void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit) 
     if (count > 0) text += ", " + std::to_string(count) + " " + why;
   };
   left(file.points_skipped, "no numbers");
+  left(fit.joined, "where another is");
   left(fit.outliers, "apart from all others");
   left(strays, "off the surface, unlike those around them");
   left(fit.dust, "in specks");
@@ -110,11 +113,20 @@ void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit) 
   facts.add("", "", "points_used", used);
   facts.add("", "", "points_left_out",
             {{"not_a_number", file.points_skipped},
+             {"joined", fit.joined},
              {"outliers", fit.outliers},
              {"strays", strays},
              {"specks", fit.dust},
              {"other_islands", fit.other_islands}});
   facts.add("Islands", std::to_string(fit.islands), "islands", fit.islands);
+}
+
+std::optional<std::string> size_remark(const ScanFile& file, const ScanFit& fit) {
+  constexpr Range<double> usual_m{1e-3, 10.0};
+  const double longest_m = size_of_all(fit).maxCoeff();
+  if (usual_m.contains(longest_m)) return std::nullopt;
+  return "the scan is " + short_length_text(longest_m) + " long; if its numbers are not in " +
+         std::string(file.unit.name) + ", name their unit with --unit";
 }
 
 void add_fit_facts(FactSheet& facts, const ScanFit& fit) {

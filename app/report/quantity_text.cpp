@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "engine/number_text.h"
 #include "engine/simulation/snapshot.h"
 
 namespace spoonbill {
@@ -61,6 +62,15 @@ std::string percent_text(double share) {
   std::array<char, 48> text{};
   std::snprintf(text.data(), text.size(), share < 0.1 ? "%.2g %%" : "%.0f %%", 100.0 * share);
   return text.data();
+}
+
+std::string count_text(std::size_t count, const char* one, const char* many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+std::string deviation_text(double deviation_m) {
+  constexpr double rounding_m = 1e-12;
+  return deviation_m <= rounding_m ? "none" : "at most " + short_length_text(deviation_m);
 }
 
 std::string size_text(const Vector3& size_m) {

@@ -9,6 +9,7 @@
 
 #include "app/start/starting_document.h"
 #include "engine/shapes/fit_shape.h"
+#include "engine/shapes/shape_sizes.h"
 
 namespace spoonbill {
 namespace {
@@ -74,7 +75,7 @@ Result<Document> lump_document(const LumpChoice& choice, const Material& materia
   for (const double size_mm : choice.sizes_mm) sizes_m.push_back(1e-3 * size_mm);
   const SizedLump lump = sized(choice.kind, sizes_m);
   if (lump.shell_thickness_m) {
-    Status status = check_range("thickness in m", *lump.shell_thickness_m, shell_thickness_range_m);
+    Status status = check_length("thickness", *lump.shell_thickness_m, shell_thickness_range_m);
     if (!status) return status.error();
   }
   const auto shape = lump_shape(lump.size);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/files/length_unit.h"
+#include "engine/excerpt.h"
 #include "engine/exchange/file.h"
 
 namespace spoonbill {
@@ -15,6 +16,8 @@ namespace {
 constexpr std::size_t bytes_limit = std::size_t{16} << 20;
 constexpr std::size_t most_rows = 100000;
 constexpr double farthest_m = 100.0;
+// Some spreadsheets begin a file of UTF-8 with it.
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 std::vector<std::string_view> parts_of(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
@@ -22,7 +25,7 @@ std::vector<std::string_view> parts_of(std::string_view text, char separator) {
     const std::size_t at = text.find(separator);
     std::string_view part = text.substr(0, at);
     while (!part.empty() && (part.front() == ' ' || part.front() == '\t')) part.remove_prefix(1);
-    while (!part.empty() && (part.back() == ' ' || part.back() == '\t' || part.back() == '\r')) {
+    while (!part.empty() && (part.back() == ' ' || part.back() == '\t')) {
       part.remove_suffix(1);
     }
     parts.push_back(part);
@@ -31,19 +34,14 @@ std::vector<std::string_view> parts_of(std::string_view text, char separator) {
   }
 }
 
+// A plus before a number says nothing.
 template <class Number>
 std::optional<Number> whole_text_as(std::string_view text) {
   Number number{};
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return number;
-}
-
-std::optional<double> unit_of(std::string_view name) {
-  for (const LengthUnit& unit : length_units) {
-    if (unit.name == name) return unit.metres;
-  }
-  return std::nullopt;
 }
 
 std::string header_text(const std::vector<std::string>& columns, bool with_section) {
@@ -64,17 +62,11 @@ std::optional<std::vector<double>> units_of(std::vector<std::string_view> names,
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const std::string start = columns[k] + "_";
     if (!names[k].starts_with(start)) return std::nullopt;
-    const auto unit = unit_of(names[k].substr(start.size()));
+    const auto unit = unit_named(names[k].substr(start.size()));
     if (!unit) return std::nullopt;
-    units.push_back(*unit);
+    units.push_back(unit->metres);
   }
   return units;
-}
-
-std::string shown(std::string_view text) {
-  std::string result;
-  for (const char letter : text.substr(0, 40)) result += letter >= ' ' && letter < 127 ? letter : '?';
-  return result;
 }
 
 class TableReader {
@@ -84,13 +76,14 @@ class TableReader {
 
   Status take(std::string_view line) {
     ++line_;
+    if (line.ends_with('\r')) line.remove_suffix(1);
     const auto parts = parts_of(line, ',');
     if (parts.size() == 1 && parts[0].empty()) return {};
     if (parts[0].starts_with('#')) return {};
     if (units_.empty()) {
       const auto units = units_of(parts, columns_, with_section_);
       if (!units) {
-        return refusal("names the columns '" + shown(line) + "'; they are to be " +
+        return refusal("names the columns '" + excerpt(line) + "'; they are to be " +
                        header_text(columns_, with_section_) + ", or in cm, m or in");
       }
       units_ = *units;
@@ -119,7 +112,7 @@ class TableReader {
     }
     if (with_section_) {
       const auto section = whole_text_as<int>(parts[0]);
-      if (!section) return refusal("section '" + shown(parts[0]) + "' is not a whole number");
+      if (!section) return refusal("section '" + excerpt(parts[0]) + "' is not a whole number");
       table_.sections.push_back(*section);
       parts.erase(parts.begin());
     }
@@ -127,7 +120,7 @@ class TableReader {
     for (std::size_t k = 0; k < parts.size(); ++k) {
       const auto number = whole_text_as<double>(parts[k]);
       if (!number || !(std::abs(*number * units_[k]) <= farthest_m)) {
-        return refusal(columns_[k] + " is '" + shown(parts[k]) + "', must be a number of at most 100 m");
+        return refusal(columns_[k] + " is '" + excerpt(parts[k]) + "', must be a number of at most 100 m");
       }
       row.push_back(*number * units_[k]);
     }
@@ -149,6 +142,7 @@ Result<PointTable> point_table(const std::string& text, const std::string& sourc
                                const std::vector<std::string>& columns, bool with_section) {
   TableReader reader(source, columns, with_section);
   std::string_view left = text;
+  if (left.starts_with(byte_order_mark)) left.remove_prefix(byte_order_mark.size());
   while (!left.empty()) {
     const std::size_t end = left.find('\n');
     if (Status taken = reader.take(left.substr(0, end)); !taken) return taken.error();
@@ -165,11 +159,11 @@ Result<PointTable> read_point_table(const std::filesystem::path& file,
 }
 
 Result<std::vector<Vector3>> parse_points(const std::string& text) {
-  const Error refusal{"'" + shown(text) +
+  const Error refusal{"'" + excerpt(text) +
                       "' is not a line of points like 0,0,0;10,5,0;20,0,0mm, with the unit of all of them at "
                       "its end (mm, cm, m or in)"};
   const std::size_t unit_at = text.find_last_of("0123456789.");
-  const auto unit = unit_of(unit_at == std::string::npos ? text : text.substr(unit_at + 1));
+  const auto unit = unit_named(std::string_view(text).substr(unit_at == std::string::npos ? 0 : unit_at + 1));
   if (!unit) return refusal;
   std::vector<Vector3> points;
   for (const std::string_view part : parts_of(std::string_view(text).substr(0, unit_at + 1), ';')) {
@@ -178,8 +172,8 @@ Result<std::vector<Vector3>> parse_points(const std::string& text) {
     Vector3 point;
     for (int axis = 0; axis < 3; ++axis) {
       const auto number = whole_text_as<double>(numbers[static_cast<std::size_t>(axis)]);
-      if (!number || !(std::abs(*number * *unit) <= farthest_m)) return refusal;
-      point[axis] = *number * *unit;
+      if (!number || !(std::abs(*number * unit->metres) <= farthest_m)) return refusal;
+      point[axis] = *number * unit->metres;
     }
     points.push_back(point);
   }

@@ -1,5 +1,5 @@
 // Points that a person wrote down: a CSV file whose first line names the columns with their unit, "x_mm,y_mm,
-// z_mm". Lines that are empty or begin with # say nothing.
+// z_mm". Lines that are empty or begin with # say nothing, nor does a byte order mark.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,6 @@
 #include "engine/fitting/fit_points.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -32,6 +33,17 @@ void join(Scan& scan) {
   }
   scan.points_m = joined.vertices_m;
   scan.triangles = std::move(kept);
+}
+
+// Their spread across it is rounding beside that along it.
+bool lie_on_a_line(const std::vector<Vector3>& points_m) {
+  const auto count = static_cast<double>(points_m.size());
+  Vector3 middle = Vector3::Zero();
+  for (const Vector3& point : points_m) middle += point / count;
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Vector3& point : points_m) scatter += (point - middle) * (point - middle).transpose();
+  const Vector3 squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues();
+  return squares[1] <= 1e-12 * squares[2];
 }
 
 double area_of(const Scan& scan) {
@@ -107,8 +119,9 @@ std::vector<bool> lie_apart(const Scan& scan) {
     return *place;
   };
   const double median = at(0.5), deviation = std::max((at(0.84) - median), 0.1 * median);
-  for (std::size_t p = 0; p < apart.size(); ++p)
+  for (std::size_t p = 0; p < apart.size(); ++p) {
     apart[p] = reach[p] > median + outlier_deviations * deviation;
+  }
   return apart;
 }
 
@@ -200,7 +213,11 @@ Result<FitPoints> make_fit_points(Scan scan) {
   FitPoints fit;
   fit.is_mesh = is_mesh;
   fit.weights.assign(scan.points_m.size(), 1.0);
-  if (is_mesh) join(scan);
+  if (is_mesh) {
+    fit.joined = scan.points_m.size();
+    join(scan);
+    fit.joined -= scan.points_m.size();
+  }
   fit.given_m = scan.points_m;
   fit.stands_for.resize(fit.given_m.size());
   std::iota(fit.stands_for.begin(), fit.stands_for.end(), 0U);
@@ -210,10 +227,11 @@ Result<FitPoints> make_fit_points(Scan scan) {
     fit.weights = take_normals(scan);
   }
   if (scan.points_m.size() < least_points) {
-    return Error{"has " + std::to_string(scan.points_m.size()) + " points, a fit needs " +
+    return Error{"has too few points for a fit: " + std::to_string(scan.points_m.size()) + " of at least " +
                  std::to_string(least_points)};
   }
   if (!(size_of(scan.points_m) > 0.0)) return Error{"its points all lie in one place"};
+  if (lie_on_a_line(scan.points_m)) return Error{"its points all lie on one line, which is no surface"};
   thin(scan, fit.weights, fit.stands_for);
   fit.scan = std::move(scan);
   const std::vector<bool> apart = lie_apart(fit.scan);
@@ -232,8 +250,9 @@ std::vector<Vector2> take_points_as_nodes(FitPoints& points, const std::vector<V
     places.emplace_back(uv[p].x(), uv[p].y(), 0.0);
   }
   const NearestPoints nearest(places);
-  for (std::size_t p = 0; p < count; ++p)
+  for (std::size_t p = 0; p < count; ++p) {
     points.node_of[p] = nearest.nearest({uv[p].x(), uv[p].y(), 0.0}).index;
+  }
   points.node_normals.assign(nodes.size(), Vector3::Zero());
   points.rims.clear();
   points.graph = make_point_graph(std::move(nodes), {});

@@ -60,10 +60,12 @@ Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
   Islands islands = split_islands(points.value());
   ScanFit result;
   result.islands = islands.islands.size();
+  result.joined = points->joined;
   result.outliers = points->outliers;
   result.dust = islands.dust_points;
-  if (islands.islands.empty())
+  if (islands.islands.empty()) {
     return Error{"its points hang together nowhere; they are too few or too noisy"};
+  }
   if (request.islands == IslandChoice::bridge && islands.islands.size() > 1) {
     auto whole = bridged(std::move(islands.islands));
     if (!whole) return whole.error();

@@ -33,8 +33,8 @@ struct FittedBody {
 struct ScanFit {
   std::vector<FittedBody> bodies;  // the largest first
   std::size_t islands = 0;         // found, whatever was fitted of them
-  std::size_t outliers = 0, dust = 0,
-              other_islands = 0;  // points left out: apart, in specks, on other islands
+  // Points left out: where another is, apart, in specks, on other islands.
+  std::size_t joined = 0, outliers = 0, dust = 0, other_islands = 0;
 };
 
 // The scan's points must be finite. Refused, with what to try instead: too few points, a shape that cannot be

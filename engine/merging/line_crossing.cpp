@@ -7,6 +7,7 @@
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
+#include "engine/collision/meshes/line_triangle.h"
 
 namespace spoonbill {
 
@@ -15,26 +16,12 @@ namespace {
 constexpr int cells_in_piece = 6;
 constexpr int chords_in_piece = 8;
 constexpr int ray_chords = 64;
+// Of a chord and of a triangle's sides, so that nothing slips through between two.
+constexpr double loose = 1e-9;
 
 struct CurvePoint {
   Vector3 position_m, derivative;
 };
-
-// Moeller and Trumbore 1997: the share of the chord and the triangle's two further shares.
-std::optional<Vector3> chord_meets_triangle(const Vector3& from, const Vector3& chord, const Vector3& a,
-                                            const Vector3& b, const Vector3& c) {
-  const Vector3 ab = b - a, ac = c - a, across = chord.cross(ac);
-  const double determinant = ab.dot(across);
-  if (determinant == 0.0) return std::nullopt;
-  const Vector3 offset = from - a, turned = offset.cross(ab);
-  const double to_b = offset.dot(across) / determinant, to_c = chord.dot(turned) / determinant;
-  const double share = ac.dot(turned) / determinant;
-  constexpr double loose = 1e-9;
-  if (to_b < -loose || to_c < -loose || to_b + to_c > 1.0 + loose || share < -loose || share > 1.0 + loose) {
-    return std::nullopt;
-  }
-  return Vector3(share, to_b, to_c);
-}
 
 Box box_of(const Vector3& a, const Vector3& b) {
   return {a.cwiseMin(b), a.cwiseMax(b)};
@@ -79,11 +66,14 @@ std::vector<CrossingFinder::Start> CrossingFinder::of_chord(const Vector3& from,
     const Vector3 &low = points_m_[corner], &high = points_m_[corner + v_.size() + 1];
     const Vector3 &right = points_m_[corner + v_.size()], &up = points_m_[corner + 1];
     const double du = u_[i + 1] - u_[i], dv = v_[j + 1] - v_[j];
-    if (const auto met = chord_meets_triangle(from, to - from, low, right, up)) {
-      starts.push_back({met->x(), u_[i] + met->y() * du, v_[j] + met->z() * dv});
+    const auto is_on_chord = [](const auto& met) {
+      return met && met->along >= -loose && met->along <= 1.0 + loose;
+    };
+    if (const auto met = line_meets_triangle(from, to - from, low, right, up, loose); is_on_chord(met)) {
+      starts.push_back({met->along, u_[i] + met->to_b * du, v_[j] + met->to_c * dv});
     }
-    if (const auto met = chord_meets_triangle(from, to - from, high, up, right)) {
-      starts.push_back({met->x(), u_[i + 1] - met->y() * du, v_[j + 1] - met->z() * dv});
+    if (const auto met = line_meets_triangle(from, to - from, high, up, right, loose); is_on_chord(met)) {
+      starts.push_back({met->along, u_[i + 1] - met->to_b * du, v_[j + 1] - met->to_c * dv});
     }
   };
   tree_->search([&](std::uint32_t node) { return tree_->nodes()[node].box.is_near(chord, 0.0); },

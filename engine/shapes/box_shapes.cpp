@@ -212,15 +212,13 @@ Result<ExactShape> plate_shape(const PlateSize& size) {
   if (Status status = check_sides(sides); !status) return status.error();
   const double shorter = std::min(size.x_size_m, size.z_size_m);
   if (!(2.0 * size.thickness_m <= shorter)) {
-    return Error{"a plate " + number_text(1e3 * size.thickness_m) + " mm thick and " +
-                 number_text(1e3 * shorter) +
-                 " mm wide is none; make it at most half as thick, or make a box"};
+    return Error{"a plate " + length_text(size.thickness_m) + " thick and " + length_text(shorter) +
+                 " wide is none; make it at most half as thick, or make a box"};
   }
   const Range<double> corners{size.thickness_m, 0.5 * shorter};
   if (!corners.contains(size.corner_m)) {
-    return Error{"corner is " + number_text(1e3 * size.corner_m) + " mm, must be from the thickness, " +
-                 number_text(1e3 * corners.low) + " mm, to half the width, " +
-                 number_text(1e3 * corners.high) + " mm"};
+    return Error{"corner is " + length_text(size.corner_m) + ", must be from the thickness, " +
+                 length_text(corners.low) + ", to half the width, " + length_text(corners.high)};
   }
   return shape_along(sides, 1, size.corner_m, 0.5 * size.thickness_m);
 }

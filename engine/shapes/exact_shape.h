@@ -24,6 +24,8 @@ struct ExactShape {
   ShapeDirection u, v;
   bool pole_at_start = false, pole_at_end = false;  // of v: all u are one point there
   std::function<Vector3(double u, double v)> at;
+
+  bool is_closed() const { return u.periodic && (v.periodic || (pole_at_start && pole_at_end)); }
 };
 
 }  // namespace spoonbill

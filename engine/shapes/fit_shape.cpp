@@ -174,7 +174,7 @@ Result<FittedShape> fit_counted(const ExactShape& shape, const ShapeFit& fit) {
 }
 
 Error too_fine(const ShapeFit& fit, const std::string& direction) {
-  return Error{"a tolerance of " + number_text(1e3 * fit.tolerance_m) + " mm needs more than " +
+  return Error{"a tolerance of " + length_text(fit.tolerance_m) + " needs more than " +
                std::to_string(most_control_points) + " control points along " + direction +
                "; make it larger, or the shape's roundings and bends gentler"};
 }

@@ -6,7 +6,6 @@
 #include "engine/result.h"
 #include "engine/shapes/box_shapes.h"
 #include "engine/shapes/exact_shape.h"
-#include "engine/shapes/fit_shape.h"
 #include "engine/shapes/round_shapes.h"
 
 namespace spoonbill {

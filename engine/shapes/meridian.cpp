@@ -95,9 +95,8 @@ Result<Meridian> Meridian::rounded(std::span<const MeridianPoint> vertices,
     const double start = corners[k].taken(roundings[k]), end = corners[k + 1].taken(roundings[k + 1]);
     const MeridianPoint& along = corners[k + 1].before;
     if (start + end > side + least_piece * whole) {
-      return Error{"roundings of " + number_text(1e3 * roundings[k]) + " and " +
-                   number_text(1e3 * roundings[k + 1]) + " mm do not fit on a side of " +
-                   number_text(1e3 * side) + " mm; make them smaller"};
+      return Error{"roundings of " + length_text(roundings[k]) + " and " + length_text(roundings[k + 1]) +
+                   " do not fit on a side of " + length_text(side) + "; make them smaller"};
     }
     if (side - start - end > least_piece * whole) {
       meridian.add_line(vertices[k] + start * along, vertices[k + 1] - end * along);

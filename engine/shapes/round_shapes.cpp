@@ -83,9 +83,9 @@ Result<ExactShape> torus_shape(const TorusSize& size) {
   if (!status) return status.error();
   // A thousandth of the tube open in the middle: nearer, the surface all but touches itself.
   if (!(size.ring_radius_m > 1.001 * size.tube_radius_m)) {
-    return Error{"a tube of radius " + number_text(1e3 * size.tube_radius_m) +
-                 " mm closes the hole of a ring of radius " + number_text(1e3 * size.ring_radius_m) +
-                 " mm; make the tube thinner or the ring wider"};
+    return Error{"a tube of radius " + length_text(size.tube_radius_m) +
+                 " closes the hole of a ring of radius " + length_text(size.ring_radius_m) +
+                 "; make the tube thinner or the ring wider"};
   }
   ExactShape shape;
   shape.u.periodic = shape.v.periodic = true;

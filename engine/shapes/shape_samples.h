@@ -8,8 +8,8 @@
 
 namespace spoonbill {
 
-// The derivatives by differences of the function itself, one-sided at the ends of an open direction and at
-// breaks; the normal is zero where they are parallel, as at a pole.
+// The derivatives by differences of the function itself, one-sided at the ends of an open direction; the
+// normal is zero where they are parallel, as at a pole.
 struct ShapeTangents {
   Vector3 du, dv;
   Vector3 normal = Vector3::Zero();

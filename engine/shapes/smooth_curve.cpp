@@ -84,8 +84,8 @@ Result<SmoothCurve> SmoothCurve::through(std::vector<Vector3> points_m, bool clo
                                          const CurveEnds& last) {
   const std::size_t least = closed ? 3 : 2;
   if (points_m.size() < least) {
-    return Error{std::to_string(points_m.size()) + " points make no curve; give at least " +
-                 std::to_string(least)};
+    return Error{"a curve needs at least " + std::to_string(least) + " points, and has " +
+                 std::to_string(points_m.size())};
   }
   double size = 0.0;
   for (const Vector3& point : points_m) size = std::max(size, (point - points_m[0]).norm());

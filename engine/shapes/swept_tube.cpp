@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/number_text.h"
+#include "engine/place_text.h"
 #include "engine/shapes/shape_sizes.h"
 
 namespace spoonbill {
@@ -96,18 +97,22 @@ class SweptTube {
 
 Result<ExactShape> tube_shape(const TubeSize& size) {
   if (Status status = check_size("half the tube's width", size.half_width_m); !status) return status.error();
-  if (Status status = check_size("half the tube's height", size.half_height_m); !status)
+  if (Status status = check_size("half the tube's height", size.half_height_m); !status) {
     return status.error();
+  }
   if (Status status = check_size("the tube's length", size.middle.end()); !status) return status.error();
   const auto tube = std::make_shared<const SweptTube>(size);
+  double worst = 0.0, sharpest = 0.0;
   for (int k = 0; k <= frames; ++k) {
     const double t = size.middle.end() * k / frames, share = tube->share_of_bend(t);
-    if (share <= most_of_bend) continue;
-    const Vector3 place = 1e3 * size.middle.at(t);
+    if (share > worst) sharpest = t;
+    worst = std::max(worst, share);
+  }
+  if (worst > most_of_bend) {
     return Error{"the tube folds where its line bends most sharply, at " +
-                 number_text(std::round(place.x())) + ", " + number_text(std::round(place.y())) + ", " +
-                 number_text(std::round(place.z())) + " mm: make it thinner than " +
-                 short_length_text(1.0 / share * size.half_width_m) + " there, or the bend wider"};
+                 place_text(size.middle.at(sharpest)) + ": make its section at most " +
+                 number_text(std::max(1.0, std::floor(100.0 * most_of_bend / worst))) +
+                 " % as wide, or the bend wider"};
   }
   ExactShape shape;
   shape.u.periodic = true;

@@ -31,24 +31,30 @@ std::optional<PrincipalCurvatures> principal_curvatures(const SurfacePoint& poin
   return PrincipalCurvatures{mean - spread, mean + spread};
 }
 
-CurvatureRange curvature_range(const Surface& surface) {
+CurvatureRange curvature_range(const Surface& surface, const TrimmedArea& area, const StudyWatch& watch) {
   const std::vector<PieceCell> cells = piece_cells(surface, parts);
   const auto extreme = [&](bool largest) {
-    const ParameterPlace place = least_place(cells, [&](double u, double v) {
+    const auto value = [&](double u, double v) {
+      constexpr double none = std::numeric_limits<double>::infinity();
+      if (!area.contains(u, v)) return none;
       const auto found = principal_curvatures(evaluate(surface, u, v));
-      if (!found) return std::numeric_limits<double>::infinity();
+      if (!found) return none;
       return largest ? -found->largest : found->smallest;
-    });
+    };
+    const ParameterPlace place =
+        least_place(cells, value, largest ? part_watch(watch, 0.5, 1.0) : part_watch(watch, 0.0, 0.5));
     return CurvaturePlace{largest ? -place.value : place.value, place.u, place.v,
                           position(surface, place.u, place.v)};
   };
-  return {extreme(false), extreme(true)};
+  const CurvaturePlace smallest = extreme(false);
+  return {smallest, extreme(true)};
 }
 
-double bending_measure(const Surface& surface) {
+double bending_measure(const Surface& surface, const TrimmedArea& area) {
   double sum = 0.0;
   for (const PieceCell& cell : piece_cells(surface, 2 * parts)) {
-    // The midpoint rule: the integrand is not smooth at knots and poles.
+    if (!area.contains(cell.middle_u(), cell.middle_v())) continue;
+    // The midpoint rule: the integrand is not smooth at knots, poles and trims.
     const SurfacePoint point = evaluate(surface, cell.middle_u(), cell.middle_v());
     const auto found = principal_curvatures(point);
     if (!found) continue;

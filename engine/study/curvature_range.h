@@ -1,10 +1,12 @@
-// Principal curvatures of a surface, and where they are smallest and largest. Pure functions, outside the
-// tick; any thread.
+// Principal curvatures of what is kept of a surface, and where they are smallest and largest. Pure functions,
+// outside the tick; any thread.
 #pragma once
 
 #include <optional>
 
 #include "engine/bspline/surface.h"
+#include "engine/bspline/trimmed_area.h"
+#include "engine/study/study_watch.h"
 
 namespace spoonbill {
 
@@ -29,10 +31,11 @@ struct CurvatureRange {
 
 // Over all pieces of the surface, on both sides of each knot, from samples refined where the extremes are, up
 // to a hundredth of a piece from a pole. A smooth extreme comes out to a millionth.
-CurvatureRange curvature_range(const Surface& surface);
+CurvatureRange curvature_range(const Surface& surface, const TrimmedArea& area = {},
+                               const StudyWatch& watch = {});
 
 // The integral of the squares of both principal curvatures over the area, 8 pi of a ball of any size: small
 // where a surface is fair.
-double bending_measure(const Surface& surface);
+double bending_measure(const Surface& surface, const TrimmedArea& area = {});
 
 }  // namespace spoonbill

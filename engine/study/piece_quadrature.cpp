@@ -23,7 +23,6 @@ Quadrature gauss_legendre(int count) {
         before = value;
         value = next;
       }
-      if (count == 1) before = 1.0;
       slope = count * (x * value - before) / (x * x - 1.0);
       const double move = value / slope;
       x -= move;

@@ -17,6 +17,8 @@ constexpr double off_poles = 1e-2;
 constexpr double collapsed = 1e-9;
 // How many cells are searched further.
 constexpr std::size_t searched = 12;
+// Between two looks at the watch.
+constexpr std::size_t watched_cells = 256;
 // Each halves the step.
 constexpr int halvings = 24;
 
@@ -110,14 +112,19 @@ std::vector<PieceCell> piece_cells(const Surface& surface, int parts) {
 }
 
 ParameterPlace least_place(const std::vector<PieceCell>& cells,
-                           const std::function<double(double u, double v)>& value) {
+                           const std::function<double(double u, double v)>& value, const StudyWatch& watch) {
+  const ParameterPlace none{0.0, 0.0, std::numeric_limits<double>::infinity()};
   std::vector<Candidate> candidates;
   candidates.reserve(cells.size());
-  for (const PieceCell& cell : cells) {
-    const ParameterPlace best = best_in_cell(cell, value);
-    if (std::isfinite(best.value)) candidates.push_back({best, cell});
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    if (watch && k % watched_cells == 0 &&
+        !watch(static_cast<double>(k) / static_cast<double>(cells.size()))) {
+      return none;
+    }
+    const ParameterPlace best = best_in_cell(cells[k], value);
+    if (std::isfinite(best.value)) candidates.push_back({best, cells[k]});
   }
-  if (candidates.empty()) return {0.0, 0.0, std::numeric_limits<double>::infinity()};
+  if (candidates.empty()) return none;
   const std::size_t count = std::min(searched, candidates.size());
   std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count),
                     candidates.end(), [](const Candidate& a, const Candidate& b) {

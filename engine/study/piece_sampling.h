@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/bspline/surface.h"
+#include "engine/study/study_watch.h"
 
 namespace spoonbill {
 
@@ -29,6 +30,7 @@ struct ParameterPlace {
 // about the best of them, within their cells. Places where it is not finite do not count; the value is
 // infinite where none does.
 ParameterPlace least_place(const std::vector<PieceCell>& cells,
-                           const std::function<double(double u, double v)>& value);
+                           const std::function<double(double u, double v)>& value,
+                           const StudyWatch& watch = {});
 
 }  // namespace spoonbill

@@ -1,8 +1,9 @@
 #include "engine/study/surface_check.h"
 
-#include <algorithm>
-#include <cmath>
+#include <cstddef>
+#include <vector>
 
+#include "engine/bspline/knot_vectors.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 #include "engine/study/piece_sampling.h"
 
@@ -17,11 +18,31 @@ constexpr std::size_t most_spots = 16;
 // Halved once, elements of usual nets tell loops of half a cell; larger nets are fine enough already.
 constexpr std::size_t large_net = 2500;
 
-// Cells of a piece whose middle has no area, or whose normal turns by more than a right angle from that of
-// the piece's other cells beside it.
-void find_bad_spots(const Surface& surface, SurfaceCheck& check) {
+// Along one direction, which cells have one beside them whose normal must not be another by far: not across
+// an edge, a knot as often as the degree, where two sides may meet at any angle.
+class SmoothSteps {
+ public:
+  explicit SmoothSteps(const KnotVector& knots) {
+    // One for the start of each piece; the end of the last is the start of the first, or an end.
+    const std::vector<KnotMultiplicity> starts = knot_multiplicities(knots);
+    for (std::size_t piece = 0; piece < starts.size(); ++piece) {
+      smooth_after_.push_back(starts[(piece + 1) % starts.size()].multiplicity < knots.degree());
+    }
+  }
+
+  std::size_t cells() const { return parts * smooth_after_.size(); }
+  // Whether the cell and the next one, which at the end of a closed direction is the first, lie in one sheet.
+  bool goes_on(std::size_t cell) const { return (cell + 1) % parts != 0 || smooth_after_[cell / parts]; }
+  std::size_t next(std::size_t cell) const { return cell + 1 < cells() ? cell + 1 : 0; }
+
+ private:
+  std::vector<bool> smooth_after_;  // of each piece
+};
+
+// Cells of a piece whose middle has no area, or whose normal turns by more than a right angle to that of the
+// cell beside them.
+void find_bad_spots(const Surface& surface, const TrimmedArea& area, SurfaceCheck& check) {
   const std::vector<PieceCell> cells = piece_cells(surface, parts);
-  const int columns = parts * static_cast<int>(surface.v.breakpoints().size() - 1);
   std::vector<Vector3> products;
   double mean = 0.0;
   for (const PieceCell& cell : cells) {
@@ -29,26 +50,25 @@ void find_bad_spots(const Surface& surface, SurfaceCheck& check) {
     products.push_back(point.du.cross(point.dv));
     mean += products.back().norm() / static_cast<double>(cells.size());
   }
-  const auto add = [&](std::size_t k, bool folds) {
-    if (check.bad_spots.size() >= most_spots) return;
-    const double u = cells[k].middle_u(), v = cells[k].middle_v();
-    check.bad_spots.push_back({u, v, position(surface, u, v), folds});
+  const SmoothSteps along_u(surface.u), along_v(surface.v);
+  const auto index = [&](std::size_t i, std::size_t j) { return i * along_v.cells() + j; };
+  const auto is_kept = [&](std::size_t k) { return area.contains(cells[k].middle_u(), cells[k].middle_v()); };
+  const auto turns = [&](std::size_t k, std::size_t other) {
+    return is_kept(other) && products[k].dot(products[other]) < 0.0;
   };
-  for (std::size_t k = 0; k < cells.size(); ++k) {
-    if (!(products[k].norm() > least_area_share * mean)) {
-      add(k, false);
-      continue;
-    }
-    const std::size_t beside = k + 1, below = k + static_cast<std::size_t>(columns);
-    const bool last_column = beside % static_cast<std::size_t>(columns) == 0;
-    if ((!last_column && products[k].dot(products[beside]) < 0.0) ||
-        (below < cells.size() && products[k].dot(products[below]) < 0.0)) {
-      add(k, true);
-    }
+  for (std::size_t k = 0; k < cells.size() && check.bad_spots.size() < most_spots; ++k) {
+    if (!is_kept(k)) continue;
+    const std::size_t i = k / along_v.cells(), j = k % along_v.cells();
+    const bool shrinks = !(products[k].norm() > least_area_share * mean);
+    const bool folds = (along_v.goes_on(j) && turns(k, index(i, along_v.next(j)))) ||
+                       (along_u.goes_on(i) && turns(k, index(along_u.next(i), j)));
+    if (!shrinks && !folds) continue;
+    const double u = cells[k].middle_u(), v = cells[k].middle_v();
+    check.bad_spots.push_back({u, v, position(surface, u, v), !shrinks});
   }
 }
 
-void find_self_meetings(const Surface& surface, SurfaceCheck& check) {
+void find_self_meetings(const Surface& surface, const TrimmedArea& area, SurfaceCheck& check) {
   const auto grid = make_nested_grid(surface.u, surface.v, surface.net.size() > large_net ? 0 : 1);
   if (!grid) {
     check.self_meetings_complete = false;
@@ -60,24 +80,33 @@ void find_self_meetings(const Surface& surface, SurfaceCheck& check) {
   check.self_meetings_complete = !collider.collide(surface, query).overflow;
   for (const PairContact& contact : collider.contacts()) {
     const PairParameters& at = contact.pair.at;
+    if (!area.contains(at.u, at.v) || !area.contains(at.s, at.t)) continue;
     check.self_meetings.push_back({at.u, at.v, at.s, at.t, contact.depth_m, position(surface, at.u, at.v)});
   }
 }
 
 }  // namespace
 
-SurfaceCheck check_surface(const Surface& surface) {
+std::optional<SurfaceCheck> check_surface(const Surface& surface, const TrimmedArea& area,
+                                          const StudyWatch& watch) {
+  bool goes_on = true;
+  const StudyWatch asked = [&](double share) { return goes_on = goes_on && (!watch || watch(share)); };
   SurfaceCheck check;
   check.closing = closing_of(surface);
-  check.mass = enclosed_mass(surface);
-  check.curvature = curvature_range(surface);
-  check.bending = bending_measure(surface);
-  find_bad_spots(surface, check);
-  find_self_meetings(surface, check);
-  if (check.closing.closedness == Closedness::solid && check.mass.volume_m3 > 0.0) {
-    check.thinnest = ThicknessSearch(surface).smallest();
+  check.is_trimmed = !area.is_whole();
+  check.mass = enclosed_mass(surface, area);
+  if (!asked(0.05)) return std::nullopt;
+  check.curvature = curvature_range(surface, area, part_watch(asked, 0.05, 0.4));
+  if (!goes_on) return std::nullopt;
+  check.bending = bending_measure(surface, area);
+  find_bad_spots(surface, area, check);
+  if (!asked(0.5)) return std::nullopt;
+  find_self_meetings(surface, area, check);
+  if (!asked(0.6)) return std::nullopt;
+  if (check.encloses() && check.mass.volume_m3 > 0.0) {
+    check.thinnest = ThicknessSearch(surface).smallest(part_watch(asked, 0.6, 1.0));
   }
-  return check;
+  return goes_on ? std::optional(check) : std::nullopt;
 }
 
 }  // namespace spoonbill

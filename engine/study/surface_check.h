@@ -7,14 +7,17 @@
 #include <vector>
 
 #include "engine/bspline/surface.h"
+#include "engine/bspline/trimmed_area.h"
 #include "engine/study/closing.h"
 #include "engine/study/curvature_range.h"
 #include "engine/study/enclosed_mass.h"
+#include "engine/study/study_watch.h"
 #include "engine/study/thickness.h"
 
 namespace spoonbill {
 
-// A place other than a pole where du x dv vanishes, or turns over from one side to the other.
+// A place other than a pole where du x dv vanishes, or turns over from one side to the other within a smooth
+// part of the surface.
 struct BadSpot {
   double u = 0.0, v = 0.0;
   Vector3 position_m = Vector3::Zero();
@@ -27,16 +30,22 @@ struct SelfMeeting {
 };
 
 struct SurfaceCheck {
-  Closing closing;
-  EnclosedMass mass;  // volume and middle of a solid only
+  Closing closing;          // of the surface as if it had no trims
+  bool is_trimmed = false;  // what follows is of what is kept
+  EnclosedMass mass;        // volume and middle where it encloses() only
   CurvatureRange curvature;
   double bending = 0.0;  // see bending_measure()
   std::vector<BadSpot> bad_spots;
   std::vector<SelfMeeting> self_meetings;
   bool self_meetings_complete = true;      // false where there were too many to be searched
-  std::optional<Thickness> thinnest = {};  // of a solid
+  std::optional<Thickness> thinnest = {};  // where it encloses()
+
+  // Whether it bounds a body by itself.
+  bool encloses() const { return closing.closedness == Closedness::solid && !is_trimmed; }
 };
 
-SurfaceCheck check_surface(const Surface& surface);
+// Nothing where the watch stopped it.
+std::optional<SurfaceCheck> check_surface(const Surface& surface, const TrimmedArea& area = {},
+                                          const StudyWatch& watch = {});
 
 }  // namespace spoonbill

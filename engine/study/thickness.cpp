@@ -2,10 +2,11 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "engine/collision/meshes/line_triangle.h"
 
 namespace spoonbill {
 
@@ -38,6 +39,10 @@ bool meets(const Box& box, const Vector3& from, const Vector3& direction, double
   return near <= far;
 }
 
+double within(const KnotVector& knots, double parameter) {
+  return knots.is_periodic() ? parameter : std::clamp(parameter, knots.domain_start(), knots.domain_end());
+}
+
 std::vector<double> cut_evenly(const std::vector<double>& ends) {
   std::vector<double> all;
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
@@ -67,7 +72,7 @@ void ThicknessSearch::add_facets(const PieceCell& cell) {
   facets_.push_back({a, c, d, {cell.u0, cell.u1, cell.u0}, {cell.v0, cell.v1, cell.v1}});
 }
 
-// Facets that face the same way as the line: it goes out through them (Moeller and Trumbore 1997).
+// Through facets that face the same way as the line.
 std::optional<ThicknessSearch::Hit> ThicknessSearch::first_exit(const Vector3& from,
                                                                 const Vector3& direction) const {
   std::optional<Hit> first;
@@ -77,15 +82,10 @@ std::optional<ThicknessSearch::Hit> ThicknessSearch::first_exit(const Vector3& f
   };
   const auto look_at = [&](std::uint32_t place) {
     const Facet& facet = facets_[place];
-    const Vector3 ab = facet.b - facet.a, ac = facet.c - facet.a, across = direction.cross(ac);
-    const double facing = ab.dot(across);  // the triangle's normal against the direction, negative
-    if (!(facing < 0.0)) return;
-    const Vector3 to = from - facet.a, around = to.cross(ab);
-    const double b = to.dot(across) / facing, c = direction.dot(around) / facing;
-    constexpr double slack = 1e-6;  // so that a line along an edge meets one of its facets
-    if (b < -slack || c < -slack || b + c > 1.0 + slack) return;
-    const double distance = ac.dot(around) / facing;
-    if (distance > 0.0 && distance < farthest()) first = Hit{distance, place, b, c};
+    constexpr double loose = 1e-6;  // so that a line along an edge meets one of its facets
+    const auto met = line_meets_triangle(from, direction, facet.a, facet.b, facet.c, loose);
+    if (!met || !(met->facing < 0.0) || !(met->along > 0.0) || !(met->along < farthest())) return;
+    first = Hit{met->along, place, met->to_b, met->to_c};
   };
   tree_->search(
       descend, [](std::uint32_t, std::uint32_t) { return false; },
@@ -127,18 +127,18 @@ Thickness ThicknessSearch::settled(const Hit& hit, Thickness thickness, const Ve
     const Eigen::Vector3d move = Eigen::PartialPivLU<Eigen::Matrix3d>(jacobian).solve(miss);
     if (!move.allFinite()) break;
     unknown -= move;
-    if (!surface_->v.is_periodic()) {
-      unknown.z() = std::clamp(unknown.z(), surface_->v.domain_start(), surface_->v.domain_end());
-    }
+    unknown.y() = within(surface_->u, unknown.y());
+    unknown.z() = within(surface_->v, unknown.z());
   }
   return take(start);  // where that does not come to the line, as at a pole
 }
 
-std::optional<Thickness> ThicknessSearch::smallest() const {
-  const ParameterPlace place = least_place(cells_, [&](double u, double v) {
+std::optional<Thickness> ThicknessSearch::smallest(const StudyWatch& watch) const {
+  const auto value = [&](double u, double v) {
     const auto found = at(u, v);
     return found ? found->thickness_m : std::numeric_limits<double>::infinity();
-  });
+  };
+  const ParameterPlace place = least_place(cells_, value, watch);
   return std::isfinite(place.value) ? at(place.u, place.v) : std::nullopt;
 }
 

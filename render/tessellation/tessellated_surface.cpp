@@ -132,8 +132,9 @@ void TessellatedSurface::orient() {
 void TessellatedSurface::trim_indices() {
   TrimmedGrid cut = trim_grid(grid_->u, grid_->v, *trim_);
   indices_.clear();
-  for (const auto& triangle : cut.triangles)
+  for (const auto& triangle : cut.triangles) {
     indices_.insert(indices_.end(), triangle.begin(), triangle.end());
+  }
   cut_vertices_ = std::move(cut.vertices);
   samples_.resize(samples_.x.size() + cut_vertices_.size());
   closed_ = false;

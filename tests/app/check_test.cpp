@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <numbers>
 
 #include "app/program.h"
@@ -76,6 +77,67 @@ TEST(Check, SaysWhatIsWrongAndEndsWellAllTheSame) {
   const Outcome lines = run({"check", place.text("inside-out.json")});
   EXPECT_EQ(lines.code, exit_done);
   EXPECT_NE(lines.out.find("not sound"), std::string::npos);
+}
+
+// A hole of an eighth.
+TEST(Check, TakesTrimsIntoAccount) {
+  const Workplace place;
+  Document document = made(place, {"new", "plate", "--size", "100x60mm", "--sheet"});
+  Body& body = document.scene.bodies[0];
+  const std::vector<Eigen::Vector2d> hole{{0.25, 0.25}, {0.25, 0.75}, {0.5, 0.75}, {0.5, 0.25}};
+  body.trims = {make_polygon_loop(body.surface.u, body.surface.v, hole).value()};
+  save(place, "trimmed.json", document);
+  const Json facts = check_of(place, "trimmed.json")["bodies"][0];
+  EXPECT_EQ(facts["sound"], true);
+  EXPECT_EQ(facts["trim_loops"], 1);
+  EXPECT_NEAR(facts["area_m2"], 0.875 * 0.006, 1e-9);
+  EXPECT_NEAR(facts["volume_m3"], 0.875 * 0.006 * 0.003, 1e-12);
+  EXPECT_NEAR(facts["mass_kg"], 1700.0 * 0.875 * 0.006 * 0.003, 1e-9);
+  EXPECT_NE(run({"check", place.text("trimmed.json")}).out.find("trimmed by 1 loop"), std::string::npos);
+  // Closed but for the hole, it holds nothing by itself.
+  Document ball = made(place, {"new", "sphere"});
+  Body& cut = ball.scene.bodies[0];
+  cut.trims = {make_polygon_loop(cut.surface.u, cut.surface.v, hole).value()};
+  save(place, "cut.json", ball);
+  const Json open = check_of(place, "cut.json")["bodies"][0];
+  EXPECT_EQ(open["sound"], false);
+  EXPECT_FALSE(open.contains("volume_m3"));
+}
+
+// The lower half of a cylinder is half as dense.
+TEST(Check, WeighsRegionsByWhatTheyAreMadeOf) {
+  const Workplace place;
+  Document document = made(place, {"new", "cylinder"});
+  save(place, "plain.json", document);
+  Body& body = document.scene.bodies[0];
+  MaterialRegion lower;
+  lower.region.along = {0.0, 0.5};
+  lower.material = body.material;
+  lower.material->name = "light";
+  lower.material->density_kg_per_m3 *= 0.5;
+  body.regions = {lower};
+  save(place, "grip.json", document);
+  const Json plain = check_of(place, "plain.json")["bodies"][0],
+             grip = check_of(place, "grip.json")["bodies"][0];
+  // Cells are whole of one material: half of one layer of ten or more.
+  EXPECT_NEAR(grip["mass_kg"].get<double>() / plain["mass_kg"].get<double>(), 0.75, 0.03);
+  EXPECT_EQ(grip["materials"], Json::array({"modelling-clay", "light"}));
+  EXPECT_GT(grip["centre_of_mass_m"][1], 0.003);
+}
+
+TEST(Check, StopsWhenAskedTo) {
+  const Workplace place;
+  made(place, {"new", "sphere"});
+  sigset_t interrupt, before;
+  sigemptyset(&interrupt);
+  sigaddset(&interrupt, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &interrupt, &before);
+  raise(SIGINT);
+  const Outcome outcome = run({"check", place.text("made.json")});
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  EXPECT_EQ(outcome.code, exit_failed);
+  EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+  EXPECT_NE(outcome.err.find("stopped"), std::string::npos) << outcome.err;
 }
 
 TEST(Check, LooksAtEveryBody) {

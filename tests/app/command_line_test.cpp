@@ -1,6 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "app/program.h"
+#include "engine/exchange/document.h"
 #include "tests/app/workplace.h"
 
 namespace spoonbill {
@@ -15,6 +22,15 @@ TEST(CommandLine, HelpAndVersionAreWorkDone) {
   }
   EXPECT_EQ(run({"--help"}).code, exit_done);
   EXPECT_TRUE(run({"--version"}).out.starts_with("spoonbill "));
+}
+
+TEST(CommandLine, HelpNamesThingsNotTypes) {
+  for (const char* command : {"check", "convert", "fit", "merge", "change", "info"}) {
+    const std::string help = run({command, "--help"}).out;
+    EXPECT_EQ(help.find("TEXT REQUIRED   "), std::string::npos) << help;
+    EXPECT_EQ(help.find("(1x)"), std::string::npos) << help;
+    EXPECT_EQ(help.find(" in ["), std::string::npos) << help;
+  }
 }
 
 TEST(CommandLine, WrongUseIsTwoAndSaysWhatIsWrong) {
@@ -46,6 +62,81 @@ TEST(CommandLine, WrongUseIsTwoAndSaysWhatIsWrong) {
     EXPECT_EQ(outcome.code, exit_wrong_use) << testing::PrintToString(arguments);
     EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
   }
+}
+
+TEST(CommandLine, SaysWhatIsWrongAndWhereHelpIs) {
+  const Workplace place;
+  const std::string model = place.text("model.json"), out = place.text("out.json");
+  const std::vector<std::pair<std::vector<std::string>, const char*>> wrong = {
+      {{}, "a command is missing; see `spoonbill --help`"},
+      {{"carve"}, "'carve' is no command; see `spoonbill --help`"},
+      {{"new"}, "a command is missing; see `spoonbill new --help`"},
+      {{"new", "dodecahedron"}, "'dodecahedron' is no command; see `spoonbill new --help`"},
+      {{"new", "box", "--out", out}, "--size is required; see `spoonbill new box --help`"},
+      {{"sample", model, "--out", out, "--out", out}, "--out is given more than once"},
+      {{"sample", model, "--out", out, "--grid", "7"}, "'7' is not two numbers like 50x50, each from 2"},
+      {{"new", "sphere", "--control", "3x3", "--out", out},
+       "'3x3' is not two numbers like 24x24, each from 4"},
+      {{"new", "sphere", "--radius", "7", "--out", out},
+       "'7' is not a length with a unit, like 5mm (mm, cm, m or in); see"},
+      {{"change", model, "reverse", "v", "--tolerance", "0", "--out", out},
+       "must be 1e-06 mm to 100 mm; see"},
+      {{"change", model, "reverse", "v", "--body", "none", "--out", out}, "not in range 1 to 8"}};
+  for (const auto& [arguments, told] : wrong) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, exit_wrong_use) << told;
+    EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+    EXPECT_NE(outcome.err.find(told), std::string::npos) << outcome.err;
+  }
+}
+
+// A document under another name would take the place of a scan or a CAD file.
+TEST(CommandLine, DocumentsAreWrittenAsJsonAlone) {
+  const Workplace place;
+  const std::string model = place.text("model.json");
+  for (const char* name : {"spoon.step", "scan.ply", "noending", ""}) {
+    const std::string out = *name == '\0' ? "" : place.write(name, "precious").string();
+    for (const auto& arguments :
+         std::vector<std::vector<std::string>>{{"new", "sphere", "--out", out},
+                                               {"fit", "scan.ply", "--out", out},
+                                               {"merge", model, "--out", out},
+                                               {"change", model, "simplify", "--out", out},
+                                               {"rest", model, "--out", out}}) {
+      const Outcome outcome = run(arguments);
+      EXPECT_EQ(outcome.code, exit_wrong_use) << arguments[0];
+      EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+      EXPECT_NE(outcome.err.find("does not end in .json"), std::string::npos) << outcome.err;
+    }
+    if (!out.empty()) {
+      EXPECT_EQ(std::filesystem::file_size(out), 8U);
+    }
+  }
+  EXPECT_EQ(run({"new", "sphere", "--out", place.text("ball.JSON")}).code, exit_done);
+}
+
+// Which file is meant, and what makes a document of it.
+TEST(CommandLine, SaysWhatTakesForeignFiles) {
+  const Workplace place;
+  const std::string cad = place.write("a.step", "ISO-10303-21;").string();
+  const std::string mesh = place.write("a.stl", "solid a").string();
+  for (const char* command : {"check", "rest"}) {
+    EXPECT_NE(run({command, cad}).err.find("`spoonbill convert`"), std::string::npos);
+    EXPECT_NE(run({command, mesh}).err.find("`spoonbill fit`"), std::string::npos);
+  }
+  EXPECT_NE(run({"info", mesh}).err.find("`spoonbill fit`"), std::string::npos);
+}
+
+// Every body has its rows.
+TEST(CommandLine, SampleTakesAllBodies) {
+  const Workplace place;
+  Document two = read_document(place.path("model.json")).value();
+  two.scene.bodies.push_back(two.scene.bodies[0]);
+  two.scene.bodies[1].name = "other";
+  place.write("two.json", json_to_page(document_to_json(two)));
+  const std::string rows = run({"sample", place.text("two.json"), "--grid", "2x3", "--out", "-"}).out;
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 2 * 6);
+  EXPECT_EQ(rows.rfind("body,"), 0U);
+  EXPECT_NE(rows.find("\nother,"), std::string::npos);
 }
 
 TEST(CommandLine, APoseIsAPositionWithUnitsAndATurn) {

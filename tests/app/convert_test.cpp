@@ -219,7 +219,8 @@ TEST_F(ConvertTest, WhatMakesNoSenseIsRefused) {
   expect_failure({handle_, place_.text("a.step"), "--tolerance", "1mm"}, "is taken exactly");
   expect_failure({handle_, place_.text("a.3mf"), "--unit", "in"}, "is written in millimetres");
   expect_failure({handle_, place_.text("a.stl"), "--chord", "5"}, "is not a length", exit_wrong_use);
-  expect_failure({handle_, place_.text("a.stl"), "--chord", "0mm"}, "is not a length", exit_wrong_use);
+  expect_failure({handle_, place_.text("a.stl"), "--chord", "0mm"}, "must be 0.0001 mm to 100 mm",
+                 exit_wrong_use);
   expect_failure({handle_, place_.text("a.stl"), "--chord", "nanmm"}, "is not a length", exit_wrong_use);
   expect_failure({handle_, place_.text("a.stl"), "--unit", "ell"}, "is not a unit", exit_wrong_use);
   expect_failure({handle_, place_.text("a.step"), "--schema", "ap1"}, "is not a schema", exit_wrong_use);

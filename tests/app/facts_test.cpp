@@ -36,6 +36,24 @@ TEST(Info, TellsOfAModel) {
   EXPECT_NE(run({"info", place.text("model.json")}).out.find("Size"), std::string::npos);
 }
 
+// What can be split and chosen: every body, and where its parameters begin and end.
+TEST(Info, TellsOfEveryBody) {
+  const Workplace place;
+  Document two = read_document(place.path("model.json")).value();
+  two.scene.bodies.push_back(two.scene.bodies[0]);
+  two.scene.bodies[1].name = "other";
+  two.scene.bodies[1].surface =
+      placed(two.scene.bodies[1].surface, {Vector3(0.0, 0.5, 0.0), Quaternion::Identity()});
+  place.write("two.json", json_to_page(document_to_json(two)));
+  const Json facts = json_of(run({"info", place.text("two.json"), "--json"}).out);
+  EXPECT_EQ(facts["bodies"], Json::array({two.scene.bodies[0].name, "other"}));
+  ASSERT_EQ(facts["surfaces"].size(), 2U);
+  EXPECT_EQ(facts["surfaces"][1]["v"]["control_points"], two.scene.bodies[1].surface.net.columns);
+  const std::string lines = run({"info", place.text("two.json")}).out;
+  EXPECT_NE(lines.find("Body 2"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("periodic, from 0 to "), std::string::npos) << lines;
+}
+
 // The lattice's own report, and the regions as the document has them.
 TEST(Info, TellsOfRegionsAndOfWhatABodyAchieves) {
   const Workplace place;

@@ -3,7 +3,9 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "engine/exchange/document.h"
 #include "tests/app/mesh_texts.h"
@@ -59,6 +61,7 @@ TEST_F(FitTest, CloudBecomesADocumentThatOpens) {
   const auto document = read_document(out());
   ASSERT_TRUE(document) << document.error().message;
   EXPECT_EQ(document->scene.bodies[0].material.name, "modelling-clay");
+  EXPECT_EQ(document->scene.planes.size(), 1U);  // held, as what `new` makes
   const Outcome info = run_process(SPOONBILL_PROGRAM, {"info", out(), "--json"});
   EXPECT_EQ(info.code, 0) << info.err;
 }
@@ -109,12 +112,67 @@ TEST_F(FitTest, RefusalsAreOneLineAndKeepTheOldFile) {
   EXPECT_EQ(kept, "kept");
 }
 
+std::string content_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+TEST_F(FitTest, TheScanIsNeverReplaced) {
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "end_header\n0 0 0\n";
+  const std::string scan = write("scan.ply", ply);
+  const Outcome errors = fit(scan, {"--errors", scan});
+  EXPECT_EQ(errors.code, 1);
+  EXPECT_NE(errors.err.find("is the scan itself"), std::string::npos) << errors.err;
+  EXPECT_EQ(fit(scan, {"--errors", out()}).code, 2);
+  EXPECT_EQ(run_process(SPOONBILL_PROGRAM, {"fit", scan, "--out", scan}).code, 2);
+  EXPECT_EQ(content_of(scan), ply);
+}
+
+TEST_F(FitTest, PointsOnALineAreNoSurface) {
+  std::string line, slanted;
+  for (int k = 0; k < 400; ++k) {
+    line += std::to_string(k) + " 0 0\n";
+    slanted += std::to_string(0.1 * k) + " " + std::to_string(0.2 * k) + " " + std::to_string(0.5 * k) + "\n";
+  }
+  for (const std::string& text : {line, slanted}) {
+    const Outcome outcome = fit(write("line.xyz", text));
+    EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+    EXPECT_NE(outcome.err.find("on one line"), std::string::npos) << outcome.err;
+  }
+}
+
+// An STL file has each vertex once for every triangle at it.
+TEST_F(FitTest, WhatBecameOfThePointsAddsUp) {
+  const Json json = json_of_fit(write("ball.stl", binary_stl(ball_mesh(24, 48, 20.0))), {"--control", "8x8"});
+  const Json& left = json.at("points_left_out");
+  EXPECT_GT(left.at("joined"), 0);
+  int sum = json.at("points_used");
+  for (const auto& item : left.items()) sum += item.value().get<int>();
+  EXPECT_EQ(sum, json.at("points_read"));
+}
+
+TEST_F(FitTest, AsksWhetherTheUnitIsAnother) {
+  const std::string scan = write("egg.xyz", xyz_of(ellipsoid_cloud(2000, {0.02, 0.02, 0.03}), 1.0));
+  const Json in_mm = json_of_fit(scan, {"--control", "8x8"});
+  bool asked = false;
+  for (const Json& remark : in_mm.at("remarks"))
+    asked |= remark.get<std::string>().find("--unit") != std::string::npos;
+  EXPECT_TRUE(asked) << in_mm.at("remarks");
+  for (const Json& remark : json_of_fit(scan, {"--control", "8x8", "--unit", "m"}).at("remarks")) {
+    EXPECT_EQ(remark.get<std::string>().find("--unit"), std::string::npos) << remark;
+  }
+}
+
 TEST_F(FitTest, WrongUseIsExitTwo) {
   const std::string scan = write("egg.xyz", "1 2 3\n");
   for (const std::vector<std::string>& options :
        std::vector<std::vector<std::string>>{{"--control", "24"},
                                              {"--control", "2x24"},
                                              {"--kind", "ball"},
+                                             {"--kind", "2"},
+                                             {"--errors", "errors.txt"},
                                              {"--islands", "some"},
                                              {"--unit", "parsec"},
                                              {"--tolerance", "0.5"}}) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 
 #include "app/program.h"
 #include "engine/bspline/change_knots.h"
@@ -207,30 +208,83 @@ TEST(ChangeCommand, OpenedAndCappedAndClosed) {
 TEST(ChangeCommand, RefusesInOneLine) {
   const Workplace place;
   const std::string out = place.text("out.json");
-  const std::vector<std::pair<std::vector<std::string>, const char*>> cases{
-      {{"split", "v=500"}, "empty or not within the domain"},
-      {{"split", "w=0.5"}, "not a place like v=0.3"},
-      {{"split", "v=nan"}, "not a place like v=0.3"},
-      {{"split"}, "is asked for as: split v=0.5"},
-      {{"degree", "v", "12"}, "degree 12"},
-      {{"degree", "v", "2.5"}, "not a whole number"},
-      {{"insert", "v=50", "9"}, "multiplicity 9"},
-      {{"close", "u"}, "closed already"},
-      {{"close", "v"}, "apart"},
-      {{"cap", "v_end"}, "not the open end of a tube"},
-      {{"cap", "top\nend"}, "edge 'top?end' is unknown"},
-      {{"melt\nit"}, "'melt?it' is no change; choose from split"},
-      {{"melt"}, "'melt' is no change; choose from split"}};
-  for (const auto& [words, told] : cases) {
+  struct Case {
+    std::vector<std::string> words;
+    int code;
+    const char* told;
+  };
+  const std::vector<Case> cases{
+      {{"split", "v=500"}, exit_failed, "empty or not within the domain"},
+      {{"split", "w=0.5"}, exit_wrong_use, "not a place like v=0.3"},
+      {{"split", "v=nan"}, exit_wrong_use, "not a place like v=0.3"},
+      {{"split", "v="}, exit_wrong_use, "not a place like v=0.3"},
+      {{"split"}, exit_wrong_use, "is asked for as: split v=0.5"},
+      {{"split", "v=1", "2"}, exit_wrong_use, "is asked for as: split v=0.5"},
+      {{"simplify", "u"}, exit_wrong_use, "is asked for as: simplify"},
+      {{"degree", "v", "12"}, exit_wrong_use, "'12' is not a whole number from 1 to 9"},
+      {{"degree", "v", "2.5"}, exit_wrong_use, "not a whole number"},
+      {{"insert", "v=50", "9"}, exit_failed, "multiplicity 9"},
+      {{"insert", "v=50", "0"}, exit_wrong_use, "not a whole number from 1"},
+      {{"close", "u"}, exit_failed, "closed already"},
+      {{"close", "v"}, exit_failed, "apart"},
+      {{"cap", "v_end"}, exit_failed, "not the open end of a tube"},
+      {{"cap", "top\nend"}, exit_wrong_use, "edge 'top?end' is unknown"},
+      {{"cap", "v_end", "3"}, exit_wrong_use, "not a length with a unit"},
+      {{"me\nlt"}, exit_wrong_use, "'me?lt' is no change; choose from split"}};
+  for (const auto& [words, code, told] : cases) {
     std::vector<std::string> arguments{"change", handle};
     arguments.insert(arguments.end(), words.begin(), words.end());
     arguments.insert(arguments.end(), {"--out", out});
     const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.code, exit_failed) << told;
+    EXPECT_EQ(outcome.code, code) << told;
+    EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
     EXPECT_NE(outcome.err.find(told), std::string::npos) << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(out));
   }
-  EXPECT_EQ(run({"change", handle, "exchange", "--body", "2", "--out", out}).code, exit_failed);
+  const Outcome second = run({"change", handle, "exchange", "--body", "2", "--out", out});
+  EXPECT_EQ(second.code, exit_failed);
+  EXPECT_NE(second.err.find("has 1 body, and --body names 2"), std::string::npos) << second.err;
+}
+
+TEST(ChangeCommand, SaysWhatADegreeTakes) {
+  const Workplace place;
+  const std::string ball = place.text("ball.json");
+  ASSERT_EQ(run({"new", "sphere", "--control", "40x40", "--out", ball}).code, exit_done);
+  // 37 spans in v: 36 knots seven times and ten at an end, as many as control points.
+  const Outcome outcome = run({"change", ball, "degree", "v", "9", "--out", place.text("out.json")});
+  EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+  EXPECT_NE(outcome.err.find("takes 262 control points, a document holds 200"), std::string::npos)
+      << outcome.err;
+}
+
+TEST(ChangeCommand, SaysWhatItLeavesOut) {
+  const Workplace place;
+  const std::string grip = SPOONBILL_ASSETS "/models/soft-grip.json", out = place.text("out.json");
+  const auto remarks = [&](const std::vector<std::string>& arguments) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, exit_done) << outcome.err;
+    return json_of(outcome.out)["remarks"].size();
+  };
+  EXPECT_EQ(remarks({"change", grip, "split", "v=40", "--out", out, "--json"}), 1U);
+  EXPECT_EQ(remarks({"change", grip, "insert", "v=40", "--out", out, "--json"}), 0U);
+  EXPECT_EQ(remarks({"change", handle, "split", "v=40", "--out", out, "--json"}), 0U);
+  EXPECT_EQ(remarks({"merge", grip, bowl, "--out", out, "--json"}), 1U);
+}
+
+TEST(MergeCommand, StopsWhenAskedTo) {
+  const Workplace place;
+  place.write("out.json", "mine");
+  sigset_t interrupt, before;
+  sigemptyset(&interrupt);
+  sigaddset(&interrupt, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &interrupt, &before);
+  raise(SIGINT);
+  const Outcome outcome = run({"merge", handle, bowl, "--out", place.text("out.json")});
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  EXPECT_EQ(outcome.code, exit_failed);
+  EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+  EXPECT_NE(outcome.err.find("stopped"), std::string::npos) << outcome.err;
+  EXPECT_EQ(std::filesystem::file_size(place.path("out.json")), 4U);
 }
 
 }  // namespace

@@ -56,6 +56,41 @@ void expect_refusal(const std::string& file, const std::string& reason,
   EXPECT_EQ(line.find('\n'), std::string::npos) << line;
 }
 
+// Two triangles, their corners lists of two kinds: cut anywhere, it says so, and does not crash the reader.
+TEST_F(MeshFileTest, ACutBinaryPlyIsToldOfItsCut) {
+  for (const bool big : {false, true}) {
+    const std::string header = std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                               "_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                               "property float z\nelement face 2\nproperty list ushort int vertex_indices\n"
+                               "property uchar red\nend_header\n";
+    std::string bytes;
+    const auto append = [&](std::uint32_t number, int count) {
+      for (int k = 0; k < count; ++k) {
+        bytes.push_back(static_cast<char>(number >> 8U * static_cast<unsigned>(big ? count - 1 - k : k)));
+      }
+    };
+    for (const float number : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 1.F, 1.F, 0.F, 0.F, 1.F, 0.F}) {
+      append(std::bit_cast<std::uint32_t>(number), 4);
+    }
+    for (const std::uint32_t first : {0U, 1U}) {
+      append(3, 2);
+      for (const std::uint32_t corner : {0U, 1U + first, 2U + first}) append(corner, 4);
+      append(200, 1);
+    }
+    const auto whole = read_mesh_file(write("whole.ply", header + bytes), by_program());
+    ASSERT_TRUE(whole) << whole.error().message;
+    EXPECT_EQ(whole->mesh.triangles.size(), 2U);
+    for (const std::size_t kept : {std::size_t{0}, std::size_t{11}, std::size_t{47}, std::size_t{48},
+                                   std::size_t{49}, std::size_t{60}, bytes.size() - 1}) {
+      const std::string file = write("cut.ply", header + bytes.substr(0, kept));
+      expect_refusal(file, kept < 48 ? "it ends within vertex" : "it ends within face");
+    }
+    std::string odd = header;
+    odd.replace(odd.find("float z"), 7, "quark z");
+    expect_refusal(write("odd.ply", odd + bytes), "of a type that PLY does not have");
+  }
+}
+
 void expect_box(const std::string& file, const Vector3& size_m, const MeshReading& reading = by_program()) {
   SCOPED_TRACE(file);
   const auto read = read_mesh_file(file, reading);

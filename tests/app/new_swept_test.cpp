@@ -54,6 +54,23 @@ TEST(NewTube, RefusesOneThatPassesThroughItself) {
   EXPECT_NE(outcome.err.find("through itself"), std::string::npos) << outcome.err;
 }
 
+// What the message asks for suffices.
+TEST(NewTube, SaysHowWideItMayBe) {
+  const Workplace place;
+  const auto made = [&](const std::string& radius) {
+    return run({"new", "tube", "--path", "0,0,0;10,0,0;0,1,0mm", "--radius", radius, "--out",
+                place.text("tube.json")});
+  };
+  const std::string told = made("5mm").err;
+  const std::size_t at = told.find("at most ");
+  ASSERT_NE(at, std::string::npos) << told;
+  const double share = std::stod(told.substr(at + 8)) / 100.0;
+  EXPECT_LT(share, 1.0) << told;
+  const Outcome thinner = made(std::to_string(5.0 * share) + "mm");
+  EXPECT_EQ(thinner.err.find("folds"), std::string::npos) << thinner.err;
+  EXPECT_EQ(told.find("-0.0"), std::string::npos) << told;
+}
+
 TEST(NewLathe, ClosedOnTheAxisOrOpen) {
   const Workplace place;
   place.write("vase.csv", "radius_mm,height_mm\n0,0\n20,5\n25,30\n12,60\n0,70\n");

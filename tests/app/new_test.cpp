@@ -143,21 +143,20 @@ TEST(New, RefusesWhatMakesNoShape) {
   const auto out = [&](std::vector<std::string> arguments) {
     return run(with(std::move(arguments), {"--out", place.text("old.json")}));
   };
-  for (const auto& arguments : std::vector<std::vector<std::string>>{
-           {"new", "sphere", "--radius", "0.01mm"},
-           {"new", "sphere", "--radius", "-5mm"},
-           {"new", "sphere", "--radius", "11m"},
-           {"new", "box", "--size", "60x40x0mm"},
-           {"new", "box", "--size", "60x40x20mm", "--rounding", "9mm"},
-           {"new", "cone", "--rounding", "25mm"},
-           {"new", "cylinder", "--rounding", "0.01mm"},
-           {"new", "torus", "--ring", "1cm", "--tube", "2cm"},
-           {"new", "plate", "--size", "100x60mm", "--thickness", "40mm"},
-           {"new", "plate", "--size", "100x60mm", "--corner", "1mm"},
-           {"new", "plate", "--size", "100x60mm", "--sheet", "--corner", "9mm"},
-           {"new", "sphere", "--tolerance", "0.00001mm", "--radius", "10m"},
-           {"new", "sphere", "--material", "cheese"},
-           {"new", "sphere", "--material", "silicone"}}) {
+  for (const auto& arguments :
+       std::vector<std::vector<std::string>>{{"new", "sphere", "--radius", "0.01mm"},
+                                             {"new", "sphere", "--radius", "-5mm"},
+                                             {"new", "sphere", "--radius", "11m"},
+                                             {"new", "box", "--size", "60x40x0mm"},
+                                             {"new", "box", "--size", "60x40x20mm", "--rounding", "9mm"},
+                                             {"new", "cone", "--rounding", "25mm"},
+                                             {"new", "cylinder", "--rounding", "0.01mm"},
+                                             {"new", "torus", "--ring", "1cm", "--tube", "2cm"},
+                                             {"new", "plate", "--size", "100x60mm", "--thickness", "40mm"},
+                                             {"new", "plate", "--size", "100x60mm", "--corner", "1mm"},
+                                             {"new", "sphere", "--tolerance", "0.00001mm", "--radius", "10m"},
+                                             {"new", "sphere", "--material", "cheese"},
+                                             {"new", "sphere", "--material", "silicone"}}) {
     const Outcome outcome = out(arguments);
     EXPECT_EQ(outcome.code, exit_failed) << outcome.err;
     EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
@@ -179,6 +178,53 @@ TEST(New, RefusesWhatMakesNoShape) {
     EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
   }
   EXPECT_EQ(content_of(place.path("old.json")), "precious");
+}
+
+// An inch by either name, before other lengths without a unit of their own too.
+TEST(New, TakesInchesByBothNames) {
+  const Workplace place;
+  for (const char* size : {"2inchx40x20mm", "2inx40x20mm", "50.8x40x20mm", "50.8mmx40x20mm"}) {
+    const Outcome outcome = run({"new", "box", "--size", size, "--out", place.text("box.json"), "--json"});
+    ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+    EXPECT_NEAR(json_of(outcome.out)["size_mm"][0], 50.8, 0.03) << size;  // both faces within 0.01 mm
+  }
+}
+
+TEST(New, SaysSizesAsTheyWereGiven) {
+  const Workplace place;
+  const auto told = [&](const std::vector<std::string>& more) {
+    return run(with({"new"}, with(more, {"--out", place.text("none.json")}))).err;
+  };
+  EXPECT_NE(
+      told({"box", "--size", "60x40x20mm", "--rounding", "9mm"}).find("rounding is 9 mm, must be 0.2 mm"),
+      std::string::npos);
+  EXPECT_NE(told({"plate", "--size", "60x40mm", "--sheet", "--thickness", "0"}).find("0.01 mm to 100 mm"),
+            std::string::npos);
+}
+
+TEST(New, OptionsThatContradictEachOtherAreWrongUse) {
+  const Workplace place;
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"plate", "--size", "100x60mm", "--sheet", "--corner", "9mm"},
+           {"tube", "--path", "0,0,0;60,0,0mm", "--radius", "5mm", "--width", "3mm", "--height", "4mm"},
+           {"tube", "--path", "0,0,0;60,0,0mm", "--width", "3mm"},
+           {"tube", "--path", "0,0,0;60,0,0mm", "--height", "3mm"},
+           {"loft", "--sections", "a.csv", "--cap", "5mm", "--no-caps"},
+           {"loft", "--sections", "a.csv", "--cap", "5mm", "--open"},
+           {"loft", "--sections", "a.csv", "--no-caps", "--open"}}) {
+    const Outcome outcome = run(with({"new"}, with(arguments, {"--out", place.text("none.json")})));
+    EXPECT_EQ(outcome.code, exit_wrong_use) << outcome.err;
+    EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+  }
+}
+
+TEST(New, TellsProgramsOfARingToo) {
+  const Workplace place;
+  const Outcome ring = run({"new", "torus", "--out", place.text("ring.json"), "--json"});
+  ASSERT_EQ(ring.code, exit_done) << ring.err;
+  EXPECT_EQ(json_of(ring.out)["remarks"].size(), 1U);
+  const Outcome ball = run({"new", "sphere", "--out", place.text("ball.json"), "--json"});
+  EXPECT_TRUE(json_of(ball.out)["remarks"].empty());
 }
 
 TEST(New, HelpNamesSizesOfEachKind) {

@@ -21,6 +21,18 @@ TEST(PointTable, ReadsUnitsOfItsColumns) {
   EXPECT_DOUBLE_EQ(table->rows_m[1][0], 0.01);
 }
 
+// As spreadsheets write it.
+TEST(PointTable, ReadsAByteOrderMarkAndPluses) {
+  const auto table = read("\xEF\xBB\xBFx_mm,y_mm,z_inch\r\n+1,-2,+1\r\n");
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  EXPECT_DOUBLE_EQ(table->rows_m[0][0], 0.001);
+  EXPECT_DOUBLE_EQ(table->rows_m[0][1], -0.002);
+  EXPECT_DOUBLE_EQ(table->rows_m[0][2], 0.0254);
+  EXPECT_FALSE(read("x_mm,y_mm,z_mm\n+-1,0,0\n").ok());
+  EXPECT_FALSE(read("x_mm,y_mm,z_mm\n+,0,0\n").ok());
+  EXPECT_FALSE(read("x_mm,y_mm,z_mm\n++1,0,0\n").ok());
+}
+
 TEST(PointTable, ReadsSections) {
   const auto table = read("section,x_m,y_m,z_m\n1,0,0,0\n1,0,1,0\n2,5,0,0", true);
   ASSERT_TRUE(table.ok()) << table.error().message;

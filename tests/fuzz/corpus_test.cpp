@@ -1,5 +1,5 @@
-// The cases that fuzzing has found, and the first ones it grew from, whole and cut short; and those it has grown,
-// which go every way it knows.
+// The cases that fuzzing has found, and the first ones it grew from, whole and cut short; and those it has
+// grown, which go every way it knows.
 #include <gtest/gtest.h>
 
 #include <algorithm>

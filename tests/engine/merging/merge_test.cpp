@@ -4,23 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
 #include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/merging/made_patches.h"
 
 namespace spoonbill {
 namespace {
-
-MergeRequest request_of(int continuity, double tolerance_m = 5e-5) {
-  MergeRequest request;
-  request.join.continuity = continuity;
-  request.join.tolerance_m = tolerance_m;
-  return request;
-}
 
 double largest_difference(const Surface& a, const Surface& b) {
   const PointGrid points = point_grid(b, uniform_parameters(b.u, 41), uniform_parameters(b.v, 41));
@@ -187,21 +180,6 @@ TEST(Merge, AKinkIsBlendedOverTheLengthAsked) {
   EXPECT_NEAR((start - Vector3(0.02, 0.03, 0.03)).norm(), 0.005, 1e-9);
 }
 
-// Rings of a cone's frustum, cut at a third and taken apart by a gap.
-Surface ring_strip(double from, double to, int count, double seam) {
-  const auto u = KnotVector::periodic_uniform(3, count).value();
-  const auto v = KnotVector::clamped_uniform(3, 5).value();
-  PointGrid points{uniform_parameters_without_seam(u, 4 * count), uniform_parameters(v, 20), {}};
-  for (const double a : points.u) {
-    for (const double b : points.v) {
-      const double angle = 2.0 * std::numbers::pi * (a + seam), along = from + (to - from) * b;
-      const double radius = 0.01 + 0.1 * along;
-      points.points_m.emplace_back(radius * std::cos(angle), radius * std::sin(angle), along);
-    }
-  }
-  return fit_grid(u, v, points).value();
-}
-
 TEST(Merge, RingsAreTurnedUntilTheirSeamsMeet) {
   for (const bool backwards : {false, true}) {
     Surface after = ring_strip(0.03, 0.08, 20, 0.37);
@@ -217,22 +195,6 @@ TEST(Merge, RingsAreTurnedUntilTheirSeamsMeet) {
       const Vector3 p = position(surface, 0.3, at);
       EXPECT_NEAR(p.head<2>().norm(), 0.01 + 0.1 * p.z(), 5e-5);
     }
-  }
-}
-
-TEST(Merge, AGapIsBridgedSmoothly) {
-  const auto merged = merge({ring_strip(0.0, 0.03, 16, 0.0), ring_strip(0.04, 0.08, 20, 0.2)}, request_of(2));
-  ASSERT_TRUE(merged.ok()) << merged.error().message;
-  ASSERT_EQ(merged->joints.size(), 1u);
-  EXPECT_TRUE(merged->joints[0].joint.bridged);
-  // The chords of a gap of 10 mm on a slope of 0.1.
-  EXPECT_NEAR(merged->joints[0].joint.gap_m, 0.01 * std::hypot(1.0, 0.1), 1e-5);
-  EXPECT_LT(merged->deviation_m, 1e-9);
-  // A straight continuation of both is the cone itself.
-  const Surface& surface = merged->surface;
-  for (double share = 0.0; share <= 1.0; share += 0.02) {
-    const Vector3 p = position(surface, 0.7, share * surface.v.domain_end());
-    EXPECT_NEAR(p.head<2>().norm(), 0.01 + 0.1 * p.z(), 2e-5);
   }
 }
 
@@ -290,177 +252,6 @@ TEST(Merge, DirectionsAndSeamsAreChosenByHand) {
     return a.x() * b.y() - a.y() * b.x();
   };
   EXPECT_LT(turn(0.0) * turn(crossed->surface.v.domain_end()), 0.0);
-}
-
-// Over the domain [from, to] along v, of a plane sheet that is as long.
-Surface level_sheet(double from, double to, int columns = 8) {
-  const auto u = KnotVector::clamped_uniform(3, 6).value();
-  const auto v = with_domain(KnotVector::clamped_uniform(3, columns).value(), from, to).value();
-  PointGrid points{uniform_parameters(u, 20), uniform_parameters(v, 3 * columns), {}};
-  for (const double a : points.u) {
-    for (const double b : points.v) points.points_m.emplace_back(0.06 * a, 0.0, b);
-  }
-  return fit_grid(u, v, points).value();
-}
-
-TEST(Merge, AGapAsLongAsTheParametersSayIsBridged) {
-  const auto merged = merge({level_sheet(0.0, 0.04), level_sheet(0.06, 0.1)}, request_of(2));
-  ASSERT_TRUE(merged.ok()) << merged.error().message;
-  EXPECT_TRUE(merged->joints[0].joint.bridged);
-  EXPECT_NEAR(merged->joints[0].joint.gap_m, 0.02, 1e-12);
-  EXPECT_NEAR(position(merged->surface, 0.5, 0.05).z(), 0.05, 1e-12);
-}
-
-// Sheets between two curves over x.
-Surface sheet_between(const std::function<double(double)>& low, const std::function<double(double)>& high,
-                      double warp = 0.0) {
-  const auto knots = KnotVector::clamped_uniform(3, 12).value();
-  PointGrid points{uniform_parameters(knots, 60), uniform_parameters(knots, 30), {}};
-  for (const double a : points.u) {
-    const double t = a + warp * a * (1.0 - a), x = 0.06 * t;
-    for (const double b : points.v) points.points_m.emplace_back(x, 0.0, low(x) + (high(x) - low(x)) * b);
-  }
-  return fit_grid(knots, knots, points).value();
-}
-
-bool is_monotone_in_z(const Surface& surface) {
-  const double start = surface.v.domain_start(), end = surface.v.domain_end();
-  for (double u = 0.0; u <= 1.0; u += 0.05) {
-    double last = position(surface, u, start).z();
-    for (int k = 1; k <= 400; ++k) {
-      const double next = position(surface, u, start + (end - start) * k / 400).z();
-      if (next < last) return false;
-      last = next;
-    }
-  }
-  return true;
-}
-
-TEST(Merge, AWedgeShapedGapIsBridgedWithoutAFold) {
-  const auto flat = [](double z) { return [z](double) { return z; }; };
-  const Surface low = sheet_between(flat(0.0), flat(0.04));
-  // From 0.1 mm to 4.1 mm wide.
-  const auto merged =
-      merge({low, sheet_between([](double x) { return 0.0401 + x / 15.0; }, flat(0.09))}, request_of(2));
-  ASSERT_TRUE(merged.ok()) << merged.error().message;
-  EXPECT_TRUE(is_monotone_in_z(merged->surface));
-  // The same edge, whose parameters slide by 3 mm, and a tolerance within which the fits do not agree.
-  const auto askew = merge({low, sheet_between(flat(0.04), flat(0.09), 0.2)}, request_of(2, 1e-16));
-  ASSERT_FALSE(askew.ok());
-  EXPECT_NE(askew.error().message.find("without a fold"), std::string::npos) << askew.error().message;
-}
-
-// Around a line from one point to another; u starts at `seam` and runs around it as a right-handed screw
-// does, or against it, unevenly by `warp`.
-Surface pipe(const Vector3& from, const Vector3& to, const Vector3& seam, bool left_handed = false,
-             double warp = 0.0) {
-  const auto u = KnotVector::periodic_uniform(3, 24).value();
-  const auto v = KnotVector::clamped_uniform(3, 6).value();
-  PointGrid points{uniform_parameters_without_seam(u, 96), uniform_parameters(v, 20), {}};
-  const Vector3 along = (to - from).normalized(), side = along.cross(seam) * (left_handed ? -1.0 : 1.0);
-  for (const double a : points.u) {
-    const double angle = 2.0 * std::numbers::pi * a + warp * std::sin(2.0 * std::numbers::pi * a);
-    for (const double b : points.v) {
-      points.points_m.push_back(from + b * (to - from) +
-                                0.008 * (std::cos(angle) * seam + std::sin(angle) * side));
-    }
-  }
-  return fit_grid(u, v, points).value();
-}
-
-// The area that the ring at v encloses, of the least of all rings.
-double least_section_m2(const Surface& tube) {
-  const double start = tube.v.domain_start(), end = tube.v.domain_end();
-  double least = 1.0;
-  for (int k = 0; k <= 200; ++k) {
-    Vector3 twice = Vector3::Zero();
-    Vector3 last = position(tube, 0.0, start + (end - start) * k / 200);
-    for (int i = 1; i <= 64; ++i) {
-      const Vector3 next = position(tube, i / 64.0, start + (end - start) * k / 200);
-      twice += last.cross(next);
-      last = next;
-    }
-    least = std::min(least, 0.5 * twice.norm());
-  }
-  return least;
-}
-
-// Whether normals turn by less than a right angle from each sample along v to the next.
-bool is_without_folds(const Surface& surface) {
-  const double start = surface.v.domain_start(), end = surface.v.domain_end();
-  for (double u = 0.0; u < 1.0; u += 0.02) {
-    Vector3 last = unit_normal(surface, u, start);
-    for (int k = 1; k <= 200; ++k) {
-      const Vector3 next = unit_normal(surface, u, start + (end - start) * k / 200);
-      if (next.dot(last) < 0.0) return false;
-      last = next;
-    }
-  }
-  return true;
-}
-
-TEST(Merge, PipesSideBySideAreJoinedByABend) {
-  for (const bool left_handed : {false, true}) {
-    MergeRequest request = request_of(2);
-    request.chosen = {{{0, Side::v_end}, {1, Side::v_end}}};
-    const Vector3 x(1, 0, 0);
-    const auto merged = merge({pipe({0, 0, 0}, {0, 0.06, 0}, x),
-                               pipe({0.06, 0, 0}, {0.06, 0.06, 0}, Vector3(0.6, 0, 0.8), left_handed)},
-                              request);
-    ASSERT_TRUE(merged.ok()) << merged.error().message;
-    const Surface& surface = merged->surface;
-    EXPECT_TRUE(is_without_folds(surface));
-    EXPECT_GT(least_section_m2(surface), 0.8 * std::numbers::pi * 6.4e-5);
-    for (double u = 0.0; u < 1.0; u += 0.1) {
-      const Vector3 start = position(surface, u, 0.0), end = position(surface, u, surface.v.domain_end());
-      // Mirrored: what is inside of the bend on one pipe is so on the other.
-      EXPECT_NEAR(end.x(), 0.06 - start.x(), 1e-5);
-      EXPECT_NEAR(end.z(), start.z(), 1e-5);
-    }
-  }
-}
-
-TEST(Merge, PipesAtARightAngleAreJoinedByABend) {
-  for (const bool left_handed : {false, true}) {
-    for (const double seam : {0.0, 1.0, 2.5}) {
-      const auto merged =
-          merge({pipe({0, 0, 0}, {0, 0.06, 0}, {1, 0, 0}),
-                 pipe({0.04, 0.1, 0}, {0.09, 0.1, 0}, {0, std::cos(seam), std::sin(seam)}, left_handed)},
-                request_of(2));
-      ASSERT_TRUE(merged.ok()) << merged.error().message;
-      EXPECT_TRUE(is_without_folds(merged->surface));
-      EXPECT_GT(least_section_m2(merged->surface), 0.8 * std::numbers::pi * 6.4e-5);
-      const Vector3 inner = position(merged->surface, 0.0, merged->surface.v.domain_end());
-      EXPECT_NEAR(inner.y(), 0.1 - 0.008, 1e-5);
-    }
-  }
-}
-
-TEST(Merge, ACupsTwoWallsAreJoinedAtItsRim) {
-  Surface inner = pipe({0, 0, 0}, {0, 0.06, 0}, {1, 0, 0});
-  for (double& x : inner.net.x) x *= 0.5;
-  for (double& z : inner.net.z) z *= 0.5;
-  MergeRequest request = request_of(2);
-  request.chosen = {{{0, Side::v_end}, {1, Side::v_end}}};
-  const auto merged = merge({pipe({0, 0, 0}, {0, 0.06, 0}, {1, 0, 0}), inner}, request);
-  ASSERT_TRUE(merged.ok()) << merged.error().message;
-  EXPECT_TRUE(is_without_folds(merged->surface));
-  const Vector3 end = position(merged->surface, 0.0, merged->surface.v.domain_end());
-  EXPECT_NEAR((end - Vector3(0.004, 0, 0)).norm(), 0.0, 1e-5);
-}
-
-TEST(Merge, RingsWhoseParametersDifferAreMatched) {
-  const auto merged = merge({pipe({0, 0, 0}, {0, 0.03, 0}, {1, 0, 0}),
-                             pipe({0, 0.03, 0}, {0, 0.06, 0}, Vector3(0.8, 0, 0.6), false, 0.4)},
-                            request_of(2));
-  ASSERT_TRUE(merged.ok()) << merged.error().message;
-  EXPECT_FALSE(merged->joints[0].joint.bridged);
-  EXPECT_LE(merged->deviation_m, 5e-5);
-  for (double u = 0.0; u < 1.0; u += 0.05) {
-    const Vector3 low = position(merged->surface, u, 0.0);
-    const Vector3 high = position(merged->surface, u, merged->surface.v.domain_end());
-    EXPECT_NEAR((high - low - Vector3(0, 0.06, 0)).norm(), 0.0, 1e-4) << u;
-  }
 }
 
 TEST(Merge, GivesASplitPipeBackHoweverItIsHeld) {

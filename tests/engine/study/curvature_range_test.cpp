@@ -7,6 +7,7 @@
 
 #include "engine/shapes/round_shapes.h"
 #include "tests/engine/shapes/body_measures.h"
+#include "tests/engine/trims/loops.h"
 
 namespace spoonbill {
 namespace {
@@ -61,6 +62,16 @@ TEST(CurvatureRange, FindsAPeakBetweenSamples) {
   EXPECT_NEAR(range.smallest.u, 0.0, 1e-3);
   EXPECT_NEAR(range.largest.curvature_per_m, 0.4, 1e-6);
   EXPECT_NEAR(range.largest.v, 0.0, 1e-3);
+}
+
+// The vertex, which is sharpest, is trimmed away: what is left is sharpest beside the cut.
+TEST(CurvatureRange, OfWhatTrimsKeep) {
+  const Surface whole = paraboloid(0.7, 0.0);
+  const auto loop = polygon_loop(whole.u, whole.v, rectangle(0.5, -1.0, 1.0, 1.0));
+  const CurvatureRange range = curvature_range(whole, TrimmedArea::make(whole.u, whole.v, {loop}).value());
+  const double root = std::sqrt(1.0 + 4.0 * 0.49 * 0.25);
+  EXPECT_NEAR(range.smallest.curvature_per_m, -1.4 / (root * root * root), 1e-3);
+  EXPECT_GE(range.smallest.u, 0.5);
 }
 
 // Second derivatives of a cubic spline of n spans around are short by (2 pi / n)^2 / 12 of themselves, here

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/shapes/box_shapes.h"
 #include "tests/engine/shapes/body_measures.h"
+#include "tests/engine/trims/loops.h"
 
 namespace spoonbill {
 namespace {
@@ -67,6 +69,37 @@ TEST(EnclosedMass, AreaOfASheet) {
     EXPECT_NEAR(mass.area_m2, 6.0, 1e-12);
     EXPECT_LT((mass.area_middle_m - Vector3(1.0, 1.5, 1.0)).norm(), 1e-12);
   }
+}
+
+// A hole of an eighth in a flat sheet, which the quadrature takes exactly.
+TEST(EnclosedMass, AreaOfWhatTrimsKeep) {
+  const Surface sheet = fitted(sheet_shape(0.1, 0.06)).surface;
+  const auto hole = polygon_loop(sheet.u, sheet.v, backwards(rectangle(0.25, 0.25, 0.5, 0.75)));
+  const EnclosedMass mass = enclosed_mass(sheet, TrimmedArea::make(sheet.u, sheet.v, {hole}).value());
+  EXPECT_NEAR(mass.area_m2, 0.875 * 0.006, 1e-12);
+  // The hole's middle is an eighth of 0.1 m to the left.
+  EXPECT_LT((mass.area_middle_m - Vector3(0.0125 * 0.125 / 0.875, 0.0, 0.0)).norm(), 1e-10);
+  const auto round = round_loop(sheet.u, sheet.v, {0.5, 0.5}, 0.2, 16, true);
+  const EnclosedMass rounded = enclosed_mass(sheet, TrimmedArea::make(sheet.u, sheet.v, {round}).value());
+  // Chords within 1e-5 of the domain, over a circumference of 1.3 of it.
+  EXPECT_NEAR(rounded.area_m2 / 0.006, 1.0 - round_loop_area(0.2, 16), 2e-5);
+}
+
+TEST(EnclosedMass, AreaOfAPartOfATube) {
+  constexpr double r = 0.01, length = 0.05;
+  ExactShape shape;
+  shape.u.periodic = true;
+  shape.at = [](double u, double v) {
+    return Vector3(r * std::cos(2.0 * pi * u), length * v, -r * std::sin(2.0 * pi * u));
+  };
+  ShapeFit fit;
+  fit.tolerance_m = 1e-7;
+  fit.keeps_parameters = true;
+  const Surface tube = fitted(Result<ExactShape>(shape), fit).surface;
+  // Across the seam.
+  const auto part = polygon_loop(tube.u, tube.v, rectangle(-0.25, 0.2, 0.25, 0.6));
+  const EnclosedMass mass = enclosed_mass(tube, TrimmedArea::make(tube.u, tube.v, {part}).value());
+  EXPECT_NEAR(mass.area_m2 / (pi * r * 0.4 * length), 1.0, 2e-5);  // 1e-7 of 1e-2
 }
 
 TEST(EnclosedMass, IsBelowZeroInsideOut) {

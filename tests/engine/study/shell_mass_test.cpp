@@ -8,6 +8,7 @@
 #include "engine/shapes/box_shapes.h"
 #include "engine/shapes/round_shapes.h"
 #include "tests/engine/shapes/body_measures.h"
+#include "tests/engine/trims/loops.h"
 
 namespace spoonbill {
 namespace {
@@ -25,6 +26,13 @@ TEST(ShellMass, IsWhatIsBetweenTwoSurfaces) {
   const ShellMass ring = shell_mass(fitted(torus_shape({0.04, 0.01}), fit).surface, 0.002);
   const double tubes = 2.0 * pi * pi * 0.04 * (0.01 * 0.01 - 0.008 * 0.008);
   EXPECT_NEAR(ring.volume_m3 / tubes, 1.0, 1e-4);
+}
+
+TEST(ShellMass, OfWhatTrimsKeep) {
+  const Surface sheet = fitted(sheet_shape(0.1, 0.06)).surface;
+  const auto hole = polygon_loop(sheet.u, sheet.v, backwards(rectangle(0.25, 0.25, 0.5, 0.75)));
+  const TrimmedArea area = TrimmedArea::make(sheet.u, sheet.v, {hole}).value();
+  EXPECT_NEAR(shell_mass(sheet, 0.004, area).volume_m3, 0.875 * 0.006 * 0.004, 1e-12);
 }
 
 TEST(ShellMass, OfASheetLiesBelowIt) {

@@ -21,7 +21,7 @@ void take_values(std::string_view bytes) {
   if (const auto pose = parse_pose(bytes)) {
     must_hold(std::abs(pose->orientation.norm() - 1.0) < 1e-9, "orientations are unit");
   }
-  const auto extent = parse_extent(bytes, {1, 5000});
+  const auto extent = parse_extent(bytes, {1, 5000}, "50x50");
   if (extent) must_hold(extent->width >= 1 && extent->height <= 5000, "extents are within their range");
   const auto unit = parse_unit(bytes);
   if (!unit) must_be_one_line(unit.error());
