@@ -18,7 +18,6 @@
 #include "app/report/progress_bar.h"
 #include "app/session/session.h"
 #include "engine/number_text.h"
-#include "engine/study/closing.h"
 #include "haptic/recording.h"
 #include "haptic/script.h"
 
@@ -39,23 +38,16 @@ void add_duration(FactSheet& facts, std::uint64_t ticks) {
   facts.add("", "", "duration_s", static_cast<double>(ticks) / 1000.0);
 }
 
-// A surface to look at, merge and export: neither a shell nor closed by poles.
-bool has_no_lattice(const Body& body) {
-  if (body.shell_thickness_m) return false;
-  return closing_of(body.surface).closedness != Closedness::solid ||
-         (body.surface.u.is_periodic() && body.surface.v.is_periodic());
-}
-
-Status add_simulated(FactSheet& facts, const Document& document, const std::string& source,
-                     Console& console) {
+// A surface that holds no lattice may still be looked at, merged and exported.
+void add_simulated(FactSheet& facts, const Document& document, const std::string& source, Console& console) {
   add_document_facts(facts, document);
   MapProgress maps(console);
   auto session = Session::make(document, source, VirtualDevice::default_specification(),
                                best_instruction_set(), maps.watch());
   if (!session) {
-    if (!has_no_lattice(document.scene.bodies[0])) return session.error();
     facts.add("Lattice", "none: " + session.error().message, "lattice", nullptr);
-    return {};
+    facts.add("", "", "no_lattice_because", session.error().message);
+    return;
   }
   Snapshot snapshot;
   write_snapshot(session.value(), snapshot);
@@ -64,14 +56,14 @@ Status add_simulated(FactSheet& facts, const Document& document, const std::stri
   add_remarks(facts, session->simulation.remarks());
   const bool has_map = document.scene.bodies[0].lattice.feature_map.has_value();
   add_cell_facts(facts, session->simulation.lattice().mesh(), has_map ? maps.report() : std::nullopt);
-  return {};
 }
 
 Status describe_document(FactSheet& facts, const std::filesystem::path& file, Console& console) {
   const auto document = read_document(file);
   if (!document) return document.error();
   facts.add("Kind", "document", "kind", "document");
-  return add_simulated(facts, document.value(), file.string(), console);
+  add_simulated(facts, document.value(), file.string(), console);
+  return {};
 }
 
 Status describe_recording(FactSheet& facts, const std::filesystem::path& file, Console& console) {
@@ -90,7 +82,8 @@ Status describe_recording(FactSheet& facts, const std::filesystem::path& file, C
   const DeviceSpecification& device = recording->header.device;
   facts.add("Device", device.name + ", at most " + number_text(device.maximum_force_n) + " N", "device",
             {{"name", device.name}, {"maximum_force_n", device.maximum_force_n}});
-  return add_simulated(facts, recording->header.document, file.string(), console);
+  add_simulated(facts, recording->header.document, file.string(), console);
+  return {};
 }
 
 Status describe_script(FactSheet& facts, const std::filesystem::path& file) {

@@ -80,11 +80,19 @@ void expect_refusal(const std::vector<std::string>& arguments, const std::string
   EXPECT_NE(outcome.err.find(reason), std::string::npos) << outcome.err;
 }
 
+void expect_no_lattice(const std::string& model, const std::string& reason) {
+  const Outcome outcome = run({"info", model, "--json"});
+  EXPECT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_TRUE(json_of(outcome.out)["lattice"].is_null());
+  const std::string told = json_of(outcome.out)["no_lattice_because"].get<std::string>();
+  EXPECT_NE(told.find(reason), std::string::npos) << told;
+}
+
 TEST(BadInput, BodiesInsideOutHaveNoOutside) {
   const Workplace place;
   const std::string mirrored =
       moved_model(place, "mirrored.json", [](const Vector3& p) { return Vector3(p.x(), p.y(), -p.z()); });
-  expect_refusal({"info", mirrored}, "mirrored.json: surface: normals point inward");
+  expect_no_lattice(mirrored, "mirrored.json: surface: normals point inward");
   expect_refusal({"collide", mirrored, place.text("model.json")},
                  "mirrored.json: surface: normals point inward");
   expect_refusal({"collide", place.text("model.json"), mirrored},
@@ -96,8 +104,7 @@ TEST(BadInput, BodiesWithoutThicknessHoldNoLattice) {
   for (const double thickness : {1e-6, 1e-9, 1e-13, 0.0}) {
     const std::string flat = moved_model(
         place, "flat.json", [&](const Vector3& p) { return Vector3(p.x(), thickness * p.y(), p.z()); });
-    expect_refusal({"info", flat},
-                   thickness > 0.0 ? "flat.json: surface: " : "flat.json: surface: flat in the");
+    expect_no_lattice(flat, thickness > 0.0 ? "flat.json: surface: " : "flat.json: surface: flat in the");
   }
 }
 

@@ -81,7 +81,8 @@ TEST_F(ConvertTest, AHandleGoesOutToCadAndComesBack) {
       EXPECT_LT(largest_distance_m(handle_, place_.path("back.json")), 1e-9);
       // What comes back is a body that a simulation takes.
       const Outcome info = run_process(SPOONBILL_PROGRAM, {"info", place_.text("back.json"), "--json"});
-      EXPECT_EQ(info.code, exit_done) << info.err;
+      ASSERT_EQ(info.code, exit_done) << info.err;
+      EXPECT_FALSE(json_of(info.out)["lattice"].is_null()) << info.out;
     }
   }
 }

@@ -64,6 +64,7 @@ TEST_F(FitTest, CloudBecomesADocumentThatOpens) {
   EXPECT_EQ(document->scene.planes.size(), 1U);  // held, as what `new` makes
   const Outcome info = run_process(SPOONBILL_PROGRAM, {"info", out(), "--json"});
   EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_FALSE(json_of(info.out).at("lattice").is_null()) << info.out;
 }
 
 TEST_F(FitTest, SheetBecomesAShellThatOpens) {
@@ -74,6 +75,7 @@ TEST_F(FitTest, SheetBecomesAShellThatOpens) {
   EXPECT_NEAR(json.at("size_mm")[0].get<double>(), 100.0, 1.0);
   const Outcome info = run_process(SPOONBILL_PROGRAM, {"info", out(), "--json"});
   EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_FALSE(json_of(info.out).at("lattice").is_null()) << info.out;
 }
 
 TEST_F(FitTest, MeshIsReadByTheChildAndItsErrorsAreColoured) {
