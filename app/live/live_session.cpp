@@ -94,6 +94,10 @@ void LiveSession::stop() {
   haptic_.close();
 }
 
+void LiveSession::set_autosave(std::optional<Autosave> autosave) {
+  journal_.set_autosave(std::move(autosave));
+}
+
 void LiveSession::aim(const HandTarget& target) {
   exchange_.target.writing() = target;
   exchange_.target.publish();

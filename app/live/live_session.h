@@ -49,7 +49,7 @@ class LiveSession {
 
   // How documents are looked at when they are saved, and where unsaved work goes.
   void set_view(Json view) { journal_.set_view(std::move(view)); }
-  void set_autosave(std::optional<Autosave> autosave) { journal_.set_autosave(std::move(autosave)); }
+  void set_autosave(std::optional<Autosave> autosave);
 
   // The newest tick there is.
   const LiveFrame& frame();
