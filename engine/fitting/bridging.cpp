@@ -92,8 +92,9 @@ void turn_to(const PointGraph& graph, const std::vector<std::uint32_t>& a, std::
 // Straight from ring to ring.
 void span_gap(FitPoints& points, const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
   double length = 0.0;
-  for (std::size_t k = 0; k < nodes_around_bridge; ++k)
+  for (std::size_t k = 0; k < nodes_around_bridge; ++k) {
     length += points.graph.length(a[k], b[k]) / nodes_around_bridge;
+  }
   const auto rings =
       std::max<std::size_t>(1, static_cast<std::size_t>(length / (2.0 * mean_edge_length(points.graph))));
   const auto begin = static_cast<std::uint32_t>(points.graph.size());

@@ -65,8 +65,9 @@ std::vector<Vector3> surface_samples(const Surface& surface) {
 double plane_distance(const Vector3& sample, const std::vector<Vector3>& points,
                       const std::vector<NearestPoints::Found>& found) {
   Vector3 mean = Vector3::Zero();
-  for (const NearestPoints::Found& near : found)
+  for (const NearestPoints::Found& near : found) {
     mean += points[near.index] / static_cast<double>(found.size());
+  }
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const NearestPoints::Found& near : found) {
     spread += (points[near.index] - mean) * (points[near.index] - mean).transpose();

@@ -103,8 +103,9 @@ void SurfaceFitter::set_fairness(double fairness, const FittedData& data) {
   fairness_.resize(weight.size());
   for (std::size_t t = 0; t < v_spans; ++t) {
     double column = 0.0;
-    for (std::size_t s = 0; s < u_spans; ++s)
+    for (std::size_t s = 0; s < u_spans; ++s) {
       column += weight[s * v_spans + t] / static_cast<double>(u_spans);
+    }
     // Spans about a pole are small, and have few points to hold them against their stiffness.
     const bool at_pole = closed() && std::min(t, v_spans - 1 - t) < pole_columns;
     const double size = at_pole ? std::clamp(column / mean, least_pole_size, 1.0) : 1.0;
@@ -246,7 +247,8 @@ bool SurfaceFitter::faces_inwards() const {
   if (along != 0.0 || !closed()) return along < 0.0;
   constexpr int grid = 40;
   for (int i = 0; i < grid * grid; ++i) {
-    const SurfacePoint at = evaluate(surface_, (i / grid + 0.5) / grid, (i % grid + 0.5) / grid);
+    const int row = i / grid, column = i % grid;
+    const SurfacePoint at = evaluate(surface_, (row + 0.5) / grid, (column + 0.5) / grid);
     volume += at.position_m.dot(at.du.cross(at.dv));
   }
   return volume < 0.0;

@@ -160,8 +160,9 @@ Opening opened_at(const FitPoints& whole, std::uint32_t node, const Vector3& tow
     opened.island.node_normals.push_back(whole.node_normals[n]);
     if (n >= real) ++opened.island.spanning_nodes;
     const auto near = whole.graph.of(n);
-    if (std::any_of(near.begin(), near.end(), [&](auto m) { return ways.length[m] < reach; }))
+    if (std::any_of(near.begin(), near.end(), [&](auto m) { return ways.length[m] < reach; })) {
       ring.push_back(n);
+    }
   }
   if (ring.size() < least_rim) return opened;
   const Vector3 facing = whole.node_normals[node].isZero() ? towards : whole.node_normals[node];

@@ -37,7 +37,7 @@ std::optional<Axis> round_axis(const std::vector<Vector3>& points_m) {
     spread += (point - axis.middle) * (point - axis.middle).transpose() / count;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-  const Vector3 squares = solver.eigenvalues();
+  const Vector3& squares = solver.eigenvalues();
   const bool flat = squares[2] - squares[1] < roundness * squares[2];
   const bool slender = squares[1] - squares[0] < roundness * squares[1];
   if (flat == slender) return {};
@@ -127,8 +127,9 @@ class Picture {
       static constexpr std::array<std::array<int, 2>, 4> steps{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
       for (const auto& [dc, dr] : steps) {
         const int c = column + dc, r = row + dr;
-        if (c < 0 || c >= columns_ || r < 0 || r >= rows_ || filled_[index(c, r)] || outside_[index(c, r)])
+        if (c < 0 || c >= columns_ || r < 0 || r >= rows_ || filled_[index(c, r)] || outside_[index(c, r)]) {
           continue;
+        }
         outside_[index(c, r)] = true;
         waiting.push_back({c, r});
       }
@@ -231,6 +232,7 @@ std::optional<Parameterisation> profile_map(const std::vector<Vector3>& points_m
   const double thickness = 2.0 * picture.area() / length_of(way) - 2.0 * dilation * cell;
   if (thickness > thin_share * size || thickness < told_apart_cells * cell) return {};
   std::vector<Vector3> corners;
+  corners.reserve(way.size());
   for (const Vector2& place : way) corners.emplace_back(place.x(), place.y(), 0.0);
   const NearestPoints nearest(corners);
   const std::vector<double> shares = shares_along(way);

@@ -35,6 +35,7 @@ std::vector<Span> spans_with_errors(const KnotVector& knots, int direction, std:
 
 KnotVector knots_of(const KnotVector& like, const std::vector<Span>& spans) {
   std::vector<double> knots;
+  knots.reserve(spans.size() + 1);
   for (const Span& span : spans) knots.push_back(span.begin);
   knots.push_back(spans.back().end);
   if (like.is_periodic()) return KnotVector::periodic(like.degree(), std::move(knots)).value();

@@ -136,12 +136,14 @@ class LoftSides {
       parameters_.push_back(parameters_.back() + sum / around);
     }
     std::vector<double> shares;
+    shares.reserve(static_cast<std::size_t>(around) + 1);
     for (int k = 0; k < around + (closed ? 1 : 0); ++k) {
       shares.push_back(static_cast<double>(k) / (closed ? around : around - 1));
     }
     std::vector<Section> bends(sections.size(), Section(around));
     for (std::size_t place = 0; place < static_cast<std::size_t>(around); ++place) {
       Section line;
+      line.reserve(sections.size());
       for (const Section& section : sections) line.push_back(section[place]);
       const SmoothCurve across = SmoothCurve::at_parameters(line, parameters_, false);
       for (std::size_t s = 0; s < sections.size(); ++s) bends[s][place] = across.bends()[s];

@@ -21,12 +21,12 @@ std::optional<PrincipalCurvatures> principal_curvatures(const SurfacePoint& poin
   const double area = product.norm();
   if (!(area > least_product * point.du.norm() * point.dv.norm())) return std::nullopt;
   const Vector3 inward = -product / area;
-  const double E = point.du.dot(point.du), F = point.du.dot(point.dv);
-  const double L = point.duu.dot(inward), M = point.duv.dot(inward), N = point.dvv.dot(inward);
+  const double e = point.du.dot(point.du), f = point.du.dot(point.dv);
+  const double l = point.duu.dot(inward), m = point.duv.dot(inward), n = point.dvv.dot(inward);
   // In an orthonormal frame of the tangent plane, so that slender parameters lose no digits.
-  const double along = std::sqrt(E), across = area / along;
-  const double a = L / E, b = (M - F / E * L) / (along * across);
-  const double c = (N - 2.0 * F / E * M + F / E * F / E * L) / (across * across);
+  const double along = std::sqrt(e), across = area / along;
+  const double a = l / e, b = (m - f / e * l) / (along * across);
+  const double c = (n - 2.0 * f / e * m + f / e * f / e * l) / (across * across);
   const double mean = 0.5 * (a + c), spread = std::hypot(0.5 * (a - c), b);
   return PrincipalCurvatures{mean - spread, mean + spread};
 }

@@ -243,7 +243,7 @@ CrossSection principal_axes(const Ring& ring, const Vector3& axis) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
   CrossSection section;
   section.e1 = solver.eigenvectors().col(2);
-  const Eigen::Vector3d spread = solver.eigenvalues();
+  const Eigen::Vector3d& spread = solver.eigenvalues();
   if (spread[2] - spread[1] < nearly_alike * spread[2]) turn_to_sides(ring, axis, section.e1);
   // The sign is the eigenvector's largest component's, so that it does not hang on the solver's whim.
   Eigen::Index largest = 0;

@@ -55,7 +55,7 @@ TEST(ImplicitShapes, DistancesOfConvexOnesAreProvenByTheirSupport) {
 
 TEST(ImplicitShapes, DistancesOfConvexOnesAreTheBestOverAllDirections) {
   Random random(32);
-  for (int trial = 0; trial < trials(140, 4000); ++trial) {
+  for (int trial = 0; trial < trials(140, 1000); ++trial) {
     const ImplicitShape shape = random_convex_shape(random, trial % convex_shape_kinds);
     const auto solid = make_signed_distance(shape);
     const Box bounds = solid->bounds();
