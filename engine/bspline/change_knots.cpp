@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -90,8 +91,8 @@ Status check_holds_all(const KnotVector& from, const KnotVector& to) {
   return {};
 }
 
-std::string name_of(Direction direction) {
-  return direction == Direction::u ? "direction u: " : "direction v: ";
+Error error_along(Direction direction, std::string_view message) {
+  return Error{std::string(direction == Direction::u ? "direction u: " : "direction v: ").append(message)};
 }
 
 // Enough in each piece of either to tell their polynomials apart.
@@ -170,7 +171,7 @@ Result<Fitted> fitted(const Surface& surface, Direction direction, const KnotVec
   const double nearness = same_knot_share * (from.domain_end() - from.domain_start());
   if (std::abs(knots.domain_start() - from.domain_start()) > nearness ||
       std::abs(knots.domain_end() - from.domain_end()) > nearness) {
-    return Error{name_of(direction) + "the knots to fit to have another domain"};
+    return error_along(direction, "the knots to fit to have another domain");
   }
   std::vector<double> parameters = telling_parameters(from, knots);
   if (knots.is_periodic()) parameters.pop_back();
@@ -178,7 +179,7 @@ Result<Fitted> fitted(const Surface& surface, Direction direction, const KnotVec
   const bool start = open && knots.knots().front() == knots.domain_start();
   const bool end = open && knots.knots().back() == knots.domain_end();
   const auto inverse = constrained_inverse(knots, parameters, {{}, start, end});
-  if (!inverse) return Error{name_of(direction) + inverse.error().message};
+  if (!inverse) return error_along(direction, inverse.error().message);
   const Eigen::MatrixXd conversion =
       inverse.value().lazyProduct(blending_matrix(from, parameters, 0).dense());
   Surface fit = mixed_along(surface, direction, conversion, knots);
@@ -288,7 +289,7 @@ Result<Surface> over_finer_knots(const Surface& surface, Direction direction, co
   const KnotVector& from = knots_along(surface, direction);
   if (from == finer) return surface;
   if (Status status = check_holds_all(from, finer); !status) {
-    return Error{name_of(direction) + status.error().message};
+    return error_along(direction, status.error().message);
   }
   return mixed_along(surface, direction, exact_conversion(from, finer), finer);
 }
@@ -311,9 +312,10 @@ Result<Approximation> approximated(const Surface& surface, Direction direction, 
     auto finer = with_pieces_halved(knots, places_above(fit->difference, tolerance_m));
     if (!finer) return finer.error();
     if (finer->control_point_count() > largest_count || finer.value() == knots) {
-      return Error{name_of(direction) + std::to_string(knots.control_point_count()) +
-                   " control points leave a deviation of " + short_length_text(deviation_m) +
-                   "; allow a larger one than " + short_length_text(tolerance_m)};
+      return error_along(direction, std::to_string(knots.control_point_count()) +
+                                        " control points leave a deviation of " +
+                                        short_length_text(deviation_m) + "; allow a larger one than " +
+                                        short_length_text(tolerance_m));
     }
     knots = std::move(finer).value();
   }
