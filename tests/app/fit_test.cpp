@@ -162,7 +162,8 @@ TEST_F(FitTest, AsksWhetherTheUnitIsAnother) {
   for (const Json& remark : in_mm.at("remarks"))
     asked |= remark.get<std::string>().find("--unit") != std::string::npos;
   EXPECT_TRUE(asked) << in_mm.at("remarks");
-  for (const Json& remark : json_of_fit(scan, {"--control", "8x8", "--unit", "m"}).at("remarks")) {
+  const Json in_metres = json_of_fit(scan, {"--control", "8x8", "--unit", "m"});
+  for (const Json& remark : in_metres.at("remarks")) {
     EXPECT_EQ(remark.get<std::string>().find("--unit"), std::string::npos) << remark;
   }
 }

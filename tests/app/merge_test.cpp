@@ -80,7 +80,7 @@ TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
       low = low.cwiseMin(moved.scene.bodies[0].surface.net.point(i, j));
     }
   }
-  const Surface& sphere = read_document(ball).value().scene.bodies[0].surface;
+  const Surface sphere = read_document(ball).value().scene.bodies[0].surface;
   const Vector3 middle =
       0.5 * (position(sphere, 0.0, sphere.v.domain_start()) + position(sphere, 0.0, sphere.v.domain_end()));
   Surface& surface = moved.scene.bodies[0].surface;
