@@ -12,6 +12,7 @@
 #include "engine/bspline/evaluate.h"
 #include "engine/exchange/document.h"
 #include "tests/app/process.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
@@ -67,6 +68,7 @@ double largest_distance_m(const std::filesystem::path& a, const std::filesystem:
 }
 
 TEST_F(ConvertTest, AHandleGoesOutToCadAndComesBack) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const char* name : {"out.step", "out.STP", "out.iges", "out.igs"}) {
     SCOPED_TRACE(name);
     for (const char* unit : {"mm", "cm", "m", "in", "inch"}) {

@@ -11,6 +11,7 @@
 #include "tests/app/mesh_texts.h"
 #include "tests/app/process.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/fitting/clouds.h"
 
 namespace spoonbill {
@@ -213,6 +214,7 @@ TEST_F(RealScans, PearIsClosedWithinAMillimetre) {
 }
 
 TEST_F(RealScans, BowlWithinAMillimetre) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   expect_good("ycb_024_bowl.ply", {}, 0.16);
 }
 
@@ -221,6 +223,7 @@ TEST_F(RealScans, SpoonAsTwoBodiesWithinAMillimetre) {
 }
 
 TEST_F(RealScans, SpoonBridgedIsOneBody) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const Json json = json_of_fit((scans_ / "ycb_031_spoon.ply").string(), {"--islands", "bridge"});
   ASSERT_TRUE(json.contains("bodies"));
   EXPECT_EQ(json.at("bodies").size(), 1U);

@@ -6,12 +6,14 @@
 
 #include "app/start/shipped_materials.h"
 #include "engine/simulation/simulation.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
 
 // Every kind with its usual sizes is a document that can be simulated as it is.
 TEST(LumpChoice, EveryKindMakesALumpToBePressed) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const Material clay = shipped_material("modelling-clay").value();
   for (std::size_t kind = 0; kind < lump_kinds().size(); ++kind) {
     const auto document = lump_document(usual_choice(kind), clay);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "haptic/recording.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/exchange/damage.h"
 #include "tests/engine/exchange/sample_document.h"
 #include "tests/haptic/sample_recording.h"

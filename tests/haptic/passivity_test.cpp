@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <random>
 
@@ -133,7 +132,7 @@ void expect_simulation_passive(double x_m, int runs, unsigned seed) {
 }
 
 int simulated_runs() {
-  return std::getenv("SPOONBILL_FULL") != nullptr ? 40 : 3;
+  return random_cases(3, 40);
 }
 
 TEST(Passivity, TheHeldPartGivesBackNoMoreThanItTook) {
@@ -142,6 +141,7 @@ TEST(Passivity, TheHeldPartGivesBackNoMoreThanItTook) {
 }
 
 TEST(Passivity, ABodyThatBendsGivesBackNoMoreThanItTook) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   expect_simulation_passive(0.05, simulated_runs(), 23);
 }
 

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <random>
 
@@ -149,7 +148,7 @@ struct Watched {
 };
 
 TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
-  const std::uint64_t ticks = std::getenv("SPOONBILL_FULL") != nullptr ? 10'000'000 : 300'000;
+  const auto ticks = static_cast<std::uint64_t>(random_cases(300'000, 10'000'000));
   constexpr std::uint64_t ticks_a_device = 20'000;
   Random random(11);
   Watched all;
@@ -225,7 +224,7 @@ Watched sculpt(Random& random, int ticks) {
 }
 
 TEST(SafetyAtRandom, LimitsHoldWhileSculpting) {
-  const int scenes = std::getenv("SPOONBILL_FULL") != nullptr ? 60 : effort(6);
+  const int scenes = random_cases(6, 60);
   Random random(12);
   std::uint64_t with_force = 0;
   for (int scene = 0; scene < scenes; ++scene) {

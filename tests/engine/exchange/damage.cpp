@@ -1,7 +1,6 @@
 #include "tests/engine/exchange/damage.h"
 
 #include <cstdint>
-#include <cstdlib>
 
 namespace spoonbill {
 
@@ -26,10 +25,6 @@ std::string damaged(std::string text, std::size_t from, std::mt19937_64& random)
     }
   }
   return text;
-}
-
-int random_cases(int quick, int full) {
-  return std::getenv("SPOONBILL_FULL") != nullptr ? full : quick;
 }
 
 }  // namespace spoonbill

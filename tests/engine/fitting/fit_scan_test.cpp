@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "tests/engine/collision/meshes/mesh_shapes.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/fitting/clouds.h"
 
 namespace spoonbill {
@@ -181,6 +182,7 @@ TriangleMesh bowl_mesh() {
 // Handles of all slopes that begin beside the bowl's rim: where that is opened, the rim of the hole does not
 // run round the way to the handle.
 TEST(FitScan, HandleAtAThinRimIsBridgedTheRightWayRound) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const TriangleMesh bowl = bowl_mesh();
   for (const double slope : {-0.5, 0.5, 1.4}) {
     TriangleMesh rod = ball_mesh(30, 30, 1.0);

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/random_surface.h"
@@ -233,7 +232,7 @@ Material random_material(Random& random, bool plainly_elastic) {
 
 // Random materials in random regions, and strokes at up to 5 m/s: everything stays finite and near.
 TEST(MaterialRegions, NoStrokeBlowsThemUp) {
-  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 200 : effort(12);
+  const int trials = random_cases(12, 200);
   Random random(31);
   for (int trial = 0; trial < trials; ++trial) {
     const bool plainly_elastic = random.integer(0, 2) == 0;

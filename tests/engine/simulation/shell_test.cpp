@@ -138,6 +138,7 @@ TEST(Shell, RestsWhereNothingTouchesIt) {
 
 // Random strokes as fast as 5 m/s, with a point that would slip through, a sphere and a box.
 TEST(Shell, OutlastsFastStrokes) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Scene scene = clay_bowl();
   for (const ToolKind kind : {ToolKind::point, ToolKind::sphere}) {
     scene.tool.kind = kind;

@@ -229,7 +229,7 @@ struct RandomStroke {
 
 // Random materials, tools and strokes at up to 5 m/s: everything stays finite and near.
 TEST(Simulation, NoSettingBlowsItUp) {
-  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 200 : effort(12);
+  const int trials = random_cases(12, 200);
   Random random(77);
   for (int trial = 0; trial < trials; ++trial) {
     Scene scene = small_handle();
@@ -274,7 +274,7 @@ TEST(Simulation, NoSettingBlowsItUp) {
 
 // The worst that random settings rarely meet: nothing damps, a rigid oversized sphere at 5 m/s hits a gel.
 TEST(Simulation, AnUndampedGelStaysNearWhateverHitsIt) {
-  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 40 : effort(8);
+  const int trials = random_cases(8, 40);
   Random random(9);
   for (int trial = 0; trial < trials; ++trial) {
     Scene scene = small_handle();

@@ -7,6 +7,7 @@
 
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/tube.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
 #include "tests/engine/simulation/soft_bodies.h"
 
@@ -74,6 +75,7 @@ MeshSolid cube(double half_m) {
 
 // Every rigid shape rests on the handle, 2.5 mm half as thick, with its lowest point 1 mm deep.
 TEST(SolidTool, OfEveryRigidShapePushes) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   struct Case {
     ToolSolid solid;
     double below_m;  // from its frame's origin to its lowest point

@@ -10,12 +10,13 @@
 #include "engine/collision/meshes/mesh_refinement.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
 
 int points(int few) {
-  return std::getenv("SPOONBILL_FULL") != nullptr ? 50 * few : few;
+  return random_cases(few, 50 * few);
 }
 
 // Bent, stretched and turned, without passing through itself.

@@ -11,12 +11,13 @@
 #include "engine/collision/meshes/solid_angle.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
 
 int points(int few) {
-  return std::getenv("SPOONBILL_FULL") != nullptr ? 50 * few : few;
+  return random_cases(few, 50 * few);
 }
 
 // Every second point near the surface, where mistakes of sign hide.

@@ -10,12 +10,13 @@
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
 
 int trials(int few) {
-  return std::getenv("SPOONBILL_FULL") != nullptr ? 30 * few : few;
+  return random_cases(few, 30 * few);
 }
 
 TriangleMesh moved(TriangleMesh mesh, const Quaternion& turn, const Vector3& shift) {

@@ -11,6 +11,7 @@
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/collision/solids/implicit/support_function.h"
 #include "tests/engine/collision/surfaces/sheets.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
@@ -65,7 +66,7 @@ Pose pose_near_contact(Random& random, const Surface& surface, const Box& bounds
 }
 
 TEST(SolidSearch, AgreesWithDenseSampling) {
-  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 20000 : 500;
+  const int trials = random_cases(500, 20000);
   Random random(51);
   int touching = 0;
   for (int trial = 0; trial < trials; ++trial) {

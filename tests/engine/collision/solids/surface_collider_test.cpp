@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/random_surface.h"
@@ -109,7 +108,7 @@ double dense_distance(const Surface& surface, const ToolShape& tool) {
 // Random surfaces of every kind against spheres, points and planes near them: the answer is never worse than
 // dense sampling's, and its point lies on the surface.
 TEST(SurfaceCollider, AgreesWithDenseSampling) {
-  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 4000 : effort(150);
+  const int trials = random_cases(150, 4000);
   Random random(5);
   for (int trial = 0; trial < trials; ++trial) {
     const Surface surface = random_surface(random);

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 
 #include "engine/collision/solids/implicit/implicit_shapes.h"
 #include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
@@ -74,7 +74,7 @@ class ToolStagesOfRandomSurfaces : public ::testing::Test {
   template <class Check>
   static void for_cases(const Check& check) {
     Random random(311);
-    const int cases = std::getenv("SPOONBILL_FULL") != nullptr ? 400 : 25;
+    const int cases = random_cases(25, 400);
     for (int k = 0; k < cases; ++k) {
       SCOPED_TRACE(k);
       check(touching_case(random));

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <map>
 
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/collision/surfaces/random_pairs.h"
 #include "tests/engine/collision/surfaces/reference_distance.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
@@ -262,15 +262,11 @@ TEST(SurfacePair, AllocatesNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-int trials(int quick, int full) {
-  return std::getenv("SPOONBILL_FULL") != nullptr ? full : quick;
-}
-
 // A point of one is moved onto a point of the other.
 TEST(SurfacePair, NoCommonPointIsMissed) {
   Random random(77);
   std::map<std::string, int> missed;
-  for (int trial = 0; trial < trials(2'000, 100'000); ++trial) {
+  for (int trial = 0; trial < random_cases(2'000, 100'000); ++trial) {
     RandomPair pair = random_pair(random, 0.0);
     const auto somewhere = [&](const Surface& surface) {
       return position(surface, random.uniform(surface.u.domain_start(), surface.u.domain_end()),
@@ -286,7 +282,7 @@ TEST(SurfacePair, NoCommonPointIsMissed) {
 // Against balls around dense samples, which know nothing of hulls, levels or triangles.
 TEST(SurfacePair, AgreesWithDenseSamplesWhereTheyAreApart) {
   Random random(78);
-  const int count = trials(50, 300);
+  const int count = random_cases(50, 300);
   int apart = 0;
   for (int trial = 0; trial < count; ++trial) {
     const RandomPair pair = random_pair(random, 1.5);

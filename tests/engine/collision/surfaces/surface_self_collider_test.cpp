@@ -13,6 +13,7 @@
 #include "tests/engine/collision/surfaces/crossing_samples.h"
 #include "tests/engine/collision/surfaces/random_pairs.h"
 #include "tests/engine/collision/surfaces/sheets.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
@@ -184,10 +185,6 @@ TEST(SurfaceSelf, AllocatesNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-int trials(int quick, int full) {
-  return std::getenv("SPOONBILL_FULL") != nullptr ? full : quick;
-}
-
 // Triangles between dense samples that pass through each other, which knows nothing of cones, hulls or
 // levels.
 TEST(SurfaceSelf, NoCrossingOfDenseTrianglesIsMissed) {
@@ -195,7 +192,7 @@ TEST(SurfaceSelf, NoCrossingOfDenseTrianglesIsMissed) {
   Random random(81);
   int crossing = 0, clear = 0;
   std::map<std::string, int> missed, invented;
-  for (int trial = 0; trial < trials(60, 1'000); ++trial) {
+  for (int trial = 0; trial < random_cases(60, 1'000); ++trial) {
     const RandomPair pair = random_pair(random, 0.0);
     const Surface& surface = pair.first;
     const NestedGrid nested = make_nested_grid(surface.u, surface.v, levels).value();
@@ -208,8 +205,8 @@ TEST(SurfaceSelf, NoCrossingOfDenseTrianglesIsMissed) {
   }
   for (const auto& [kind, count] : missed) ADD_FAILURE() << count << " missed, " << kind;
   for (const auto& [kind, count] : invented) ADD_FAILURE() << count << " invented, " << kind;
-  EXPECT_GT(crossing, trials(60, 1'000) / 10);
-  EXPECT_GT(clear, trials(60, 1'000) / 10);
+  EXPECT_GT(crossing, random_cases(60, 1'000) / 10);
+  EXPECT_GT(clear, random_cases(60, 1'000) / 10);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <cstdlib>
 
 #include "engine/material/statics/static_solver.h"
 #include "tests/engine/allocations.h"
@@ -49,6 +48,7 @@ struct Cantilever {
 
 // Steel, a hard plastic and a rubber, bent by a hundredth and by a third of their length.
 TEST(ImplicitBody, SettlesToTheStaticAnswer) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const double second_moment = 0.012 * std::pow(0.005, 3) / 12.0;
   for (const double youngs : {193e9, 5e6}) {
     for (const double load : {0.03, 1.0}) {
@@ -152,7 +152,7 @@ TEST(ImplicitBody, KeepsItsMomentum) {
 // Nodes thrown about at up to 20 m/s, at any stiffness that needs the method and any damping: what comes of
 // it is finite, and a body again within a second.
 TEST(ImplicitBody, NothingBlowsItUp) {
-  const int trials = std::getenv("SPOONBILL_FULL") != nullptr ? 100 : effort(8);
+  const int trials = random_cases(8, 100);
   Random random(11);
   for (int trial = 0; trial < trials; ++trial) {
     const Material material =

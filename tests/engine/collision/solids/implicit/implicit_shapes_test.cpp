@@ -9,13 +9,10 @@
 #include "engine/collision/solids/signed_distance_check.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/collision/solids/implicit/support_function.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
-
-int trials(int quick, int full) {
-  return std::getenv("SPOONBILL_FULL") != nullptr ? full : quick;
-}
 
 double size_of(const ImplicitShape& shape) {
   return make_signed_distance(shape)->bounds().size();
@@ -38,7 +35,7 @@ void expect_proven(const ImplicitShape& shape, const Vector3& point, double tole
 
 TEST(ImplicitShapes, DistancesOfConvexOnesAreProvenByTheirSupport) {
   Random random(31);
-  for (int trial = 0; trial < trials(7000, 200000); ++trial) {
+  for (int trial = 0; trial < random_cases(7000, 200000); ++trial) {
     const ImplicitShape shape = random_convex_shape(random, trial % convex_shape_kinds);
     const Box bounds = make_signed_distance(shape)->bounds();
     const double reach = trial % 3 == 0 ? 1.0 : 3.0;
@@ -55,7 +52,7 @@ TEST(ImplicitShapes, DistancesOfConvexOnesAreProvenByTheirSupport) {
 
 TEST(ImplicitShapes, DistancesOfConvexOnesAreTheBestOverAllDirections) {
   Random random(32);
-  for (int trial = 0; trial < trials(140, 1000); ++trial) {
+  for (int trial = 0; trial < random_cases(140, 1000); ++trial) {
     const ImplicitShape shape = random_convex_shape(random, trial % convex_shape_kinds);
     const auto solid = make_signed_distance(shape);
     const Box bounds = solid->bounds();
@@ -90,7 +87,7 @@ TEST(ImplicitShapes, TheTorusIsAsFarAsItsRingLessTheTube) {
 
 TEST(ImplicitShapes, KeepWhatASignedDistancePromises) {
   Random random(34);
-  for (int trial = 0; trial < trials(28, 100); ++trial) {
+  for (int trial = 0; trial < random_cases(28, 100); ++trial) {
     const int kind = trial % (convex_shape_kinds + 1);
     const ImplicitShape shape = kind == convex_shape_kinds
                                     ? ImplicitShape(TorusShape{0.03, random.uniform(0.001, 0.029)})
