@@ -1,8 +1,10 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
@@ -15,6 +17,10 @@ namespace {
 constexpr Range<int> window_side_range{320, 7680};
 
 Status edit(const EditSettings& settings, Console& console) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(settings.recording, settings.model, ignored)) {
+    return Error{settings.recording.string() + ": is the model, record to another file"};
+  }
   auto editor = Editor::make(settings);
   if (!editor) return editor.error();
   const LoopFigures figures = editor.value()->figures();

@@ -114,9 +114,14 @@ Status record_live(const RecordOptions& options, const Script& script, const Doc
   InterruptWatch interrupt;
   const auto report = perform(script, document, script.model_file.string(), settings,
                               [&interrupt] { return interrupt.requested(); });
-  if (interrupt.requested()) interrupt.answer();
+  const bool stopped = interrupt.requested();
+  if (stopped) interrupt.answer();
   if (!report) return report.error();
   for (const Notice& notice : report->notices) console.err << "spoonbill: " << notice.text << '\n';
+  if (stopped) {
+    return Error{"stopped after " + std::to_string(report->loop.ticks) +
+                 " ticks; the recording replays up to there"};
+  }
   FactSheet facts;
   facts.add("Recording", options.out.string(), "out", options.out.string());
   add_loop(report->loop, facts);

@@ -107,7 +107,7 @@ void HapticSide::take_back_if_done() {
     workspace_centre_m_ = 0.5 * (box.low_m + box.high_m);
     lent_.other_document = false;
   }
-  if (lent_.writer != nullptr) begin_recording(std::move(lent_.writer));
+  if (lent_.recording != nullptr) begin_recording(std::move(lent_.recording));
   if (auto* asked = std::get_if<AskedRequest>(&command_); asked != nullptr && done) {
     record(std::move(asked->json));
     note_change();
@@ -141,11 +141,11 @@ void HapticSide::reset_proxy() {
   if (recording_) push(RecordedReset{});
 }
 
-void HapticSide::begin_recording(std::unique_ptr<RecordingWriter> writer) {
+void HapticSide::begin_recording(std::unique_ptr<PlacedRecording> recording) {
   recording_ = true;
   recorded_ticks_ = 0;
   state_recorded_ = false;
-  push(RecordingBegun{std::move(writer)});
+  push(RecordingBegun{std::move(recording)});
   record_state_when_due();
 }
 

@@ -17,8 +17,12 @@ Journal::Journal(Notices& notices, const LiveScene& first)
       }) {}
 
 Journal::~Journal() {
+  stop();
+}
+
+void Journal::stop() {
   stopping_.store(true, std::memory_order_release);
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void Journal::set_view(Json view) {
@@ -73,35 +77,37 @@ bool Journal::work() {
 
 void Journal::write(JournalEntry& entry) {
   if (auto* begun = std::get_if<RecordingBegun>(&entry)) {
-    writer_ = std::move(begun->writer);
+    recording_ = std::move(begun->recording);
+    last_is_whole_ = false;
     gave_up_.store(false, std::memory_order_release);
     return;
   }
-  if (writer_ == nullptr) return;
+  if (recording_ == nullptr) return;
   if (Status written = write_to_recording(entry); !written) give_up_recording(written.error());
 }
 
 Status Journal::write_to_recording(JournalEntry& entry) {
-  if (const auto* reading = std::get_if<RecordedReading>(&entry)) return writer_->reading(reading->reading);
+  RecordingWriter& writer = recording_->writer;
+  if (const auto* reading = std::get_if<RecordedReading>(&entry)) return writer.reading(reading->reading);
   if (const auto* command = std::get_if<RecordedCommand>(&entry)) {
-    return command->recorded ? writer_->command(command->command) : Status();
+    return command->recorded ? writer.command(command->command) : Status();
   }
-  if (std::holds_alternative<RecordedReset>(entry)) return writer_->command(command_to_json(ResetProxy{}));
+  if (std::holds_alternative<RecordedReset>(entry)) return writer.command(command_to_json(ResetProxy{}));
   const auto* state = std::get_if<RecordedState>(&entry);
   if (state == nullptr) return {};
-  if (!state->last) return writer_->checkpoint(state->state_hash);
-  const std::uint64_t ticks = writer_->tick();
-  Status finished = writer_->finish(state->state_hash);
-  if (finished) {
-    notices_->add(Notice::Kind::information, "recorded " + std::to_string(ticks / 1000) + " s");
-    writer_.reset();
-  }
-  return finished;
+  if (!state->last) return writer.checkpoint(state->state_hash);
+  const std::uint64_t ticks = writer.tick();
+  if (Status finished = writer.finish(state->state_hash); !finished) return finished;
+  if (Status placed = recording_->place.commit(); !placed) return placed;
+  notices_->add(Notice::Kind::information, "recorded " + std::to_string(ticks / 1000) + " s");
+  recording_.reset();
+  last_is_whole_ = true;
+  return {};
 }
 
 void Journal::give_up_recording(const Error& error) {
-  const bool recorded = writer_ != nullptr;
-  writer_.reset();
+  const bool recorded = recording_ != nullptr;
+  recording_.reset();
   notices_->add(Notice::Kind::problem,
                 (recorded ? "the recording has ended: " : "not saved: ") + error.message);
   gave_up_.store(true, std::memory_order_release);

@@ -14,15 +14,15 @@
 #include "app/live/exporter.h"
 #include "app/live/live_frame.h"
 #include "app/live/notices.h"
+#include "app/live/placed_recording.h"
 #include "haptic/bounded_queue.h"
-#include "haptic/recording_writer.h"
 #include "haptic/triple_buffer.h"
 
 namespace spoonbill {
 
 // What happened, in its order. A command that was not recorded travels here too, to be freed.
 struct RecordingBegun {
-  std::unique_ptr<RecordingWriter> writer;
+  std::unique_ptr<PlacedRecording> recording;
 };
 struct RecordedReading {
   DeviceReading reading;
@@ -59,7 +59,13 @@ class Journal {
 
   // The notices must outlive the journal. `first` gives the scenes' sizes.
   Journal(Notices& notices, const LiveScene& first);
-  ~Journal();  // what was handed over is written first; a recording that goes on is left without its end
+  ~Journal();
+
+  // Writes what was handed over and ends the thread; a recording that goes on is left without its end. By the
+  // thread that made the journal, when no more is handed over.
+  void stop();
+  // After stop(): whether the last recording got its end and its place.
+  bool last_recording_is_whole() const { return last_is_whole_; }
 
   // By the haptic thread: neither waits nor allocates. False when full.
   bool push(JournalEntry&& entry) { return entries_.push(std::move(entry)); }
@@ -103,9 +109,10 @@ class Journal {
   std::uint64_t autosave_count_ = 0;  // of the places that were set
   std::uint64_t settled_change_ = 0;  // in the file, or as it was opened: need not be autosaved
 
-  std::unique_ptr<RecordingWriter> writer_;  // the journal's thread only, as all below
+  std::unique_ptr<PlacedRecording> recording_;  // the journal's thread only, as all below
   std::uint64_t autosaved_change_ = 0;
   bool autosave_failed_ = false;
+  bool last_is_whole_ = false;
 
   std::atomic<bool> gave_up_{false};
   std::atomic<bool> stopping_{false};

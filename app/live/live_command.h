@@ -8,18 +8,18 @@
 #include <string>
 #include <variant>
 
+#include "app/live/placed_recording.h"
 #include "app/session/request.h"
 #include "app/session/session.h"
-#include "haptic/recording_writer.h"
 
 namespace spoonbill {
 
 // A session with what was begun for it while it was on loan.
 struct LentSession {
   std::unique_ptr<Session> session;
-  bool begun_anew = false;                  // another session than the one that was lent
-  bool other_document = false;              // and of another document
-  std::unique_ptr<RecordingWriter> writer;  // of a recording that begins with the session's next tick
+  bool begun_anew = false;                     // another session than the one that was lent
+  bool other_document = false;                 // and of another document
+  std::unique_ptr<PlacedRecording> recording;  // that begins with the session's next tick
 };
 
 // Work on a session that may take its time: it is done on the worker's thread while the haptic thread keeps

@@ -38,10 +38,10 @@ Status begin_recording(LentSession& lent, const std::filesystem::path& file, con
                        InstructionSet set) {
   lent.session->view = view;
   const RecordingHeader header{lent.session->device, document_of(*lent.session)};
-  auto writer = RecordingWriter::create(file, header);
-  if (!writer) return writer.error();
+  auto recording = PlacedRecording::begin(file, header);
+  if (!recording) return recording.error();
   if (Status anew = begin_anew(lent, set); !anew) return anew;
-  lent.writer = std::make_unique<RecordingWriter>(std::move(writer).value());
+  lent.recording = std::move(recording).value();
   return {};
 }
 
@@ -92,6 +92,7 @@ void LiveSession::stop() {
   if (!loop_) return;
   loop_->stop();
   haptic_.close();
+  journal_.stop();
 }
 
 void LiveSession::set_autosave(std::optional<Autosave> autosave) {

@@ -60,8 +60,11 @@ class LiveSession {
   std::vector<Notice> take_notices();
   LoopFigures figures() const { return loop_->figures(); }
 
-  // Ends the haptic thread and a recording with it. Afterwards only the figures and notices are of use.
+  // Ends the haptic thread and a recording with it, and waits for what is written. Afterwards only the
+  // figures, the notices and the next are of use.
   void stop();
+  // Whether the last recording was written to its end.
+  bool last_recording_is_whole() const { return journal_.last_recording_is_whole(); }
 
  private:
   LiveSession(std::unique_ptr<Session> session, VirtualDevice device, const LiveSettings& settings,

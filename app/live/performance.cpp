@@ -111,7 +111,12 @@ Result<PerformanceReport> perform(const Script& script, const Document& document
   if (Status ended = wait_until(session, stopped, "the recording's end"); !ended) return ended.error();
   session.stop();
   report.loop = session.figures();
-  for (Notice& notice : session.take_notices()) notices.push_back(std::move(notice));
+  std::string last_problem = "the recording is not whole";
+  for (Notice& notice : session.take_notices()) {
+    if (notice.kind == Notice::Kind::problem) last_problem = notice.text;
+    notices.push_back(std::move(notice));
+  }
+  if (!session.last_recording_is_whole()) return Error{std::move(last_problem)};
   report.notices = std::move(notices);
   return report;
 }

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "app/program.h"
+#include "haptic/recording.h"
 #include "haptic/safety.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/app/workplace.h"
@@ -222,6 +223,22 @@ TEST(LiveSession, ARecordingThatCannotBeWrittenIsSaid) {
   EXPECT_EQ(live->frame().failed_works, 1U);
   EXPECT_FALSE(live->frame().recording);
   wait_ticks(*live, 10);
+}
+
+TEST(LiveSession, AnOlderRecordingStaysUntilTheNewOneIsWhole) {
+  const Workplace place;
+  const auto file = place.write("x.recording.jsonl", "an older one");
+  auto live = start_live(held_handle());
+  ASSERT_TRUE(live->start_recording(file, ViewChoice()));
+  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.recording; }));
+  wait_ticks(*live, 50);
+  EXPECT_EQ(content_of(file), "an older one");
+  live->stop();
+  EXPECT_TRUE(live->last_recording_is_whole());
+  const auto recording = read_recording(file);
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(recording->end.has_value());
+  EXPECT_FALSE(std::filesystem::exists(file.string() + ".part"));
 }
 
 TEST(LiveSession, OpensAnotherDocument) {
