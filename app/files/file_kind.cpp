@@ -1,6 +1,5 @@
 #include "app/files/file_kind.h"
 
-#include <fstream>
 #include <string>
 
 #include "app/files/document_file.h"
@@ -14,10 +13,7 @@ constexpr std::size_t bytes_limit = std::size_t{64} << 20;
 
 // A recording is known by its first bytes: it may be long, and be cut where its JSON ends early.
 bool starts_like_recording(const std::filesystem::path& file) {
-  std::string start(64, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
-  return start.find("\"spoonbill_recording\"") != std::string::npos;
+  return first_bytes(file, 64).find("\"spoonbill_recording\"") != std::string::npos;
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <string>
 #include <utility>
 
@@ -18,11 +17,7 @@ namespace {
 constexpr std::size_t header_bytes = 65536;
 
 bool ply_has_faces(const std::filesystem::path& file) {
-  std::string start(header_bytes, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(stream.gcount()));
-  return ply_face_count(start) > 0;
+  return ply_face_count(first_bytes(file, header_bytes)) > 0;
 }
 
 bool is_in_metres(const std::filesystem::path& file) {

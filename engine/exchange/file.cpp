@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <fstream>
+#include <optional>
 #include <system_error>
 
 #include "engine/exchange/sequential_file.h"
@@ -32,9 +34,14 @@ Error failure(const std::filesystem::path& file, const char* what) {
   return Error{file.string() + ": " + what + ": " + std::generic_category().message(errno)};
 }
 
-Status write_and_flush(const std::filesystem::path& temporary, mode_t mode, std::string_view content) {
-  auto out = SequentialFile::create(temporary, mode);
+Status write_and_flush(const std::filesystem::path& temporary, std::optional<mode_t> mode,
+                       std::string_view content) {
+  ::unlink(temporary.c_str());  // what a killed process of the same number left, or a link that waits there
+  auto out = SequentialFile::create(temporary);
   if (!out.ok()) return out.error();
+  // A mode given to open() loses what the process's mask takes away.
+  if (mode && ::chmod(temporary.c_str(), *mode) != 0)
+    return failure(temporary, "cannot be given its permissions");
   if (Status status = out->append(content); !status.ok()) return status;
   return out->close();
 }
@@ -88,6 +95,16 @@ Result<std::string> read_text_file(const std::filesystem::path& file, std::size_
   return content;
 }
 
+std::string first_bytes(const std::filesystem::path& file, std::size_t count) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return {};
+  std::string start(count, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(start.data(), static_cast<std::streamsize>(count));
+  start.resize(static_cast<std::size_t>(stream.gcount()));
+  return start;
+}
+
 Status replace_file(const std::filesystem::path& file, std::string_view content) {
   std::error_code error;
   const auto state = std::filesystem::status(file, error);
@@ -99,9 +116,10 @@ Status replace_file(const std::filesystem::path& file, std::string_view content)
   if (error && exists) return Error{file.string() + ": cannot be resolved: " + error.message()};
 
   struct stat facts {};
-  const bool has_mode = exists && ::stat(target.c_str(), &facts) == 0;
+  std::optional<mode_t> mode;
+  if (exists && ::stat(target.c_str(), &facts) == 0) mode = facts.st_mode & 0777;
   const std::filesystem::path temporary = target.string() + ".new-" + std::to_string(::getpid());
-  Status status = write_and_flush(temporary, has_mode ? facts.st_mode & 0777 : 0666, content);
+  Status status = write_and_flush(temporary, mode, content);
   if (status.ok() && exists) status = keep_backup(target);
   if (status.ok() && ::rename(temporary.c_str(), target.c_str()) != 0) {
     status = failure(target, "cannot be replaced");

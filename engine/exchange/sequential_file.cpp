@@ -9,8 +9,8 @@
 
 namespace spoonbill {
 
-Result<SequentialFile> SequentialFile::create(const std::filesystem::path& file, unsigned permissions) {
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, permissions);
+Result<SequentialFile> SequentialFile::create(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   SequentialFile result(file, descriptor);
   if (descriptor < 0) return result.failure("cannot be written");
   return result;

@@ -11,8 +11,8 @@ namespace spoonbill {
 // One owner. Every error names the file and the system's reason ("No space left on device").
 class SequentialFile {
  public:
-  // An existing file is emptied. `permissions` as of open(2), before the umask.
-  static Result<SequentialFile> create(const std::filesystem::path& file, unsigned permissions = 0666);
+  // An existing file is emptied.
+  static Result<SequentialFile> create(const std::filesystem::path& file);
 
   SequentialFile(SequentialFile&& other) noexcept;
   SequentialFile& operator=(SequentialFile&& other) noexcept;

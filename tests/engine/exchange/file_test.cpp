@@ -72,6 +72,32 @@ TEST(File, FollowsLinksAndKeepsPermissions) {
   EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0640));
 }
 
+// What a group shares, it goes on sharing, and nothing is written through a link that lies in wait.
+TEST(File, KeepsPermissionsThatTheMaskTakesAway) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("shared.json", "one"), other = folder.write("other", "untouched");
+  std::filesystem::permissions(file, std::filesystem::perms(0664));
+  std::filesystem::create_symlink(other, file.string() + ".new-" + std::to_string(::getpid()));
+  const mode_t before = ::umask(022);
+  const Status replaced = replace_file(file, "two");
+  ::umask(before);
+  ASSERT_TRUE(replaced.ok()) << replaced.error().message;
+  EXPECT_EQ(content_of(file), "two");
+  EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0664));
+  EXPECT_EQ(content_of(other), "untouched");
+}
+
+TEST(File, TheFirstBytesAreThoseOfFilesAlone) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(first_bytes(folder.write("long", "0123456789"), 4), "0123");
+  EXPECT_EQ(first_bytes(folder.write("short", "01"), 4), "01");
+  EXPECT_EQ(first_bytes(folder.path() / "missing", 4), "");
+  EXPECT_EQ(first_bytes(folder.path(), 4), "");
+  const auto pipe = folder.path() / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(first_bytes(pipe, 4), "");
+}
+
 TEST(File, RefusesToReplaceWhatIsNoFile) {
   const TemporaryFolder folder;
   EXPECT_EQ(replace_file(folder.path(), "x").error().message,
