@@ -16,7 +16,8 @@ namespace spoonbill {
 namespace {
 
 constexpr double millimetres_per_metre = 1000.0;
-constexpr std::size_t longest_decimal = 64;
+constexpr std::size_t longest_whole = 64;
+constexpr std::size_t longest_fraction = 350;  // of the smallest double, with its digits
 
 bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -65,11 +66,12 @@ std::string decimal_millimetres(double metres) {
 }
 
 bool is_plain_decimal(std::string_view text) {
-  if (text.empty() || text.size() > longest_decimal) return false;
+  if (text.empty()) return false;
   if (text.front() == '-') text.remove_prefix(1);
   const std::size_t point = text.find('.');
   const std::string_view whole = text.substr(0, point);
   const std::string_view fraction = point == std::string_view::npos ? "0" : text.substr(point + 1);
+  if (whole.size() > longest_whole || fraction.size() > longest_fraction) return false;
   const auto all_digits = [](std::string_view part) {
     return !part.empty() && part.find_first_not_of("0123456789") == std::string_view::npos;
   };

@@ -37,6 +37,14 @@ TEST(Length, KeepsEveryBit) {
   EXPECT_GT(quoted, 0);
 }
 
+TEST(Length, KeepsWhatIsHardlyThere) {
+  std::mt19937_64 random(2);
+  for (int i = 0; i < 20000; ++i) {
+    const double mantissa = 1.0 + static_cast<double>(random() >> 12) / 4503599627370496.0;
+    expect_kept(std::ldexp(mantissa, -1 - static_cast<int>(random() % 1073)));
+  }
+}
+
 TEST(Length, KeepsTheEdges) {
   for (const double metres :
        {0.0, -0.0, 5e-324, 1e-300, 100.0, -100.0, 0.1, 1.0 / 3.0, 2.2250738585072014e-308}) {
@@ -61,6 +69,7 @@ TEST(Length, ReadsOnlyNumbersAndPlainDecimals) {
     EXPECT_FALSE(length_from_json(Json(text)).has_value()) << text;
   }
   EXPECT_FALSE(length_from_json(Json(std::string(100, '9'))).has_value());
+  EXPECT_FALSE(length_from_json(Json("0." + std::string(1000, '9'))).has_value());
   EXPECT_FALSE(length_from_json(Json(true)).has_value());
   EXPECT_FALSE(length_from_json(Json(nullptr)).has_value());
 }
