@@ -13,6 +13,7 @@
 #include "app/files/document_file.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
+#include "engine/exchange/cad_names.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -35,9 +36,12 @@ void replace_body(std::vector<Body>& bodies, std::size_t place, ChangedSurfaces 
   bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(place));
   for (std::size_t k = 0; k < changed.surfaces.size(); ++k) {
     Body part = body;
-    if (changed.surfaces.size() > 1) part.name += " " + std::to_string(k + 1);
+    if (changed.surfaces.size() > 1) {
+      part.name = clean_cad_name(body.name, "part", longest_cad_name - 2) + " " + std::to_string(k + 1);
+    }
     part.surface = std::move(changed.surfaces[k]);
     part.trims = changed.trims;
+    settle_thickness(part, body.surface, remarks);
     bodies.insert(bodies.begin() + static_cast<std::ptrdiff_t>(place + k), std::move(part));
   }
 }

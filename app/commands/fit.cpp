@@ -18,6 +18,7 @@
 #include "app/interrupt.h"
 #include "app/report/fit_facts.h"
 #include "app/report/progress_bar.h"
+#include "engine/exchange/cad_names.h"
 #include "engine/exchange/file_format.h"
 #include "engine/number_text.h"
 
@@ -59,6 +60,11 @@ Result<ScanFit> fit_with_progress(const FitOptions& options, Scan scan, Console&
   return fit;
 }
 
+// That a document can hold, with the number of a body behind it.
+std::string name_of(const std::filesystem::path& scan) {
+  return clean_cad_name(scan.stem().string(), "scan", longest_cad_name - 2);
+}
+
 Status fit(const FitOptions& options, Console& console) {
   std::error_code ignored;
   if (std::filesystem::equivalent(options.scan, options.errors, ignored)) {
@@ -72,7 +78,7 @@ Status fit(const FitOptions& options, Console& console) {
   if (!file) return file.error();
   const auto fitted = fit_with_progress(options, std::move(file->scan), console);
   if (!fitted) return fitted.error();
-  const auto document = fitted_document(fitted.value(), options.scan.stem().string(), clay.value());
+  const auto document = fitted_document(fitted.value(), name_of(options.scan), clay.value());
   if (!document) return Error{options.scan.string() + ": " + document.error().message};
   // Files become whole: what asks to stop now waits for them.
   const InterruptWatch until_written;

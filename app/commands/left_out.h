@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/simulation/scene.h"
+#include "engine/study/closing.h"
 
 namespace spoonbill {
 
@@ -18,6 +19,20 @@ inline void leave_out_shares(Body& body, std::vector<std::string>& remarks) {
   body.regions.clear();
   body.loads.clear();
   body.supports.clear();
+}
+
+// A thickness belongs to what is open. Where the surface closed or opened, a remark says what became of it.
+inline void settle_thickness(Body& body, const Surface& before, std::vector<std::string>& remarks) {
+  const bool was_solid = closing_of(before).closedness == Closedness::solid;
+  const bool solid = closing_of(body.surface).closedness == Closedness::solid;
+  if (solid == was_solid) return;
+  if (solid && body.shell_thickness_m) {
+    body.shell_thickness_m.reset();
+    remarks.push_back("the shell thickness of \"" + body.name + "\" was left out: it is a solid now");
+  } else if (!solid && !body.shell_thickness_m) {
+    remarks.push_back("\"" + body.name +
+                      "\" is open: it can be sculpted once its file tells a shell_thickness_mm");
+  }
 }
 
 }  // namespace spoonbill

@@ -155,7 +155,7 @@ void report(const MergeOptions& options, const Parts& parts, const Merged& merge
 }
 
 Document merged_document(const Document& first, const std::vector<Body>& patches, const MergeOptions& options,
-                         Surface surface) {
+                         Surface surface, std::vector<std::string>& remarks) {
   Document document = first;
   document.name = options.name.empty() ? options.out.stem().string() : options.name;
   Body body = patches[0];
@@ -165,6 +165,7 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
     body.name = document.name;
     document.view = Json::object();  // so that the whole of it is framed
   }
+  settle_thickness(body, patches[0].surface, remarks);
   document.scene.bodies = {std::move(body)};
   return document;
 }
@@ -230,12 +231,13 @@ Result<Merged> merge_with_progress(const MergeOptions& options, const Parts& par
 Status merge_models(const MergeOptions& options, Console& console) {
   const int models = static_cast<int>(options.models.size());
   if (Status few = check_range("the number of models", models, model_count_range); !few) return few;
-  const auto parts = read_parts(options);
+  auto parts = read_parts(options);
   if (!parts) return parts.error();
   auto merged = merge_with_progress(options, parts.value(), console);
   if (!merged) return merged.error();
   merged->deviation_m += parts->untrimmed_m;
-  const Document document = merged_document(*parts->first, parts->bodies, options, merged->surface);
+  const Document document =
+      merged_document(*parts->first, parts->bodies, options, merged->surface, parts->remarks);
   // A file becomes whole: what asks to stop now waits for it.
   const InterruptWatch until_written;
   if (Status written = write_document(document, options.out); !written) return written;

@@ -169,6 +169,12 @@ TEST_F(FitTest, AsksWhetherTheUnitIsAnother) {
   }
 }
 
+TEST_F(FitTest, AScanOfALongNameGivesABodyOfAShorterOne) {
+  const std::string scan =
+      write(std::string(230, 'n') + ".xyz", xyz_of(ellipsoid_cloud(2000, {0.02, 0.02, 0.03}), 1e3));
+  EXPECT_EQ(json_of_fit(scan, {"--control", "8x8"}).at("kind"), "closed");
+}
+
 TEST_F(FitTest, WrongUseIsExitTwo) {
   const std::string scan = write("egg.xyz", "1 2 3\n");
   for (const std::vector<std::string>& options :

@@ -207,6 +207,22 @@ TEST(ChangeCommand, OpenedAndCappedAndClosed) {
   EXPECT_TRUE(surface_of(place.path("closed.json")).u.is_periodic());
 }
 
+// A thickness would keep what closed from being sculpted.
+TEST(ChangeCommand, AShellThatIsCappedIsASolid) {
+  const Workplace place;
+  const std::string opened = place.text("opened.json"), capped = place.text("capped.json");
+  ASSERT_EQ(run({"change", handle, "open", "v_end", "--out", opened}).code, exit_done);
+  Document shell = read_document(opened).value();
+  shell.scene.bodies[0].shell_thickness_m = 0.0005;
+  place.write("opened.json", json_to_page(document_to_json(shell)));
+  const Outcome outcome =
+      run({"change", opened, "cap", "v_end", "2mm", "--out", capped, "--tolerance", "0.05mm", "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_EQ(json_of(outcome.out)["remarks"].size(), 1U) << outcome.out;
+  EXPECT_FALSE(read_document(capped).value().scene.bodies[0].shell_thickness_m.has_value());
+  EXPECT_FALSE(json_of(run({"info", capped, "--json"}).out)["lattice"].is_null());
+}
+
 TEST(ChangeCommand, RefusesInOneLine) {
   const Workplace place;
   const std::string out = place.text("out.json");
@@ -267,9 +283,10 @@ TEST(ChangeCommand, SaysWhatItLeavesOut) {
     EXPECT_EQ(outcome.code, exit_done) << outcome.err;
     return json_of(outcome.out)["remarks"].size();
   };
-  EXPECT_EQ(remarks({"change", grip, "split", "v=40", "--out", out, "--json"}), 1U);
+  // Each half is open now, besides.
+  EXPECT_EQ(remarks({"change", grip, "split", "v=40", "--out", out, "--json"}), 3U);
   EXPECT_EQ(remarks({"change", grip, "insert", "v=40", "--out", out, "--json"}), 0U);
-  EXPECT_EQ(remarks({"change", handle, "split", "v=40", "--out", out, "--json"}), 0U);
+  EXPECT_EQ(remarks({"change", handle, "split", "v=40", "--out", out, "--json"}), 2U);
   EXPECT_EQ(remarks({"merge", grip, bowl, "--out", out, "--json"}), 1U);
 }
 
