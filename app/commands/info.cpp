@@ -1,6 +1,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -38,16 +39,24 @@ void add_duration(FactSheet& facts, std::uint64_t ticks) {
   facts.add("", "", "duration_s", static_cast<double>(ticks) / 1000.0);
 }
 
-// A surface that holds no lattice may still be looked at, merged and exported.
-void add_simulated(FactSheet& facts, const Document& document, const std::string& source, Console& console) {
+bool holds_lattices(const Scene& scene) {
+  return std::all_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& body) { return lattice_of(body).ok(); });
+}
+
+// A surface that holds no lattice may still be looked at, merged and exported; what is refused for another
+// reason is an error here too.
+Status add_simulated(FactSheet& facts, const Document& document, const std::string& source,
+                     Console& console) {
   add_document_facts(facts, document);
   MapProgress maps(console);
   auto session = Session::make(document, source, VirtualDevice::default_specification(),
                                best_instruction_set(), maps.watch());
   if (!session) {
+    if (holds_lattices(document.scene)) return session.error();
     facts.add("Lattice", "none: " + session.error().message, "lattice", nullptr);
     facts.add("", "", "no_lattice_because", session.error().message);
-    return;
+    return {};
   }
   Snapshot snapshot;
   write_snapshot(session.value(), snapshot);
@@ -56,14 +65,14 @@ void add_simulated(FactSheet& facts, const Document& document, const std::string
   add_remarks(facts, session->simulation.remarks());
   const bool has_map = document.scene.bodies[0].lattice.feature_map.has_value();
   add_cell_facts(facts, session->simulation.lattice().mesh(), has_map ? maps.report() : std::nullopt);
+  return {};
 }
 
 Status describe_document(FactSheet& facts, const std::filesystem::path& file, Console& console) {
   const auto document = read_document(file);
   if (!document) return document.error();
   facts.add("Kind", "document", "kind", "document");
-  add_simulated(facts, document.value(), file.string(), console);
-  return {};
+  return add_simulated(facts, document.value(), file.string(), console);
 }
 
 Status describe_recording(FactSheet& facts, const std::filesystem::path& file, Console& console) {
@@ -82,8 +91,7 @@ Status describe_recording(FactSheet& facts, const std::filesystem::path& file, C
   const DeviceSpecification& device = recording->header.device;
   facts.add("Device", device.name + ", at most " + number_text(device.maximum_force_n) + " N", "device",
             {{"name", device.name}, {"maximum_force_n", device.maximum_force_n}});
-  add_simulated(facts, recording->header.document, file.string(), console);
-  return {};
+  return add_simulated(facts, recording->header.document, file.string(), console);
 }
 
 Status describe_script(FactSheet& facts, const std::filesystem::path& file) {

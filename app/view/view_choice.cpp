@@ -111,7 +111,7 @@ std::string command_name(const Json& command) {
 Result<ViewChoice> view_from_json(const Json& view, const std::string& source) {
   const Json nothing = Json::object();
   ViewChoice choice;
-  FieldReader reader(view, source);
+  FieldReader reader(view, source + ": view");
   FieldReader default_camera(nothing, source);
   read_camera(default_camera, choice);
   if (reader.has("camera")) {

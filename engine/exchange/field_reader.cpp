@@ -236,7 +236,8 @@ void FieldReader::finish() {
     if (std::find(asked_.begin(), asked_.end(), item.key()) != asked_.end()) continue;
     std::string known;
     for (const std::string& field : asked_) known += (known.empty() ? "" : ", ") + field;
-    refuse("has an unknown field " + json_excerpt(Json(item.key())) + "; known: " + known);
+    refuse("has an unknown field " + json_excerpt(Json(item.key())) +
+           (known.empty() ? "" : "; known: " + known));
   }
 }
 

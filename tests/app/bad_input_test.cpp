@@ -1,5 +1,6 @@
 // Whatever a file or folder holds, the program answers with one line and lives on.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -86,6 +87,33 @@ void expect_no_lattice(const std::string& model, const std::string& reason) {
   EXPECT_TRUE(json_of(outcome.out)["lattice"].is_null());
   const std::string told = json_of(outcome.out)["no_lattice_because"].get<std::string>();
   EXPECT_NE(told.find(reason), std::string::npos) << told;
+}
+
+TEST(BadInput, InfoRefusesWhatSculptingRefusesForAnotherReasonThanTheLattice) {
+  const Workplace place;
+  auto document = read_document(place.path("model.json"));
+  ASSERT_TRUE(document);
+  document->view = Json{{"camera", Json{{"yaw_deg", 1000}}}};
+  place.write("view.json", json_to_page(document_to_json(document.value())));
+  expect_refusal({"info", place.text("view.json")}, "view: camera.yaw_deg");
+}
+
+TEST(BadInput, APipeIsNoFile) {
+  const Workplace place;
+  ASSERT_EQ(mkfifo(place.path("pipe.json").c_str(), 0600), 0);
+  ASSERT_EQ(mkfifo(place.path("pipe.ply").c_str(), 0600), 0);
+  expect_refusal({"info", place.text("pipe.json")}, "is not a regular file");
+  expect_refusal({"record", place.text("pipe.json"), "--out", place.text("out.jsonl")},
+                 "is not a regular file");
+  expect_refusal({"fit", place.text("pipe.ply"), "--out", place.text("out.json")}, "pipe.ply");
+}
+
+TEST(BadInput, TheModelIsNotRecordedOver) {
+  const Workplace place;
+  const std::string before = content_of(place.path("model.json"));
+  expect_refusal({"edit", place.text("model.json"), "--record", place.text("model.json")},
+                 "is the model, record to another file");
+  EXPECT_EQ(content_of(place.path("model.json")), before);
 }
 
 TEST(BadInput, BodiesInsideOutHaveNoOutside) {
