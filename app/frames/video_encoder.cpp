@@ -105,14 +105,16 @@ Status VideoEncoder::add(const Image& frame) {
 }
 
 Status VideoEncoder::finish() {
+  std::error_code error, ignored;
   if (const int code = close_and_wait(); code != 0) {
+    std::filesystem::remove(unfinished_, ignored);
     return Error{file_.string() + ": ffmpeg failed with exit code " + std::to_string(code) +
                  "; is the folder writable and the ending known?"};
   }
-  std::error_code error;
   std::filesystem::rename(unfinished_, file_, error);
-  if (error) return Error{file_.string() + ": cannot be written: " + error.message()};
-  return {};
+  if (!error) return {};
+  std::filesystem::remove(unfinished_, ignored);
+  return Error{file_.string() + ": cannot be written: " + error.message()};
 }
 
 }  // namespace spoonbill

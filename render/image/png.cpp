@@ -41,8 +41,10 @@ Status write_bytes(const std::filesystem::path& path, std::span<const std::uint8
     return Error{path.string() + ": cannot be written; check that the folder exists and has room"};
   }
   std::filesystem::rename(unfinished, path, failure);
-  if (failure) return Error{path.string() + ": cannot be put in its place: " + failure.message()};
-  return {};
+  if (!failure) return {};
+  Error error{path.string() + ": cannot be put in its place: " + failure.message()};
+  std::filesystem::remove(unfinished, failure);
+  return error;
 }
 
 }  // namespace

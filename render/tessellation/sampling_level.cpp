@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 
 namespace spoonbill {
 namespace {
@@ -111,6 +113,24 @@ std::vector<int> pieces_along(const SurfaceSnapshot& surface, bool along_u, doub
   return pieces;
 }
 
+std::int64_t pieces_below(const std::vector<int>& pieces, int most) {
+  std::int64_t sum = 0;
+  for (const int count : pieces) sum += std::min(count, most);
+  return sum;
+}
+
+// Takes pieces from the spans that have most, until there are no more cells than can be drawn.
+void thin(SamplingLevel& level) {
+  auto most = piece_steps.rbegin();
+  while (std::next(most) != piece_steps.rend() &&
+         pieces_below(level.u_pieces, *most) * pieces_below(level.v_pieces, *most) > sampling_cell_limit) {
+    ++most;
+  }
+  for (std::vector<int>* pieces : {&level.u_pieces, &level.v_pieces}) {
+    for (int& count : *pieces) count = std::min(count, *most);
+  }
+}
+
 }  // namespace
 
 SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces) {
@@ -120,8 +140,10 @@ SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces)
 
 SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixels_per_metre,
                                     const SamplingLevel& previous, const SamplingTarget& target) {
-  return {pieces_along(surface, true, pixels_per_metre, previous.u_pieces, target),
-          pieces_along(surface, false, pixels_per_metre, previous.v_pieces, target)};
+  SamplingLevel level{pieces_along(surface, true, pixels_per_metre, previous.u_pieces, target),
+                      pieces_along(surface, false, pixels_per_metre, previous.v_pieces, target)};
+  thin(level);
+  return level;
 }
 
 std::vector<double> drawing_parameters(const KnotVector& knots, const std::vector<int>& pieces) {

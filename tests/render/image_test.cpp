@@ -86,6 +86,12 @@ TEST_F(ImageFiles, AFolderThatIsMissingIsAnErrorAndLeavesNothing) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
+TEST_F(ImageFiles, AFolderInItsPlaceIsAnErrorAndLeavesNothingBesideIt) {
+  std::filesystem::create_directories(folder_ / "a.png" / "in it");
+  EXPECT_FALSE(write_png(folder_ / "a.png", noise(8, 8, true)).ok());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.png.part"));
+}
+
 TEST(PngEncoder, AnEmptyPictureAndATooLargeOneAreRefused) {
   PngEncoder encoder;
   EXPECT_FALSE(encoder.encode(Image{}));

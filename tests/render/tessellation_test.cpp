@@ -145,6 +145,28 @@ TEST(Tessellation, TheLevelFollowsTheScreenButNotEveryPixel) {
   }
 }
 
+// A metre of 100 x 100 control points, looked at from a few millimetres.
+TEST(Tessellation, NoMoreCellsAreAskedForThanCanBeDrawn) {
+  constexpr int points = 100;
+  SurfaceSnapshot sheet;
+  sheet.u = sheet.v = KnotVector::clamped_uniform(3, points).value();
+  for (int i = 0; i < points; ++i) {
+    for (int j = 0; j < points; ++j) {
+      sheet.x.push_back(static_cast<float>(i) / points);
+      sheet.y.push_back(0.001F * static_cast<float>((i + j) % 2));
+      sheet.z.push_back(static_cast<float>(j) / points);
+    }
+  }
+  const auto cells = [](const SamplingLevel& level) {
+    return std::accumulate(level.u_pieces.begin(), level.u_pieces.end(), std::int64_t{0}) *
+           std::accumulate(level.v_pieces.begin(), level.v_pieces.end(), std::int64_t{0});
+  };
+  const SamplingLevel level = choose_sampling_level(sheet, 1e6, {});
+  EXPECT_LE(cells(level), sampling_cell_limit);
+  EXPECT_GT(cells(level), sampling_cell_limit / 4);
+  EXPECT_EQ(choose_sampling_level(sheet, 1e6, level), level);
+}
+
 TEST(Tessellation, AnOpenSheetKeepsItsEdges) {
   ControlNet net(5, 4);
   for (int i = 0; i < 5; ++i) {
