@@ -65,6 +65,8 @@ FixedStretch fixed_stretch(const Surface& surface, const std::vector<FixingPlane
 
 // A knot of multiplicity degree - 1: the displacement may start there with a curvature of its own, the
 // surface stays smooth (C1). Near an existing knot that one is used, so that no sliver of an element arises.
+// Without it, where a document could not hold the control points any more, more columns are held, by up to a
+// degree.
 Result<Surface> with_edge_knot(const Surface& surface, double& v) {
   const std::vector<double> breaks = surface.v.breakpoints();
   const double near = 1e-3 * (surface.v.domain_end() - surface.v.domain_start());
@@ -72,7 +74,9 @@ Result<Surface> with_edge_knot(const Surface& surface, double& v) {
     if (std::abs(knot - v) < near) v = knot;
   }
   if (v <= surface.v.domain_start() || v >= surface.v.domain_end()) return surface;
-  return insert_knot(surface, Direction::v, v, std::max(1, surface.v.degree() - 1));
+  const int multiplicity = std::max(1, surface.v.degree() - 1);
+  if (surface.v.control_point_count() + multiplicity > control_point_count_range.high) return surface;
+  return insert_knot(surface, Direction::v, v, multiplicity);
 }
 
 // The middle of the element that holds the parameter, of two the one before it.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "engine/bspline/knot_insertion.h"
 #include "engine/simulation/body_mapping.h"
 #include "engine/simulation/simulation.h"
 #include "tests/engine/simulation/handle.h"
@@ -116,6 +117,28 @@ TEST(RefineKnots, IsRefusedWhereNothingMoved) {
   EXPECT_EQ(refused.error().message,
             "refine_knots: nothing moved since the knots were last changed; shape the body first");
   EXPECT_FALSE(simulation.apply(RefineKnots{1}).ok());
+}
+
+// A plane asks for knots at its edge. A document holds 200 columns: beyond, columns are held without them.
+TEST(BodyMapping, HoldsWithoutMoreColumnsThanADocumentTakes) {
+  for (const int columns : {190, 198, 199, 200}) {
+    SCOPED_TRACE(columns);
+    Scene scene = small_handle();
+    Surface& surface = scene.bodies[0].surface;
+    for (int k = 1; surface.v.control_point_count() < columns; ++k) {
+      surface = insert_knot(surface, Direction::v, 0.06 * (0.11 + 0.0041 * k), 1).value();
+    }
+    scene.planes.push_back({Vector3(0.0213, 0, 0), Vector3::UnitX()});
+    Simulation simulation = simulate(scene);
+    EXPECT_LE(simulation.surface().v.control_point_count(), control_point_count_range.high);
+    for (int tick = 0; tick < 200; ++tick) simulation.advance(above(0.05, 0.012 - 5e-5 * tick));
+    const auto moved = [&](double v) {
+      const double u = surface.u.domain_start();
+      return (position(simulation.surface(), u, v) - position(surface, u, v)).norm();
+    };
+    EXPECT_GT(moved(0.05), 1e-4);
+    for (const double v : {0.002, 0.01, 0.015}) EXPECT_LT(moved(v), 1e-7) << v;
+  }
 }
 
 }  // namespace
