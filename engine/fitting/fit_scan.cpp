@@ -35,14 +35,19 @@ Result<FittedBody> fit_from(FitPoints island, const Parameterisation& start, Fit
   return body;
 }
 
-Result<FittedBody> fit_island(FitPoints island, const FitRequest& request, const FitWatch& watch) {
-  const bool may_be_closed = request.kind.value_or(ShapeKind::closed) == ShapeKind::closed;
-  if (may_be_closed && !island.scan.has_normals()) {
-    if (auto start = profile_map(island.scan.points_m)) {
-      start->uv = take_points_as_nodes(island, start->uv);
-      return fit_from(std::move(island), *start, request.settings, watch);
-    }
-  }
+// A wall that is truly there brings its two faces much nearer than a surface in their middle.
+bool nearer_as_wall(const FittedBody& wall, const FittedBody& face) {
+  constexpr double share = 0.8;
+  return wall.errors.data_to_surface.p95_m < share * face.errors.data_to_surface.p95_m;
+}
+
+Result<FittedBody> fit_from_profile(FitPoints island, Parameterisation start, const FitSettings& settings,
+                                    const FitWatch& watch) {
+  start.uv = take_points_as_nodes(island, start.uv);
+  return fit_from(std::move(island), start, settings, watch);
+}
+
+Result<FittedBody> fit_from_kind(FitPoints island, const FitRequest& request, const FitWatch& watch) {
   if (request.islands == IslandChoice::bridge && island.spanning_nodes > 0 &&
       request.kind.value_or(ShapeKind::closed) != ShapeKind::closed) {
     return Error{"bridged islands make a closed body; leave --kind out"};
@@ -50,6 +55,21 @@ Result<FittedBody> fit_island(FitPoints island, const FitRequest& request, const
   const auto start = first_parameters(island, request.kind.value_or(kind_of_shape(island)));
   if (!start) return start.error();
   return fit_from(std::move(island), start.value(), request.settings, watch);
+}
+
+Result<FittedBody> fit_island(FitPoints island, const FitRequest& request, const FitWatch& watch) {
+  const bool may_be_closed = request.kind.value_or(ShapeKind::closed) == ShapeKind::closed;
+  if (may_be_closed && !island.scan.has_normals()) {
+    if (auto map = profile_map(island.scan.points_m)) {
+      const bool is_doubtful = map->may_be_one_face && !request.kind;
+      auto wall = fit_from_profile(island, std::move(map->start), request.settings, watch);
+      if (!is_doubtful) return wall;
+      auto face = fit_from_kind(std::move(island), request, watch);
+      if (!wall) return face;
+      return face && !nearer_as_wall(wall.value(), face.value()) ? std::move(face) : std::move(wall);
+    }
+  }
+  return fit_from_kind(std::move(island), request, watch);
 }
 
 }  // namespace

@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
 
+#include "engine/bspline/reparameterise.h"
 #include "engine/fitting/closest_parameters.h"
 #include "engine/fitting/nearest_points.h"
 #include "engine/fitting/refine_knots.h"
 #include "engine/fitting/surface_fitter.h"
+#include "engine/study/enclosed_mass.h"
 
 namespace spoonbill {
 namespace {
@@ -18,29 +21,23 @@ namespace {
 constexpr int degree = 3;
 constexpr int first_controls = 10;
 constexpr double growth = 1.35;
-constexpr double first_fairness = 1e-2, last_fairness = 3e-4;
+constexpr double first_fairness = 1e-2;
 constexpr int point_round_count = 3;
 // Of a node that spans a hole, against the others': it is a guess.
 constexpr double spanning_weight = 0.15;
-// A span with less than this share of the mean's data is stiffened, by up to this factor.
-constexpr std::size_t pole_columns = 3;
 constexpr double pole_weight = 0.5;  // of a pole, in spans' worth of points
-constexpr double least_pole_size = 0.02;
-constexpr double seen_share = 0.3, unseen_fairness = 3.0;
 
 const ClosestPoint& nearer(const ClosestPoint& one, const ClosestPoint& other) {
   return other.distance_m < one.distance_m ? other : one;
 }
 
-// What folds nowhere is better than what does; else what is nearer, where a cusp counts for a hundredth of
-// the distance.
-bool better(const FittedSurface& one, const FittedSurface& other) {
-  constexpr double cusp_share = 0.01;
-  const auto cost = [](const FittedSurface& fitted) {
-    return ninety_fifth(fitted.distance_m) * (1.0 + cusp_share * static_cast<double>(fitted.folds.cusps));
-  };
-  const bool folds = one.folds.folds > 0, other_folds = other.folds.folds > 0;
-  return folds != other_folds ? other_folds : cost(one) < cost(other);
+// The distance within which 95 % of the points given are, strays left out.
+double usual_error(const FittedSurface& fitted, const FitPoints& points) {
+  std::vector<double> distances;
+  for (const std::uint32_t point : points.stands_for) {
+    if (point != no_point && fitted.trust[point] > 0.0) distances.push_back(fitted.distance_m[point]);
+  }
+  return ninety_fifth(distances);
 }
 
 KnotVector first_knots(bool is_periodic, int count) {
@@ -60,8 +57,13 @@ KnotVector over_unit(const KnotVector& knots) {
 }  // namespace
 
 SurfaceFitter::SurfaceFitter(const FitPoints& points, const Parameterisation& start,
-                             const FitSettings& settings, double least_agreement)
-    : points_(&points), settings_(&settings), kind_(start.kind), least_agreement_(least_agreement) {
+                             const FitSettings& settings, double least_agreement, double fairness_factor)
+    : points_(&points),
+      settings_(&settings),
+      kind_(start.kind),
+      least_agreement_(least_agreement),
+      fairness_factor_(fairness_factor),
+      chosen_fairness_(fairness_factor * least_fairness) {
   structure_.u = over_unit(first_knots(periodic(), std::min(settings.control_u, first_controls)));
   structure_.v = over_unit(first_knots(false, std::min(settings.control_v, first_controls)));
   structure_.pole_at_start = structure_.pole_at_end = closed();
@@ -81,39 +83,6 @@ SurfaceFitter::SurfaceFitter(const FitPoints& points, const Parameterisation& st
             std::vector<double>(points.graph.size(), 0.0),
             std::vector<double>(points.graph.size(), 1.0)};
   if (closed()) take_poles();
-}
-
-// More where there is little data: all of it where there is none.
-void SurfaceFitter::set_fairness(double fairness, const FittedData& data) {
-  const std::size_t u_spans = span_count(structure_.u), v_spans = span_count(structure_.v);
-  std::vector<double> weight(u_spans * v_spans, 0.0);
-  const std::vector<double> u_breaks = structure_.u.breakpoints(), v_breaks = structure_.v.breakpoints();
-  const auto span_of = [](const std::vector<double>& breaks, double at) {
-    const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, at);
-    return static_cast<std::size_t>(above - breaks.begin()) - 1;
-  };
-  double mean = 0.0;
-  for (std::size_t p = 0; p + points_->spanning_nodes < data.uv.size(); ++p) {
-    if (data.uv[p].hasNaN()) continue;
-    const std::size_t span = span_of(u_breaks, structure_.u.into_domain(data.uv[p].x())) * v_spans +
-                             span_of(v_breaks, structure_.v.into_domain(data.uv[p].y()));
-    weight[span] += data.weights[p];
-    mean += data.weights[p] / static_cast<double>(weight.size());
-  }
-  fairness_.resize(weight.size());
-  for (std::size_t t = 0; t < v_spans; ++t) {
-    double column = 0.0;
-    for (std::size_t s = 0; s < u_spans; ++s) {
-      column += weight[s * v_spans + t] / static_cast<double>(u_spans);
-    }
-    // Spans about a pole are small, and have few points to hold them against their stiffness.
-    const bool at_pole = closed() && std::min(t, v_spans - 1 - t) < pole_columns;
-    const double size = at_pole ? std::clamp(column / mean, least_pole_size, 1.0) : 1.0;
-    for (std::size_t s = 0; s < u_spans; ++s) {
-      const double seen = std::min(1.0, weight[s * v_spans + t] / (seen_share * size * mean));
-      fairness_[s * v_spans + t] = fairness * size * std::pow(unseen_fairness, 1.0 - seen);
-    }
-  }
 }
 
 Status SurfaceFitter::solve(FittedData& data) {
@@ -234,24 +203,27 @@ bool SurfaceFitter::grow() {
   return true;
 }
 
-// Against the nodes' normals or, of a closed shape without them, against its own inside.
+// Against the normals of what was scanned (those of nodes that span holes may face either way) or, of a
+// closed shape without them, against its own inside.
 bool SurfaceFitter::faces_inwards() const {
-  double along = 0.0, volume = 0.0;
-  for (std::size_t n = 0; n < nodes_.uv.size(); ++n) {
+  double along = 0.0;
+  for (std::size_t n = 0; n + points_->spanning_nodes < nodes_.uv.size(); ++n) {
     if (nodes_.uv[n].hasNaN()) continue;
     const SurfacePoint at = evaluate(surface_, nodes_.uv[n].x(), nodes_.uv[n].y());
     const Vector3 normal = at.du.cross(at.dv).normalized();
-    if (!normal.allFinite()) continue;
-    along += normal.dot(points_->node_normals[n]);
+    if (normal.allFinite()) along += normal.dot(points_->node_normals[n]);
   }
-  if (along != 0.0 || !closed()) return along < 0.0;
-  constexpr int grid = 40;
-  for (int i = 0; i < grid * grid; ++i) {
-    const int row = i / grid, column = i % grid;
-    const SurfacePoint at = evaluate(surface_, (row + 0.5) / grid, (column + 0.5) / grid);
-    volume += at.position_m.dot(at.du.cross(at.dv));
-  }
-  return volume < 0.0;
+  if (along != 0.0) return along < 0.0;
+  return closed() && enclosed_mass(surface_).volume_m3 < 0.0;
+}
+
+// The first rounds of a thin wall may enclose less than nothing.
+Status SurfaceFitter::face_outwards() {
+  if (!closed() || enclosed_mass(surface_).volume_m3 >= 0.0) return {};
+  surface_ = reversed(surface_, Direction::u);
+  for (Vector2& uv : all_.uv) uv.x() = 1.0 - uv.x();
+  folds_ = check_folds(surface_, {all_.uv, all_normals_});
+  return {};
 }
 
 Status SurfaceFitter::node_rounds() {
@@ -268,7 +240,7 @@ Status SurfaceFitter::node_rounds() {
       if (Status solved = solve(nodes_); !solved) return solved;
       project(nodes_, true);
       if (stage > 0) take_trust(nodes_);
-      fairness = std::max(last_fairness, 0.6 * fairness);
+      fairness = std::max(fairness_factor_ * least_fairness, 0.6 * fairness);
     }
     ++stage;
     if (!tell(0.1 * std::min(stage, 6))) return Error{"stopped before the fit was done"};
@@ -303,7 +275,10 @@ Status SurfaceFitter::point_rounds() {
     project(all_, false);
     take_trust(all_);
     if (round > 0) distrust_strays();
-    set_fairness(last_fairness, all_);
+    if (round == 0) {
+      if (Status chosen = choose_fairness(all_); !chosen) return chosen;
+    }
+    set_fairness(chosen_fairness_, all_);
     if (Status solved = solve(all_); !solved) return solved;
     if (!tell(0.7 + 0.05 * round)) return Error{"stopped before the fit was done"};
   }
@@ -328,18 +303,28 @@ FittedSurface SurfaceFitter::result() {
 }
 
 Result<FittedSurface> SurfaceFitter::run() {
-  for (const auto step :
-       {&SurfaceFitter::node_rounds, &SurfaceFitter::point_rounds, &SurfaceFitter::unfold}) {
+  for (const auto step : {&SurfaceFitter::node_rounds, &SurfaceFitter::point_rounds, &SurfaceFitter::unfold,
+                          &SurfaceFitter::face_outwards}) {
     if (Status done = (this->*step)(); !done) return done.error();
   }
   return result();
 }
 
 // Which agreement of normals serves best differs from scan to scan: a firm one holds points in folds of the
-// first parameters, a loose one lets them slip to the other face.
+// first parameters, a loose one lets them slip to the other face. Where all fold or are far off, so does
+// which fairness.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings) {
-  constexpr std::array agreements{0.0, -0.3, -1.0};
+  struct Trial {
+    double agreement, fairness_factor;
+    std::size_t cusps;   // no more trials where there are no more of them, no folds,
+    double error_share;  // and the error is below this share of the size
+  };
+  constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
+  constexpr std::array trials{Trial{0.0, 1.0, 0, 0.005}, Trial{-0.3, 1.0, 0, 0.005},
+                              Trial{-1.0, 1.0, any, 0.01}, Trial{0.0, 4.0, any, 0.01},
+                              Trial{-1.0, 4.0, any, 0.01}};
+  const double size_m = size_of(points.scan.points_m);
   FitSettings watched = settings;
   double told = 0.0;
   watched.watch = [&](double share) {
@@ -347,11 +332,18 @@ Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisatio
     return !settings.watch || settings.watch(told);
   };
   std::optional<FittedSurface> best;
-  for (const double agreement : agreements) {
-    auto fitted = SurfaceFitter(points, start, watched, agreement).run();
+  FitQuality quality{};
+  for (const Trial& trial : trials) {
+    if (trial.agreement != 0.0 && points.scan.normals.empty()) continue;
+    auto fitted = SurfaceFitter(points, start, watched, trial.agreement, trial.fairness_factor).run();
     if (!fitted) return fitted.error();
-    if (!best || better(fitted.value(), *best)) best = std::move(fitted).value();
-    if (best->folds.folds + best->folds.cusps == 0 || points.scan.normals.empty()) break;
+    const FitQuality found{fitted->folds.folds, fitted->folds.cusps, usual_error(fitted.value(), points)};
+    if (!best || found.better_than(quality)) {
+      best = std::move(fitted).value();
+      quality = found;
+    }
+    const bool is_near = quality.error_m < trial.error_share * size_m;
+    if (quality.folds == 0 && quality.cusps <= trial.cusps && is_near) break;
   }
   return *std::move(best);
 }

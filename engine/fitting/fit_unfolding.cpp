@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "engine/fitting/refine_knots.h"
@@ -10,7 +12,9 @@ namespace spoonbill {
 
 namespace {
 
-constexpr int fold_rounds = 30, cusp_rounds = 60, relaxing_rounds = 10;
+constexpr int fold_rounds = 30, cusp_rounds = 60;
+// Parameters that cross are untangled by relaxing them; where they do not cross, that only leads them away.
+constexpr std::array relaxing_rounds{10, 0};
 constexpr double most_fairness = 10.0;
 // What the removal of cusps may cost, against what removed the folds.
 constexpr double error_of_smoothing = 1.2;
@@ -43,7 +47,7 @@ void SurfaceFitter::stiffen_folds() {
 
 // Parameters of points in spans that fold, moved towards the means of their neighbours': as in the harmonic
 // map that they come from, where none crosses another.
-void SurfaceFitter::relax_folds() {
+void SurfaceFitter::relax_folds(int rounds) {
   const PointGraph& graph = points_->graph;
   const std::size_t count = points_->scan.points_m.size(), spanning = points_->spanning_nodes;
   std::vector<std::vector<std::uint32_t>> of_node(graph.size());
@@ -59,7 +63,7 @@ void SurfaceFitter::relax_folds() {
   for (std::uint32_t n = 0; n < graph.size(); ++n) {
     if (place(n) != no_point && in_folded_span(all_.uv[place(n)])) folded.push_back(n);
   }
-  for (int round = 0; round < relaxing_rounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     for (const std::uint32_t n : folded) {
       const Vector2 before = all_.uv[place(n)];
       Vector2 shift = Vector2::Zero();
@@ -109,6 +113,32 @@ Status SurfaceFitter::unfold() {
   v_breaks_ = structure_.v.breakpoints();
   project(all_, false);
   folds_ = check_folds(surface_, {all_.uv, all_normals_});
+  const Folding folded{surface_, folds_, all_.uv, fairness_};
+  std::optional<Folding> best;
+  FitQuality best_quality{};
+  for (const int relaxing : relaxing_rounds) {
+    take(folded);
+    if (Status done = unfold(relaxing); !done) return done;
+    project(all_, false);
+    const FitQuality quality{folds_.folds, folds_.cusps, usual_error()};
+    if (!best || quality.better_than(best_quality)) {
+      best = Folding{surface_, folds_, all_.uv, fairness_};
+      best_quality = quality;
+    }
+    if (folds_.is_clean()) break;
+  }
+  take(*best);
+  return {};
+}
+
+void SurfaceFitter::take(const Folding& folding) {
+  surface_ = folding.surface;
+  folds_ = folding.folds;
+  all_.uv = folding.uv;
+  fairness_ = folding.fairness;
+}
+
+Status SurfaceFitter::unfold(int relaxing) {
   Surface least_folded = surface_;
   FoldCheck least = folds_;
   std::vector<Vector2> least_uv = all_.uv;
@@ -116,7 +146,7 @@ Status SurfaceFitter::unfold() {
   const auto rounds = [&] { return least.folds > 0 ? fold_rounds : least.cusps > 0 ? cusp_rounds : 0; };
   for (int round = 0; round < rounds(); ++round) {
     stiffen_folds();
-    relax_folds();
+    relax_folds(relaxing);
     if (Status solved = solve(all_); !solved) return solved;
     if (round % 2 == 1) project(all_, false);
     folds_ = check_folds(surface_, {all_.uv, all_normals_});

@@ -14,6 +14,7 @@ struct FoldCheck {
   std::size_t samples = 0, folds = 0, cusps = 0;
   std::vector<bool> span_folds, span_cusps;  // u-major, one for each pair of spans
 
+  bool is_clean() const { return folds + cusps == 0; }
   bool better_than(const FoldCheck& other) const {
     return folds < other.folds || (folds == other.folds && cusps < other.cusps);
   }

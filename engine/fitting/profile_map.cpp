@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "engine/fitting/nearest_points.h"
 
@@ -18,6 +19,8 @@ constexpr double told_apart_cells = 3.0;
 // So many points a cell of the profile, were they all on a way three times the size.
 constexpr double points_a_cell = 12.0;
 constexpr double face_share = 0.2;  // of the wall's thickness
+// Of the wall's thickness: where half the points lie deeper, they may be one face with its noise.
+constexpr double between_share = 0.25;
 constexpr double seen_share = 0.85;
 constexpr int least_points = 2;           // in a cell that counts
 constexpr int dilation = 2;               // cells
@@ -203,6 +206,12 @@ double length_of(const std::vector<Vector2>& way) {
   return length;
 }
 
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 // How much of both faces has points on it, no deeper than a face is thick: of a grid of sectors and lengths.
 // Sheets with waves fill the profile as well, but each place of it somewhere else.
 double seen_all_around(const std::vector<Vector2>& uv, const std::vector<double>& depths, double reach) {
@@ -219,7 +228,7 @@ double seen_all_around(const std::vector<Vector2>& uv, const std::vector<double>
 
 }  // namespace
 
-std::optional<Parameterisation> profile_map(const std::vector<Vector3>& points_m) {
+std::optional<ProfileMap> profile_map(const std::vector<Vector3>& points_m) {
   const auto axis = round_axis(points_m);
   if (!axis) return {};
   const Profile profile = profile_of(points_m, *axis);
@@ -247,7 +256,7 @@ std::optional<Parameterisation> profile_map(const std::vector<Vector3>& points_m
     depths.push_back(found.distance - dilation * cell);
   }
   if (seen_all_around(start.uv, depths, face_share * thickness + 1.5 * cell) < seen_share) return {};
-  return start;
+  return ProfileMap{std::move(start), median_of(depths) > between_share * thickness};
 }
 
 }  // namespace spoonbill

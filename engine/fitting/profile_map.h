@@ -14,6 +14,10 @@ namespace spoonbill {
 // u turns about the axis, v runs along the outline of the profile from the axis over the rim to the axis: a
 // closed shape. Nothing where the points are not round about an axis, have no outline from axis to axis, or
 // are no thin wall with two faces.
-std::optional<Parameterisation> profile_map(const std::vector<Vector3>& points_m);
+struct ProfileMap {
+  Parameterisation start;
+  bool may_be_one_face;  // whose noise looks like a wall
+};
+std::optional<ProfileMap> profile_map(const std::vector<Vector3>& points_m);
 
 }  // namespace spoonbill

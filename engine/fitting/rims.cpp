@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -17,6 +18,7 @@ namespace {
 constexpr std::size_t least_rim = 4;
 constexpr std::size_t corner_limit = 500;
 constexpr std::size_t cap_triangle_limit = 20'000;
+constexpr std::uint32_t no_place = 0xffffffffU;
 constexpr double open_angle = 0.62 * std::numbers::pi;
 
 void measure(const PointGraph& graph, Rim& rim) {
@@ -85,10 +87,9 @@ double widest_gap(const PointGraph& graph, std::uint32_t node) {
   return gap;
 }
 
-// The nodes given, each with those that are no more than two steps away.
-PointGraph strung_together(const PointGraph& graph, const std::vector<std::uint32_t>& nodes) {
-  constexpr std::uint32_t none = 0xffffffffU;
-  std::vector<std::uint32_t> place(graph.size(), none);
+// The nodes given, each with those that are no more than so many steps away.
+PointGraph strung_together(const PointGraph& graph, const std::vector<std::uint32_t>& nodes, int steps) {
+  std::vector<std::uint32_t> place(graph.size(), no_place);
   std::vector<Vector3> points;
   for (const std::uint32_t node : nodes) {
     place[node] = static_cast<std::uint32_t>(points.size());
@@ -96,11 +97,18 @@ PointGraph strung_together(const PointGraph& graph, const std::vector<std::uint3
   }
   std::vector<NodePair> pairs;
   for (const std::uint32_t node : nodes) {
-    for (const std::uint32_t other : graph.of(node)) {
-      if (place[other] != none) pairs.emplace_back(place[node], place[other]);
-      for (const std::uint32_t further : graph.of(other)) {
-        if (place[further] != none) pairs.emplace_back(place[node], place[further]);
+    std::set<std::uint32_t> reached{node}, rim{node};
+    for (int step = 0; step < steps; ++step) {
+      std::set<std::uint32_t> next;
+      for (const std::uint32_t other : rim) {
+        for (const std::uint32_t further : graph.of(other)) {
+          if (reached.insert(further).second) next.insert(further);
+        }
       }
+      rim = std::move(next);
+    }
+    for (const std::uint32_t other : reached) {
+      if (other != node && place[other] != no_place) pairs.emplace_back(place[node], place[other]);
     }
   }
   return make_point_graph(std::move(points), pairs);
@@ -246,19 +254,24 @@ std::vector<Rim> rims_of_cloud(const PointGraph& graph) {
   for (std::uint32_t node = 0; node < graph.size(); ++node) {
     if (widest_gap(graph, node) > open_angle) open.push_back(node);
   }
+  // Noise hides a node here and there: where what is open does not come round, wider steps may.
+  constexpr std::array steps{2, 4};
   std::vector<Rim> rims;
   if (open.empty()) return rims;
-  const PointGraph all = strung_together(graph, open);
+  const PointGraph all = strung_together(graph, open, steps.front());
   const GraphParts parts = connected_parts(all);
   for (std::size_t k = 0; k < parts.sizes.size() && parts.sizes[k] >= 2 * least_rim; ++k) {
     std::vector<std::uint32_t> nodes;
     for (std::uint32_t n = 0; n < all.size(); ++n) {
-      if (parts.part_of[n] == k) nodes.push_back(n);
+      if (parts.part_of[n] == k) nodes.push_back(open[n]);
     }
-    std::vector<std::uint32_t> ring = ring_through(part_of(all, nodes));
+    std::vector<std::uint32_t> ring;
+    for (std::size_t s = 0; s < steps.size() && ring.size() < 2 * least_rim; ++s) {
+      ring = ring_through(strung_together(graph, nodes, steps[s]));
+    }
     if (ring.size() < 2 * least_rim) continue;
     Rim rim;
-    for (const std::uint32_t n : ring) rim.nodes.push_back(open[nodes[n]]);
+    for (const std::uint32_t n : ring) rim.nodes.push_back(nodes[n]);
     rim.nodes = step_by_step(graph, rim.nodes);
     measure(graph, rim);
     rims.push_back(std::move(rim));

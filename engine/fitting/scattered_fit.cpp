@@ -4,6 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "engine/bspline/basis.h"
@@ -14,6 +15,10 @@ namespace {
 
 // Of a span's worth of points: u may run around a pole a little unevenly.
 constexpr double smooth_pole_share = 0.1;
+// Of a span's worth of points: how firmly rings are held round, next to the pole; less by the cube of the
+// spans from it, for what is no ellipse grows with the cube of the distance on a smooth surface.
+constexpr double round_pole_share = 0.003;
+constexpr int round_pole_spans = 3;
 
 // Products of each control point's basis function with those of its neighbours to `degree` places away, so
 // that a sum needs no search: entry (control, du + degree, dv + degree).
@@ -48,6 +53,10 @@ class NormalEquations {
   }
 
   void set_pole_weight(double weight) { pole_weight_ = weight; }
+  // Adds the equations of another without their right sides, each times the factor.
+  void add(const NormalEquations& other, double factor) {
+    for (std::size_t k = 0; k < products_.size(); ++k) products_[k] += factor * other.products_[k];
+  }
   Result<Surface> solve(const SurfaceStructure& structure) const;
 
  private:
@@ -198,30 +207,96 @@ void add_fairness(const SurfaceStructure& structure, double weight, std::span<co
   }
 }
 
+// The part of a ring at two Gauss points of each span of u that is no ellipse, see the header: for each, the
+// factors of the control points that it depends on.
+std::vector<PieceBasis::Values> ring_bases(const PieceBasis& u_basis) {
+  constexpr double turn = 2.0 * std::numbers::pi;
+  const std::vector<double> breaks = u_basis.knots().breakpoints();
+  std::vector<PieceBasis::Values> rings;
+  for (std::size_t s = 0; s + 1 < breaks.size(); ++s) {
+    const double length = breaks[s + 1] - breaks[s];
+    const auto at = [&](double share) {
+      PieceBasis::Values values;
+      u_basis.take(breaks[s] + share * length, values);
+      return values;
+    };
+    // Within a span of a cubic the second derivative is linear.
+    const PieceBasis::Values low = at(0.25), high = at(0.75);
+    for (const double share : {0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)}) {
+      PieceBasis::Values ring = at(share);
+      const double root = std::sqrt(0.5 * length);  // of the Gauss weight
+      for (int k = 0; k <= u_basis.degree(); ++k) {
+        const double third = (high.value[2][k] - low.value[2][k]) / (0.5 * length);
+        ring.value[0][k] = root * (ring.value[1][k] / turn + third / (turn * turn * turn));
+      }
+      rings.push_back(ring);
+    }
+  }
+  return rings;
+}
+
+void add_round_poles(const SurfaceStructure& structure, double weight, NormalEquations& equations) {
+  const PieceBasis u_basis(structure.u), v_basis(structure.v);
+  const std::vector<PieceBasis::Values> rings = ring_bases(u_basis);
+  const std::vector<double> v_breaks = structure.v.breakpoints();
+  const int v_spans = static_cast<int>(v_breaks.size()) - 1;
+  for (const bool at_end : {false, true}) {
+    if (!(at_end ? structure.pole_at_end : structure.pole_at_start)) continue;
+    for (int t = 0; t < std::min(round_pole_spans, v_spans / 2); ++t) {
+      const auto span = static_cast<std::size_t>(at_end ? v_spans - 1 - t : t);
+      PieceBasis::Values v;
+      v_basis.take_values_only(0.5 * (v_breaks[span] + v_breaks[span + 1]), v);
+      const double factor =
+          round_pole_share * weight * static_cast<double>(span_count(structure.u)) / std::pow(t + 1, 3);
+      for (const PieceBasis::Values& ring : rings) {
+        equations.add(ring.value[0].data(), ring.controls, v.value[0].data(), v.controls, factor, nullptr);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::size_t span_count(const KnotVector& knots) {
   return knots.breakpoints().size() - 1;
 }
 
-Result<Surface> fit_scattered(const SurfaceStructure& structure, const ScatteredData& data,
-                              std::span<const double> fairness) {
+Result<std::vector<Surface>> fit_scattered_at(const SurfaceStructure& structure, const ScatteredData& data,
+                                              std::span<const double> fairness,
+                                              std::span<const double> factors) {
   const std::size_t spans = span_count(structure.u) * span_count(structure.v);
   const double weight = span_weight(data, spans);
   if (!(weight > 0.0)) return Error{"no points are left to fit"};
-  NormalEquations equations(structure);
+  NormalEquations distances(structure), stiffness(structure);
   const PieceBasis u_basis(structure.u), v_basis(structure.v);
   PieceBasis::Values u, v;
   for (std::size_t p = 0; p < data.uv.size(); ++p) {
     if (data.uv[p].hasNaN() || data.weights[p] == 0.0) continue;
     u_basis.take_values_only(structure.u.into_domain(data.uv[p].x()), u);
     v_basis.take_values_only(structure.v.into_domain(data.uv[p].y()), v);
-    equations.add(u.value[0].data(), u.controls, v.value[0].data(), v.controls, data.weights[p],
+    distances.add(u.value[0].data(), u.controls, v.value[0].data(), v.controls, data.weights[p],
                   &data.points_m[p]);
   }
-  add_fairness(structure, weight, fairness, equations);
-  equations.set_pole_weight(smooth_pole_share * weight);
-  return equations.solve(structure);
+  add_round_poles(structure, weight, distances);
+  distances.set_pole_weight(smooth_pole_share * weight);
+  add_fairness(structure, weight, fairness, stiffness);
+  std::vector<Surface> surfaces;
+  for (const double factor : factors) {
+    NormalEquations equations = distances;
+    equations.add(stiffness, factor);
+    auto surface = equations.solve(structure);
+    if (!surface) return surface.error();
+    surfaces.push_back(std::move(surface).value());
+  }
+  return surfaces;
+}
+
+Result<Surface> fit_scattered(const SurfaceStructure& structure, const ScatteredData& data,
+                              std::span<const double> fairness) {
+  constexpr std::array as_it_is{1.0};
+  auto surfaces = fit_scattered_at(structure, data, fairness, as_it_is);
+  if (!surfaces) return surfaces.error();
+  return std::move(surfaces.value().front());
 }
 
 }  // namespace spoonbill

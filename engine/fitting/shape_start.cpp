@@ -119,7 +119,25 @@ std::optional<ShapeEnds> poles_on_axis(const PointGraph& graph) {
   return poles_on(graph, axes.middle, axes.axes.col(is_disc ? 0 : 2));
 }
 
+// Whether normals point away from the middle, as they do where the inside of a closed shape was not seen.
+bool faces_outwards(const FitPoints& island) {
+  const Axes axes = axes_of(island.graph);
+  const std::vector<double> areas = areas_of(island.graph);
+  double volume = 0.0;
+  for (std::size_t n = 0; n < areas.size(); ++n) {
+    volume += areas[n] * (island.graph.points_m[n] - axes.middle).dot(island.node_normals[n]);
+  }
+  return volume >= 0.0;  // zero without normals
+}
+
+// Of a scan that is inside out.
+void turn_normals(FitPoints& island) {
+  for (Vector3& normal : island.scan.normals) normal = -normal;
+  for (Vector3& normal : island.node_normals) normal = -normal;
+}
+
 Result<Parameterisation> closed_start(FitPoints& island) {
+  if (!faces_outwards(island)) turn_normals(island);
   span_holes(island, 0);
   const ShapeEnds ends = poles_on_axis(island.graph).value_or(farthest_ends(island.graph));
   auto uv = harmonic_tube_map(island.graph, ends);
@@ -193,17 +211,6 @@ Result<Parameterisation> sheet_start(FitPoints& island) {
   auto uv = harmonic_square_map(island.graph, rim.nodes, corners);
   if (!uv) return uv.error();
   return Parameterisation{ShapeKind::sheet, std::move(uv).value()};
-}
-
-// Whether normals point away from the middle, as they do where the inside of a closed shape was not seen.
-bool faces_outwards(const FitPoints& island) {
-  const Axes axes = axes_of(island.graph);
-  const std::vector<double> areas = areas_of(island.graph);
-  double volume = 0.0;
-  for (std::size_t n = 0; n < areas.size(); ++n) {
-    volume += areas[n] * (island.graph.points_m[n] - axes.middle).dot(island.node_normals[n]);
-  }
-  return volume >= 0.0;  // zero without normals
 }
 
 }  // namespace

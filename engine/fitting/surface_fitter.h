@@ -14,6 +14,7 @@
 namespace spoonbill {
 
 inline constexpr int projection_steps = 3;
+inline constexpr double least_fairness = 3e-4;  // lets surfaces follow what is free of noise
 
 // What is fitted: the nodes at first, then all points.
 struct FittedData {
@@ -39,15 +40,37 @@ inline double wrapped(double difference) {
   return difference - std::round(difference);
 }
 
+// What folds nowhere is better than what does; else what is nearer, where each fold and cusp counts for a
+// share of the distance.
+struct FitQuality {
+  std::size_t folds, cusps;
+  double error_m;
+
+  bool better_than(const FitQuality& other) const {
+    return (folds > 0) != (other.folds > 0) ? folds == 0 : cost() < other.cost();
+  }
+  double cost() const {
+    return error_m * (1.0 + 0.03 * static_cast<double>(folds) + 0.004 * static_cast<double>(cusps));
+  }
+};
+
 class SurfaceFitter {
  public:
   // Points keep their parameters where the surface's normal at new ones has a smaller cosine than
   // `least_agreement` with theirs: on a thin wall the nearest place may be on the other face.
   SurfaceFitter(const FitPoints& points, const Parameterisation& start, const FitSettings& settings,
-                double least_agreement);
+                double least_agreement, double fairness_factor);
   Result<FittedSurface> run();
 
  private:
+  // What unfolding changes, to begin it again.
+  struct Folding {
+    Surface surface;
+    FoldCheck folds;
+    std::vector<Vector2> uv;
+    std::vector<double> fairness;
+  };
+
   bool closed() const { return kind_ == ShapeKind::closed; }
   bool periodic() const { return kind_ != ShapeKind::sheet; }
   Status solve(FittedData& data);
@@ -60,25 +83,29 @@ class SurfaceFitter {
   bool within_tolerance(const FittedData& data) const;
   bool grow();
   bool faces_inwards() const;
+  Status face_outwards();
   Status node_rounds();
   Status point_rounds();
   const std::vector<bool>& faulty_spans() const;
   void stiffen_folds();
-  void relax_folds();
+  void relax_folds(int rounds);
   bool in_folded_span(const Vector2& uv) const;
   Vector2 kept_inside(Vector2 uv) const;
   double usual_error() const;
   Status unfold();
+  Status unfold(int relaxing);
+  void take(const Folding& folding);
   void set_fairness(double fairness, const FittedData& data);
+  Status choose_fairness(const FittedData& data);
   bool tell(double share) const { return !settings_->watch || settings_->watch(share); }
   FittedSurface result();
 
   const FitPoints* points_;
   const FitSettings* settings_;
   ShapeKind kind_;
-  double least_agreement_;
+  double least_agreement_, fairness_factor_, chosen_fairness_;
   SurfaceStructure structure_;
-  std::vector<double> fairness_;
+  std::vector<double> fairness_;  // of each pair of spans
   std::vector<double> node_weights_, all_weights_;
   std::vector<Vector3> all_points_m_, all_normals_;
   FittedData nodes_, all_;

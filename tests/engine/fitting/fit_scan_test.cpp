@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <functional>
+#include <utility>
 
+#include "engine/study/curvature_range.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/fitting/clouds.h"
@@ -126,6 +128,63 @@ TEST(FitScan, NoiseIsAveragedAndOutliersLeftOut) {
   // Some 150 points for each control point average their noise of 0.3 mm; the few at a pole do not.
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.03)), 4.5e-4);
   EXPECT_LT(fitted.bodies[0].errors.surface_to_data.mean_m, 1.5e-4);
+}
+
+// Noise and wrinkles about the poles bend a surface many times as much as its shape does.
+TEST(FitScan, NoiseDoesNotWrinkleTheSurface) {
+  for (const Vector3& half_axes : {Vector3(0.03, 0.03, 0.03), Vector3(0.02, 0.025, 0.04)}) {
+    Scan scan = ellipsoid_cloud(12000, half_axes);
+    add_noise(scan, 6, 3e-4);
+    const ScanFit fitted = fit(scan, 24);
+    ASSERT_EQ(fitted.bodies.size(), 1U);
+    // 8 pi for a ball, little more for these.
+    EXPECT_LT(bending_measure(fitted.bodies[0].surface), 45.0);
+    EXPECT_LT(fitted.bodies[0].errors.surface_to_data.p95_m, 3e-4);
+  }
+}
+
+// What spans the hole faces either way: it must not tell which side is out.
+TEST(FitScan, ClosedShapesFaceOutwardsWhateverWasNotSeen) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    Scan scan = ellipsoid_cloud(3000 + 500 * seed, {0.02, 0.022, 0.03});
+    leave_out(scan, [](const Vector3& p) { return p.z() < -0.026; });
+    add_noise(scan, seed, 1e-4);
+    const ScanFit fitted = fit(scan, 14);
+    ASSERT_EQ(fitted.bodies.size(), 1U);
+    EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::closed);
+    EXPECT_GT(volume_of(fitted.bodies[0].surface), 0.0) << seed;
+  }
+}
+
+TEST(FitScan, AMeshInsideOutIsTurned) {
+  TriangleMesh mesh = ball_mesh(24, 48, 0.02);
+  for (TriangleCorners& corners : mesh.triangles) std::swap(corners[0], corners[1]);
+  const ScanFit fitted = fit({mesh.vertices_m, {}, mesh.triangles}, 14);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_GT(volume_of(fitted.bodies[0].surface), 0.0);
+  EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
+}
+
+// Noise hides a part of the rims.
+TEST(FitScan, NoisyOpenCylinderIsATube) {
+  Scan scan = random_cloud(9000, 11, [](double s, double t) { return on_cylinder(s, t, 0.031, 0.08); });
+  add_noise(scan, 12, 3e-4);
+  const ScanFit fitted = fit(scan, 16);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::tube);
+}
+
+// A single face as thick as its noise is no wall.
+TEST(FitScan, NoisyDomeIsASheet) {
+  Scan scan = random_cloud(9000, 13, [](double s, double t) {
+    const double r = 0.04 * std::sqrt(t), height = std::sqrt(0.045 * 0.045 - r * r);
+    return Vector3(r * std::cos(2.0 * M_PI * s), r * std::sin(2.0 * M_PI * s), -height);
+  });
+  add_noise(scan, 14, 3e-4);
+  const ScanFit fitted = fit(scan, 16);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::sheet);
+  EXPECT_LT(fitted.bodies[0].errors.surface_to_data.p95_m, 3e-4);
 }
 
 TEST(FitScan, HoleIsSpannedSmoothly) {
