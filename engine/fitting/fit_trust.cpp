@@ -13,6 +13,11 @@ namespace {
 constexpr double huber_deviations = 3.0;
 constexpr double stray_deviations = 5.0, most_strays = 0.15;
 constexpr std::size_t stray_neighbours = 15;
+// Of the size: nearer than this nothing is a stray, however exact the others are.
+constexpr double least_stray_share = 3e-4;
+
+// Of the size: how far an open edge goes out to points past it.
+constexpr double edge_share = 0.02;
 
 }  // namespace
 
@@ -30,8 +35,22 @@ void SurfaceFitter::take_trust(FittedData& data) const {
   const double reach =
       std::max({huber_deviations * 1.4826 * at(0.5), at(0.95), 1e-9 * size_of(points_->scan.points_m)});
   for (std::size_t p = 0; p < data.trust.size(); ++p) {
-    data.trust[p] = data.distance_m[p] <= reach ? 1.0 : reach / data.distance_m[p];
+    const double distance = data.distance_m[p] <= reach ? data.distance_m[p] : distance_off(data, p);
+    data.trust[p] = distance <= reach ? 1.0 : reach / distance;
   }
+}
+
+// Of what lies a little way past an open edge, how far it is off the surface's plane there: the edge must go
+// out to it.
+double SurfaceFitter::distance_off(const FittedData& data, std::size_t point) const {
+  const Vector2& uv = data.uv[point];
+  const auto is_end = [](double parameter) { return parameter <= 0.0 || parameter >= 1.0; };
+  const bool at_edge = !closed() && (is_end(uv.y()) || (!periodic() && is_end(uv.x())));
+  if (!at_edge || data.distance_m[point] > edge_share * size_of(points_->scan.points_m)) {
+    return data.distance_m[point];
+  }
+  const SurfacePoint at = evaluate(surface_, uv.x(), uv.y());
+  return std::abs(at.du.cross(at.dv).normalized().dot(data.points_m[point] - at.position_m));
 }
 
 // Of a cloud, what lies off the surface otherwise than the points around it in (u, v): where the surface is
@@ -63,7 +82,8 @@ void SurfaceFitter::distrust_strays() {
   std::vector<double> sorted = off;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(count / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
-  const double reach = std::max(stray_deviations * 1.4826 * *middle, 1e-6 * size_of(points_->scan.points_m));
+  const double reach =
+      std::max(stray_deviations * 1.4826 * *middle, least_stray_share * size_of(points_->scan.points_m));
   const auto strays = std::count_if(off.begin(), off.end(), [&](double height) { return height > reach; });
   // More are no strays, but what the surface cannot follow.
   if (static_cast<double>(strays) > most_strays * static_cast<double>(count)) return;

@@ -78,6 +78,7 @@ class SurfaceFitter {
   void project(FittedData& data, bool smooth);
   bool may_go_to(const FittedData& data, std::size_t point, const Vector2& uv) const;
   void take_trust(FittedData& data) const;
+  double distance_off(const FittedData& data, std::size_t point) const;
   void distrust_strays();
   void smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const;
   bool within_tolerance(const FittedData& data) const;

@@ -109,6 +109,22 @@ TEST(FitScan, WavesAreASheet) {
   EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 1e-4);
 }
 
+// Nothing of an even grid without noise is a stray, and the surface goes out to its edges and corners.
+TEST(FitScan, ExactGridIsFittedToItsEdges) {
+  Scan scan;
+  for (int k = 0; k < 900; ++k) {
+    const double x = (k % 30) / 29.0, y = (k / 30) / 29.0;
+    scan.points_m.emplace_back(0.1 * x, 0.1 * y, 0.005 * std::sin(7.0 * x) * std::cos(7.0 * y));
+  }
+  const ScanFit fitted = fit(scan, 24);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::sheet);
+  EXPECT_EQ(fitted.bodies[0].errors.strays, 0U);
+  // A fifth of the grid's spacing of 3.4 mm, at the corners, which are rounded.
+  EXPECT_LT(fitted.bodies[0].errors.data_to_surface.max_m, 7e-4);
+  EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 2e-5);
+}
+
 // Square and low, so that it is as round about its middle as a bowl.
 TEST(FitScan, LowWavesAreNoThinWall) {
   const Scan scan = random_cloud(5000, 3, [](double s, double t) { return on_waves(s, t, 0.1, 0.004); });
