@@ -9,6 +9,7 @@
 #include "engine/bspline/blossom.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/merging/fold_search.h"
 #include "engine/merging/ring_bend.h"
 #include "engine/number_text.h"
 
@@ -69,22 +70,6 @@ bool has_waist(const Surface& strip) {
   return false;
 }
 
-// Whether the normal turns over from one place to the next on a line across the gap.
-bool folds_over(const Surface& strip) {
-  const double first = strip.v.domain_start(), last = strip.v.domain_end();
-  constexpr int lines = 32;
-  for (const double u : uniform_parameters(strip.u, lines + 1)) {
-    Vector3 before = Vector3::Zero();
-    for (int k = 0; k <= steps_along; ++k) {
-      const SurfacePoint at = evaluate(strip, u, first + (last - first) * k / steps_along);
-      const Vector3 normal = at.du.cross(at.dv);
-      if (normal.dot(before) < 0.0) return true;
-      if (!normal.isZero(0.0)) before = normal;
-    }
-  }
-  return false;
-}
-
 Result<Surface> strip_of_length(const Surface& before, const Surface& after, const BridgeLength& length,
                                 int continuity) {
   const double start = before.v.domain_end() + length.parameter;
@@ -131,7 +116,8 @@ Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, 
   for (int attempt = 0; attempt <= most_tightenings; ++attempt) {
     const auto strip = strip_of_length(before, after, length, continuity);
     if (!strip) return strip.error();
-    const bool folds = !may_fold && folds_over(strip.value());
+    const bool folds =
+        !may_fold && place_of_fold_between(strip.value(), strip->v.domain_start(), strip->v.domain_end());
     const bool waisted = before.u.is_periodic() && bend.isIdentity() && attempt < tightenings_for_waist &&
                          has_waist(strip.value());
     if (!folds && !waisted) return length;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -9,6 +10,8 @@
 #include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/bridge.h"
+#include "engine/merging/fold_search.h"
+#include "engine/place_text.h"
 
 namespace spoonbill {
 
@@ -142,10 +145,31 @@ std::vector<Joint> described_joints(const Surface& merged, const std::vector<Sur
   for (std::size_t p = 1; p < placed.size(); ++p) {
     const double start = placed[p - 1].v.domain_end(), end = placed[p].v.domain_start();
     const JointMeasure& joint = row.joints[p - 1];
-    joints.push_back(
-        {joint.gap_m, joint.bridged, start, end, joint.bridged ? mean_length_m(merged, start, end) : 0.0});
+    const double length_m = joint.bridged ? mean_length_m(merged, start, end) : 0.0;
+    joints.push_back({joint.gap_m, joint.bridged, start, end, length_m, joint.apart_m, joint.cut_back_m});
   }
   return joints;
+}
+
+std::optional<Vector3> place_of_fold_in(const Surface& merged, const std::vector<Joint>& joints) {
+  for (const Joint& joint : joints) {
+    if (!joint.bridged) continue;
+    if (auto place = place_of_fold_between(merged, joint.blend_start, joint.blend_end)) return place;
+  }
+  return place_of_fold(merged);
+}
+
+// What was joined exactly folds where its patches do alone.
+Status check_folds(const Surface& merged, const std::vector<Surface>& placed,
+                   const std::vector<Joint>& joints, double moved_m) {
+  constexpr double rounding_m = 1e-12;
+  const bool bridged = std::any_of(joints.begin(), joints.end(), [](const Joint& j) { return j.bridged; });
+  if (!bridged && moved_m <= rounding_m) return {};
+  const auto place = place_of_fold_in(merged, joints);
+  if (!place || std::any_of(placed.begin(), placed.end(), place_of_fold)) return {};
+  return Error{"the merged surface folds over at " + place_text(*place) +
+               ": the patches meet at too sharp an edge there, or lie on each other; join them C0, ask for a "
+               "blend, or cut a piece off"};
 }
 
 }  // namespace
@@ -167,6 +191,10 @@ Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request)
   if (!merged) return merged.error();
   const double deviation_m = row.deviation_m + measured_deviation_m(merged->surface, placed.value());
   std::vector<Joint> described = described_joints(merged->surface, placed.value(), row);
+  if (!request.bridges_may_fold) {
+    Status sound = check_folds(merged->surface, placed.value(), described, merged->deviation_m);
+    if (!sound) return sound.error();
+  }
   return Joined{std::move(merged->surface), deviation_m, std::move(described)};
 }
 

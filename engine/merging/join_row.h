@@ -17,6 +17,8 @@ struct Joint {
   bool bridged = false;
   double blend_start = 0.0, blend_end = 0.0;
   double blend_length_m = 0.0;  // the mean length of the blend along v
+  double apart_m = 0.0;         // the largest gap between the edges as they were given
+  double cut_back_m = 0.0;      // off either patch, for the blend
 };
 
 struct Joined {
@@ -28,7 +30,8 @@ struct Joined {
 // Exact where derivatives up to the continuity agree; else the joint's knot is fitted to a lower multiplicity
 // and knots are added beside it until the tolerance holds. At a joint-knot multiplicity m of degree p the
 // continuity is C^(p - m), and of r1 and r2 control points r1 + r2 + m - p - 1 result (Pungotra et al. 2013
-// give r1 + r2 - 1, which holds for C0 alone). Refused: more than the largest count of them.
+// give r1 + r2 - 1, which holds for C0 alone). Refused: more than the largest count of them, a surface that
+// folds over where no patch does, unless bridges may.
 Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request);
 
 // prepare_rows() of a single one, and join_prepared(). Patches whose edges are at most the tolerance apart

@@ -1,80 +1,19 @@
 #include "engine/merging/prepared_rows.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
-#include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/bridge.h"
 #include "engine/merging/compatible.h"
+#include "engine/merging/joint_edges.h"
+#include "engine/number_text.h"
 
 namespace spoonbill {
 
 namespace {
-
-constexpr int samples_across = 64;
-
-// At the end of one patch and the start of the next, at the same parameters across.
-struct EdgePoints {
-  std::vector<SurfacePoint> before, after;
-};
-
-EdgePoints edge_points(const Surface& before, const Surface& after) {
-  EdgePoints points;
-  for (const double u : uniform_parameters_without_seam(before.u, samples_across)) {
-    points.before.push_back(evaluate(before, u, before.v.domain_end()));
-    points.after.push_back(evaluate(after, u, after.v.domain_start()));
-  }
-  if (!before.u.is_periodic()) {
-    points.before.push_back(evaluate(before, before.u.domain_end(), before.v.domain_end()));
-    points.after.push_back(evaluate(after, after.u.domain_end(), after.v.domain_start()));
-  }
-  return points;
-}
-
-double largest_gap_m(const EdgePoints& points) {
-  double largest = 0.0;
-  for (std::size_t k = 0; k < points.before.size(); ++k) {
-    largest = std::max(largest, (points.before[k].position_m - points.after[k].position_m).norm());
-  }
-  return largest;
-}
-
-// The stretch s with the least sum of |before' - after' / s|^2, up to its scale; exact where the derivatives
-// differ by one factor. By the lengths alone where they point elsewhere.
-double stretch_at_edge(const EdgePoints& points) {
-  double along = 0.0, squared = 0.0, length_before = 0.0, length_after = 0.0;
-  for (std::size_t k = 0; k < points.before.size(); ++k) {
-    along += points.before[k].dv.dot(points.after[k].dv);
-    squared += points.before[k].dv.squaredNorm();
-    length_before += points.before[k].dv.norm();
-    length_after += points.after[k].dv.norm();
-  }
-  if (!(length_before > 0.0) || !(length_after > 0.0)) return 1.0;
-  const double by_length = length_after / length_before, exact = along / squared;
-  return exact > 0.5 * by_length ? exact : by_length;
-}
-
-// Whether derivatives up to the second agree so far that no blend is needed.
-bool is_smooth(const EdgePoints& points, double stretch, int continuity) {
-  for (std::size_t k = 0; k < points.before.size(); ++k) {
-    const SurfacePoint &a = points.before[k], &b = points.after[k];
-    const double speed = a.dv.norm();
-    if (continuity >= 1 && (a.dv - b.dv / stretch).norm() > 1e-6 * speed) return false;
-    const double bend = std::max(a.dvv.norm(), speed);
-    if (continuity >= 2 && (a.dvv - b.dvv / (stretch * stretch)).norm() > 1e-6 * bend) return false;
-  }
-  return true;
-}
-
-double mean_speed(const std::vector<SurfacePoint>& points) {
-  double sum = 0.0;
-  for (const SurfacePoint& point : points) sum += point.dv.norm() / static_cast<double>(points.size());
-  return sum;
-}
 
 Result<Surface> cut_back(const Surface& patch, bool at_end, double parameter) {
   const double start = patch.v.domain_start(), end = patch.v.domain_end();
@@ -86,9 +25,9 @@ Result<Surface> cut_back(const Surface& patch, bool at_end, double parameter) {
 }
 
 Result<JointMeasure> measure(const Surface& before, const Surface& after, const JoinRequest& request) {
-  const EdgePoints points = edge_points(before, after);
-  if (largest_gap_m(points) <= request.tolerance_m) {
-    return JointMeasure{false, largest_gap_m(points), 0.0, stretch_at_edge(points)};
+  const JointEdges edges = joint_edges(before, after);
+  if (largest_gap_m(edges) <= request.tolerance_m) {
+    return JointMeasure{false, largest_gap_m(edges), 0.0, stretch_at_edge(edges)};
   }
   const auto length = bridge_length(before, after, request.continuity, request.bridges_may_fold);
   if (!length) return length.error();
@@ -97,40 +36,95 @@ Result<JointMeasure> measure(const Surface& before, const Surface& after, const 
 
 // What is to be done at a joint, over all rows.
 struct JointState {
-  bool any_touching = false, any_apart = false, all_smooth = true;
-  double speed_before = 0.0, speed_after = 0.0;  // means
+  bool any_touching = false, any_apart = false, all_smooth = true, all_lead_on = true;
+  double apart_m = 0.0;                                               // the largest gap
+  double mean_gap_m = 0.0, advance_m = 0.0;                           // means
+  double shortest_piece_m = std::numeric_limits<double>::infinity();  // beside the joint
+  double speed_before = 0.0, speed_after = 0.0;                       // means
 };
 
 JointState state_of_joint(const std::vector<PreparedRow>& rows, std::size_t joint,
                           const JoinRequest& request) {
   JointState state;
   for (const PreparedRow& row : rows) {
-    const EdgePoints points = edge_points(row.patches[joint], row.patches[joint + 1]);
-    const bool touching = largest_gap_m(points) <= request.tolerance_m;
+    const JointEdges edges = joint_edges(row.patches[joint], row.patches[joint + 1]);
+    const double gap_m = largest_gap_m(edges), share = 1.0 / static_cast<double>(rows.size());
+    const bool touching = gap_m <= request.tolerance_m;
     state.any_touching = state.any_touching || touching;
     state.any_apart = state.any_apart || !touching;
-    state.all_smooth = state.all_smooth && is_smooth(points, stretch_at_edge(points), request.continuity);
-    state.speed_before += mean_speed(points.before) / static_cast<double>(rows.size());
-    state.speed_after += mean_speed(points.after) / static_cast<double>(rows.size());
+    state.all_smooth = state.all_smooth && is_smooth(edges, stretch_at_edge(edges), request.continuity);
+    state.all_lead_on = state.all_lead_on && leads_on(edges, request.tolerance_m);
+    state.apart_m = std::max(state.apart_m, gap_m);
+    state.advance_m += share * mean_advance_m(edges);
+    state.mean_gap_m += share * mean_gap_m(edges);
+    const double before = mean_speed(edges.before), after = mean_speed(edges.after);
+    state.shortest_piece_m =
+        std::min({state.shortest_piece_m, piece_length_m(row.patches[joint], true, before),
+                  piece_length_m(row.patches[joint + 1], false, after)});
+    state.speed_before += share * before;
+    state.speed_after += share * after;
   }
   return state;
+}
+
+// Where patches do not run straight on across a small gap, a bridge of its own length would be a step, or
+// fold: they are blended over a polynomial piece, but over so many times the gap at least and at most. What
+// is cut off for that stays below a share of a patch.
+constexpr double least_of_gap = 10.0, most_of_gap = 40.0, most_cut_share = 0.25;
+// Of the gap, how far back edges may lie that are not cut back.
+constexpr double most_back_share = 0.5;
+
+bool is_short_beside(const std::vector<PreparedRow>& rows, std::size_t joint, double cut_m) {
+  return std::all_of(rows.begin(), rows.end(), [&](const PreparedRow& row) {
+    const Surface &before = row.patches[joint], &after = row.patches[joint + 1];
+    const JointEdges edges = joint_edges(before, after);
+    const auto length_m = [](const Surface& patch, double speed) {
+      return speed * (patch.v.domain_end() - patch.v.domain_start());
+    };
+    return cut_m <= most_cut_share * std::min(length_m(before, mean_speed(edges.before)),
+                                              length_m(after, mean_speed(edges.after)));
+  });
+}
+
+// How much of each patch a blend takes; none where nothing is to be blended.
+Result<double> cut_for_blend_m(const std::vector<PreparedRow>& rows, std::size_t joint,
+                               const JointState& state, const JoinRequest& request) {
+  if (request.blend_m > 0.0) {
+    const bool wanted = state.any_apart || !state.all_smooth;
+    return wanted ? std::max(0.0, 0.5 * (request.blend_m - state.advance_m)) : 0.0;
+  }
+  if (!state.any_apart) return 0.0;
+  if (state.any_touching) {
+    return Error{
+        "patches of the grid touch in one row of a joint and are apart in another; ask for a blend, or allow "
+        "a larger tolerance"};
+  }
+  if (state.all_lead_on || request.bridges_may_fold) return 0.0;
+  const double length_m =
+      std::clamp(state.shortest_piece_m, least_of_gap * state.apart_m, most_of_gap * state.apart_m);
+  const double cut_m = 0.5 * (length_m - state.advance_m);
+  if (is_short_beside(rows, joint, cut_m)) return cut_m;
+  if (state.advance_m < -most_back_share * state.mean_gap_m) {
+    return Error{"the patches overlap by " + short_length_text(-state.advance_m) +
+                 " where they are to be joined; move them apart, cut a piece off, or let them intersect"};
+  }
+  return 0.0;
 }
 
 // In all rows alike, so that they keep their joints at the same parameter.
 Status cut_for_blend(std::vector<PreparedRow>& rows, std::size_t joint, const JoinRequest& request) {
   const JointState state = state_of_joint(rows, joint, request);
-  if (state.any_touching && state.any_apart && !(request.blend_m > 0.0)) {
-    return Error{
-        "patches of the grid touch in one row of a joint and are apart in another; ask for a blend, or allow "
-        "a larger tolerance"};
-  }
-  const bool wanted = state.any_touching && (state.any_apart || !state.all_smooth);
-  if (!(request.blend_m > 0.0) || !wanted) return {};
+  const auto cut_m = cut_for_blend_m(rows, joint, state, request);
+  if (!cut_m) return cut_m.error();
   for (PreparedRow& row : rows) {
+    row.joints.push_back({});
+    row.joints[joint].apart_m = state.apart_m;
+    row.joints[joint].cut_back_m = cut_m.value();
+    if (cut_m.value() == 0.0) continue;
     Surface &before = row.patches[joint], &after = row.patches[joint + 1];
-    auto shorter = cut_back(before, true, 0.5 * request.blend_m / state.speed_before);
+    auto shorter = cut_back(before, true, cut_m.value() / state.speed_before);
     if (!shorter) return shorter.error();
-    auto later = cut_back(after, false, 0.5 * request.blend_m / state.speed_after);
+    auto later = cut_back(after, false, cut_m.value() / state.speed_after);
     if (!later) return later.error();
     before = std::move(shorter).value();
     after = std::move(later).value();
@@ -144,7 +138,9 @@ Status measure_joint(std::vector<PreparedRow>& rows, std::size_t joint, const Jo
   for (PreparedRow& row : rows) {
     const auto measured = measure(row.patches[joint], row.patches[joint + 1], request);
     if (!measured) return measured.error();
-    row.joints.push_back(measured.value());
+    JointMeasure& joint_of_row = row.joints[joint];
+    joint_of_row.bridged = measured->bridged;
+    joint_of_row.gap_m = measured->gap_m;
     stretch += measured->stretch_of_after / static_cast<double>(rows.size());
     shortest = std::min(shortest, measured->gap_parameter);
   }
