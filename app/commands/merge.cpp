@@ -104,22 +104,48 @@ std::string edge_text(const PatchEdge& edge) {
   return std::to_string(edge.patch + 1) + "." + side_name(edge.side);
 }
 
+std::string edges_text(const MergedJoint& merged) {
+  return edge_text(merged.a) + " and " + edge_text(merged.b);
+}
+
+std::string joint_text(const MergedJoint& merged) {
+  const Joint& joint = merged.joint;
+  const std::string edges = edges_text(merged);
+  if (!joint.bridged) return edges + ", edge to edge";
+  if (joint.cut_back_m == 0.0) {
+    return edges + ", bridged over a gap of " + short_length_text(joint.gap_m) + " by a blend of " +
+           short_length_text(joint.blend_length_m);
+  }
+  return edges + ", up to " + short_length_text(joint.apart_m) + " apart, cut back by " +
+         short_length_text(joint.cut_back_m) + " each for a blend of " +
+         short_length_text(joint.blend_length_m);
+}
+
 void add_joint(FactSheet& facts, const MergedJoint& merged, Json& list) {
   const Joint& joint = merged.joint;
-  const std::string edges = edge_text(merged.a) + " and " + edge_text(merged.b);
-  facts.add("Joint",
-            joint.bridged ? edges + ", bridged over a gap of " + short_length_text(joint.gap_m) +
-                                " by a blend of " + short_length_text(joint.blend_length_m)
-                          : edges + ", edge to edge",
-            "", nullptr);
+  facts.add("Joint", joint_text(merged), "", nullptr);
   list.push_back({{"a", edge_text(merged.a)},
                   {"b", edge_text(merged.b)},
                   {"along", merged.along == Direction::u ? "u" : "v"},
                   {"bridged", joint.bridged},
                   {"gap_m", joint.gap_m},
+                  {"apart_m", joint.apart_m},
+                  {"cut_back_m", joint.cut_back_m},
                   {"blend_start", joint.blend_start},
                   {"blend_end", joint.blend_end},
                   {"blend_length_m", joint.blend_length_m}});
+}
+
+// A blend that was asked for and made no difference.
+void add_unused_blends(const MergeRequest& request, const std::vector<MergedJoint>& joints,
+                       std::vector<std::string>& remarks) {
+  if (request.join.blend_m == 0.0) return;
+  for (const MergedJoint& merged : joints) {
+    if (merged.joint.cut_back_m > 0.0) continue;
+    remarks.push_back(
+        "the blend was not applied to " + edges_text(merged) +
+        (merged.joint.bridged ? ": the gap between them is longer" : ": they meet as smoothly as asked"));
+  }
 }
 
 // What is to be merged, and what the merged document takes from the first model.
@@ -236,6 +262,7 @@ Status merge_models(const MergeOptions& options, Console& console) {
   auto merged = merge_with_progress(options, parts.value(), console);
   if (!merged) return merged.error();
   merged->deviation_m += parts->untrimmed_m;
+  add_unused_blends(options.request, merged->joints, parts->remarks);
   const Document document =
       merged_document(*parts->first, parts->bodies, options, merged->surface, parts->remarks);
   // A file becomes whole: what asks to stop now waits for it.
@@ -278,7 +305,10 @@ CommandEntry add_merge(CLI::App& root) {
   add_parsed_option(
       *parser, "--blend", "LENGTH", length_in(blend_range_m),
       [options](double length_m) { options->request.join.blend_m = length_m; },
-      "Round joints that are not as smooth as asked over this length, instead of within the tolerance");
+      "Cut patches back where they are apart or do not meet as smoothly as asked, for a blend of this "
+      "length; "
+      "without it a kink is rounded within the tolerance, and a small gap that is no straight way on blended "
+      "over a piece between two knots, 10 to 40 times the gap");
   parser
       ->add_option_function<std::vector<std::string>>(
           "--edges",

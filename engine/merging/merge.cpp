@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/tube_ends.h"
 #include "engine/number_text.h"
@@ -147,6 +148,39 @@ Result<std::vector<EdgeMatch>> matches_for(std::vector<Surface>& patches, const 
   return matches;
 }
 
+// Whether one lies on the other all over, however it is held; from the same seam on where they are closed.
+bool are_one(const Surface& a, const Surface& b, double tolerance_m) {
+  constexpr int steps = 5;
+  const auto is_near = [&](const Surface& other) {
+    const std::vector<double> u = uniform_parameters(a.u, steps), v = uniform_parameters(a.v, steps);
+    const std::vector<double> other_u = uniform_parameters(other.u, steps);
+    const std::vector<double> other_v = uniform_parameters(other.v, steps);
+    for (int i = 0; i < steps; ++i) {
+      for (int j = 0; j < steps; ++j) {
+        if ((position(a, u[i], v[j]) - position(other, other_u[i], other_v[j])).norm() > tolerance_m) {
+          return false;
+        }
+      }
+    }
+    return true;
+  };
+  for (int held = 0; held < 8; ++held) {
+    if (is_near(oriented(b, {(held & 1) != 0, (held & 2) != 0, (held & 4) != 0}))) return true;
+  }
+  return false;
+}
+
+Status check_different(const std::vector<Surface>& patches, double tolerance_m) {
+  for (std::size_t b = 1; b < patches.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      if (!are_one(patches[a], patches[b], tolerance_m)) continue;
+      return Error{"patches " + std::to_string(a + 1) + " and " + std::to_string(b + 1) +
+                   " are the same surface at the same place; name one of them, or move the other"};
+    }
+  }
+  return {};
+}
+
 constexpr int most_patches = 64;
 constexpr double rounding_m = 1e-12;
 
@@ -175,6 +209,7 @@ Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request) {
   if (Status status = check(patches, request); !status) return status.error();
   if (patches.size() == 1) return Merged{patches[0], 0.0, {}};
+  if (Status status = check_different(patches, request.join.tolerance_m); !status) return status.error();
   std::vector<Surface> ready = patches;
   const auto matches = matches_for(ready, request);
   if (!matches) return matches.error();

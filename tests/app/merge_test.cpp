@@ -66,6 +66,25 @@ TEST(MergeCommand, ASplitHandleIsWholeAgain) {
   }
 }
 
+TEST(MergeCommand, ABlendIsToldOf) {
+  const Workplace place;
+  ASSERT_EQ(run({"change", handle, "split", "v=50", "--out", place.text("halves.json")}).code, exit_done);
+  const Outcome smooth = run(
+      {"merge", place.text("halves.json"), "--blend", "5mm", "--out", place.text("whole.json"), "--json"});
+  ASSERT_EQ(smooth.code, exit_done) << smooth.err;
+  EXPECT_NE(smooth.out.find("the blend was not applied to 1.v_end and 2.v_start"), std::string::npos)
+      << smooth.out;
+  const Outcome blended =
+      run({"merge", handle, bowl, "--blend", "12mm", "--out", place.text("spoon.json"), "--json"});
+  ASSERT_EQ(blended.code, exit_done) << blended.err;
+  const Json joint = json_of(blended.out)["joints"][0];
+  EXPECT_NEAR(joint["blend_length_m"].get<double>(), 0.012, 5e-4);
+  EXPECT_GT(joint["cut_back_m"].get<double>(), 1e-3);
+  const Outcome longer = run({"merge", handle, bowl, "--blend", "1m", "--out", place.text("long.json")});
+  EXPECT_EQ(longer.code, exit_failed);
+  EXPECT_NE(longer.err.find("more than half of a patch"), std::string::npos) << longer.err;
+}
+
 TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   const Workplace place;
   const std::string rod = place.text("rod.json"), ball = place.text("ball.json"),
