@@ -10,6 +10,7 @@
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/edge_match.h"
+#include "engine/merging/nearly_same_knots.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -93,7 +94,8 @@ Result<Surface> with_seam_beside(const Surface& before, const Surface& patch, co
   const double near_m = request.tolerance_m * (match->gap_m > request.tolerance_m ? 1.0 : one_share);
   if ((position(b, nearest) - of_a).norm() <= near_m) seam = nearest;
   const double period = patch.u.domain_end() - patch.u.domain_start();
-  return with_seam_at(patch, Direction::u, seam + request.twist * period);
+  const double wanted = seam + request.twist * period;
+  return with_seam_at(patch, Direction::u, seam_at_nearly_same_knots(before.u, patch.u, wanted));
 }
 
 // The first of every two is fitted to, all are looked at; not on the far end of a period.
@@ -167,17 +169,25 @@ Result<CompatiblePatches> with_parameters_of(const Surface& before, const Surfac
                "; allow a larger tolerance"};
 }
 
+// Of the tolerance, what bringing knots together may cost.
+constexpr double knots_share = 0.05;
+
 // Over the union of their u knots.
-Status make_one_structure(std::vector<Surface>& patches, int largest_count) {
+Status make_one_structure(std::vector<Surface>& patches, const JoinRequest& request, double& deviation_m) {
   KnotVector all = patches[0].u;
-  for (const Surface& patch : patches) {
-    auto both = knot_union(all, patch.u);
+  double moved_m = 0.0;
+  for (Surface& patch : patches) {
+    MovedKnots near = with_nearly_same_knots(patch, all, knots_share * request.tolerance_m);
+    auto both = knot_union(all, near.surface.u);
     if (!both) return both.error();
     all = std::move(both).value();
+    patch = std::move(near.surface);
+    moved_m = std::max(moved_m, near.deviation_m);
   }
-  if (const int count = all.control_point_count(); count > largest_count) {
+  deviation_m += moved_m;
+  if (const int count = all.control_point_count(); count > request.largest_count) {
     return Error{"the patches' knots across make " + std::to_string(count) +
-                 " control points together, more than " + std::to_string(largest_count) +
+                 " control points together, more than " + std::to_string(request.largest_count) +
                  "; simplify them first, or merge fewer"};
   }
   for (Surface& patch : patches) {
@@ -248,16 +258,17 @@ Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, const
     auto raised = with_degrees(stretched.value(), degree_u, degree_v);
     if (!raised) return Error{name_of(p) + ": " + raised.error().message};
     patches[p] = std::move(raised).value();
-    if (p == 0 || !patches[p].u.is_periodic()) continue;
+    if (p == 0 || !patches[p].u.is_periodic() || request.shared_parameters) continue;
     auto turned = with_seam_beside(patches[p - 1], patches[p], request);
     if (!turned) return Error{name_of(p) + ": " + turned.error().message};
     patches[p] = std::move(turned).value();
   }
   CompatiblePatches result{std::move(patches), 0.0};
-  if (Status status = match_parameters(result.patches, request, result.deviation_m); !status) {
-    return status.error();
+  if (!request.shared_parameters) {
+    Status status = match_parameters(result.patches, request, result.deviation_m);
+    if (!status) return status.error();
   }
-  if (Status status = make_one_structure(result.patches, request.largest_count); !status) {
+  if (Status status = make_one_structure(result.patches, request, result.deviation_m); !status) {
     return status.error();
   }
   return result;

@@ -13,7 +13,7 @@ namespace spoonbill {
 
 struct CompatiblePatches {
   std::vector<Surface> patches;
-  double deviation_m = 0.0;  // zero but where parameters had to be matched
+  double deviation_m = 0.0;  // zero but where parameters had to be matched or knots brought together
 };
 
 // Edges that are at most the tolerance apart coincide, wherever their parameters are. The degree along v is

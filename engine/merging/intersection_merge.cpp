@@ -113,6 +113,7 @@ Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& se
   JoinRequest join = request.join;
   join.tolerance_m -= before_m;
   join.blend_m = 0.0;
+  join.shared_parameters = true;
   if (request.fillet_m == 0.0) join.continuity = 0;
   auto joined = join_row(std::move(parts->surfaces), join);
   if (!joined) return joined.error();

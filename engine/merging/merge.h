@@ -35,8 +35,8 @@ struct Merged {
 
 // Poles that are chosen, or the nearest of tubes that do not touch, are cut off and the tubes bridged; what
 // is cut off belongs to the blend. A bridge may fold over only where the direction of an edge is chosen.
-// Refused: no patch or more than 64, two that are one, patches that do not make a row or a grid, what join_row() refuses, more
-// of a deviation than the tolerance. One patch is given back as it is.
+// Refused: no patch or more than 64, two that are one, patches that do not make a row or a grid, what
+// join_row() refuses, more of a deviation than the tolerance. One patch is given back as it is.
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request);
 
 }  // namespace spoonbill

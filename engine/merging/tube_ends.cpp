@@ -115,6 +115,7 @@ Result<Joined> with_cap(const Surface& surface, Side side, double height_m, cons
   auto cap = cap_of(clamped.value(), height_m);
   if (!cap) return cap.error();
   JoinRequest capping = request;
+  capping.shared_parameters = true;
   if (height_m == 0.0) capping.continuity = 0;
   auto joined = join_row({std::move(clamped).value(), std::move(cap).value()}, capping);
   if (!joined) return joined.error();

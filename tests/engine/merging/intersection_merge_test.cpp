@@ -106,6 +106,10 @@ TEST_P(RodInBall, BecomesOneSurface) {
     ASSERT_TRUE(merged.ok()) << merged.error().message;
     EXPECT_TRUE(is_pole(merged->surface, Side::v_start));
     EXPECT_TRUE(is_pole(merged->surface, Side::v_end));
+    // Both parts have the rod's parameters, and no second knots beside them.
+    EXPECT_EQ(merged->surface.u.domain_start(), 0.0);
+    const std::vector<double> knots = merged->surface.u.breakpoints();
+    for (std::size_t k = 1; k < knots.size(); ++k) EXPECT_GT(knots[k] - knots[k - 1], 1e-3);
     // The ball and the rod that are given miss the exact ones by 6e-6 m; the rest is the tolerance.
     EXPECT_LT(largest_distance(merged->surface, direction, fillet), 6e-5) << fillet;
     // Normals point outwards, and what the rod adds is a cylinder, a half ball less the ball's own.
