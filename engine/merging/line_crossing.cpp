@@ -16,7 +16,8 @@ namespace {
 constexpr int cells_in_piece = 6;
 constexpr int chords_in_piece = 8;
 constexpr int ray_chords = 64;
-// Of a chord and of a triangle's sides, so that nothing slips through between two.
+// Of a chord, of a triangle's sides and of the whole surface's size, so that nothing slips through between
+// two or beside a border that the line runs along.
 constexpr double loose = 1e-9;
 
 struct CurvePoint {
@@ -76,7 +77,8 @@ std::vector<CrossingFinder::Start> CrossingFinder::of_chord(const Vector3& from,
       starts.push_back({met->along, u_[i + 1] - met->to_b * du, v_[j + 1] - met->to_c * dv});
     }
   };
-  tree_->search([&](std::uint32_t node) { return tree_->nodes()[node].box.is_near(chord, 0.0); },
+  const double reach = loose * tree_->nodes()[0].box.size();
+  tree_->search([&](std::uint32_t node) { return tree_->nodes()[node].box.is_near(chord, reach); },
                 [](std::uint32_t, std::uint32_t) { return false; },
                 [&](std::uint32_t first, std::uint32_t count) {
                   for (std::uint32_t k = 0; k < count; ++k) look_at(tree_->order()[first + k]);

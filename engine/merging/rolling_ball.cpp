@@ -19,8 +19,19 @@ double length_of(const KnotVector& knots) {
   return knots.domain_end() - knots.domain_start();
 }
 
-bool is_inside(const KnotVector& knots, double t) {
-  return knots.is_periodic() || (t >= knots.domain_start() && t <= knots.domain_end());
+// Into the domain, unless it lies outside by more than rounding.
+bool settle(const KnotVector& knots, double& t) {
+  const double rounding = 1e-9 * length_of(knots);
+  if (knots.is_periodic()) return true;
+  if (t < knots.domain_start() - rounding || t > knots.domain_end() + rounding) return false;
+  t = std::clamp(t, knots.domain_start(), knots.domain_end());
+  return true;
+}
+
+// Backwards at the end, beyond which the surface does not go on.
+double step_from(const KnotVector& knots, double t) {
+  const double step = small_step * length_of(knots);
+  return !knots.is_periodic() && t + step > knots.domain_end() ? -step : step;
 }
 
 class Corner {
@@ -41,8 +52,8 @@ class Corner {
     for (int step = 0; step < 25; ++step) {
       const Vector3 now = apart(at, radius_m);
       if (now.norm() <= 1e-9 * radius_m) return at;
-      const double dv = small_step * length_of(surface_.v), du_other = small_step * length_of(other_.u),
-                   dv_other = small_step * length_of(other_.v);
+      const double dv = step_from(surface_.v, at.v), du_other = step_from(other_.u, at.other_u),
+                   dv_other = step_from(other_.v, at.other_v);
       Eigen::Matrix3d slopes;
       slopes.col(0) = (apart({at.v + dv, at.other_u, at.other_v}, radius_m) - now) / dv;
       slopes.col(1) = (apart({at.v, at.other_u + du_other, at.other_v}, radius_m) - now) / du_other;
@@ -50,8 +61,7 @@ class Corner {
       const Vector3 moved = slopes.partialPivLu().solve(-now);
       if (!moved.allFinite()) return std::nullopt;
       at = {at.v + moved.x(), at.other_u + moved.y(), at.other_v + moved.z()};
-      if (!is_inside(surface_.v, at.v) || !is_inside(other_.u, at.other_u) ||
-          !is_inside(other_.v, at.other_v)) {
+      if (!settle(surface_.v, at.v) || !settle(other_.u, at.other_u) || !settle(other_.v, at.other_v)) {
         return std::nullopt;
       }
     }
