@@ -15,6 +15,8 @@ namespace {
 struct Place {
   int a = 0, b = 0;
   Orientation orientation;
+
+  friend bool operator==(const Place&, const Place&) = default;
 };
 
 constexpr bool both[] = {false, true};
@@ -97,7 +99,7 @@ Result<Arrangement> arrange(const std::vector<Surface>& patches, const std::vect
     low_b = std::min(low_b, places[p]->b);
     high_b = std::max(high_b, places[p]->b);
   }
-  Arrangement arrangement{high_a - low_a + 1, high_b - low_b + 1, {}, {}};
+  Arrangement arrangement{high_a - low_a + 1, high_b - low_b + 1, {}, {}, {}};
   const std::size_t cells = static_cast<std::size_t>(arrangement.rows) * arrangement.columns;
   arrangement.patches.assign(cells, -1);
   arrangement.orientations.resize(cells);
@@ -111,6 +113,10 @@ Result<Arrangement> arrange(const std::vector<Surface>& patches, const std::vect
   }
   for (const int patch : arrangement.patches) {
     if (patch < 0) return layout_error(static_cast<int>(places.size()) - 1, "leaves a gap in the grid");
+  }
+  for (const EdgeMatch& match : matches) {
+    const Place beside_a = neighbour(*places[match.a.patch], match.a.side, match.b.side, match.reversed);
+    if (beside_a != *places[match.b.patch]) arrangement.left_open.push_back(match);
   }
   return arrangement;
 }

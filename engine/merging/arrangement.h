@@ -30,6 +30,8 @@ struct Arrangement {
   int rows = 0, columns = 0;
   std::vector<int> patches;
   std::vector<Orientation> orientations;
+  std::vector<EdgeMatch>
+      left_open;  // whose patches lie elsewhere, as at the ends of a row that closes a ring
 
   int cell(int a, int b) const { return a * columns + b; }
 };

@@ -162,10 +162,6 @@ EdgeMatch match_rings(const Edge& a, const Edge& b, std::optional<bool> asked) {
   return {a.name, b.name, best.reversed, seam, gaps.largest, gaps.mean};
 }
 
-std::string text_of(PatchEdge edge) {
-  return "patch " + std::to_string(edge.patch + 1) + "'s " + side_name(edge.side);
-}
-
 Result<EdgeMatch> match_prepared(const Edge& a, const Edge& b, std::optional<bool> reversed) {
   const bool ring = a.curve.knots.is_periodic();
   if (ring != b.curve.knots.is_periodic()) {
@@ -228,6 +224,10 @@ bool shares_edge(const std::vector<EdgeMatch>& taken, const EdgeMatch& match) {
 }
 
 }  // namespace
+
+std::string text_of(PatchEdge edge) {
+  return "patch " + std::to_string(edge.patch + 1) + "'s " + side_name(edge.side);
+}
 
 Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b,
                               std::optional<bool> reversed) {

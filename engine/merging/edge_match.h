@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/merging/patch_edge.h"
@@ -20,6 +21,9 @@ struct EdgeMatch {
   double gap_m = 0.0;
   double mean_gap_m = 0.0;
 };
+
+// "patch 2's v_start", counted from 1.
+std::string text_of(PatchEdge edge);
 
 // How two edges lie beside each other at best, or at best where b runs along or against a as `reversed` says.
 // Rings that lie apart are compared as a bend from one to the other would bring them together.

@@ -181,6 +181,28 @@ Status check_different(const std::vector<Surface>& patches, double tolerance_m) 
   return {};
 }
 
+Status check_named_once(const std::vector<ChosenEdges>& chosen) {
+  std::vector<PatchEdge> named;
+  for (const ChosenEdges& edges : chosen) {
+    for (const PatchEdge& edge : {edges.a, edges.b}) {
+      if (std::find(named.begin(), named.end(), edge) != named.end()) {
+        return Error{text_of(edge) + " is named in two pairs of edges and can be joined once; leave one out"};
+      }
+      named.push_back(edge);
+    }
+  }
+  return {};
+}
+
+// Edges that were chosen must be joined; those that were found touch, and may stay open.
+Status check_left_open(const Arrangement& arrangement, const std::vector<ChosenEdges>& chosen) {
+  if (arrangement.left_open.empty() || chosen.empty()) return {};
+  const EdgeMatch& match = arrangement.left_open.front();
+  return Error{text_of(match.a) + " and " + text_of(match.b) +
+               " cannot be joined, as the other pairs of edges hold these patches elsewhere; leave that pair "
+               "out, and close the merged surface around if it is a ring"};
+}
+
 constexpr int most_patches = 64;
 constexpr double rounding_m = 1e-12;
 
@@ -201,7 +223,7 @@ Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
       }
     }
   }
-  return {};
+  return check_named_once(request.chosen);
 }
 
 }  // namespace
@@ -215,11 +237,13 @@ Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& re
   if (!matches) return matches.error();
   const auto arrangement = arrange(ready, matches.value());
   if (!arrangement) return arrangement.error();
+  if (Status status = check_left_open(arrangement.value(), request.chosen); !status) return status.error();
   JoinRequest join = request.join;
   join.bridges_may_fold = std::any_of(request.chosen.begin(), request.chosen.end(),
                                       [](const ChosenEdges& edges) { return edges.reversed.has_value(); });
   auto merged = merge_grid({ready, arrangement.value()}, join);
   if (!merged) return merged;
+  for (const EdgeMatch& match : arrangement->left_open) merged->left_open.emplace_back(match.a, match.b);
   if (merged->deviation_m > join.tolerance_m - join.spent_m + rounding_m) {
     return Error{"the patches can be merged within " + short_length_text(merged->deviation_m + join.spent_m) +
                  "; allow a larger tolerance than " + short_length_text(join.tolerance_m)};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/merging/arrangement.h"
@@ -31,11 +32,14 @@ struct Merged {
   Surface surface;
   double deviation_m = 0.0;  // the largest distance to the patches, outside blends
   std::vector<MergedJoint> joints;
+  // Edges that touch and that the surface leaves open, as where a row closes a ring.
+  std::vector<std::pair<PatchEdge, PatchEdge>> left_open = {};
 };
 
 // Poles that are chosen, or the nearest of tubes that do not touch, are cut off and the tubes bridged; what
 // is cut off belongs to the blend. A bridge may fold over only where the direction of an edge is chosen.
-// Refused: no patch or more than 64, two that are one, patches that do not make a row or a grid, what
+// Refused: no patch or more than 64, two that are one, chosen
+// edges that contradict each other, patches that do not make a row or a grid, what
 // join_row() refuses, more of a deviation than the tolerance. One patch is given back as it is.
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request);
 

@@ -233,6 +233,34 @@ TEST(Merge, EdgesAreChosenByHand) {
   EXPECT_EQ(merge(parts, request).error().message, "patch 3 of a chosen edge does not exist");
 }
 
+TEST(Merge, EdgesThatContradictEachOtherAreRefused) {
+  const std::vector<Surface> parts{level_sheet(0.0, 0.04), level_sheet(0.05, 0.09)};
+  const ChosenEdges pair{{0, Side::v_end}, {1, Side::v_start}};
+  const auto refused = [&](const ChosenEdges& more) {
+    MergeRequest request = request_of(1);
+    request.chosen = {pair, more};
+    const auto merged = merge(parts, request);
+    return merged.ok() ? std::string() : merged.error().message;
+  };
+  EXPECT_EQ(refused(pair),
+            "patch 1's v_end is named in two pairs of edges and can be joined once; leave one out");
+  EXPECT_EQ(refused({{0, Side::v_end}, {1, Side::v_end}}), refused(pair));
+  const std::string ring = refused({{0, Side::v_start}, {1, Side::v_end}});
+  EXPECT_NE(ring.find("patch 1's v_start and patch 2's v_end cannot be joined"), std::string::npos) << ring;
+}
+
+TEST(Merge, ARingOfSheetsIsToldOf) {
+  std::vector<Surface> parts;
+  const Surface whole = ring_strip(0.0, 0.03, 16, 0.0);
+  for (const double start : {0.0, 0.25, 0.5, 0.75}) {
+    parts.push_back(part_of(whole, Direction::u, start, start + 0.25).value());
+  }
+  const auto merged = merge(parts, request_of(2));
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_EQ(merged->left_open.size(), 1U);
+  EXPECT_TRUE(merge({parts[0], parts[1]}, request_of(2))->left_open.empty());
+}
+
 TEST(Merge, DirectionsAndSeamsAreChosenByHand) {
   const Surface low = ring_strip(0.0, 0.03, 16, 0.0), high = ring_strip(0.04, 0.08, 16, 0.0);
   MergeRequest request = request_of(1);
