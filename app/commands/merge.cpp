@@ -14,6 +14,7 @@
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/left_out.h"
+#include "app/commands/merge_report.h"
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
 #include "app/files/document_file.h"
@@ -43,6 +44,7 @@ struct MergeOptions {
   std::filesystem::path out;
   std::string name;
   MergeRequest request;
+  std::optional<int> continuity;  // where it is asked for
   bool crossing = false;
   double fillet_m = 0.0;
   bool json = false;
@@ -100,54 +102,6 @@ Result<ChosenEdges> parse_edges(const std::string& text) {
   return edges;
 }
 
-std::string edge_text(const PatchEdge& edge) {
-  return std::to_string(edge.patch + 1) + "." + side_name(edge.side);
-}
-
-std::string edges_text(const MergedJoint& merged) {
-  return edge_text(merged.a) + " and " + edge_text(merged.b);
-}
-
-std::string joint_text(const MergedJoint& merged) {
-  const Joint& joint = merged.joint;
-  const std::string edges = edges_text(merged);
-  if (!joint.bridged) return edges + ", edge to edge";
-  if (joint.cut_back_m == 0.0) {
-    return edges + ", bridged over a gap of " + short_length_text(joint.gap_m) + " by a blend of " +
-           short_length_text(joint.blend_length_m);
-  }
-  return edges + ", up to " + short_length_text(joint.apart_m) + " apart, cut back by " +
-         short_length_text(joint.cut_back_m) + " each for a blend of " +
-         short_length_text(joint.blend_length_m);
-}
-
-void add_joint(FactSheet& facts, const MergedJoint& merged, Json& list) {
-  const Joint& joint = merged.joint;
-  facts.add("Joint", joint_text(merged), "", nullptr);
-  list.push_back({{"a", edge_text(merged.a)},
-                  {"b", edge_text(merged.b)},
-                  {"along", merged.along == Direction::u ? "u" : "v"},
-                  {"bridged", joint.bridged},
-                  {"gap_m", joint.gap_m},
-                  {"apart_m", joint.apart_m},
-                  {"cut_back_m", joint.cut_back_m},
-                  {"blend_start", joint.blend_start},
-                  {"blend_end", joint.blend_end},
-                  {"blend_length_m", joint.blend_length_m}});
-}
-
-// A blend that was asked for and made no difference.
-void add_unused_blends(const MergeRequest& request, const std::vector<MergedJoint>& joints,
-                       std::vector<std::string>& remarks) {
-  if (request.join.blend_m == 0.0) return;
-  for (const MergedJoint& merged : joints) {
-    if (merged.joint.cut_back_m > 0.0) continue;
-    remarks.push_back(
-        "the blend was not applied to " + edges_text(merged) +
-        (merged.joint.bridged ? ": the gap between them is longer" : ": they meet as smoothly as asked"));
-  }
-}
-
 // What is to be merged, and what the merged document takes from the first model.
 struct Parts {
   std::optional<Document> first;
@@ -157,7 +111,31 @@ struct Parts {
   std::vector<std::string> remarks;
 };
 
-void report(const MergeOptions& options, const Parts& parts, const Merged& merged, Console& console) {
+struct Outcome {
+  Merged merged;
+  std::vector<Joint> corners;  // of each body but the first with what those before it became
+};
+
+// C1 for a fillet: an arc and what it touches cannot be C2 without making it tighter.
+int continuity_of(const MergeOptions& options) {
+  if (options.crossing && options.fillet_m == 0.0) return 0;
+  if (options.continuity) return *options.continuity;
+  return options.crossing ? 1 : JoinRequest().continuity;
+}
+
+void add_remarks_of_merging(const MergeOptions& options, const Outcome& outcome,
+                            std::vector<std::string>& remarks) {
+  if (options.request.join.blend_m > 0.0) add_unused_blends(outcome.merged.joints, remarks);
+  add_left_open(outcome.merged.left_open, remarks);
+  if (options.fillet_m > 0.0 && continuity_of(options) > 1) {
+    remarks.emplace_back(
+        "at a continuity above C1 the fillet is tighter than its radius, for an arc bends as what it touches "
+        "does not; C1 keeps it");
+  }
+}
+
+void report(const MergeOptions& options, const Parts& parts, const Outcome& outcome, Console& console) {
+  const Merged& merged = outcome.merged;
   FactSheet facts;
   facts.add("File", options.out.string(), "file", options.out.string());
   Json names = Json::array();
@@ -169,13 +147,15 @@ void report(const MergeOptions& options, const Parts& parts, const Merged& merge
                 ", degrees " + std::to_string(u.degree()) + " and " + std::to_string(v.degree()),
             "control_points", {u.control_point_count(), v.control_point_count()});
   facts.add("", "", "degrees", {u.degree(), v.degree()});
-  const int continuity = options.crossing && options.fillet_m == 0.0 ? 0 : options.request.join.continuity;
+  const int continuity = continuity_of(options);
   facts.add("Continuity", "C" + std::to_string(continuity), "continuity", continuity);
   facts.add("Deviation", deviation_text(merged.deviation_m) + " outside blends", "deviation_m",
             merged.deviation_m);
-  Json joints = Json::array();
-  for (const MergedJoint& joint : merged.joints) add_joint(facts, joint, joints);
-  facts.add("", "", "joints", joints);
+  if (options.crossing) {
+    add_corners(facts, outcome.corners);
+  } else {
+    add_joints(facts, merged.joints);
+  }
   add_remarks(facts, parts.remarks);
   facts.print(console.out, options.json);
 }
@@ -216,18 +196,22 @@ Result<Parts> read_parts(const MergeOptions& options) {
 
 // Those that cross are merged one after the other, each by its share of the tolerance. `go_on` is asked
 // before each with the share that is done.
-Result<Merged> merged_surface(const Parts& parts, const MergeOptions& options,
-                              const std::function<bool(double)>& go_on) {
+Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options,
+                               const std::function<bool(double)>& go_on) {
   const std::vector<Surface>& patches = parts.patches;
   MergeRequest request = options.request;
+  request.join.continuity = continuity_of(options);
   const Error stopped{"stopped; " + options.out.string() + " was not written"};
   if (!go_on(0.0)) return stopped;
   if (!options.crossing) {
     request.join.spent_m = parts.untrimmed_m;
-    return merge(patches, request);
+    auto merged = merge(patches, request);
+    if (!merged) return merged.error();
+    return Outcome{std::move(merged).value(), {}};
   }
   if (patches.size() < 2) return Error{"one body alone crosses none; name another one"};
-  Merged merged{patches[0], 0.0, {}};
+  Outcome outcome{{patches[0], 0.0, {}}, {}};
+  Merged& merged = outcome.merged;
   request.join.tolerance_m =
       (request.join.tolerance_m - parts.untrimmed_m) / static_cast<double>(patches.size() - 1);
   for (std::size_t p = 1; p < patches.size(); ++p) {
@@ -236,22 +220,23 @@ Result<Merged> merged_surface(const Parts& parts, const MergeOptions& options,
     if (!next) return Error{"patch " + std::to_string(p + 1) + ": " + next.error().message};
     merged.surface = std::move(next->surface);
     merged.deviation_m += next->deviation_m;
+    outcome.corners.push_back(next->corner);
   }
-  return merged;
+  return outcome;
 }
 
-Result<Merged> merge_with_progress(const MergeOptions& options, const Parts& parts, Console& console) {
+Result<Outcome> merge_with_progress(const MergeOptions& options, const Parts& parts, Console& console) {
   InterruptWatch interrupt;
   ProgressBar bar(console, "Merging", false);
   const auto go_on = [&](double share) {
     bar.show(static_cast<std::uint64_t>(1000.0 * share), 1000);
     return !interrupt.requested();
   };
-  auto merged = merged_surface(parts, options, go_on);
+  auto outcome = merged_surface(parts, options, go_on);
   // The last step may have been long.
-  if (merged && !go_on(1.0)) merged = Error{"stopped; " + options.out.string() + " was not written"};
+  if (outcome && !go_on(1.0)) outcome = Error{"stopped; " + options.out.string() + " was not written"};
   if (interrupt.requested()) interrupt.answer();
-  return merged;
+  return outcome;
 }
 
 Status merge_models(const MergeOptions& options, Console& console) {
@@ -259,16 +244,16 @@ Status merge_models(const MergeOptions& options, Console& console) {
   if (Status few = check_range("the number of models", models, model_count_range); !few) return few;
   auto parts = read_parts(options);
   if (!parts) return parts.error();
-  auto merged = merge_with_progress(options, parts.value(), console);
-  if (!merged) return merged.error();
-  merged->deviation_m += parts->untrimmed_m;
-  add_unused_blends(options.request, merged->joints, parts->remarks);
+  auto outcome = merge_with_progress(options, parts.value(), console);
+  if (!outcome) return outcome.error();
+  outcome->merged.deviation_m += parts->untrimmed_m;
   const Document document =
-      merged_document(*parts->first, parts->bodies, options, merged->surface, parts->remarks);
+      merged_document(*parts->first, parts->bodies, options, outcome->merged.surface, parts->remarks);
+  add_remarks_of_merging(options, outcome.value(), parts->remarks);
   // A file becomes whole: what asks to stop now waits for it.
   const InterruptWatch until_written;
   if (Status written = write_document(document, options.out); !written) return written;
-  report(options, parts.value(), merged.value(), console);
+  report(options, parts.value(), outcome.value(), console);
   return {};
 }
 
@@ -296,7 +281,9 @@ CommandEntry add_merge(CLI::App& root) {
   };
   add_parsed_option(
       *parser, "--continuity", "C0..C8", parse_continuity,
-      [options](int order) { options->request.join.continuity = order; }, "Of the joints, C2 unless told");
+      [options](int order) { options->continuity = order; },
+      "Of the joints, C2 unless told; of a fillet C1, for an arc that is to be C2 with what it touches gets "
+      "tighter than its radius");
   add_parsed_option(
       *parser, "--tolerance", "LENGTH", length_in(tolerance_range_m),
       [options](double length_m) { options->request.join.tolerance_m = length_m; },

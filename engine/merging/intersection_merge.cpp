@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/merging/crossing_lines.h"
+#include "engine/merging/joint_edges.h"
 #include "engine/merging/tube_ends.h"
 #include "engine/number_text.h"
 #include "engine/shapes/fit_shape.h"
@@ -101,6 +102,20 @@ Result<Parts> fitted_parts(const CrossingPatches& patches, const IntersectionReq
   return parts;
 }
 
+// From the first part's end to the start of the last.
+Joint corner_of(const Joined& joined) {
+  Joint corner;
+  for (const Joint& joint : joined.joints) corner.gap_m = std::max(corner.gap_m, joint.gap_m);
+  corner.apart_m = corner.gap_m;
+  corner.blend_start = joined.joints.front().blend_start;
+  corner.blend_end = joined.joints.back().blend_end;
+  corner.bridged = corner.blend_end > corner.blend_start;
+  if (corner.bridged) {
+    corner.blend_length_m = mean_length_m(joined.surface, corner.blend_start, corner.blend_end);
+  }
+  return corner;
+}
+
 }  // namespace
 
 Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
@@ -117,7 +132,8 @@ Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& se
   if (request.fillet_m == 0.0) join.continuity = 0;
   auto joined = join_row(std::move(parts->surfaces), join);
   if (!joined) return joined.error();
-  return IntersectionMerge{std::move(joined->surface), before_m + joined->deviation_m};
+  const Joint corner = corner_of(joined.value());
+  return IntersectionMerge{std::move(joined->surface), before_m + joined->deviation_m, corner};
 }
 
 }  // namespace spoonbill

@@ -15,6 +15,8 @@ struct IntersectionRequest {
 struct IntersectionMerge {
   Surface surface;
   double deviation_m = 0.0;  // to the patches, outside the fillet
+  // Where the patches meet; its blend is the fillet, which leaves them from blend_start to blend_end along v.
+  Joint corner;
 };
 
 // Of closed bodies each keeps what lies outside the other; of open patches the longer part of their lines.

@@ -11,6 +11,7 @@
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/bridge.h"
 #include "engine/merging/fold_search.h"
+#include "engine/merging/joint_edges.h"
 #include "engine/place_text.h"
 
 namespace spoonbill {
@@ -91,20 +92,6 @@ Result<KnotVector> smoothed_knots(const KnotVector& knots, const std::vector<dou
     fewer.erase(first + kept, last);
   }
   return KnotVector::open(knots.degree(), std::move(fewer));
-}
-
-double mean_length_m(const Surface& surface, double start, double end) {
-  double sum = 0.0;
-  constexpr int chords = 32, lines = 16;
-  for (const double u : uniform_parameters_without_seam(surface.u, lines)) {
-    Vector3 last = position(surface, u, start);
-    for (int k = 1; k <= chords; ++k) {
-      const Vector3 next = position(surface, u, start + (end - start) * k / chords);
-      sum += (next - last).norm() / lines;
-      last = next;
-    }
-  }
-  return sum;
 }
 
 // In every piece of the merged surface, which has more of them than the patches.

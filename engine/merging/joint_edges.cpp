@@ -100,4 +100,18 @@ double piece_length_m(const Surface& patch, bool at_end, double speed) {
   return speed * (at_end ? ends.back() - ends[ends.size() - 2] : ends[1] - ends[0]);
 }
 
+double mean_length_m(const Surface& surface, double start, double end) {
+  double sum = 0.0;
+  constexpr int chords = 32, lines = 16;
+  for (const double u : uniform_parameters_without_seam(surface.u, lines)) {
+    Vector3 last = position(surface, u, start);
+    for (int k = 1; k <= chords; ++k) {
+      const Vector3 next = position(surface, u, start + (end - start) * k / chords);
+      sum += (next - last).norm() / lines;
+      last = next;
+    }
+  }
+  return sum;
+}
+
 }  // namespace spoonbill

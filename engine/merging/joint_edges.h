@@ -36,4 +36,7 @@ double mean_speed(const std::vector<SurfacePoint>& points);
 // How long the polynomial piece at the end or the start of a patch is, at a speed.
 double piece_length_m(const Surface& patch, bool at_end, double speed);
 
+// Of the lines along v from one parameter to another.
+double mean_length_m(const Surface& surface, double start, double end);
+
 }  // namespace spoonbill

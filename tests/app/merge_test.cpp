@@ -108,7 +108,21 @@ TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   const Outcome outcome =
       run({"merge", rod, ball, "--intersect", "--fillet", "3mm", "--out", knob, "--json"});
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;
-  EXPECT_LE(json_of(outcome.out)["deviation_m"].get<double>(), 5e-5);
+  const Json told = json_of(outcome.out);
+  EXPECT_LE(told["deviation_m"].get<double>(), 5e-5);
+  EXPECT_EQ(told["continuity"], 1);
+  EXPECT_TRUE(told["remarks"].empty()) << outcome.out;
+  ASSERT_EQ(told["joints"].size(), 1U);
+  EXPECT_GT(told["joints"][0]["blend_end"], told["joints"][0]["blend_start"]);
+  EXPECT_GT(told["joints"][0]["blend_length_m"].get<double>(), 0.002);
+  const Outcome tighter = run({"merge", rod, ball, "--intersect", "--fillet", "3mm", "--continuity", "C2",
+                               "--out", place.text("tighter.json"), "--json"});
+  ASSERT_EQ(tighter.code, exit_done) << tighter.err;
+  EXPECT_EQ(json_of(tighter.out)["continuity"], 2);
+  EXPECT_EQ(json_of(tighter.out)["remarks"].size(), 1U) << tighter.out;
+  // The hollow is as wide as asked where nothing bends more.
+  const Json curved = json_of(run({"check", knob, "--json"}).out)["bodies"][0];
+  EXPECT_NEAR(curved["smallest_concave_radius_m"].get<double>(), 0.003, 2e-4);
   const Json body = json_of(run({"check", knob, "--json"}).out)["bodies"][0];
   // The ball and the rod above the plane in which they cross, of which the ball holds a cap already; the
   // rod's rounded end takes away as little as the fillet adds.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -106,6 +107,15 @@ TEST_P(RodInBall, BecomesOneSurface) {
     ASSERT_TRUE(merged.ok()) << merged.error().message;
     EXPECT_TRUE(is_pole(merged->surface, Side::v_start));
     EXPECT_TRUE(is_pole(merged->surface, Side::v_end));
+    const Joint& corner = merged->corner;
+    EXPECT_EQ(corner.bridged, fillet > 0.0);
+    if (fillet > 0.0) {
+      // A ball that touches both from outside rolls about the rod at this angle to it.
+      const double turn = std::acos((rod_radius + fillet) / (ball_radius + fillet));
+      EXPECT_NEAR(corner.blend_length_m, fillet * turn, 1e-4);
+      const Vector3 start = position(merged->surface, 0.3, corner.blend_start);
+      EXPECT_NEAR(start.dot(direction), std::sin(turn) * (ball_radius + fillet), 2e-4);
+    }
     // Both parts have the rod's parameters, and no second knots beside them.
     EXPECT_EQ(merged->surface.u.domain_start(), 0.0);
     const std::vector<double> knots = merged->surface.u.breakpoints();
@@ -147,6 +157,24 @@ TEST(IntersectionMerge, AFloorAndAWall) {
       EXPECT_LT(p.x(), 0.04 + 5e-5);
     }
     EXPECT_NEAR(position(surface, 0.5, surface.v.domain_end()).z(), 0.04, 1e-6);
+  }
+}
+
+// So that lines run along the other's border, where rounding leaves them on either side of it.
+TEST(IntersectionMerge, SheetsOfOneWidth) {
+  for (const double turn : {0.0, 0.3, 0.7, 1.1}) {
+    const auto turned = [&](const Vector3& p) {
+      return Vector3(Eigen::AngleAxisd(turn, Vector3(1, 2, 3).normalized()) * p);
+    };
+    const Surface floor = plane(turned({0, -0.03, 0}), turned({0, 0.06, 0}), turned({0.05, 0, 0}));
+    const Surface wall = plane(turned({0.04, -0.03, -0.005}), turned({0, 0.06, 0}), turned({0, 0, 0.045}));
+    for (const double fillet : {0.0, 0.005}) {
+      IntersectionRequest request;
+      request.fillet_m = fillet;
+      const auto merged = merge_crossing(floor, wall, request);
+      ASSERT_TRUE(merged.ok()) << turn << " " << fillet << " " << merged.error().message;
+      EXPECT_LE(merged->deviation_m, 5e-5);
+    }
   }
 }
 

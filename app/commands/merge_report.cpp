@@ -1,0 +1,92 @@
+#include "app/commands/merge_report.h"
+
+#include "engine/number_text.h"
+
+namespace spoonbill {
+
+namespace {
+
+std::string edge_text(const PatchEdge& edge) {
+  return std::to_string(edge.patch + 1) + "." + side_name(edge.side);
+}
+
+std::string edges_text(const PatchEdge& a, const PatchEdge& b) {
+  return edge_text(a) + " and " + edge_text(b);
+}
+
+std::string joint_text(const MergedJoint& merged) {
+  const Joint& joint = merged.joint;
+  const std::string edges = edges_text(merged.a, merged.b);
+  if (!joint.bridged) return edges + ", edge to edge";
+  if (joint.cut_back_m == 0.0) {
+    return edges + ", bridged over a gap of " + short_length_text(joint.gap_m) + " by a blend of " +
+           short_length_text(joint.blend_length_m);
+  }
+  return edges + ", up to " + short_length_text(joint.apart_m) + " apart, cut back by " +
+         short_length_text(joint.cut_back_m) + " each for a blend of " +
+         short_length_text(joint.blend_length_m);
+}
+
+Json joint_json(const std::string& a, const std::string& b, Direction along, const Joint& joint) {
+  return {{"a", a},
+          {"b", b},
+          {"along", along == Direction::u ? "u" : "v"},
+          {"bridged", joint.bridged},
+          {"gap_m", joint.gap_m},
+          {"apart_m", joint.apart_m},
+          {"cut_back_m", joint.cut_back_m},
+          {"blend_start", joint.blend_start},
+          {"blend_end", joint.blend_end},
+          {"blend_length_m", joint.blend_length_m}};
+}
+
+std::string corner_text(const Joint& corner, bool is_last) {
+  const std::string start = number_text(corner.blend_start), end = number_text(corner.blend_end);
+  if (!corner.bridged) return "an edge" + (is_last ? " at v = " + start : "");
+  return "a fillet of " + short_length_text(corner.blend_length_m) + " along" +
+         (is_last ? " from v = " + start + " to " + end : "");
+}
+
+}  // namespace
+
+void add_joints(FactSheet& facts, const std::vector<MergedJoint>& joints) {
+  Json list = Json::array();
+  for (const MergedJoint& merged : joints) {
+    facts.add("Joint", joint_text(merged), "", nullptr);
+    list.push_back(joint_json(edge_text(merged.a), edge_text(merged.b), merged.along, merged.joint));
+  }
+  facts.add("", "", "joints", list);
+}
+
+void add_corners(FactSheet& facts, const std::vector<Joint>& corners) {
+  Json list = Json::array();
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const bool is_last = k + 1 == corners.size();
+    const std::string second = std::to_string(k + 2);
+    facts.add("Joint",
+              (k == 0 ? "1 and " : "before and ") + second + " at " + corner_text(corners[k], is_last), "",
+              nullptr);
+    list.push_back(joint_json("1", second, Direction::v, corners[k]));
+    if (!is_last) list.back()["blend_start"] = list.back()["blend_end"] = nullptr;
+  }
+  facts.add("", "", "joints", list);
+}
+
+void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::string>& remarks) {
+  for (const MergedJoint& merged : joints) {
+    if (merged.joint.cut_back_m > 0.0) continue;
+    remarks.push_back(
+        "the blend was not applied to " + edges_text(merged.a, merged.b) +
+        (merged.joint.bridged ? ": the gap between them is longer" : ": they meet as smoothly as asked"));
+  }
+}
+
+void add_left_open(const std::vector<std::pair<PatchEdge, PatchEdge>>& pairs,
+                   std::vector<std::string>& remarks) {
+  for (const auto& [a, b] : pairs) {
+    remarks.push_back(edges_text(a, b) +
+                      " touch too and stay open; close the merged surface around with change");
+  }
+}
+
+}  // namespace spoonbill
