@@ -98,49 +98,52 @@ Result<Surface> with_seam_beside(const Surface& before, const Surface& patch, co
   return with_seam_at(patch, Direction::u, seam_at_nearly_same_knots(before.u, patch.u, wanted));
 }
 
-// The first of every two is fitted to, all are looked at; not on the far end of a period.
-struct DenseParameters {
-  std::vector<double> fitted, all;
-};
+// Of a piece: what is fitted to, what is looked at to find where knots are wanting, and what is measured at.
+constexpr int fitted_in_piece = 5, looked_at_in_piece = 10, measured_in_piece = 40;
 
-DenseParameters dense_parameters(const KnotVector& knots) {
-  constexpr int fitted_in_piece = 5;
-  DenseParameters dense{nested_parameters(knots, fitted_in_piece, 0).parameters,
-                        nested_parameters(knots, 2 * fitted_in_piece, 0).parameters};
-  if (!knots.is_periodic()) return dense;
-  dense.fitted.pop_back();
-  dense.all.pop_back();
+// Not on the far end of a period.
+std::vector<double> dense_parameters(const KnotVector& knots, int in_piece) {
+  std::vector<double> dense = nested_parameters(knots, in_piece, 0).parameters;
+  if (knots.is_periodic()) dense.pop_back();
   return dense;
 }
 
-struct Matched {
-  Surface surface;
-  std::vector<double> apart_m;  // at all the parameters
-};
-
-// The surface with its u replaced by a function of u, given at the dense parameters, over `knots`.
-Result<Matched> composed(const Surface& surface, const KnotVector& knots, const DenseParameters& dense,
+// The surface with its u replaced by a function of u, given at the parameters that are fitted to, over
+// `knots`.
+Result<Surface> composed(const Surface& surface, const KnotVector& knots, const std::vector<double>& fitted,
                          const std::vector<double>& beside) {
   const bool open = !knots.is_periodic();
-  const auto inverse = constrained_inverse(knots, dense.fitted, {{}, open, open});
+  const auto inverse = constrained_inverse(knots, fitted, {{}, open, open});
   if (!inverse) return inverse.error();
-  std::vector<double> beside_fitted;
-  for (std::size_t k = 0; k < beside.size(); k += 2) beside_fitted.push_back(beside[k]);
-  const Eigen::MatrixXd weights =
-      inverse.value().lazyProduct(blending_matrix(surface.u, beside_fitted, 0).dense());
-  Matched matched{mixed_along(surface, Direction::u, weights, knots), {}};
-  const Eigen::MatrixXd apart = blending_matrix(knots, dense.all, 0).dense().lazyProduct(weights) -
-                                blending_matrix(surface.u, beside, 0).dense();
-  for (Eigen::Index k = 0; k < apart.rows(); ++k) {
+  const Eigen::MatrixXd weights = inverse.value().lazyProduct(blending_matrix(surface.u, beside, 0).dense());
+  return mixed_along(surface, Direction::u, weights, knots);
+}
+
+Vector3 blended(const BlendingMatrix& blending, int row, const ControlNet& net, int column) {
+  Vector3 sum = Vector3::Zero();
+  for (int k = 0; k < blending.bandwidth; ++k) {
+    sum += blending.values[static_cast<std::size_t>(row) * blending.bandwidth + k] *
+           net.point(blending.column(row, k), column);
+  }
+  return sum;
+}
+
+// How far a surface is from another one, at parameters of u and what these are beside on the other: a bound
+// for all v, over which both have the same knots.
+std::vector<double> apart_m(const Surface& surface, const std::vector<double>& along, const Surface& other,
+                            const std::vector<double>& beside) {
+  const BlendingMatrix here = blending_matrix(surface.u, along, 0),
+                       there = blending_matrix(other.u, beside, 0);
+  std::vector<double> apart;
+  for (int k = 0; k < here.rows; ++k) {
     double largest = 0.0;
     for (int j = 0; j < surface.net.columns; ++j) {
-      Vector3 sum = Vector3::Zero();
-      for (int i = 0; i < surface.net.rows; ++i) sum += apart(k, i) * surface.net.point(i, j);
-      largest = std::max(largest, sum.norm());
+      largest =
+          std::max(largest, (blended(here, k, surface.net, j) - blended(there, k, other.net, j)).norm());
     }
-    matched.apart_m.push_back(largest);
+    apart.push_back(largest);
   }
-  return matched;
+  return apart;
 }
 
 // The same surface with the parameters that `before` has on the edge they share.
@@ -149,16 +152,22 @@ Result<CompatiblePatches> with_parameters_of(const Surface& before, const Surfac
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
   KnotVector knots = before.u;
   while (knots.control_point_count() <= largest_count) {
-    const DenseParameters dense = dense_parameters(knots);
-    const std::vector<double> beside = parameters_beside(a, b, dense.all);
+    const std::vector<double> looked_at = dense_parameters(knots, looked_at_in_piece);
+    const std::vector<double> beside = parameters_beside(a, b, looked_at);
     if (!std::is_sorted(beside.begin(), beside.end())) break;
-    auto matched = composed(patch, knots, dense, beside);
+    const std::vector<double> fitted = dense_parameters(knots, fitted_in_piece);
+    auto matched = composed(patch, knots, fitted, parameters_beside(a, b, fitted));
     if (!matched) return matched.error();
-    const double deviation_m = *std::max_element(matched->apart_m.begin(), matched->apart_m.end());
-    if (deviation_m <= tolerance_m) return CompatiblePatches{{std::move(matched->surface)}, deviation_m};
+    const std::vector<double> apart = apart_m(matched.value(), looked_at, patch, beside);
     std::vector<double> where;
-    for (std::size_t k = 0; k < dense.all.size(); ++k) {
-      if (matched->apart_m[k] > tolerance_m) where.push_back(dense.all[k]);
+    for (std::size_t k = 0; k < apart.size(); ++k) {
+      if (apart[k] > tolerance_m) where.push_back(looked_at[k]);
+    }
+    if (where.empty()) {
+      const std::vector<double> measured = dense_parameters(knots, measured_in_piece);
+      const std::vector<double> all =
+          apart_m(matched.value(), measured, patch, parameters_beside(a, b, measured));
+      return CompatiblePatches{{std::move(matched).value()}, *std::max_element(all.begin(), all.end())};
     }
     auto finer = with_pieces_halved(knots, where);
     if (!finer) return finer.error();

@@ -8,6 +8,7 @@
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
+#include "engine/bspline/peak_search.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/bridge.h"
 #include "engine/merging/fold_search.h"
@@ -94,19 +95,41 @@ Result<KnotVector> smoothed_knots(const KnotVector& knots, const std::vector<dou
   return KnotVector::open(knots.degree(), std::move(fewer));
 }
 
-// In every piece of the merged surface, which has more of them than the patches.
-double measured_deviation_m(const Surface& merged, const std::vector<Surface>& placed) {
-  const std::vector<double> all = nested_parameters(merged.v, 4, 0).parameters;
-  double largest = 0.0;
-  for (const Surface& patch : placed) {
-    const double start = patch.v.domain_start(), end = patch.v.domain_end();
-    std::vector<double> along{start};
-    along.insert(along.end(), std::upper_bound(all.begin(), all.end(), start),
-                 std::lower_bound(all.begin(), all.end(), end));
-    along.push_back(end);
-    const PointGrid points = point_grid(patch, nested_parameters(patch.u, 3, 0).parameters, std::move(along));
-    largest = std::max(largest, largest_deviation_m(merged, points));
+// In every piece of the merged surface, which has more of them than the patches, and about the worst sample.
+double deviation_from_m(const Surface& merged, const Surface& patch) {
+  constexpr int in_piece_of_u = 6, in_piece_of_v = 6;
+  const std::vector<double> all = nested_parameters(merged.v, in_piece_of_v, 0).parameters;
+  const double start = patch.v.domain_start(), end = patch.v.domain_end();
+  std::vector<double> along{start};
+  along.insert(along.end(), std::upper_bound(all.begin(), all.end(), start),
+               std::lower_bound(all.begin(), all.end(), end));
+  along.push_back(end);
+  const PointGrid of_patch =
+      point_grid(patch, nested_parameters(patch.u, in_piece_of_u, 0).parameters, std::move(along));
+  const PointGrid of_merged = point_grid(merged, of_patch.u, of_patch.v);
+  double largest = -1.0;
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < of_patch.points_m.size(); ++k) {
+    const double apart = (of_patch.points_m[k] - of_merged.points_m[k]).norm();
+    if (apart <= largest) continue;
+    largest = apart;
+    at = k;
   }
+  const std::size_t i = at / of_patch.v.size(), j = at % of_patch.v.size();
+  const auto apart = [&](double u, double v) {
+    const double within = std::clamp(v, start, end);
+    return (position(merged, u, within) - position(patch, u, within)).norm();
+  };
+  const auto step = [](const std::vector<double>& of, std::size_t k) {
+    return k + 1 < of.size() ? of[k + 1] - of[k] : of[k] - of[k - 1];
+  };
+  return std::max(largest,
+                  peak_near(apart, of_patch.u[i], of_patch.v[j], step(of_patch.u, i), step(of_patch.v, j)));
+}
+
+double measured_deviation_m(const Surface& merged, const std::vector<Surface>& placed) {
+  double largest = 0.0;
+  for (const Surface& patch : placed) largest = std::max(largest, deviation_from_m(merged, patch));
   return largest;
 }
 

@@ -9,6 +9,7 @@
 
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/grid_fit.h"
+#include "engine/bspline/peak_search.h"
 #include "engine/number_text.h"
 #include "engine/shapes/shape_knots.h"
 #include "engine/shapes/shape_samples.h"
@@ -146,6 +147,48 @@ Measure measure(const ExactShape& shape, const Surface& surface, const ShapeKnot
   return result;
 }
 
+// Where parameters are kept: more densely, on the edges too, and about the worst sample.
+Measure measure_closely(const ExactShape& shape, const Surface& surface, const ShapeKnots& u,
+                        const ShapeKnots& v) {
+  Measure result = measure(shape, surface, u, v, true);
+  const auto with_ends = [](const ShapeKnots& knots, const ShapeDirection& direction) {
+    std::vector<double> all = between(knots.parameters(2 * checks_in_span), direction);
+    all.insert(all.begin(), direction.start());
+    if (!direction.periodic) all.push_back(direction.end());
+    return all;
+  };
+  const std::vector<double> along_u = with_ends(u, shape.u), along_v = with_ends(v, shape.v);
+  const auto within = [](const ShapeDirection& direction, double t) {
+    return std::clamp(t, direction.start(), direction.end());
+  };
+  const auto apart_m = [&](double at_u, double at_v) {
+    const double u_within = within(shape.u, at_u), v_within = within(shape.v, at_v);
+    return (position(surface, u_within, v_within) - shape.at(u_within, v_within)).norm();
+  };
+  double worst_u = shape.u.start(), worst_v = shape.v.start(), worst_m = 0.0;
+  for (const double at_u : along_u) {
+    for (const double at_v : along_v) {
+      const double here_m = apart_m(at_u, at_v);
+      if (here_m <= worst_m) continue;
+      worst_m = here_m;
+      worst_u = at_u;
+      worst_v = at_v;
+    }
+  }
+  const auto spacing = [](const ShapeDirection& direction, const std::vector<double>& all) {
+    return (direction.end() - direction.start()) / static_cast<double>(all.size());
+  };
+  result.deviation_m =
+      std::max(result.deviation_m,
+               peak_near(apart_m, worst_u, worst_v, spacing(shape.u, along_u), spacing(shape.v, along_v)));
+  return result;
+}
+
+Measure measured(const ExactShape& shape, const Surface& surface, const ShapeKnots& u, const ShapeKnots& v,
+                 bool keeps_parameters) {
+  return keeps_parameters ? measure_closely(shape, surface, u, v) : measure(shape, surface, u, v, false);
+}
+
 Result<FittedShape> fit_counted(const ExactShape& shape, const ShapeFit& fit) {
   const auto [u_count, v_count] = *fit.control_counts;
   auto u = ShapeKnots::counted(shape.u, fit.degree, u_count);
@@ -165,7 +208,7 @@ Result<FittedShape> fit_counted(const ExactShape& shape, const ShapeFit& fit) {
   }
   auto surface = fit_with(shape, u.value(), v.value());
   if (!surface) return surface.error();
-  const Measure found = measure(shape, surface.value(), u.value(), v.value(), fit.keeps_parameters);
+  const Measure found = measured(shape, surface.value(), u.value(), v.value(), fit.keeps_parameters);
   if (found.folds) {
     return Error{"with " + std::to_string(u_count) + " x " + std::to_string(v_count) +
                  " control points the surface folds over; give it more"};
@@ -202,7 +245,7 @@ Result<FittedShape> fit_shape(const ExactShape& shape, const ShapeFit& fit) {
     if (Status done = refine_until(shape, false, allowed_m, fit, u_lines, v); !done) return done.error();
     auto surface = fit_with(shape, u, v);
     if (!surface) return surface.error();
-    const Measure found = measure(shape, surface.value(), u, v, fit.keeps_parameters);
+    const Measure found = measured(shape, surface.value(), u, v, fit.keeps_parameters);
     if (!found.folds && found.deviation_m <= fit.tolerance_m) {
       return FittedShape{std::move(surface).value(), found.deviation_m};
     }

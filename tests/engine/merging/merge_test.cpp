@@ -163,6 +163,23 @@ TEST(Merge, AKinkBecomesC2WithinTheTolerance) {
   }
 }
 
+// Looked at far more densely than it is measured.
+TEST(Merge, NoPointIsFartherThanTold) {
+  const auto roofs = roof();
+  for (const double tolerance_m : {1e-3, 2e-4, 5e-5}) {
+    const auto merged = merge(roofs, request_of(2, tolerance_m));
+    ASSERT_TRUE(merged.ok()) << merged.error().message;
+    const Surface& surface = merged->surface;
+    const double start = surface.v.domain_start(), end = surface.v.domain_end();
+    double farthest = 0.0;
+    for (int k = 0; k <= 20000; ++k) {
+      const Vector3 p = position(surface, 0.5, start + (end - start) * k / 20000);
+      farthest = std::max(farthest, std::abs(p.z() - 0.03 + std::abs(p.y() - 0.03)) / std::numbers::sqrt2);
+    }
+    EXPECT_LE(farthest, merged->deviation_m) << tolerance_m;
+  }
+}
+
 TEST(Merge, AKinkIsBlendedOverTheLengthAsked) {
   MergeRequest request = request_of(2);
   request.join.blend_m = 0.01;

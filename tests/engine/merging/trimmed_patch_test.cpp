@@ -52,6 +52,22 @@ TEST(TrimmedPatch, EndsOnItsTrims) {
   }
 }
 
+TEST(TrimmedPatch, NoPointIsFartherThanTold) {
+  const Surface sheet = wave();
+  const auto slanted = untrimmed(sheet, {polygon({{0.0, 0.3}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 0.8}})}, 1e-4);
+  ASSERT_TRUE(slanted.ok()) << slanted.error().message;
+  double farthest = 0.0;
+  for (const double u : uniform_parameters(slanted->surface.u, 401)) {
+    const double low = 0.3 - 0.3 * u, high = 0.8 + 0.2 * u;
+    for (const double share : {0.0, 0.13, 0.5, 1.0}) {
+      const Vector3 there = position(sheet, u, low + share * (high - low));
+      farthest = std::max(farthest, (position(slanted->surface, u, share) - there).norm());
+    }
+  }
+  EXPECT_LE(farthest, slanted->deviation_m);
+  EXPECT_LT(slanted->deviation_m, 1.2 * farthest + 1e-9);
+}
+
 TEST(TrimmedPatch, IsMergedWithItsNeighbour) {
   const Surface sheet = wave();
   const auto left = untrimmed(sheet, {polygon({{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.4}, {0.0, 0.6}})}, 1e-5);
