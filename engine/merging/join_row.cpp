@@ -95,17 +95,25 @@ Result<KnotVector> smoothed_knots(const KnotVector& knots, const std::vector<dou
   return KnotVector::open(knots.degree(), std::move(fewer));
 }
 
-// In every piece of the merged surface, which has more of them than the patches, and about the worst sample.
-double deviation_from_m(const Surface& merged, const Surface& patch) {
-  constexpr int in_piece_of_u = 6, in_piece_of_v = 6;
-  const std::vector<double> all = nested_parameters(merged.v, in_piece_of_v, 0).parameters;
+constexpr double rounding_m = 1e-12;
+
+// In every piece of the merged surface, which has more of them along v than the patch.
+PointGrid samples_of(const Surface& patch, const KnotVector& merged_v, int in_piece) {
+  const std::vector<double> all = nested_parameters(merged_v, in_piece, 0).parameters;
   const double start = patch.v.domain_start(), end = patch.v.domain_end();
   std::vector<double> along{start};
   along.insert(along.end(), std::upper_bound(all.begin(), all.end(), start),
                std::lower_bound(all.begin(), all.end(), end));
   along.push_back(end);
-  const PointGrid of_patch =
-      point_grid(patch, nested_parameters(patch.u, in_piece_of_u, 0).parameters, std::move(along));
+  return point_grid(patch, nested_parameters(patch.u, in_piece, 0).parameters, std::move(along));
+}
+
+// About the worst sample too, unless few tell that there is nothing but rounding.
+double deviation_from_m(const Surface& merged, const Surface& patch) {
+  constexpr int few = 3, many = 6;
+  const double at_few = largest_deviation_m(merged, samples_of(patch, merged.v, few));
+  if (at_few <= rounding_m) return at_few;
+  const PointGrid of_patch = samples_of(patch, merged.v, many);
   const PointGrid of_merged = point_grid(merged, of_patch.u, of_patch.v);
   double largest = -1.0;
   std::size_t at = 0;
@@ -117,14 +125,15 @@ double deviation_from_m(const Surface& merged, const Surface& patch) {
   }
   const std::size_t i = at / of_patch.v.size(), j = at % of_patch.v.size();
   const auto apart = [&](double u, double v) {
-    const double within = std::clamp(v, start, end);
+    const double within = std::clamp(v, patch.v.domain_start(), patch.v.domain_end());
     return (position(merged, u, within) - position(patch, u, within)).norm();
   };
   const auto step = [](const std::vector<double>& of, std::size_t k) {
     return k + 1 < of.size() ? of[k + 1] - of[k] : of[k] - of[k - 1];
   };
-  return std::max(largest,
-                  peak_near(apart, of_patch.u[i], of_patch.v[j], step(of_patch.u, i), step(of_patch.v, j)));
+  const double near =
+      peak_near(apart, of_patch.u[i], of_patch.v[j], step(of_patch.u, i), step(of_patch.v, j));
+  return std::max({at_few, largest, near});
 }
 
 double measured_deviation_m(const Surface& merged, const std::vector<Surface>& placed) {
@@ -172,7 +181,6 @@ std::optional<Vector3> place_of_fold_in(const Surface& merged, const std::vector
 // What was joined exactly folds where its patches do alone.
 Status check_folds(const Surface& merged, const std::vector<Surface>& placed,
                    const std::vector<Joint>& joints, double moved_m) {
-  constexpr double rounding_m = 1e-12;
   const bool bridged = std::any_of(joints.begin(), joints.end(), [](const Joint& j) { return j.bridged; });
   if (!bridged && moved_m <= rounding_m) return {};
   const auto place = place_of_fold_in(merged, joints);
