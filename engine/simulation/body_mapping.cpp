@@ -9,9 +9,11 @@
 namespace spoonbill {
 namespace {
 
-// Two cells for each element and direction: at least twice as many samples as control points, where the refit
-// is well conditioned.
-constexpr int refit_levels = 1;
+// Two cells for each element and direction: of single knots at least twice as many samples as control points,
+// where the refit is well conditioned. Elements between repeated knots have as many control points as the
+// degree, and ask for more.
+constexpr int refit_levels = 1, most_refit_levels = 4;
+static_assert(1 << most_refit_levels > max_degree);
 constexpr int edge_stations = 512;
 constexpr int edge_bisections = 40;
 
@@ -178,6 +180,23 @@ EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
   return embedded;
 }
 
+struct SampledRefit {
+  NestedGrid nested;
+  DisplacementRefit refit;
+};
+
+// On the coarsest grid whose samples determine the control points.
+Result<SampledRefit> sampled_refit(const Surface& surface, const RefitConstraints& constraints,
+                                   InstructionSet set) {
+  for (int levels = refit_levels;; ++levels) {
+    Result<NestedGrid> nested = make_nested_grid(surface.u, surface.v, levels);
+    if (!nested.ok()) return nested.error();
+    Result<DisplacementRefit> refit = DisplacementRefit::make(nested->grid, constraints, set);
+    if (refit.ok()) return SampledRefit{std::move(nested).value(), std::move(refit).value()};
+    if (levels == most_refit_levels) return refit.error();
+  }
+}
+
 }  // namespace
 
 Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& current,
@@ -194,9 +213,6 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
     mapping.current_ = std::move(finer).value();
   }
   mapping.base_ = mapping.current_;
-  Result<NestedGrid> nested = make_nested_grid(mapping.rest_.u, mapping.rest_.v, refit_levels);
-  if (!nested.ok()) return nested.error();
-  mapping.nested_ = std::make_shared<NestedGrid>(std::move(nested).value());
   const KnotVector& v = mapping.rest_.v;
   RefitConstraints constraints{columns_to_hold(v, fixed), true, true};
   if (lattice.mesh().thin) {
@@ -206,9 +222,10 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
     mapping.last_pole_ = is_pole(mapping.rest_, true);
   }
   mapping.held_columns_ = constraints.held_columns;
-  Result<DisplacementRefit> refit = DisplacementRefit::make(mapping.nested_->grid, constraints, set);
-  if (!refit.ok()) return refit.error();
-  mapping.refit_.push_back(std::move(refit).value());
+  Result<SampledRefit> sampled = sampled_refit(mapping.rest_, constraints, set);
+  if (!sampled.ok()) return sampled.error();
+  mapping.nested_ = std::make_shared<NestedGrid>(std::move(sampled->nested));
+  mapping.refit_.push_back(std::move(sampled->refit));
   mapping.evaluator_.emplace_back(mapping.nested_->grid, set);
   mapping.followed_.resize(static_cast<std::size_t>(mapping.nested_->grid.rows()) *
                            static_cast<std::size_t>(mapping.nested_->grid.columns()));

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "engine/bspline/knot_insertion.h"
 #include "engine/simulation/body_mapping.h"
@@ -117,6 +118,51 @@ TEST(RefineKnots, IsRefusedWhereNothingMoved) {
   EXPECT_EQ(refused.error().message,
             "refine_knots: nothing moved since the knots were last changed; shape the body first");
   EXPECT_FALSE(simulation.apply(RefineKnots{1}).ok());
+}
+
+// As a body of revolution that CAD hands over: one span from pole to pole.
+Scene single_span_scene() {
+  constexpr int around = 12;
+  ControlNet net(around, 4);
+  for (int i = 0; i < around; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / around;
+    for (int j = 0; j < 4; ++j) {
+      const double radius = j == 0 || j == 3 ? 0.0 : 0.02;
+      net.set_point(i, j, {0.02 * (j > 1), -radius * std::sin(angle), radius * std::cos(angle)});
+    }
+  }
+  Scene scene = small_handle();
+  scene.bodies[0].surface = make_surface(KnotVector::periodic_uniform(3, around).value(),
+                                         KnotVector::clamped_uniform(3, 4).value(), net)
+                                .value();
+  return scene;
+}
+
+TEST(BodyMapping, FollowsOneSpanFromPoleToPole) {
+  Simulation simulation = simulate(single_span_scene());
+  for (int tick = 0; tick < 300; ++tick) simulation.advance(above(0.01, 0.024 - 3e-5 * tick));
+  Snapshot snapshot;
+  simulation.write_snapshot(snapshot);
+  EXPECT_GT(position(single_span_scene().bodies[0].surface, 0.75, 0.5).y() -
+                position(simulation.surface(), 0.75, 0.5).y(),
+            1e-4);
+}
+
+// Elements between knots that stand as often as the degree have that many control points each.
+TEST(BodyMapping, FollowsKnotsOfEveryMultiplicity) {
+  Scene scene = small_handle();
+  Surface& surface = scene.bodies[0].surface;
+  const std::vector<double> u = surface.u.breakpoints(), v = surface.v.breakpoints();
+  for (std::size_t k = 1; k + 1 < v.size(); ++k) {
+    surface = insert_knot(surface, Direction::v, v[k], 3).value();
+  }
+  for (std::size_t k = 1; k + 1 < u.size(); ++k) {
+    surface = insert_knot(surface, Direction::u, u[k], 1 + static_cast<int>(k) % 3).value();
+  }
+  Simulation simulation = simulate(scene);
+  for (int tick = 0; tick < 200; ++tick) simulation.advance(above(0.03, 0.012 - 4e-5 * tick));
+  EXPECT_GT(largest_difference(simulation.surface(), surface), 1e-4);
+  EXPECT_LT(shown_residual_m(simulation), 1e-3);
 }
 
 // A plane asks for knots at its edge. A document holds 200 columns: beyond, columns are held without them.
