@@ -39,8 +39,54 @@ class SmoothSteps {
   std::vector<bool> smooth_after_;  // of each piece
 };
 
-// Cells of a piece whose middle has no area, or whose normal turns by more than a right angle to that of the
-// cell beside them.
+// Whether the normal flips on the straight way between two parameters, rather than turn as about a tight rim:
+// it then does so too from one of ever finer steps to the next.
+class Flips {
+ public:
+  Flips(const Surface& surface, double least_area) : surface_(surface), least_area_(least_area) {}
+
+  bool between(const PieceCell& from, const PieceCell& to) const {
+    // Over the seam of a closed direction the way goes on, not back.
+    const double u = from.middle_u(), v = from.middle_v();
+    return looked_at({u, v}, {onwards(surface_.u, u, to.middle_u()), onwards(surface_.v, v, to.middle_v())},
+                     looks);
+  }
+
+ private:
+  using Place = Eigen::Vector2d;
+  static constexpr int steps = 6, looks = 2;
+
+  static double onwards(const KnotVector& knots, double from, double to) {
+    return to < from ? to + knots.domain_end() - knots.domain_start() : to;
+  }
+
+  bool looked_at(const Place& from, const Place& to, int looks_left) const {
+    Vector3 before = product(from);
+    Place since = from;
+    for (int step = 1; step <= steps; ++step) {
+      const Place place = from + (to - from) * step / steps;
+      const Vector3 here = product(place);
+      // On the very line of a fold the normal has no side.
+      if (here.norm() < least_area_ && step < steps) continue;
+      const bool turns = before.dot(here) < 0.0;
+      if (turns && (looks_left == 1 || looked_at(since, place, looks_left - 1))) return true;
+      before = here;
+      since = place;
+    }
+    return false;
+  }
+
+  Vector3 product(const Place& at) const {
+    const SurfacePoint point =
+        evaluate(surface_, surface_.u.into_domain(at.x()), surface_.v.into_domain(at.y()));
+    return point.du.cross(point.dv);
+  }
+
+  const Surface& surface_;
+  double least_area_;
+};
+
+// Cells of a piece whose middle has no area, or between which and the cell beside them the normal flips.
 void find_bad_spots(const Surface& surface, const TrimmedArea& area, SurfaceCheck& check) {
   const std::vector<PieceCell> cells = piece_cells(surface, parts);
   std::vector<Vector3> products;
@@ -51,10 +97,11 @@ void find_bad_spots(const Surface& surface, const TrimmedArea& area, SurfaceChec
     mean += products.back().norm() / static_cast<double>(cells.size());
   }
   const SmoothSteps along_u(surface.u), along_v(surface.v);
+  const Flips flips(surface, least_area_share * mean);
   const auto index = [&](std::size_t i, std::size_t j) { return i * along_v.cells() + j; };
   const auto is_kept = [&](std::size_t k) { return area.contains(cells[k].middle_u(), cells[k].middle_v()); };
   const auto turns = [&](std::size_t k, std::size_t other) {
-    return is_kept(other) && products[k].dot(products[other]) < 0.0;
+    return is_kept(other) && products[k].dot(products[other]) < 0.0 && flips.between(cells[k], cells[other]);
   };
   for (std::size_t k = 0; k < cells.size() && check.bad_spots.size() < most_spots; ++k) {
     if (!is_kept(k)) continue;

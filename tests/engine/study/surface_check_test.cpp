@@ -13,6 +13,8 @@
 namespace spoonbill {
 namespace {
 
+using Vector2 = Eigen::Vector2d;
+
 constexpr double pi = std::numbers::pi;
 
 bool is_clean(const SurfaceCheck& check) {
@@ -109,6 +111,58 @@ TEST(SurfaceCheck, FindsWhereASurfaceShrinksToALine) {
   const SurfaceCheck check = *check_surface(sheet);
   ASSERT_FALSE(check.bad_spots.empty());
   EXPECT_FALSE(check.bad_spots[0].folds);
+}
+
+// Turned about the y axis from pole to pole through rings of these radii and heights, in even spans.
+Surface turned(const std::vector<Vector2>& rings) {
+  const int columns = static_cast<int>(rings.size());
+  ControlNet net(12, columns);
+  for (int i = 0; i < 12; ++i) {
+    const double angle = 2.0 * pi * i / 12.0;
+    for (int j = 0; j < columns; ++j) {
+      const Vector2& ring = rings[static_cast<std::size_t>(j)];
+      net.set_point(i, j, {ring.x() * std::cos(angle), ring.y(), -ring.x() * std::sin(angle)});
+    }
+  }
+  return make_surface(KnotVector::periodic_uniform(3, 12).value(),
+                      KnotVector::clamped_uniform(3, columns).value(), net)
+      .value();
+}
+
+// The normal turns by more than a right angle within a quarter of a span, and yet turns.
+TEST(SurfaceCheck, ATightRimIsNoFold) {
+  for (const double thickness : {5e-4, 1e-4}) {
+    const double half = 0.5 * thickness;
+    const SurfaceCheck check = *check_surface(turned({{0.0, -half},
+                                                      {0.005, -half},
+                                                      {0.01, -half},
+                                                      {0.02, -half},
+                                                      {0.02, half},
+                                                      {0.01, half},
+                                                      {0.005, half},
+                                                      {0.0, half}}));
+    EXPECT_EQ(check.closing.closedness, Closedness::solid);
+    EXPECT_GT(check.mass.volume_m3, 0.0);
+    EXPECT_TRUE(check.bad_spots.empty()) << thickness;
+  }
+}
+
+// Its fold lies halfway between two of the places that are looked at, or elsewhere.
+TEST(SurfaceCheck, ASheetFoldedFlatOverIsFound) {
+  for (const double shift : {0.0, 0.003}) {
+    Surface sheet = fitted(sheet_shape(0.1, 0.06)).surface;
+    const int rows = sheet.net.rows;
+    for (int i = 0; i < rows; ++i) {
+      for (int j = 0; j < sheet.net.columns; ++j) {
+        Vector3 point = sheet.net.point(i, j);
+        point.x() = std::abs(point.x() - shift);
+        sheet.net.set_point(i, j, point);
+      }
+    }
+    const SurfaceCheck check = *check_surface(sheet);
+    ASSERT_FALSE(check.bad_spots.empty());
+    EXPECT_TRUE(check.bad_spots[0].folds);
+  }
 }
 
 // Two flat cones base to base: at their rim, a knot as often as the degree, the normal turns by 152 degrees.
