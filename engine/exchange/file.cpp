@@ -34,14 +34,14 @@ Error failure(const std::filesystem::path& file, const char* what) {
   return Error{file.string() + ": " + what + ": " + std::generic_category().message(errno)};
 }
 
-Status write_and_flush(const std::filesystem::path& temporary, std::optional<mode_t> mode,
-                       std::string_view content) {
+// Errors name the file that the temporary one is to become.
+Status write_and_flush(const std::filesystem::path& temporary, const std::filesystem::path& file,
+                       std::optional<mode_t> mode, std::string_view content) {
   ::unlink(temporary.c_str());  // what a killed process of the same number left, or a link that waits there
-  auto out = SequentialFile::create(temporary);
+  auto out = SequentialFile::create(temporary, file);
   if (!out.ok()) return out.error();
   // A mode given to open() loses what the process's mask takes away.
-  if (mode && ::chmod(temporary.c_str(), *mode) != 0)
-    return failure(temporary, "cannot be given its permissions");
+  if (mode && ::chmod(temporary.c_str(), *mode) != 0) return failure(file, "cannot be given its permissions");
   if (Status status = out->append(content); !status.ok()) return status;
   return out->close();
 }
@@ -55,7 +55,10 @@ Status keep_backup(const std::filesystem::path& file) {
   std::filesystem::create_hard_link(file, staged, error);
   if (error) std::filesystem::copy_file(file, staged, error);
   if (!error) std::filesystem::rename(staged, backup, error);
-  if (error) return Error{backup.string() + ": cannot keep the backup: " + error.message()};
+  if (error) {
+    std::filesystem::remove(staged, ignored);
+    return Error{backup.string() + ": cannot keep the backup: " + error.message()};
+  }
   return {};
 }
 
@@ -119,10 +122,10 @@ Status replace_file(const std::filesystem::path& file, std::string_view content)
   std::optional<mode_t> mode;
   if (exists && ::stat(target.c_str(), &facts) == 0) mode = facts.st_mode & 0777;
   const std::filesystem::path temporary = target.string() + ".new-" + std::to_string(::getpid());
-  Status status = write_and_flush(temporary, mode, content);
+  Status status = write_and_flush(temporary, file, mode, content);
   if (status.ok() && exists) status = keep_backup(target);
   if (status.ok() && ::rename(temporary.c_str(), target.c_str()) != 0) {
-    status = failure(target, "cannot be replaced");
+    status = failure(file, "cannot be replaced");
   }
   if (!status.ok()) {
     ::unlink(temporary.c_str());

@@ -10,20 +10,25 @@
 namespace spoonbill {
 
 Result<SequentialFile> SequentialFile::create(const std::filesystem::path& file) {
+  return create(file, file);
+}
+
+Result<SequentialFile> SequentialFile::create(const std::filesystem::path& file,
+                                              std::filesystem::path named) {
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  SequentialFile result(file, descriptor);
+  SequentialFile result(std::move(named), descriptor);
   if (descriptor < 0) return result.failure("cannot be written");
   return result;
 }
 
-SequentialFile::SequentialFile(std::filesystem::path file, int descriptor)
-    : file_(std::move(file)), descriptor_(descriptor) {}
+SequentialFile::SequentialFile(std::filesystem::path named, int descriptor)
+    : named_(std::move(named)), descriptor_(descriptor) {}
 
 SequentialFile::SequentialFile(SequentialFile&& other) noexcept
-    : file_(std::move(other.file_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+    : named_(std::move(other.named_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 SequentialFile& SequentialFile::operator=(SequentialFile&& other) noexcept {
-  std::swap(file_, other.file_);
+  std::swap(named_, other.named_);
   std::swap(descriptor_, other.descriptor_);
   return *this;
 }
@@ -33,7 +38,7 @@ SequentialFile::~SequentialFile() {
 }
 
 Error SequentialFile::failure(const char* what) const {
-  return Error{file_.string() + ": " + what + ": " + std::generic_category().message(errno)};
+  return Error{named_.string() + ": " + what + ": " + std::generic_category().message(errno)};
 }
 
 Status SequentialFile::append(std::string_view content) {

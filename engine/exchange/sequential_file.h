@@ -11,8 +11,9 @@ namespace spoonbill {
 // One owner. Every error names the file and the system's reason ("No space left on device").
 class SequentialFile {
  public:
-  // An existing file is emptied.
+  // An existing file is emptied. Errors name `named` where the user knows the file by another name.
   static Result<SequentialFile> create(const std::filesystem::path& file);
+  static Result<SequentialFile> create(const std::filesystem::path& file, std::filesystem::path named);
 
   SequentialFile(SequentialFile&& other) noexcept;
   SequentialFile& operator=(SequentialFile&& other) noexcept;
@@ -24,10 +25,10 @@ class SequentialFile {
   Status close();
 
  private:
-  SequentialFile(std::filesystem::path file, int descriptor);
+  SequentialFile(std::filesystem::path named, int descriptor);
   Error failure(const char* what) const;
 
-  std::filesystem::path file_;
+  std::filesystem::path named_;
   int descriptor_;
 };
 
