@@ -104,6 +104,24 @@ TEST(Program, ALiveRecordingThatIsCutIsAFailure) {
   EXPECT_NE(outcome.err.find("the recording has ended: "), std::string::npos) << outcome.err;
 }
 
+// What may not grow any further fails by a line, and what stood there stays.
+TEST(Program, AFileThatMayNotGrowIsAFailureThatLeavesNothing) {
+  const Workplace place;
+  place.write("kept.json", "old");
+  place.write("kept.stl", "old");
+  const auto expect_refusal = [&](const std::string& name, const std::vector<std::string>& arguments) {
+    const Outcome outcome = run_process(program, arguments, "ulimit -f 4;");
+    EXPECT_EQ(outcome.code, exit_failed);
+    EXPECT_EQ(outcome.err, "spoonbill: " + place.text(name) + ": cannot be written: File too large\n");
+    EXPECT_EQ(content_of(place.path(name)), "old");
+  };
+  const auto names = [&] { return std::distance(std::filesystem::directory_iterator(place.path("")), {}); };
+  const auto before = names();
+  expect_refusal("kept.json", {"new", "sphere", "--out", place.text("kept.json")});
+  expect_refusal("kept.stl", {"convert", place.text("model.json"), place.text("kept.stl")});
+  EXPECT_EQ(names(), before);
+}
+
 TEST(Program, AFullStandardOutputIsAFailure) {
   const Workplace place;
   const Outcome outcome = run_process(
