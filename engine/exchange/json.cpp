@@ -154,7 +154,12 @@ Result<Json> parse_json(std::string_view text, const std::string& source) {
   StrictBuilder builder;
   const bool parsed = Json::sax_parse(TrackedIterator(text.data(), &furthest),
                                       TrackedIterator(text.data() + text.size(), &furthest), &builder);
-  if (parsed) return builder.take();
+  if (parsed) {
+    // The parser takes one for the end, whatever follows.
+    const std::size_t zero = text.find('\0');
+    if (zero == std::string_view::npos) return builder.take();
+    return Error{source + ": " + place_in(text, zero + 1) + ": a zero byte, which is not JSON"};
+  }
   const auto read = static_cast<std::size_t>(furthest - text.data());
   return Error{source + ": " + place_in(text, builder.position().value_or(read)) + ": " +
                one_line(builder.complaint())};

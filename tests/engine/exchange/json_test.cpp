@@ -27,6 +27,14 @@ TEST(Json, RefusesWhatIsNotStrict) {
   }
 }
 
+TEST(Json, RefusesWhatFollowsAZeroByte) {
+  using std::string_view_literals::operator""sv;
+  EXPECT_EQ(refusal("{\"a\": 1}\0"sv), "x.json: column 9: a zero byte, which is not JSON");
+  EXPECT_EQ(refusal("{\"a\":\n1}\n\0garbage {[["sv),
+            "x.json: line 3, column 1: a zero byte, which is not JSON");
+  EXPECT_NE(refusal("{\0\"a\": 1}"sv), "accepted");
+}
+
 TEST(Json, RefusesAFieldGivenTwice) {
   EXPECT_EQ(refusal("{\"a\": 1, \"b\": {\"c\": 1, \"c\": 2}}"),
             "x.json: column 26: field \"c\" is given twice");
