@@ -45,7 +45,7 @@ void continue_into(const Surface& patch, bool from_end, const KnotVector& strip,
 constexpr double tightening = 0.75;
 constexpr int tightenings_for_waist = 5, most_tightenings = 12;
 constexpr int steps_along = 24;
-constexpr int columns_in_bend = 5;
+constexpr int columns_between = 5;
 
 double mean_radius_m(const Surface& tube, double v) {
   const std::vector<double> around = uniform_parameters_without_seam(tube.u, 32);
@@ -96,12 +96,23 @@ Result<BridgeLength> at_even_speed(const Surface& before, const Surface& after) 
   return BridgeLength{chord / speed_before, speed_after / speed_before, chord};
 }
 
-// The turn of the ring after towards that before; none where a strip need not bend.
-Eigen::Matrix3d bend_between(const Surface& before, const Surface& after) {
-  if (!before.u.is_periodic()) return Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d turn =
-      turn_towards(ring_place(before, Side::v_end), ring_place(after, Side::v_start));
-  return is_bend(turn) ? turn : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+// How a strip leads from ring to ring: with columns of its own between those that go on from the patches,
+// where it has to bend, or is so long that what is uneven at the patches' ends would grow along it into
+// folds.
+struct BridgeForm {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // of the ring after towards that before
+  bool bends = false, has_columns_between = false;
+};
+
+BridgeForm form_between(const Surface& before, const Surface& after) {
+  if (!before.u.is_periodic()) return {};
+  const RingPlace a = ring_place(before, Side::v_end), b = ring_place(after, Side::v_start);
+  const Eigen::Matrix3d turn = turn_towards(a, b);
+  constexpr double long_share = 2.0;  // of both radii
+  const bool bends = is_bend(turn);
+  const bool is_long = (b.middle_m - a.middle_m).norm() > long_share * (a.radius_m + b.radius_m);
+  const bool leads = !a.outward.isZero() && !b.outward.isZero();
+  return {turn, bends, bends || (is_long && leads)};
 }
 
 }  // namespace
@@ -111,15 +122,15 @@ Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, 
   auto even = at_even_speed(before, after);
   if (!even) return even.error();
   BridgeLength length = even.value();
-  const Eigen::Matrix3d bend = bend_between(before, after);
-  length.parameter *= bend_stretch(bend);
+  const BridgeForm form = form_between(before, after);
+  if (form.bends) length.parameter *= bend_stretch(form.turn);
   for (int attempt = 0; attempt <= most_tightenings; ++attempt) {
     const auto strip = strip_of_length(before, after, length, continuity);
     if (!strip) return strip.error();
     const bool folds =
         !may_fold && place_of_fold_between(strip.value(), strip->v.domain_start(), strip->v.domain_end());
-    const bool waisted = before.u.is_periodic() && bend.isIdentity() && attempt < tightenings_for_waist &&
-                         has_waist(strip.value());
+    const bool waisted = before.u.is_periodic() && !form.has_columns_between &&
+                         attempt < tightenings_for_waist && has_waist(strip.value());
     if (!folds && !waisted) return length;
     length.parameter *= tightening;
   }
@@ -132,8 +143,8 @@ Result<Surface> bridge(const Surface& before, const Surface& after, int continui
   const int degree = before.v.degree();
   // More continuity than asked where the degree gives it without further pieces.
   const int order = std::max(continuity, degree / 2);
-  const Eigen::Matrix3d bend = bend_between(before, after);
-  const int between = bend.isIdentity() ? 0 : columns_in_bend;
+  const BridgeForm form = form_between(before, after);
+  const int between = form.has_columns_between ? columns_between : 0;
   const int count = std::max(2 * (order + 1), degree + 1) + between;
   auto knots = strip_knots(degree, count, before.v.domain_end(), after.v.domain_start());
   if (!knots) return Error{"the gap to bridge has no length; merge without a bridge"};
@@ -142,7 +153,7 @@ Result<Surface> bridge(const Surface& before, const Surface& after, int continui
     continue_into(before, true, knots.value(), j, net);
     continue_into(after, false, knots.value(), count - 1 - j, net);
   }
-  if (between > 0) fill_bend(net, order, count - 1 - order, outward(before, Side::v_end), bend);
+  if (between > 0) fill_bend(net, order, count - 1 - order, outward(before, Side::v_end), form.turn);
   return make_surface(before.u, std::move(knots).value(), std::move(net));
 }
 

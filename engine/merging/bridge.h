@@ -23,7 +23,8 @@ Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, 
 // From before's end along v to after's start, over [before's end, after's start] as its domain; both of one
 // degree and one knot vector along u. Of the patches' degree along v: as many pieces as the continuity needs,
 // whose outer control points are those of the patches' last pieces continued; between rings that do not face
-// each other also the pieces of a bend, which keeps the tube open. Refused: a gap that is empty.
+// each other, or lie farther apart than twice both their radii, also those of a bend, which keeps the tube
+// open and even. Refused: a gap that is empty.
 Result<Surface> bridge(const Surface& before, const Surface& after, int continuity);
 
 }  // namespace spoonbill

@@ -68,7 +68,7 @@ void fill_bend(ControlNet& net, int first, int last, const Vector3& outward, con
   const Eigen::AngleAxisd whole(Eigen::Matrix3d(turn.transpose()));
   // The slopes with which Hermite's cubic is nearest to an arc.
   const double half = 0.5 * whole.angle();
-  const double slope = (to - from).norm() * 2.0 * std::tan(0.5 * half) / std::sin(half);
+  const double slope = (to - from).norm() * (half > 0.0 ? 2.0 * std::tan(0.5 * half) / std::sin(half) : 1.0);
   const Vector3 out = slope * outward, in = slope * (turn.transpose() * outward);
   for (int column = first + 1; column < last; ++column) {
     const double share = static_cast<double>(column - first) / (last - first);

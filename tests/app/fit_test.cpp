@@ -231,6 +231,21 @@ TEST_F(RealScans, SpoonAsTwoBodiesWithinAMillimetre) {
   expect_good("ycb_031_spoon.ply", {"--islands", "all"}, 0.184, 2);
 }
 
+// The scanner lost the neck: handle and bowl are fitted, bridged and merged into one closed body.
+TEST_F(RealScans, SpoonsHandleAndBowlAreMerged) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  json_of_fit((scans_ / "ycb_031_spoon.ply").string(), {"--islands", "all"});
+  const std::string spoon = folder_.path() / "spoon.json";
+  const Outcome merged =
+      run_process(SPOONBILL_PROGRAM, {"merge", out(), "--continuity", "C2", "--out", spoon, "--json"});
+  ASSERT_EQ(merged.code, 0) << merged.err;
+  EXPECT_TRUE(json_of(merged.out).at("joints")[0].at("bridged"));
+  EXPECT_LT(json_of(merged.out).at("deviation_m"), 5e-5);
+  const Json check = json_of(run_process(SPOONBILL_PROGRAM, {"check", spoon, "--json"}).out).at("bodies")[0];
+  EXPECT_EQ(check.at("closedness"), "solid");
+  EXPECT_TRUE(check.at("sound")) << check.at("problems");
+}
+
 TEST_F(RealScans, SpoonBridgedIsOneBodyWithinAMillimetre) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   expect_good("ycb_031_spoon.ply", {"--islands", "bridge"}, 0.184, 1);

@@ -28,6 +28,24 @@ TEST(Bridge, AGapIsBridgedSmoothly) {
   }
 }
 
+// As fits of scans end: what is uneven beside an edge would grow along a long strip into folds.
+TEST(Bridge, RingsThatEndUnevenlyAreBridgedOverALongGap) {
+  Surface first = ring_strip(0.0, 0.03, 16, 0.0), second = ring_strip(0.12, 0.15, 20, 0.2);
+  for (Surface* ring : {&first, &second}) {
+    const int column = ring == &first ? ring->net.columns - 2 : 1;
+    for (int i = 0; i < ring->net.rows; ++i) {
+      const Vector3 way(0.003 * (i % 2 == 0 ? 1 : -1), 0.003 * (i % 3 - 1),
+                        0.001 * ((i / 2) % 2 == 0 ? 1 : -1));
+      ring->net.set_point(i, column, ring->net.point(i, column) + way);
+    }
+  }
+  const auto merged = merge({first, second}, request_of(2));
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_TRUE(merged->joints[0].joint.bridged);
+  EXPECT_TRUE(is_without_folds(merged->surface));
+  EXPECT_LT(merged->deviation_m, 1e-9);
+}
+
 TEST(Bridge, AGapAsLongAsTheParametersSayIsBridged) {
   const auto merged = merge({level_sheet(0.0, 0.04), level_sheet(0.06, 0.1)}, request_of(2));
   ASSERT_TRUE(merged.ok()) << merged.error().message;
