@@ -8,7 +8,7 @@
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/merging/new_poles.h"
+#include "engine/merging/lines_from_loop.h"
 #include "engine/merging/tube_ends.h"
 
 namespace spoonbill {
@@ -110,38 +110,57 @@ Error not_side_by_side() {
       "not on a sheet; exchange u and v of one, or name closed bodies"};
 }
 
-Result<FittedShape> with_pole_at_crossing(const Surface& body, const std::vector<LineCrossing>& crossings,
-                                          double tolerance_m) {
-  Vector3 place = Vector3::Zero();
-  for (const LineCrossing& crossing : crossings) {
-    place += crossing.point_m / static_cast<double>(crossings.size());
-  }
-  return with_pole_towards(body, (place - middle_of(body)).normalized(), tolerance_m);
+Error not_around_its_middle() {
+  return Error{
+      "the crossing on the second body does not run once around its own middle, as where one body stands in "
+      "the side of another that is as wide; make one wider, or give them in the other order"};
 }
 
-// How far the second's u moves from each of the first's lines that cross it to the next, the short way
-// around.
-std::vector<double> steps_along(const Surface& first, const Surface& second) {
-  const CrossingFinder finder(second);
-  std::vector<double> crossed;
-  for (const double u : lines_of(first)) {
-    const auto found = finder.of_line(first, u);
-    if (!found.empty()) crossed.push_back(found.front().other_u);
+std::vector<Eigen::Vector2d> loop_of(const std::vector<LineCrossing>& crossings) {
+  std::vector<Eigen::Vector2d> loop;
+  for (const LineCrossing& crossing : crossings) loop.emplace_back(crossing.other_u, crossing.other_v);
+  return loop;
+}
+
+// From its pole that is nearer to the crossing.
+Surface from_nearer_pole(const Surface& body, const std::vector<LineCrossing>& crossings) {
+  double sum = 0.0;
+  for (const LineCrossing& crossing : crossings) sum += crossing.other_v;
+  const double middle = 0.5 * (body.v.domain_start() + body.v.domain_end());
+  return sum > middle * static_cast<double>(crossings.size()) ? turned_around(body) : body;
+}
+
+// Where each of the first's lines that cross it starts the second's: its u, or beside a pole the angle about
+// the crossing, in shares of a turn.
+std::vector<double> starts_along(const CrossingPatches& patches, const std::vector<LineCrossing>& crossings) {
+  std::vector<double> starts;
+  if (patches.beside_pole) {
+    const std::vector<Eigen::Vector2d> loop = loop_of(crossings);
+    const LinesFromLoop lines(patches.second, loop);
+    for (const Eigen::Vector2d& start : loop) starts.push_back(lines.angle_of(start));
+  } else {
+    for (const LineCrossing& crossing : crossings) starts.push_back(crossing.other_u);
   }
-  if (first.u.is_periodic() && !crossed.empty()) crossed.push_back(crossed.front());
-  const double period = second.u.is_periodic() ? second.u.domain_end() - second.u.domain_start() : 0.0;
+  return starts;
+}
+
+// How far the second's lines move from each of the first's lines to the next, the short way around.
+std::vector<double> steps_between(std::vector<double> starts, bool closed, double period) {
+  if (closed && !starts.empty()) starts.push_back(starts.front());
   std::vector<double> steps;
-  for (std::size_t k = 1; k < crossed.size(); ++k) {
-    const double step = crossed[k] - crossed[k - 1];
+  for (std::size_t k = 1; k < starts.size(); ++k) {
+    const double step = starts[k] - starts[k - 1];
     steps.push_back(period > 0.0 ? step - period * std::round(step / period) : step);
   }
   return steps;
 }
 
-// So that the second's u increases with the first's, once around where they are closed.
-Result<Surface> running_along(const Surface& first, const Surface& second) {
-  const std::vector<double> steps = steps_along(first, second);
-  const double length = second.u.domain_end() - second.u.domain_start();
+// So that the second's lines follow each other as the first's, once around where they are closed.
+Result<Surface> running_along(const CrossingPatches& patches, const std::vector<LineCrossing>& crossings) {
+  const Surface &first = patches.first, &second = patches.second;
+  const double length = patches.beside_pole ? 1.0 : second.u.domain_end() - second.u.domain_start();
+  const std::vector<double> steps = steps_between(starts_along(patches, crossings), first.u.is_periodic(),
+                                                  second.u.is_periodic() ? length : 0.0);
   const double forwards = std::accumulate(steps.begin(), steps.end(), 0.0);
   const double sign = forwards < 0.0 ? -1.0 : 1.0;
   constexpr double rounding_share = 1e-6;
@@ -149,28 +168,30 @@ Result<Surface> running_along(const Surface& first, const Surface& second) {
       std::any_of(steps.begin(), steps.end(), [&](double s) { return sign * s < -rounding_share * length; });
   const bool once_around = !first.u.is_periodic() ||
                            (second.u.is_periodic() && std::abs(std::abs(forwards) - length) < 0.5 * length);
+  if ((returns || !once_around) && patches.beside_pole) return not_around_its_middle();
   if (returns || !once_around) return not_side_by_side();
   return forwards < 0.0 ? reversed(second, Direction::u) : second;
 }
 
 }  // namespace
 
-Result<CrossingPatches> facing_each_other(const Surface& first, const Surface& second, double tolerance_m) {
-  CrossingPatches patches{along_v(first), along_v(second)};
+Result<CrossingPatches> facing_each_other(const Surface& first, const Surface& second) {
+  CrossingPatches patches{along_v(first), along_v(second), false};
   Crossed of_first = look(patches.first, patches.second, CrossingFinder(patches.second));
   if (of_first.lines < lines_looked_at) return not_crossed();
-  if (is_closed_body(patches.second) && 2 * of_first.repeatedly > lines_looked_at) return goes_through();
-  if (is_closed_body(patches.second) && !goes_around_pole(patches.second, of_first.crossings)) {
-    auto placed = with_pole_at_crossing(patches.second, of_first.crossings, tolerance_m);
-    if (!placed) return placed.error();
-    patches.second = std::move(placed->surface);
-    patches.deviation_m = placed->deviation_m;
-  }
+  const bool closed = is_closed_body(patches.second);
+  if (closed && 2 * of_first.repeatedly > lines_looked_at) return goes_through();
+  patches.beside_pole = closed && !goes_around_pole(patches.second, of_first.crossings);
   if (of_first.kept_before < 0.0) patches.first = turned_around(patches.first);
-  const Crossed of_second = look(patches.second, patches.first, CrossingFinder(patches.first));
-  if (of_second.lines == 0) return not_crossed();
-  if (of_second.kept_before > 0.0) patches.second = turned_around(patches.second);
-  auto along = running_along(patches.first, patches.second);
+  if (patches.beside_pole) {
+    patches.second = from_nearer_pole(patches.second, of_first.crossings);
+  } else {
+    const Crossed of_second = look(patches.second, patches.first, CrossingFinder(patches.first));
+    if (of_second.lines == 0) return not_crossed();
+    if (of_second.kept_before > 0.0) patches.second = turned_around(patches.second);
+  }
+  const Crossed turned = look(patches.first, patches.second, CrossingFinder(patches.second));
+  auto along = running_along(patches, turned.crossings);
   if (!along) return along.error();
   patches.second = std::move(along).value();
   return patches;
@@ -200,6 +221,14 @@ void CornerLines::choose_sides() {
 const std::optional<CornerLine>& CornerLines::at(double u) {
   const auto known = lines_.find(u);
   return known != lines_.end() ? known->second : lines_.emplace(u, found(u)).first->second;
+}
+
+std::vector<Eigen::Vector2d> CornerLines::loop_on_second() {
+  std::vector<Eigen::Vector2d> loop;
+  for (const double u : lines_of(patches_->first)) {
+    if (const auto& line = at(u)) loop.emplace_back(line->second_u, line->second_v);
+  }
+  return loop;
 }
 
 std::optional<CornerLine> CornerLines::found(double u) const {

@@ -2,8 +2,10 @@
 // line of the second. Outside the tick.
 #pragma once
 
+#include <Eigen/Core>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "engine/merging/line_crossing.h"
 #include "engine/merging/rolling_ball.h"
@@ -14,11 +16,13 @@ namespace spoonbill {
 // Both patches run along v: the first towards the crossing, the second away from it.
 struct CrossingPatches {
   Surface first, second;
-  double deviation_m = 0.0;  // of poles placed anew
+  // Whether the crossing lies beside the second's pole at the start of v, so that only lines of another kind
+  // lead away from it (LinesFromLoop).
+  bool beside_pole = false;
 };
 
-// Turned (and, where they do not, poles placed anew) so that they do. Refused as merge_crossing() says.
-Result<CrossingPatches> facing_each_other(const Surface& first, const Surface& second, double tolerance_m);
+// Turned so that they do. Refused as merge_crossing() says.
+Result<CrossingPatches> facing_each_other(const Surface& first, const Surface& second);
 
 // The end of the first patch's line at u, the start of the second's, and between them an arc about the
 // centre.
@@ -36,6 +40,9 @@ class CornerLines {
 
   // None where the line does not cross, or no ball fits.
   const std::optional<CornerLine>& at(double u);
+
+  // The second's u, v where its lines start, of so many lines of the first as tell the loop that they make.
+  std::vector<Eigen::Vector2d> loop_on_second();
 
  private:
   std::optional<CornerLine> found(double u) const;

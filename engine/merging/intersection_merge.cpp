@@ -3,52 +3,84 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/merging/crossing_lines.h"
+#include "engine/merging/fold_search.h"
 #include "engine/merging/joint_edges.h"
+#include "engine/merging/lines_from_loop.h"
 #include "engine/merging/tube_ends.h"
 #include "engine/number_text.h"
+#include "engine/place_text.h"
 #include "engine/shapes/fit_shape.h"
 
 namespace spoonbill {
 
 namespace {
 
-// Of the tolerance, for new poles and for each of the parts, whose edges then meet within twice of it;
-// joining them takes the rest.
-constexpr double part_share = 0.2;
+// Of the tolerance, for each of the parts, whose edges then meet within twice of it; joining them takes the
+// rest. More for one whose roundings lie askew to its lines, as they do that start beside a pole.
+constexpr double part_share = 0.2, askew_share = 0.5;
 
 using LineShape = std::function<Vector3(double u, const CornerLine& line, double s)>;
 
 // A part as a function of the first patch's u and the share of the way along its lines.
-Result<FittedShape> fitted_part(const Surface& first, CornerLines& lines, const LineShape& shape,
-                                bool pole_at_start, bool pole_at_end, double tolerance_m) {
+struct PartShape {
+  LineShape at;
+  bool pole_at_start = false, pole_at_end = false;
+  // Where the lines start beside a pole: the share of the way at which they bend into the patch's own.
+  std::optional<double> bend = {};
+};
+
+// Spans are added in whole cells, of which each direction has at least so many: few leave a simple part
+// simple, but roundings that lie askew to the lines somewhere must not ask for spans all around.
+constexpr int few_spans = 4, local_spans = 48;
+
+Error not_fitted(const Error& error, double share, double tolerance_m) {
+  return Error{"a part of a patch that is kept gets " + short_length_text(share * tolerance_m) +
+               " of the tolerance of " + short_length_text(tolerance_m) + ": " + error.message};
+}
+
+Error not_reached(bool with_fillet) {
+  return Error{with_fillet
+                   ? "a line of constant u does not reach the other patch, or the fillet's ball does not fit "
+                     "there; choose a smaller fillet"
+                   : "a line of constant u does not cross the other patch, or touches it alone, as where one "
+                     "body stands in the side of another that is as wide; make one wider, or move it"};
+}
+
+Result<FittedShape> fitted_part(const Surface& first, CornerLines& lines, const PartShape& part,
+                                bool with_fillet, double tolerance_m) {
   bool missed = false;
   ExactShape exact;
   exact.u = {first.u.is_periodic(), {first.u.domain_start(), first.u.domain_end()}};
-  exact.pole_at_start = pole_at_start;
-  exact.pole_at_end = pole_at_end;
+  if (part.bend) exact.v.breaks = {0.0, *part.bend, 1.0};
+  exact.pole_at_start = part.pole_at_start;
+  exact.pole_at_end = part.pole_at_end;
   exact.at = [&](double u, double s) -> Vector3 {
     const auto& line = lines.at(u);
     if (!line) {
       missed = true;
       return position(first, u, first.v.domain_start());
     }
-    return shape(u, *line, s);
+    return part.at(u, *line, s);
   };
+  const double share = part.bend ? askew_share : part_share;
   ShapeFit fit;
-  fit.tolerance_m = tolerance_m;
-  fit.least_spans = 4;
-  fit.keeps_parameters = true;
+  fit.tolerance_m = share * tolerance_m;
+  // Lines that start beside a pole may slide along the patch: how far apart edges come is measured later.
+  fit.keeps_parameters = !part.bend;
+  fit.least_spans = few_spans;
   auto fitted = fit_shape(exact, fit);
-  if (missed) {
-    return Error{
-        "a line of constant u does not reach the other patch, or the fillet's ball does not fit there; "
-        "choose a smaller fillet"};
+  if (!fitted && !missed) {
+    fit.least_spans = local_spans;
+    fitted = fit_shape(exact, fit);
   }
+  if (missed) return not_reached(with_fillet);
+  if (!fitted) return not_fitted(fitted.error(), share, tolerance_m);
   return fitted;
 }
 
@@ -72,34 +104,46 @@ struct Parts {
 Result<Parts> fitted_parts(const CrossingPatches& patches, const IntersectionRequest& request) {
   const Surface &first = patches.first, &second = patches.second;
   CornerLines lines(patches, request.fillet_m);
-  const double tolerance_m = part_share * request.join.tolerance_m;
   const double first_start = first.v.domain_start(), second_end = second.v.domain_end();
-  const LineShape of_first = [&](double u, const CornerLine& line, double s) {
+  PartShape of_first, of_fillet, of_second;
+  of_first.at = [&](double u, const CornerLine& line, double s) {
     return position(first, u, between(first_start, line.first_v, s));
   };
-  const LineShape of_fillet = [&](double u, const CornerLine& line, double s) {
+  of_fillet.at = [&](double u, const CornerLine& line, double s) {
     return on_arc(position(first, u, line.first_v), position(second, line.second_u, line.second_v),
                   *line.centre_m, s);
   };
-  const LineShape of_second = [&](double, const CornerLine& line, double s) {
+  of_second.at = [&](double, const CornerLine& line, double s) {
     return position(second, line.second_u, between(line.second_v, second_end, s));
   };
-  const bool first_pole = is_tube(first) && is_pole(first, Side::v_start);
-  const bool second_pole = is_tube(second) && is_pole(second, Side::v_end);
-  Parts parts;
-  const auto add = [&](const LineShape& shape, bool pole_at_start, bool pole_at_end) -> Status {
-    auto part = fitted_part(first, lines, shape, pole_at_start, pole_at_end, tolerance_m);
-    if (!part) return part.error();
-    parts.deviation_m = std::max(parts.deviation_m, part->deviation_m);
-    parts.surfaces.push_back(std::move(part->surface));
-    return {};
-  };
-  if (Status status = add(of_first, first_pole, false); !status) return status.error();
-  if (request.fillet_m > 0.0) {
-    if (Status status = add(of_fillet, false, false); !status) return status.error();
+  of_first.pole_at_start = is_tube(first) && is_pole(first, Side::v_start);
+  of_second.pole_at_end = is_tube(second) && is_pole(second, Side::v_end);
+  std::optional<LinesFromLoop> from_loop;
+  if (patches.beside_pole) {
+    from_loop.emplace(second, lines.loop_on_second());
+    of_second.bend = from_loop->share_of_bend();
+    of_second.at = [&](double, const CornerLine& line, double s) {
+      const Eigen::Vector2d uv = from_loop->at({line.second_u, line.second_v}, s);
+      return position(second, uv.x(), uv.y());
+    };
   }
-  if (Status status = add(of_second, false, second_pole); !status) return status.error();
+  Parts parts;
+  for (const PartShape* part : {&of_first, &of_fillet, &of_second}) {
+    if (part == &of_fillet && request.fillet_m == 0.0) continue;
+    auto fitted = fitted_part(first, lines, *part, request.fillet_m > 0.0, request.join.tolerance_m);
+    if (!fitted) return fitted.error();
+    parts.deviation_m = std::max(parts.deviation_m, fitted->deviation_m);
+    parts.surfaces.push_back(std::move(fitted->surface));
+  }
   return parts;
+}
+
+Status check_folds(const Surface& merged, const Surface& first, const Surface& second) {
+  const auto place = place_of_fold(merged);
+  if (!place || place_of_fold(first) || place_of_fold(second)) return {};
+  return Error{"the merged surface folds over at " + place_text(*place) +
+               ": lines that lead away from the crossing run into each other there; let the other body enter "
+               "nearer to a pole, or give the patches in the other order"};
 }
 
 // From the first part's end to the start of the last.
@@ -120,11 +164,11 @@ Joint corner_of(const Joined& joined) {
 
 Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
                                          const IntersectionRequest& request) {
-  const auto patches = facing_each_other(first, second, part_share * request.join.tolerance_m);
+  const auto patches = facing_each_other(first, second);
   if (!patches) return patches.error();
   auto parts = fitted_parts(patches.value(), request);
   if (!parts) return parts.error();
-  const double before_m = patches->deviation_m + parts->deviation_m;
+  const double before_m = parts->deviation_m;
   JoinRequest join = request.join;
   join.tolerance_m -= before_m;
   join.blend_m = 0.0;
@@ -132,6 +176,7 @@ Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& se
   if (request.fillet_m == 0.0) join.continuity = 0;
   auto joined = join_row(std::move(parts->surfaces), join);
   if (!joined) return joined.error();
+  if (Status sound = check_folds(joined->surface, first, second); !sound) return sound.error();
   const Joint corner = corner_of(joined.value());
   return IntersectionMerge{std::move(joined->surface), before_m + joined->deviation_m, corner};
 }

@@ -21,9 +21,9 @@ struct IntersectionMerge {
 
 // Of closed bodies each keeps what lies outside the other; of open patches the longer part of their lines.
 // The first keeps its parameters around. A closed body that the first does not cross around one of its poles
-// is given poles there first (with_pole_towards). Refused: patches whose lines of constant u do not each
-// cross the other or do not follow each other along the crossing, one that goes through a closed body, a
-// fillet that does not fit.
+// is run through from the crossing to the pole on the far side (LinesFromLoop). Refused: patches whose lines
+// of constant u do not each cross the other or do not follow each other along the crossing, one that goes
+// through a closed body, a fillet that does not fit.
 Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
                                          const IntersectionRequest& request);
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/merging/tube_ends.h"
+
 namespace spoonbill {
 
 namespace {
@@ -37,7 +39,12 @@ double step_from(const KnotVector& knots, double t) {
 class Corner {
  public:
   Corner(const Surface& surface, double u, const Surface& other, BallSides sides)
-      : surface_(surface), u_(u), other_(other), sides_(sides) {}
+      : surface_(surface),
+        u_(u),
+        other_(other),
+        sides_(sides),
+        pole_at_start_(is_tube(other) && is_pole(other, Side::v_start)),
+        pole_at_end_(is_tube(other) && is_pole(other, Side::v_end)) {}
 
   Vector3 centre_from_surface(double v, double radius_m) const {
     return position(surface_, u_, v) + sides_.of_surface * radius_m * unit_normal(surface_, u_, v);
@@ -61,6 +68,7 @@ class Corner {
       const Vector3 moved = slopes.partialPivLu().solve(-now);
       if (!moved.allFinite()) return std::nullopt;
       at = {at.v + moved.x(), at.other_u + moved.y(), at.other_v + moved.z()};
+      lead_across_poles(at);
       if (!settle(surface_.v, at.v) || !settle(other_.u, at.other_u) || !settle(other_.v, at.other_v)) {
         return std::nullopt;
       }
@@ -69,10 +77,20 @@ class Corner {
   }
 
  private:
+  // Beyond a pole the other surface goes on at the opposite side of it.
+  void lead_across_poles(Places& at) const {
+    const double start = other_.v.domain_start(), end = other_.v.domain_end();
+    const bool before = pole_at_start_ && at.other_v < start, behind = pole_at_end_ && at.other_v > end;
+    if (!before && !behind) return;
+    at.other_v = 2.0 * (before ? start : end) - at.other_v;
+    at.other_u += 0.5 * length_of(other_.u);
+  }
+
   const Surface& surface_;
   double u_;
   const Surface& other_;
   BallSides sides_;
+  bool pole_at_start_, pole_at_end_;
 };
 
 }  // namespace

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <tuple>
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
+#include "engine/merging/fold_search.h"
 #include "engine/merging/tube_ends.h"
 #include "engine/study/enclosed_mass.h"
 
@@ -197,6 +199,73 @@ TEST(IntersectionMerge, TheToleranceHoldsWithNewPoles) {
   ASSERT_TRUE(merged.ok()) << merged.error().message;
   EXPECT_LE(merged->deviation_m, request.join.tolerance_m);
   EXPECT_GT(merged->deviation_m, 0.0);
+}
+
+// About the z axis, with rounded rims.
+struct Drum {
+  double radius, half_height, rounding = 0.003;
+
+  double distance(const Vector3& p) const {
+    const double out = p.head<2>().norm() - (radius - rounding),
+                 up = std::abs(p.z()) - (half_height - rounding);
+    return std::hypot(std::max(out, 0.0), std::max(up, 0.0)) + std::min(std::max(out, up), 0.0) - rounding;
+  }
+  Surface surface() const {
+    const double flat = radius - rounding, arc = 0.5 * pi * rounding, side = 2.0 * (half_height - rounding);
+    const double whole = 2.0 * (flat + arc) + side;
+    // Of the upper half, from the pole on.
+    const auto profile = [=, this](double way) -> Eigen::Vector2d {
+      if (way < flat) return {way, half_height};
+      const double turn = (way - flat) / rounding;
+      if (way < flat + arc) {
+        return {flat + rounding * std::sin(turn), half_height - rounding + rounding * std::cos(turn)};
+      }
+      return {radius, half_height - rounding - (way - flat - arc)};
+    };
+    return fitted(true, 24, 80, [=](double u, double v) {
+      const double way = v * whole, turn = -2 * pi * u;
+      const bool upper = way < 0.5 * whole;
+      const Eigen::Vector2d at = profile(upper ? way : whole - way);
+      return Vector3(at.x() * std::cos(turn), at.x() * std::sin(turn), upper ? at.y() : -at.y());
+    });
+  }
+};
+
+// A rod in the side of a drum, and upright on it beside its pole.
+TEST(IntersectionMerge, LinesLeadAwayFromACrossingBesideThePole) {
+  const Drum tall{0.01, 0.03}, wide{0.03, 0.01};
+  const Vector3 x(1, 0, 0), z(0, 0, 1), beside(0.012, 0, 0);
+  for (const auto& [drum, direction, shift, tolerance_m] :
+       {std::tuple(tall, x, Vector3(0, 0, 0), 3e-4), std::tuple(wide, z, beside, 5e-5)}) {
+    IntersectionRequest request;
+    request.join.tolerance_m = tolerance_m;
+    const Surface standing = placed(rod(direction), {shift, Quaternion::Identity()});
+    const auto merged = merge_crossing(standing, drum.surface(), request);
+    ASSERT_TRUE(merged.ok()) << merged.error().message;
+    EXPECT_LE(merged->deviation_m, tolerance_m);
+    EXPECT_FALSE(place_of_fold(merged->surface).has_value());
+    const PointGrid points = point_grid(merged->surface, uniform_parameters(merged->surface.u, 60),
+                                        uniform_parameters(merged->surface.v, 120));
+    double farthest = 0.0, deepest = 0.0;
+    for (const Vector3& p : points.points_m) {
+      const Vector3 of_rod = p - shift;
+      const double along = of_rod.dot(direction), level = (of_rod - along * direction).norm();
+      const double beyond = std::max({0.0, along - 0.054, rod_radius - along});
+      const double to_rod = std::hypot(beyond, level) - rod_radius, to_drum = drum.distance(p);
+      farthest = std::max(farthest, std::min(std::abs(to_rod), std::abs(to_drum)));
+      deepest = std::min({deepest, to_rod, to_drum});
+    }
+    // The bodies that are given miss the exact ones by up to 3e-5 m.
+    EXPECT_LT(farthest, tolerance_m + 3e-5);
+    EXPECT_GT(deepest, -tolerance_m - 3e-5);
+  }
+}
+
+TEST(IntersectionMerge, ABodyThatIsAsWideAsTheOtherIsRefusedBeforeItIsFitted) {
+  const Drum drum{rod_radius, 0.03};
+  const auto merged = merge_crossing(rod(Vector3(1, 0, 0)), drum.surface(), {});
+  ASSERT_FALSE(merged.ok());
+  EXPECT_NE(merged.error().message.find("as wide"), std::string::npos) << merged.error().message;
 }
 
 TEST(IntersectionMerge, WhatGoesThroughIsRefused) {
