@@ -205,14 +205,21 @@ CornerLines::CornerLines(const CrossingPatches& patches, double fillet_m)
 // The ball lies where both kept parts are: on each surface on the side to which the other's kept part leads.
 void CornerLines::choose_sides() {
   const Surface &first = patches_->first, &second = patches_->second;
+  const std::vector<LineCrossing> crossings = look(first, second, second_).crossings;
+  std::optional<LinesFromLoop> from_loop;
+  if (patches_->beside_pole) from_loop.emplace(second, loop_of(crossings));
+  const std::vector<double> lines = lines_of(first);
   double on_first = 0.0, on_second = 0.0;
-  for (const double u : lines_of(first)) {
-    const auto found = second_.of_line(first, u);
-    if (found.empty()) continue;
-    const LineCrossing& at = found.front();
-    const Vector3 kept_of_first = -evaluate(first, u, at.along).dv.normalized();
-    const Vector3 kept_of_second = evaluate(second, at.other_u, at.other_v).dv.normalized();
-    on_first += unit_normal(first, u, at.along).dot(kept_of_second);
+  for (std::size_t k = 0; k < std::min(lines.size(), crossings.size()); ++k) {
+    const LineCrossing& at = crossings[k];
+    const Vector3 kept_of_first = -evaluate(first, lines[k], at.along).dv.normalized();
+    Vector3 kept_of_second = evaluate(second, at.other_u, at.other_v).dv.normalized();
+    if (from_loop) {
+      constexpr double little = 1e-3;
+      const Eigen::Vector2d next = from_loop->at({at.other_u, at.other_v}, little);
+      kept_of_second = (position(second, next.x(), next.y()) - at.point_m).normalized();
+    }
+    on_first += unit_normal(first, lines[k], at.along).dot(kept_of_second);
     on_second += unit_normal(second, at.other_u, at.other_v).dot(kept_of_first);
   }
   sides_ = {on_first < 0.0 ? -1 : 1, on_second < 0.0 ? -1 : 1};

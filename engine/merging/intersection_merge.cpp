@@ -71,8 +71,7 @@ Result<FittedShape> fitted_part(const Surface& first, CornerLines& lines, const 
   const double share = part.bend ? askew_share : part_share;
   ShapeFit fit;
   fit.tolerance_m = share * tolerance_m;
-  // Lines that start beside a pole may slide along the patch: how far apart edges come is measured later.
-  fit.keeps_parameters = !part.bend;
+  fit.keeps_parameters = true;
   fit.least_spans = few_spans;
   auto fitted = fit_shape(exact, fit);
   if (!fitted && !missed) {
@@ -138,6 +137,12 @@ Result<Parts> fitted_parts(const CrossingPatches& patches, const IntersectionReq
   return parts;
 }
 
+Error edges_apart(double apart_m, double tolerance_m) {
+  return Error{"the parts that are kept end up to " + short_length_text(apart_m) +
+               " apart where they should meet, too far for the tolerance of " +
+               short_length_text(tolerance_m) + "; allow a larger one"};
+}
+
 Status check_folds(const Surface& merged, const Surface& first, const Surface& second) {
   const auto place = place_of_fold(merged);
   if (!place || place_of_fold(first) || place_of_fold(second)) return {};
@@ -176,6 +181,9 @@ Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& se
   if (request.fillet_m == 0.0) join.continuity = 0;
   auto joined = join_row(std::move(parts->surfaces), join);
   if (!joined) return joined.error();
+  for (const Joint& joint : joined->joints) {
+    if (joint.bridged) return edges_apart(joint.apart_m, request.join.tolerance_m);
+  }
   if (Status sound = check_folds(joined->surface, first, second); !sound) return sound.error();
   const Joint corner = corner_of(joined.value());
   return IntersectionMerge{std::move(joined->surface), before_m + joined->deviation_m, corner};

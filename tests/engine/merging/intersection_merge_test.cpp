@@ -261,6 +261,26 @@ TEST(IntersectionMerge, LinesLeadAwayFromACrossingBesideThePole) {
   }
 }
 
+// On a drum the lines that lead away from the crossing run along v on one side of it and against on the
+// other.
+TEST(IntersectionMerge, AFilletBesideThePoleFillsTheCorner) {
+  IntersectionRequest request;
+  request.fillet_m = 0.002;
+  request.join.continuity = 1;
+  const Drum wide{0.03, 0.01};
+  const Surface standing = placed(rod(Vector3(0, 0, 1)), {Vector3(0.012, 0, 0), Quaternion::Identity()});
+  const auto merged = merge_crossing(standing, wide.surface(), request);
+  ASSERT_TRUE(merged.ok()) << merged.error().message;
+  EXPECT_NEAR(merged->corner.blend_length_m, 0.5 * pi * 0.002, 5e-5);
+  EXPECT_FALSE(place_of_fold(merged->surface).has_value());
+  const double middle = 0.5 * (merged->corner.blend_start + merged->corner.blend_end);
+  for (const double u : uniform_parameters(merged->surface.u, 24)) {
+    const Vector3 p = position(merged->surface, u, middle) - Vector3(0.012, 0, 0);
+    const double from_ball = std::hypot(p.head<2>().norm() - rod_radius - 0.002, p.z() - 0.012);
+    EXPECT_NEAR(from_ball, 0.002, 1e-4);
+  }
+}
+
 TEST(IntersectionMerge, ABodyThatIsAsWideAsTheOtherIsRefusedBeforeItIsFitted) {
   const Drum drum{rod_radius, 0.03};
   const auto merged = merge_crossing(rod(Vector3(1, 0, 0)), drum.surface(), {});
