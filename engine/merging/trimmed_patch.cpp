@@ -224,6 +224,32 @@ Polygons exchanged_polygons(const Polygons& polygons) {
   return result;
 }
 
+double enclosed(const std::vector<Eigen::Vector2d>& polygon) {
+  double twice = 0.0;
+  for (std::size_t c = 0; c < polygon.size(); ++c) {
+    const Eigen::Vector2d &from = polygon[c], &to = polygon[(c + 1) % polygon.size()];
+    twice += from.x() * to.y() - from.y() * to.x();
+  }
+  return 0.5 * twice;
+}
+
+bool is_rectangle(const Polygons& polygons) {
+  if (polygons.size() != 1) return false;
+  const double whole = extent(polygons, 0).length() * extent(polygons, 1).length();
+  constexpr double rounding = 1e-12;
+  return std::abs(enclosed(polygons[0]) - whole) <= rounding * whole;
+}
+
+// Where lines of constant u and v bound what is kept it is a part of the patch, exactly.
+Result<FittedShape> rectangle_of(const Surface& surface, const Polygons& polygons) {
+  const Interval u = extent(polygons, 0), v = extent(polygons, 1);
+  const auto strip = part_of(surface, Direction::u, u.low, u.high);
+  if (!strip) return strip.error();
+  auto part = part_of(strip.value(), Direction::v, v.low, v.high);
+  if (!part) return part.error();
+  return FittedShape{std::move(part).value(), 0.0};
+}
+
 }  // namespace
 
 Result<FittedShape> untrimmed(const Surface& surface, const std::vector<TrimLoop>& trims,
@@ -233,6 +259,7 @@ Result<FittedShape> untrimmed(const Surface& surface, const std::vector<TrimLoop
   if (area->is_whole()) return FittedShape{surface, 0.0};
   Polygons polygons;
   for (const TrimLoop& loop : trims) polygons.push_back(polygon_of(loop, surface.u, surface.v));
+  if (is_rectangle(polygons)) return rectangle_of(surface, polygons);
   const KeptPart part(polygons);
   if (part.is_cut_in_single_pieces()) return resampled(surface, part, tolerance_m);
   const KeptPart turned(exchanged_polygons(polygons));

@@ -52,6 +52,17 @@ TEST(TrimmedPatch, EndsOnItsTrims) {
   }
 }
 
+TEST(TrimmedPatch, ARectangleIsAPart) {
+  const Surface sheet = wave();
+  const auto kept =
+      untrimmed(sheet, {polygon({{0.2, 0.1}, {0.6, 0.1}, {0.9, 0.1}, {0.9, 0.7}, {0.2, 0.7}})}, 1e-5);
+  ASSERT_TRUE(kept.ok()) << kept.error().message;
+  EXPECT_EQ(kept->deviation_m, 0.0);
+  EXPECT_EQ(kept->surface.u.domain_start(), 0.2);
+  EXPECT_EQ(kept->surface.v.domain_end(), 0.7);
+  EXPECT_LT((position(kept->surface, 0.31, 0.52) - position(sheet, 0.31, 0.52)).norm(), 1e-15);
+}
+
 TEST(TrimmedPatch, NoPointIsFartherThanTold) {
   const Surface sheet = wave();
   const auto slanted = untrimmed(sheet, {polygon({{0.0, 0.3}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 0.8}})}, 1e-4);
