@@ -12,6 +12,7 @@
 #include "engine/excerpt.h"
 #include "engine/merging/seam.h"
 #include "engine/merging/tube_ends.h"
+#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {
@@ -109,6 +110,13 @@ Result<ChangedSurfaces> split(const Surface& surface, const AskedChange& asked, 
 }
 
 Result<ChangedSurfaces> insert(const Surface& surface, const AskedChange& asked, double) {
+  const KnotVector& knots = knots_along(surface, asked.direction);
+  const double near = same_knot_share * (knots.domain_end() - knots.domain_start());
+  for (const double knot : knots.breakpoints()) {
+    if (knot == asked.parameter || std::abs(knot - asked.parameter) > near) continue;
+    return Error{"a knot at " + number_text(asked.parameter) + " is too near the one at " +
+                 number_text(knot) + " to be kept apart; insert it there, or farther away"};
+  }
   return exactly(insert_knot(surface, asked.direction, asked.parameter, asked.number), true);
 }
 

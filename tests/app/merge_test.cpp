@@ -275,6 +275,7 @@ TEST(ChangeCommand, RefusesInOneLine) {
       {{"degree", "v", "12"}, exit_wrong_use, "'12' is not a whole number from 1 to 9"},
       {{"degree", "v", "2.5"}, exit_wrong_use, "not a whole number"},
       {{"insert", "v=50", "9"}, exit_failed, "multiplicity 9"},
+      {{"insert", "v=1e-300"}, exit_failed, "too near the one at 0"},
       {{"insert", "v=50", "0"}, exit_wrong_use, "not a whole number from 1"},
       {{"close", "u"}, exit_failed, "closed already"},
       {{"close", "v"}, exit_failed, "apart"},
