@@ -26,6 +26,8 @@
 #include "engine/merging/intersection_merge.h"
 #include "engine/merging/trimmed_patch.h"
 #include "engine/number_text.h"
+#include "engine/study/closing.h"
+#include "engine/study/enclosed_mass.h"
 
 namespace spoonbill {
 namespace {
@@ -127,6 +129,10 @@ void add_remarks_of_merging(const MergeOptions& options, const Outcome& outcome,
                             std::vector<std::string>& remarks) {
   if (options.request.join.blend_m > 0.0) add_unused_blends(outcome.merged.joints, remarks);
   add_left_open(outcome.merged.left_open, remarks);
+  const Surface& surface = outcome.merged.surface;
+  if (closing_of(surface).closedness == Closedness::solid && enclosed_mass(surface).volume_m3 < 0.0) {
+    remarks.emplace_back("its normals point inwards, as those of the first patch do; reverse u with change");
+  }
   if (options.fillet_m > 0.0 && continuity_of(options) > 1) {
     remarks.emplace_back(
         "at a continuity above C1 the fillet is tighter than its radius, for an arc bends as what it touches "
