@@ -9,4 +9,8 @@ namespace spoonbill {
 // corners, which some direction separates, and the surfaces leave those by their bulges at most.
 double patch_distance(const PatchCorners& a, double bulge_a, const PatchCorners& b, double bulge_b);
 
+// The same from directions across the sides of each patch, within its plane: what tells slivers apart that
+// lie side by side.
+double patch_distance_aside(const PatchCorners& a, double bulge_a, const PatchCorners& b, double bulge_b);
+
 }  // namespace spoonbill

@@ -61,8 +61,12 @@ void PairSearch::search(const LevelCell& a, const LevelCell& b, double tolerance
   while (!pairs_.empty() && best_distance_m_ > enough_m) {
     const Pair pair = pairs_.back();
     pairs_.pop_back();
-    const double low = patch_distance(pair.a.corners, pair.a.bulge, pair.b.corners, pair.b.bulge);
-    if (low >= std::max(best_distance_m_ - tolerance_m, enough_m)) continue;
+    const double near_enough = std::max(best_distance_m_ - tolerance_m, enough_m);
+    const auto are_apart = [&](const auto& distance) {
+      return distance(pair.a.corners, pair.a.bulge, pair.b.corners, pair.b.bulge) >= near_enough;
+    };
+    // Of one surface, cells beside each other are the rule.
+    if (are_apart(patch_distance) || (judge_ != nullptr && are_apart(patch_distance_aside))) continue;
     const Vector3 apart = centre_of(pair.b.corners) - centre_of(pair.a.corners);
     if (apart.norm() < best_distance_m_) {
       offer({0.5 * (pair.a.u0 + pair.a.u1), 0.5 * (pair.a.v0 + pair.a.v1), 0.5 * (pair.b.u0 + pair.b.u1),

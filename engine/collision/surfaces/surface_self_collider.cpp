@@ -158,8 +158,10 @@ void SurfaceSelfCollider::descend(const CellPair& elements, int level) {
 bool SurfaceSelfCollider::can_meet(const CellPair& pair, int level) {
   const auto& [a, b, region] = pair;
   if (are_joined(a, b)) return a.level < level && joined_can_meet(pair);
-  return patch_distance(levels_.corners(a), levels_.bulge(a), levels_.corners(b), levels_.bulge(b)) <=
-         touch_tolerance_m;
+  const PatchCorners of_a = levels_.corners(a), of_b = levels_.corners(b);
+  const double bulge_a = levels_.bulge(a), bulge_b = levels_.bulge(b);
+  return patch_distance(of_a, bulge_a, of_b, bulge_b) <= touch_tolerance_m &&
+         patch_distance_aside(of_a, bulge_a, of_b, bulge_b) <= touch_tolerance_m;
 }
 
 // Elsewhere than where they are joined.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/collision/levels/patch_distance.h"
+
 namespace spoonbill {
 namespace {
 
@@ -62,6 +64,21 @@ TEST(SurfaceLevels, BoxesOfElementsHoldThem) {
       }
     }
   }
+}
+
+// Thin triangles of one plane that fan out from a point, another between them: no way from middle to middle
+// tells them apart, nor along their normals.
+TEST(PatchDistance, TellsSliversApartThatLieSideBySide) {
+  const auto sliver = [](double from, double low_slope, double high_slope) {
+    const double to = from + 4.0;
+    return PatchCorners{Vector3(from, from * low_slope, 0.0), Vector3(to, to * low_slope, 0.0),
+                        Vector3(from, from * high_slope, 0.0), Vector3(to, to * high_slope, 0.0)};
+  };
+  const PatchCorners one = sliver(5.0, -0.3, 0.0), other = sliver(8.0, 0.02, 0.2);
+  EXPECT_LE(patch_distance(one, 0.0, other, 0.0), 0.0);
+  EXPECT_NEAR(patch_distance_aside(one, 0.0, other, 0.0), 0.16, 1e-12);
+  EXPECT_NEAR(patch_distance_aside(other, 0.02, one, 0.01), 0.13, 1e-12);
+  EXPECT_LE(patch_distance_aside(one, 0.0, sliver(8.0, -0.1, 0.2), 0.0), 0.0);
 }
 
 }  // namespace
