@@ -32,13 +32,22 @@ class RoundedRectangle {
   }
 
   double length() const { return ends_.back(); }
+  double rounding() const { return rounding_; }
 
-  // From 0 to 1, each where a side meets a corner.
+  // From 0 to 1, each where a side meets a corner or begins to be slowed by it.
   std::vector<double> breaks() const {
-    std::vector<double> shares;
-    for (const double end : ends_) {
-      const double share = end / length();
-      if (shares.empty() || share > shares.back() + 1e-9) shares.push_back(share);
+    std::vector<double> shares = {0.0};
+    const auto add = [&](double distance) {
+      const double share = distance / length();
+      if (share > shares.back() + 1e-9) shares.push_back(share);
+    };
+    for (std::size_t piece = 0; piece + 1 < ends_.size(); ++piece) {
+      const double start = ends_[piece], end = ends_[piece + 1];
+      const bool is_side = piece % 2 == 0;
+      const bool from_middle = piece == 0, to_middle = piece + 2 == ends_.size();
+      if (is_side && !from_middle && end - start > (to_middle ? 1.0 : 2.0) * slowed()) add(start + slowed());
+      if (is_side && !to_middle && end - start > (from_middle ? 1.0 : 2.0) * slowed()) add(end - slowed());
+      add(end);
     }
     shares.back() = 1.0;
     return shares;
@@ -48,29 +57,50 @@ class RoundedRectangle {
     Vector2 point, normal;
   };
 
-  Place at(double share) const {
+  // The corners of an outline made smaller are slower than its sides by as much as their arcs are shorter.
+  // The sides then reach the corners at that speed, so that a curve through both needs no knots to go on
+  // smoothly.
+  Place at(double share, double speed_at_corners) const {
     const double distance = share * length();
     const auto after = std::upper_bound(ends_.begin() + 1, ends_.end() - 1, distance);
     const int piece = static_cast<int>(after - ends_.begin()) - 1;
     const double from = ends_[static_cast<std::size_t>(piece)], along = distance - from;
     const double x = half_x_ - rounding_, y = half_y_ - rounding_;
+    const auto off_middle = [&](double half_side, double off) {
+      return place_on_side(half_side, off, 1.0 - speed_at_corners);
+    };
     switch (piece) {
       case 0:
-        return {{half_x_, along}, Vector2::UnitX()};
+        return {{half_x_, off_middle(y, along)}, Vector2::UnitX()};
       case 2:
-        return {{x - along, half_y_}, Vector2::UnitY()};
+        return {{off_middle(x, x - along), half_y_}, Vector2::UnitY()};
       case 4:
-        return {{-half_x_, y - along}, -Vector2::UnitX()};
+        return {{-half_x_, off_middle(y, y - along)}, -Vector2::UnitX()};
       case 6:
-        return {{-x + along, -half_y_}, -Vector2::UnitY()};
+        return {{off_middle(x, along - x), -half_y_}, -Vector2::UnitY()};
       case 8:
-        return {{half_x_, -y + along}, Vector2::UnitX()};
+        return {{half_x_, off_middle(y, along - y)}, Vector2::UnitX()};
       default:
         return corner(piece, along);
     }
   }
 
  private:
+  // Of the outline, on either side of a corner: as much as leaves the lines across the outline straight
+  // enough.
+  double slowed() const { return 4.0 * rounding_; }
+
+  // Cubic over the whole side, or over what is slowed at its ends.
+  double place_on_side(double half_side, double off_middle, double slower) const {
+    if (!(half_side > 0.0)) return 0.0;
+    if (half_side <= slowed()) {
+      const double part = off_middle / half_side;
+      return off_middle * (1.0 + 0.5 * slower * (1.0 - part * part));
+    }
+    const double part = std::min(1.0, (half_side - std::abs(off_middle)) / slowed());
+    return off_middle + std::copysign(slower * slowed() * part * (1.0 - part) * (1.0 - part), off_middle);
+  }
+
   Place corner(int piece, double along) const {
     const int quarter = (piece - 1) / 2;
     const double angle = 0.5 * std::numbers::pi * quarter + along / rounding_;
@@ -110,9 +140,9 @@ class BoxAlong {
   Vector3 at(double u, double v) const {
     const double distance = std::clamp(v, 0.0, 1.0) * whole();
     const double end = face_ + roll_;
-    const RoundedRectangle::Place ring = outline_.at(u);
-    if (distance < end) return on_end(ring, distance, -1.0);
-    if (whole() - distance < end) return on_end(ring, whole() - distance, 1.0);
+    if (distance < end) return on_end(u, distance, -1.0);
+    if (whole() - distance < end) return on_end(u, whole() - distance, 1.0);
+    const RoundedRectangle::Place ring = outline_.at(u, 1.0);
     return {ring.point.x(), ring.point.y(), distance - end - half_.z() + rounding_};
   }
 
@@ -130,13 +160,15 @@ class BoxAlong {
     return share * (2.0 - speed - (1.0 - speed) * share);
   }
 
-  Vector3 on_end(const RoundedRectangle::Place& ring, double from_pole, double end) const {
+  Vector3 on_end(double u, double from_pole, double end) const {
+    const double angle = std::max(0.0, (from_pole - face_) / rounding_);
+    const double inwards = rounding_ * (1.0 - std::sin(angle));
+    const RoundedRectangle::Place ring = outline_.at(u, 1.0 - inwards / outline_.rounding());
     const Vector2 inner = ring.point - rounding_ * ring.normal;
     if (from_pole < face_) {
       return {drawn_out(half_.x(), from_pole) * inner.x(), drawn_out(half_.y(), from_pole) * inner.y(),
               end * half_.z()};
     }
-    const double angle = (from_pole - face_) / rounding_;
     const Vector2 point = inner + rounding_ * std::sin(angle) * ring.normal;
     return {point.x(), point.y(), end * (half_.z() - rounding_ * (1.0 - std::cos(angle)))};
   }
