@@ -104,7 +104,8 @@ void add_fit_options(CLI::App& parser, NewOptions& options) {
       parser, "--tolerance", "LENGTH",
       [](const std::string& text) { return parse_length(text, tolerance_range_m); },
       [&options](double tolerance_m) { options.tolerance_m = tolerance_m; },
-      "How far the surface may be from the exact shape; 0.01mm unless told, less below 10mm");
+      "How far the surface may be from the exact shape; 0.01mm unless told, less below 10mm and more above "
+      "1m");
 }
 
 }  // namespace

@@ -237,6 +237,8 @@ Status refine_until(const ExactShape& shape, bool along_u, double allowed_m, con
 Result<FittedShape> fit_shape(const ExactShape& shape, const ShapeFit& fit) {
   if (fit.control_counts) return fit_counted(shape, fit);
   ShapeKnots u(shape.u, fit.degree, fit.least_spans), v(shape.v, fit.degree, fit.least_spans);
+  if (u.control_count() > most_control_points) return too_fine(fit, "u");
+  if (v.control_count() > most_control_points) return too_fine(fit, "v");
   const std::vector<double> u_lines = between(u.parameters(lines_in_cell), shape.u);
   const std::vector<double> v_lines = between(v.parameters(lines_in_cell), shape.v);
   double allowed_m = direction_share * fit.tolerance_m;

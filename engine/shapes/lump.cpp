@@ -47,7 +47,8 @@ double usual_tolerance_m(const ExactShape& shape) {
       high = high.cwiseMax(point);
     }
   }
-  return std::min(1e-5, 1e-3 * (high - low).maxCoeff());
+  const double size = (high - low).maxCoeff();
+  return std::clamp(1e-5, 1e-5 * size, 1e-3 * size);
 }
 
 }  // namespace spoonbill

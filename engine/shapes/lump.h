@@ -23,7 +23,8 @@ using LumpSize = std::variant<SphereSize, BoxSize, CylinderSize, ConeSize, Plate
 // Refused with the size that is out of range.
 Result<ExactShape> lump_shape(const LumpSize& size);
 
-// The tolerance of a lump's fit where none is named: 0.01 mm, or a thousandth of a body smaller than 10 mm.
+// The tolerance of a lump's fit where none is named: 0.01 mm, but at most a thousandth of its body's size and
+// at least a hundredth of that.
 double usual_tolerance_m(const ExactShape& shape);
 
 }  // namespace spoonbill

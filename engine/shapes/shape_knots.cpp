@@ -19,19 +19,53 @@ constexpr int most_cut_at_once = 3;
 
 }  // namespace
 
+ShapeKnots::ShapeKnots(const ShapeDirection& direction, int degree)
+    : periodic_(direction.periodic),
+      degree_(degree),
+      ends_(direction.breaks),
+      jumps_(ends_.size(), degree > 2),
+      spans_(ends_.size() - 1, 1) {
+  jumps_.front() = jumps_.back() = false;
+}
+
 ShapeKnots::ShapeKnots(const ShapeDirection& direction, int degree, int least_spans)
-    : periodic_(direction.periodic), degree_(degree), ends_{direction.start()}, jumps_{false} {
+    : ShapeKnots(direction, degree) {
   const double longest = (direction.end() - direction.start()) / least_spans;
-  for (std::size_t k = 0; k + 1 < direction.breaks.size(); ++k) {
-    const double start = direction.breaks[k], length = direction.breaks[k + 1] - start;
+  for (std::size_t k = spans_.size(); k-- > 0;) {
+    const double length = ends_[k + 1] - ends_[k];
     const int cells = std::max(1, static_cast<int>(std::ceil(length / longest - 1e-9)));
-    for (int cell = 1; cell < cells; ++cell) ends_.push_back(start + length * cell / cells);
-    ends_.push_back(direction.breaks[k + 1]);
-    jumps_.resize(ends_.size(), false);
-    jumps_.back() = degree > 2 && k + 2 < direction.breaks.size();
+    for (int cell = cells - 1; cell > 0; --cell) split(k, length * cell / cells, true);
   }
-  spans_.assign(ends_.size() - 1, 1);
-  even_out();
+  grade();
+}
+
+void ShapeKnots::split(std::size_t cell, double length, bool from_start) {
+  const double end = from_start ? ends_[cell] + length : ends_[cell + 1] - length;
+  const auto after = static_cast<std::ptrdiff_t>(cell) + 1;
+  ends_.insert(ends_.begin() + after, end);
+  jumps_.insert(jumps_.begin() + after, false);
+  spans_.insert(spans_.begin() + after, 1);
+}
+
+void ShapeKnots::grade() {
+  const auto length = [&](std::size_t k) { return ends_[k + 1] - ends_[k]; };
+  const auto split_beside = [&](std::size_t k, std::size_t beside, bool from_start) {
+    const double most = largest_step * length(beside);
+    if (!(length(k) > most * (1.0 + 1e-6))) return false;
+    split(k, std::min(most, 0.5 * length(k)), from_start);
+    return true;
+  };
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t k = 0; k < spans_.size(); ++k) {
+      const std::size_t last = spans_.size() - 1;
+      if (k > 0 || periodic_) changed |= split_beside(k, k > 0 ? k - 1 : last, true);
+    }
+    for (std::size_t k = spans_.size(); k-- > 0;) {
+      const std::size_t last = spans_.size() - 1;
+      if (k < last || periodic_) changed |= split_beside(k, k < last ? k + 1 : 0, false);
+    }
+  }
 }
 
 Result<ShapeKnots> ShapeKnots::counted(const ShapeDirection& direction, int degree, int control_count) {
@@ -39,9 +73,8 @@ Result<ShapeKnots> ShapeKnots::counted(const ShapeDirection& direction, int degr
     return Error{std::to_string(control_count) + " control points are too few for degree " +
                  std::to_string(degree) + ", which needs " + std::to_string(degree + 1)};
   }
-  ShapeKnots knots(direction, degree, 1);
+  ShapeKnots knots(direction, degree);
   const int cells = static_cast<int>(knots.spans_.size());
-  knots.spans_.assign(knots.spans_.size(), 1);
   const int spare = control_count - knots.control_count();
   // Breaks that leave less to spare are not worth it.
   if (cells > 1 && spare < cells / 2) {

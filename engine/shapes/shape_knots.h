@@ -14,7 +14,7 @@ namespace spoonbill {
 // One owner.
 class ShapeKnots {
  public:
-  // Every cell is at most a `least_spans`-th of the domain.
+  // Every cell is at most a `least_spans`-th of the domain, and they grow step by step away from short ones.
   ShapeKnots(const ShapeDirection& direction, int degree, int least_spans);
 
   // So many control points in all; even knots where the breaks alone would ask for more.
@@ -32,6 +32,11 @@ class ShapeKnots {
   void refine_worst(const std::vector<double>& at, const std::vector<double>& error_m);
 
  private:
+  // A cell from each break to the next.
+  ShapeKnots(const ShapeDirection& direction, int degree);
+  // One more end within a cell, which begins it or ends it by so much.
+  void split(std::size_t cell, double length, bool from_start);
+  void grade();
   std::vector<double> breakpoints() const;
   std::vector<double> largest_in_cells(const std::vector<double>& at,
                                        const std::vector<double>& error_m) const;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/material/lattice/tube_lattice.h"
+#include "engine/shapes/lump.h"
 #include "tests/engine/shapes/body_measures.h"
 
 namespace spoonbill {
@@ -33,7 +34,7 @@ double box_distance(const Vector3& p, const Rounded& box) {
 
 // Volume: the section's area and perimeter within the end faces' rounding, by Steiner's formula in each slice
 // (an outline made smaller by d encloses A - d P + pi d^2). Area: the same of the perimeter, P - 2 pi d.
-void expect_box(const FittedShape& shape, const Rounded& box) {
+void expect_box(const FittedShape& shape, const Rounded& box, double most_uneven_along = 2.5) {
   const double x = box.size_m[(box.axis + 1) % 3], y = box.size_m[(box.axis + 2) % 3];
   const double r = box.end_m, length = box.size_m[box.axis] - 2.0 * r;
   const double a = x * y - (4.0 - pi) * box.edge_m * box.edge_m;
@@ -55,7 +56,7 @@ void expect_box(const FittedShape& shape, const Rounded& box) {
   EXPECT_FALSE(meets_itself(shape.surface, true));
   EXPECT_LT(seam_jump(shape.surface), 1e-3);
   const Evenness even = evenness(shape.surface);
-  EXPECT_LT(even.along, 2.5);
+  EXPECT_LT(even.along, most_uneven_along);
   EXPECT_LT(even.around, 1.5);
   const Status closed = check_closed_tube(shape.surface);
   EXPECT_TRUE(closed.ok()) << closed.error().message;
@@ -74,6 +75,44 @@ TEST(Box, IsWhatItIsAskedFor) {
 TEST(Box, ThatIsFlatHasItsPolesInTheLargeFaces) {
   expect_box(fitted(box_shape({{0.1, 0.06, 0.002}, 0.0002})), {{0.1, 0.06, 0.002}, 2, 0.0004, 0.0002});
   expect_box(fitted(box_shape({{0.1, 0.03, 0.01}, 0.001})), {{0.1, 0.03, 0.01}, 0, 0.002, 0.001});
+}
+
+// Up to two fifths of the shortest side: of its end faces, strips are left, along which lines from the poles
+// are longer than across.
+TEST(Box, MayBeRoundedFarIn) {
+  for (const BoxSize& size : {BoxSize{{0.06, 0.04, 0.02}, 0.007}, BoxSize{{0.06, 0.04, 0.02}, 0.0075},
+                              BoxSize{{0.06, 0.04, 0.02}, 0.008}, BoxSize{{0.04, 0.0399, 0.02}, 0.008},
+                              BoxSize{{0.06, 0.059, 0.02}, 0.008}, BoxSize{{0.1, 0.06, 0.05}, 0.02}}) {
+    const double edge = 0.5 * size.size_m.minCoeff(), rounding = size.rounding_m;
+    const double left_of_second = size.size_m.y() - 2.0 * rounding, left = 2.0 * (edge - rounding);
+    expect_box(fitted(box_shape(size)), {size.size_m, 0, edge, rounding}, 2.0 * left_of_second / left);
+  }
+}
+
+// Of any proportions: what is rounded is a small part of a side that is long beside it.
+TEST(Box, MayBeLongOrWideOrBoth) {
+  for (const Vector3& size_m :
+       {Vector3(1.0, 0.001, 0.001), Vector3(0.1, 0.1, 0.001), Vector3(1.0, 1.0, 0.001),
+        Vector3(10.0, 10.0, 10.0), Vector3(0.3, 0.02, 0.003)}) {
+    BoxSize size{size_m};
+    size.rounding_m = usual_rounding_m(size);
+    const auto shape = box_shape(size);
+    ASSERT_TRUE(shape) << shape.error().message;
+    ShapeFit fit;
+    fit.tolerance_m = usual_tolerance_m(shape.value());
+    const FittedShape box = fitted(shape, fit);
+    EXPECT_LE(box.deviation_m, fit.tolerance_m);
+    EXPECT_NEAR(volume_m3(box.surface), size_m.prod(), 0.06 * size_m.prod());
+    EXPECT_FALSE(meets_itself(box.surface, true));
+  }
+}
+
+TEST(Plate, MayBeLong) {
+  PlateSize size{1.0, 0.01, 0.002};
+  size.corner_m = usual_corner_m(size);
+  const FittedShape plate = fitted(plate_shape(size));
+  EXPECT_LE(plate.deviation_m, tolerance_m);
+  EXPECT_LT(plate.surface.net.size(), 3000U);
 }
 
 TEST(Plate, IsASlabWithAHalfRoundRim) {
