@@ -131,7 +131,7 @@ void add_remarks_of_merging(const MergeOptions& options, const Outcome& outcome,
   add_left_open(outcome.merged.left_open, remarks);
   const Surface& surface = outcome.merged.surface;
   if (closing_of(surface).closedness == Closedness::solid && enclosed_mass(surface).volume_m3 < 0.0) {
-    remarks.emplace_back("its normals point inwards, as those of the first patch do; reverse u with change");
+    remarks.emplace_back("its normals point inwards; reverse u with change");
   }
   if (options.fillet_m > 0.0 && continuity_of(options) > 1) {
     remarks.emplace_back(

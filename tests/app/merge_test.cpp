@@ -85,6 +85,18 @@ TEST(MergeCommand, ABlendIsToldOf) {
   EXPECT_NE(longer.err.find("more than half of a patch"), std::string::npos) << longer.err;
 }
 
+TEST(MergeCommand, NormalsThatPointInwardsAreToldOf) {
+  const Workplace place;
+  const std::string inward = place.text("inward.json"), parts = place.text("parts.json");
+  ASSERT_EQ(run({"change", handle, "reverse", "u", "--out", inward}).code, exit_done);
+  for (const auto& [model, told] : {std::pair(inward, true), std::pair(std::string(handle), false)}) {
+    ASSERT_EQ(run({"change", model, "split", "v=50", "--out", parts}).code, exit_done);
+    const Outcome outcome = run({"merge", parts, "--out", place.text("whole.json"), "--json"});
+    ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+    EXPECT_EQ(outcome.out.find("normals point inwards") != std::string::npos, told) << outcome.out;
+  }
+}
+
 TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   const Workplace place;
   const std::string rod = place.text("rod.json"), ball = place.text("ball.json"),
