@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace spoonbill {
@@ -20,7 +21,8 @@ Eigen::Vector2d polar(double radius, double angle) {
 }  // namespace
 
 LinesFromLoop::LinesFromLoop(const Surface& body, const std::vector<Eigen::Vector2d>& loop)
-    : u_start_(body.u.domain_start()),
+    : body_(&body),
+      u_start_(body.u.domain_start()),
       u_length_(body.u.domain_end() - body.u.domain_start()),
       v_start_(body.v.domain_start()),
       v_length_(body.v.domain_end() - body.v.domain_start()) {
@@ -30,9 +32,11 @@ LinesFromLoop::LinesFromLoop(const Surface& body, const std::vector<Eigen::Vecto
     farthest = std::max(farthest, on_plane(uv).norm());
   }
   circle_ = std::min(circle_of_loop * farthest, farthest + most_of_way_left * (1.0 - farthest));
-  double to_circle = 0.0, shortest = 1.0;
+  double to_circle = 0.0, shortest = 1.0, shortest_m = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector2d& uv : loop) {
-    const double length = (polar(circle_, 2.0 * pi * angle_of(uv)) - on_plane(uv)).norm();
+    const Eigen::Vector2d start = on_plane(uv);
+    const double length = (polar(circle_, 2.0 * pi * angle_of(uv)) - start).norm();
+    shortest_m = std::min(shortest_m, length * metres_of_step(start, (start - middle_).normalized()));
     to_circle += length / static_cast<double>(loop.size());
     shortest = std::min(shortest, length);
   }
@@ -40,6 +44,7 @@ LinesFromLoop::LinesFromLoop(const Surface& body, const std::vector<Eigen::Vecto
   // No faster than the shortest line bears without turning back before it.
   constexpr double most_of_shortest = 1.5;
   speed_at_bend_ = std::min(to_circle, most_of_shortest * shortest) / bend_;
+  start_speed_m_ = most_of_shortest * shortest_m;
 }
 
 Eigen::Vector2d LinesFromLoop::on_plane(const Eigen::Vector2d& uv) const {
@@ -60,13 +65,26 @@ Eigen::Vector2d LinesFromLoop::at(const Eigen::Vector2d& start, double share) co
   } else {
     // Hermite's cubic, which runs on into the line beyond with its speed.
     const Eigen::Vector2d from = on_plane(start), to = polar(circle_, angle);
-    const Eigen::Vector2d out = (to - from).norm() * (from - middle_).normalized();
+    const Eigen::Vector2d away = (from - middle_).normalized();
+    const Eigen::Vector2d out = start_speed_m_ / metres_of_step(from, away) * away;
     const Eigen::Vector2d in = polar(speed_at_bend_ * bend_, angle);
     const double s = share / bend_, t = 1.0 - s;
     place = t * t * (1.0 + 2.0 * s) * from + s * s * (1.0 + 2.0 * t) * to + t * t * s * out - s * s * t * in;
   }
+  return in_parameters(place);
+}
+
+Eigen::Vector2d LinesFromLoop::in_parameters(const Eigen::Vector2d& place) const {
   const double turned = std::atan2(place.y(), place.x()) / (2.0 * pi);
   return {u_start_ + u_length_ * turned, v_start_ + v_length_ * std::min(1.0, place.norm())};
+}
+
+double LinesFromLoop::metres_of_step(const Eigen::Vector2d& place, const Eigen::Vector2d& direction) const {
+  constexpr double step = 1e-5;
+  const Eigen::Vector2d from = in_parameters(place - step * direction);
+  const Eigen::Vector2d to = in_parameters(place + step * direction);
+  const double moved_m = (position(*body_, to.x(), to.y()) - position(*body_, from.x(), from.y())).norm();
+  return moved_m / (2.0 * step);
 }
 
 }  // namespace spoonbill

@@ -13,6 +13,7 @@
 #include "engine/bspline/grid_fit.h"
 #include "engine/merging/fold_search.h"
 #include "engine/merging/tube_ends.h"
+#include "engine/study/curvature_range.h"
 #include "engine/study/enclosed_mass.h"
 
 namespace spoonbill {
@@ -273,6 +274,7 @@ TEST(IntersectionMerge, AFilletBesideThePoleFillsTheCorner) {
   ASSERT_TRUE(merged.ok()) << merged.error().message;
   EXPECT_NEAR(merged->corner.blend_length_m, 0.5 * pi * 0.002, 5e-5);
   EXPECT_FALSE(place_of_fold(merged->surface).has_value());
+  EXPECT_GT(curvature_range(merged->surface).smallest.curvature_per_m, -1.2 / 0.002);
   const double middle = 0.5 * (merged->corner.blend_start + merged->corner.blend_end);
   for (const double u : uniform_parameters(merged->surface.u, 24)) {
     const Vector3 p = position(merged->surface, u, middle) - Vector3(0.012, 0, 0);
