@@ -133,10 +133,9 @@ void add_remarks_of_merging(const MergeOptions& options, const Outcome& outcome,
   if (closing_of(surface).closedness == Closedness::solid && enclosed_mass(surface).volume_m3 < 0.0) {
     remarks.emplace_back("its normals point inwards; reverse u with change");
   }
-  if (options.fillet_m > 0.0 && continuity_of(options) > 1) {
-    remarks.emplace_back(
-        "at a continuity above C1 the fillet is tighter than its radius, for an arc bends as what it touches "
-        "does not; C1 keeps it");
+  if (options.fillet_m > 0.0) {
+    add_tight_fillet(outcome.merged.surface, outcome.corners.back(), options.fillet_m, continuity_of(options),
+                     remarks);
   }
 }
 

@@ -1,6 +1,10 @@
 #include "app/commands/merge_report.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "engine/number_text.h"
+#include "engine/study/curvature_range.h"
 
 namespace spoonbill {
 
@@ -47,6 +51,33 @@ std::string corner_text(const Joint& corner, bool is_last) {
          (is_last ? " from v = " + start + " to " + end : "");
 }
 
+// The middles of the quarters of those pieces that reach into a range.
+std::vector<double> within_pieces(const KnotVector& knots, double start, double end) {
+  constexpr int parts = 4;
+  const std::vector<double> ends = knots.breakpoints();
+  std::vector<double> middles;
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    if (ends[k + 1] < start || ends[k] > end) continue;
+    for (int part = 0; part < parts; ++part) {
+      middles.push_back(ends[k] + (ends[k + 1] - ends[k]) * (part + 0.5) / parts);
+    }
+  }
+  return middles;
+}
+
+// Along a fillet and where it begins and ends; of the side that is hollow, a fillet's own.
+double tightest_radius_m(const Surface& merged, const Joint& corner) {
+  double least = std::numeric_limits<double>::infinity();
+  const KnotVector &u = merged.u, &v = merged.v;
+  for (const double at_v : within_pieces(v, corner.blend_start, corner.blend_end)) {
+    for (const double at_u : within_pieces(u, u.domain_start(), u.domain_end())) {
+      const auto curvatures = principal_curvatures(evaluate(merged, at_u, at_v));
+      if (curvatures && curvatures->smallest < 0.0) least = std::min(least, -1.0 / curvatures->smallest);
+    }
+  }
+  return least;
+}
+
 }  // namespace
 
 void add_joints(FactSheet& facts, const std::vector<MergedJoint>& joints) {
@@ -79,6 +110,17 @@ void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::
         "the blend was not applied to " + edges_text(merged.a, merged.b) +
         (merged.joint.bridged ? ": the gap between them is longer" : ": they meet as smoothly as asked"));
   }
+}
+
+void add_tight_fillet(const Surface& merged, const Joint& corner, double fillet_m, int continuity,
+                      std::vector<std::string>& remarks) {
+  constexpr double tight_share = 0.8;
+  const double least_m = tightest_radius_m(merged, corner);
+  if (!(least_m < tight_share * fillet_m)) return;
+  remarks.push_back("the fillet is as tight as about " + short_length_text(least_m) + " somewhere, where " +
+                    short_length_text(fillet_m) + " was asked for" +
+                    (continuity > 1 ? ": an arc is not C2 with what it touches; C1 keeps its radius"
+                                    : "; a smaller tolerance brings it nearer"));
 }
 
 void add_left_open(const std::vector<std::pair<PatchEdge, PatchEdge>>& pairs,

@@ -20,6 +20,10 @@ void add_corners(FactSheet& facts, const std::vector<Joint>& corners);
 // Of a blend that was asked for: where it was of no use.
 void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::string>& remarks);
 
+// Of a fillet that came out tighter than asked.
+void add_tight_fillet(const Surface& merged, const Joint& corner, double fillet_m, int continuity,
+                      std::vector<std::string>& remarks);
+
 void add_left_open(const std::vector<std::pair<PatchEdge, PatchEdge>>& pairs,
                    std::vector<std::string>& remarks);
 
