@@ -115,7 +115,8 @@ void find_bad_spots(const Surface& surface, const TrimmedArea& area, SurfaceChec
   }
 }
 
-void find_self_meetings(const Surface& surface, const TrimmedArea& area, SurfaceCheck& check) {
+void find_self_meetings(const Surface& surface, const TrimmedArea& area, const StudyWatch& watch,
+                        SurfaceCheck& check) {
   const auto grid = make_nested_grid(surface.u, surface.v, surface.net.size() > large_net ? 0 : 1);
   if (!grid) {
     check.self_meetings_complete = false;
@@ -124,6 +125,7 @@ void find_self_meetings(const Surface& surface, const TrimmedArea& area, Surface
   SurfaceSelfCollider collider(grid.value());
   SelfQuery query;
   query.closed = check.closing.closedness == Closedness::solid;
+  query.watch = watch;
   check.self_meetings_complete = !collider.collide(surface, query).overflow;
   for (const PairContact& contact : collider.contacts()) {
     const PairParameters& at = contact.pair.at;
@@ -148,7 +150,7 @@ std::optional<SurfaceCheck> check_surface(const Surface& surface, const TrimmedA
   check.bending = bending_measure(surface, area);
   find_bad_spots(surface, area, check);
   if (!asked(0.5)) return std::nullopt;
-  find_self_meetings(surface, area, check);
+  find_self_meetings(surface, area, part_watch(asked, 0.5, 0.6), check);
   if (!asked(0.6)) return std::nullopt;
   if (check.encloses() && check.mass.volume_m3 > 0.0) {
     check.thinnest = ThicknessSearch(surface).smallest(part_watch(asked, 0.6, 1.0));

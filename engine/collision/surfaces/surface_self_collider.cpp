@@ -48,6 +48,8 @@ SurfaceSelfCollider::SurfaceSelfCollider(const NestedGrid& nested)
 
 SelfResult SurfaceSelfCollider::collide(const Surface& surface, const SelfQuery& query) {
   contacts_.clear();
+  query_ = &query;
+  stopped_ = false;
   levels_.begin(surface);
   folds_.begin();
   tree_.update(levels_);
@@ -58,14 +60,23 @@ SelfResult SurfaceSelfCollider::collide(const Surface& surface, const SelfQuery&
   take_pairs(level);
   // Coarser, cells that are joined are larger, and what they do with each other is not told.
   const bool coarser = overflow_;
-  while (overflow_ && level > 0) take_pairs(--level);
+  while (overflow_ && level > 0 && !stopped_) take_pairs(--level);
   const std::vector<Region>& regions = regions_.group(pairs_);
   for (const Region& region : regions) {
     const RegionCells cells = cells_of(levels_, levels_, pairs_, region);
+    if (stopped_) break;
     if (is_mirror_of_earlier(region) || !touches(cells)) continue;
     contacts_.push_back(contact_of(cells, query));
   }
-  return {!contacts_.empty(), coarser || search_.overflow()};
+  query_ = nullptr;
+  return {!contacts_.empty(), coarser || search_.overflow(), stopped_};
+}
+
+// Not for every pair: to look for a signal is a call of the system.
+bool SurfaceSelfCollider::goes_on(double share) {
+  constexpr std::uint64_t between_looks = 64;
+  if (!stopped_ && query_->watch && asked_++ % between_looks == 0) stopped_ = !query_->watch(share);
+  return !stopped_;
 }
 
 // By the samples of the two edges.
@@ -119,7 +130,7 @@ void SurfaceSelfCollider::take_pairs(int level) {
   nodes_.clear();
   nodes_.push_back({tree_.root(), tree_.root()});
   const int step = levels_.step(0);
-  while (!nodes_.empty() && !overflow_) {
+  while (!nodes_.empty() && !overflow_ && goes_on(0.0)) {
     const auto [a, b] = nodes_.back();
     nodes_.pop_back();
     const ElementTree::Node &one = tree_.node(a), &other = tree_.node(b);
@@ -217,6 +228,8 @@ bool SurfaceSelfCollider::touches(const RegionCells& cells) {
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }
   for (const CellPair& pair : cells.pairs) {
+    const auto searched = static_cast<double>(&pair - pairs_.data());
+    if (!goes_on(searched / static_cast<double>(pairs_.size()))) return false;
     search_.search(pair.first, pair.second, infinity, touch_tolerance_m);
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "engine/collision/levels/element_tree.h"
@@ -20,12 +22,15 @@ struct SelfQuery {
   // Whether it bounds a body: du x dv then points outwards. An open surface has two sides, and the shorter
   // way out counts.
   bool closed = false;
+  // Told the share that is searched, 0 to 1; false stops the search. May be empty.
+  std::function<bool(double share)> watch = {};
 };
 
 struct SelfResult {
   bool touching = false;  // decided to touch_tolerance_m
   // A capacity was met, and a contact may be missing. Remedy: a surface of fewer elements or fewer levels.
   bool overflow = false;
+  bool stopped = false;  // by the watch: what was found until then
 };
 
 // One owner, one thread; allocates only when made. The grid must outlive it.
@@ -71,6 +76,7 @@ class SurfaceSelfCollider {
   void split(const CellPair& pair);
   bool is_mirror_of_earlier(const Region& region) const;
   bool touches(const RegionCells& cells);
+  bool goes_on(double share);
   PairContact contact_of(const RegionCells& cells, const SelfQuery& query) const;
   void settle(PairContact& contact, const PairParameters& from, double outside, const SelfQuery& query,
               double& shortest) const;
@@ -86,7 +92,9 @@ class SurfaceSelfCollider {
   std::vector<CellPair> path_;             // working memory: what is left to split of two elements
   std::vector<std::array<int, 2>> nodes_;  // working memory: a path down the tree, twice
   std::vector<PairContact> contacts_;
-  bool overflow_ = false;
+  bool overflow_ = false, stopped_ = false;
+  const SelfQuery* query_ = nullptr;  // while it is answered
+  std::uint64_t asked_ = 0;
 };
 
 }  // namespace spoonbill

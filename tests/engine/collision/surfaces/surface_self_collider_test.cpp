@@ -209,5 +209,20 @@ TEST(SurfaceSelf, NoCrossingOfDenseTrianglesIsMissed) {
   EXPECT_GT(clear, random_cases(60, 1'000) / 10);
 }
 
+TEST(SurfaceSelfCollider, StopsWhenAskedTo) {
+  const Surface sheet = looped_sheet();
+  const NestedGrid nested = make_nested_grid(sheet.u, sheet.v, 2).value();
+  SurfaceSelfCollider collider(nested);
+  SelfQuery query;
+  query.watch = [](double share) { return share < 0.0; };
+  const SelfResult stopped = collider.collide(sheet, query);
+  EXPECT_TRUE(stopped.stopped);
+  EXPECT_FALSE(stopped.touching);
+  query.watch = [](double share) { return share <= 1.0; };
+  const SelfResult whole = collider.collide(sheet, query);
+  EXPECT_FALSE(whole.stopped);
+  EXPECT_TRUE(whole.touching);
+}
+
 }  // namespace
 }  // namespace spoonbill
