@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,7 +13,9 @@
 #include "app/commands/new_kinds.h"
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
+#include "app/interrupt.h"
 #include "app/report/document_facts.h"
+#include "app/report/progress_bar.h"
 #include "app/report/quantity_text.h"
 #include "app/start/shipped_materials.h"
 #include "app/start/starting_document.h"
@@ -36,14 +40,43 @@ struct NewOptions {
   bool json = false;
 };
 
+// Shapes are mostly made at once: a bar for those that keep a person waiting, and Ctrl+C is asked for.
+class Making {
+ public:
+  explicit Making(Console& console) : bar_(console, "Making", false) {}
+
+  bool goes_on(double share) {
+    constexpr double whole = 1000.0;
+    constexpr std::chrono::milliseconds patience{500};
+    if (std::chrono::steady_clock::now() - start_ > patience) {
+      bar_.show(static_cast<std::uint64_t>(whole * share), static_cast<std::uint64_t>(whole));
+    }
+    stopped_ = stopped_ || interrupt_.requested();
+    return !stopped_;
+  }
+  bool stopped() const { return stopped_; }
+  void answer() { interrupt_.answer(); }
+
+ private:
+  InterruptWatch interrupt_;
+  ProgressBar bar_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  bool stopped_ = false;
+};
+
+// Of the work, where a shape is to be fitted and then looked at for where it meets itself.
+constexpr double fit_share = 0.8;
+
 // Lines and profiles may lead a shape through itself.
-Status check_apart(const Surface& surface, bool closed) {
+Status check_apart(const Surface& surface, bool closed, Making& making) {
   const auto grid = make_nested_grid(surface.u, surface.v, 0);
   if (!grid) return grid.error();
   SurfaceSelfCollider collider(grid.value());
   SelfQuery query;
   query.closed = closed;
-  if (!collider.collide(surface, query).touching) return {};
+  query.watch = [&](double share) { return making.goes_on(fit_share + (1.0 - fit_share) * share); };
+  const SelfResult result = collider.collide(surface, query);
+  if (result.stopped || !result.touching) return {};
   if (collider.contacts().empty()) return Error{"the shape passes through itself; make it thinner or wider"};
   return Error{"the shape passes through itself near " + place_text(collider.contacts()[0].pair.first_m) +
                "; make it thinner or its line wider there"};
@@ -63,6 +96,22 @@ void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShap
   if (closed) facts.add("Volume", volume_text(mass.volume_m3), "volume_m3", mass.volume_m3);
 }
 
+Result<FittedShape> fit_with_progress(const NewOptions& options, const NewShape& made, ShapeFit fit,
+                                      Console& console) {
+  Making making(console);
+  fit.watch = [&](double share) { return making.goes_on(fit_share * share); };
+  auto fitted = fit_shape(made.shape, fit);
+  Status apart;
+  const bool may_meet = fitted && !(fitted->deviation_m < 0.5 * made.reach_m);
+  if (may_meet) apart = check_apart(fitted->surface, made.shape.is_closed(), making);
+  if (making.stopped()) {
+    making.answer();
+    return Error{"stopped; " + options.out.string() + " was not written"};
+  }
+  if (!apart) return apart.error();
+  return fitted;
+}
+
 Status make_new(const NewOptions& options, const NewKind& kind, Console& console) {
   const auto material = shipped_material(options.material);
   if (!material) return material.error();
@@ -71,9 +120,8 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   ShapeFit fit;
   fit.tolerance_m = options.tolerance_m.value_or(usual_tolerance_m(made->shape));
   if (options.control) fit.control_counts = {{options.control->width, options.control->height}};
-  auto fitted = fit_shape(made->shape, fit);
+  auto fitted = fit_with_progress(options, made.value(), fit, console);
   if (!fitted) return fitted.error();
-  if (Status alone = check_apart(fitted->surface, made->shape.is_closed()); !alone) return alone;
   const std::string name = options.name.empty() ? kind.parser->get_name() : options.name;
   const Document document =
       starting_document(name, fitted->surface, material.value(), made->shell_thickness_m);
@@ -104,8 +152,8 @@ void add_fit_options(CLI::App& parser, NewOptions& options) {
       parser, "--tolerance", "LENGTH",
       [](const std::string& text) { return parse_length(text, tolerance_range_m); },
       [&options](double tolerance_m) { options.tolerance_m = tolerance_m; },
-      "How far the surface may be from the exact shape; 0.01mm unless told, less below 10mm and more above "
-      "1m");
+      "How far the surface may be from the exact shape; 0.01mm unless told, less below 10mm, more of "
+      "what is larger than 1m every way");
 }
 
 }  // namespace

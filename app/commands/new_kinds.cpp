@@ -28,7 +28,7 @@ std::shared_ptr<std::vector<double>> add_size(CLI::App& parser, std::size_t coun
 Result<NewShape> new_shape(const LumpSize& size) {
   auto shape = lump_shape(size);
   if (!shape) return shape.error();
-  return NewShape{std::move(shape).value()};
+  return NewShape{std::move(shape).value(), {}, reach_m(size)};
 }
 
 NewKind add_sphere(CLI::App& root) {

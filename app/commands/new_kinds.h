@@ -20,6 +20,7 @@ namespace spoonbill {
 struct NewShape {
   ExactShape shape;
   std::optional<double> shell_thickness_m = {};  // of an open one
+  double reach_m = 0.0;                          // as of a lump; 0 where it is not known
 };
 
 struct NewKind {

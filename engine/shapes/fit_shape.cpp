@@ -29,6 +29,20 @@ constexpr int most_rounds = 12;
 
 using Lines = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// How many rounds it takes shows at the last: each step takes its part of what is left.
+class Progress {
+ public:
+  explicit Progress(const ShapeFit& fit) : watch_(&fit.watch) {}
+
+  void step() { done_ += 0.1 * (1.0 - done_); }
+  bool goes_on() const { return !*watch_ || (*watch_)(done_); }
+  static Error stopped() { return Error{"stopped"}; }
+
+ private:
+  const std::function<bool(double)>* watch_;
+  double done_ = 0.0;
+};
+
 struct DirectionError {
   std::vector<double> at, error_m;
 };
@@ -61,7 +75,9 @@ std::vector<double> between(const std::vector<double>& parameters, const ShapeDi
 // What a fit along one direction alone leaves across the shape: how far it slides along the shape is no
 // error, unless parameters are to be kept.
 Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const ShapeKnots& knots,
-                                   const std::vector<double>& lines, bool keeps_parameters) {
+                                   const std::vector<double>& lines, bool keeps_parameters,
+                                   Progress& progress) {
+  progress.step();
   DirectionError result;
   result.at = knots.parameters(samples_in_span);
   const KnotVector vector = knots.knots();
@@ -70,6 +86,7 @@ Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const 
   const auto point = [&](double t, double line) { return along_u ? shape.at(t, line) : shape.at(line, t); };
   Lines samples(static_cast<Eigen::Index>(result.at.size()), static_cast<Eigen::Index>(3 * lines.size()));
   for (Eigen::Index i = 0; i < samples.rows(); ++i) {
+    if (!progress.goes_on()) return Progress::stopped();
     for (std::size_t l = 0; l < lines.size(); ++l) {
       samples.block<1, 3>(i, static_cast<Eigen::Index>(3 * l)) =
           point(result.at[static_cast<std::size_t>(i)], lines[l]).transpose();
@@ -78,6 +95,7 @@ Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const 
   if (!samples.allFinite()) return Error{"shape: not finite everywhere; its sizes must be"};
   const Lines residual = fitted(inverse.value(), blending_matrix(vector, result.at, 0), samples) - samples;
   for (Eigen::Index i = 0; i < samples.rows(); ++i) {
+    if (!progress.goes_on()) return Progress::stopped();
     const double t = result.at[static_cast<std::size_t>(i)];
     double largest = 0.0;
     for (std::size_t l = 0; l < lines.size(); ++l) {
@@ -110,7 +128,10 @@ void settle_pole(const ExactShape& shape, bool at_start, ControlNet& net) {
   }
 }
 
-Result<Surface> fit_with(const ExactShape& shape, const ShapeKnots& u, const ShapeKnots& v) {
+Result<Surface> fit_with(const ExactShape& shape, const ShapeKnots& u, const ShapeKnots& v,
+                         Progress& progress) {
+  progress.step();
+  if (!progress.goes_on()) return Progress::stopped();
   PointGrid grid{u.parameters(samples_in_span), v.parameters(samples_in_span), {}};
   for (const double at_u : grid.u) {
     for (const double at_v : grid.v) grid.points_m.push_back(shape.at(at_u, at_v));
@@ -130,10 +151,12 @@ struct Measure {
   bool folds = false;
 };
 
-Measure measure(const ExactShape& shape, const Surface& surface, const ShapeKnots& u, const ShapeKnots& v,
-                bool keeps_parameters) {
+Result<Measure> measure(const ExactShape& shape, const Surface& surface, const ShapeKnots& u,
+                        const ShapeKnots& v, bool keeps_parameters, Progress& progress) {
+  progress.step();
   Measure result;
   for (const double at_u : between(u.parameters(checks_in_span), shape.u)) {
+    if (!progress.goes_on()) return Progress::stopped();
     for (const double at_v : between(v.parameters(checks_in_span), shape.v)) {
       const SurfacePoint point = evaluate(surface, at_u, at_v);
       if (!(point.du.cross(point.dv).dot(tangents(shape, at_u, at_v).normal) >= 0.0)) result.folds = true;
@@ -148,9 +171,10 @@ Measure measure(const ExactShape& shape, const Surface& surface, const ShapeKnot
 }
 
 // Where parameters are kept: more densely, on the edges too, and about the worst sample.
-Measure measure_closely(const ExactShape& shape, const Surface& surface, const ShapeKnots& u,
-                        const ShapeKnots& v) {
-  Measure result = measure(shape, surface, u, v, true);
+Result<Measure> measure_closely(const ExactShape& shape, const Surface& surface, const ShapeKnots& u,
+                                const ShapeKnots& v, Progress& progress) {
+  auto result = measure(shape, surface, u, v, true, progress);
+  if (!result) return result;
   const auto with_ends = [](const ShapeKnots& knots, const ShapeDirection& direction) {
     std::vector<double> all = between(knots.parameters(2 * checks_in_span), direction);
     all.insert(all.begin(), direction.start());
@@ -167,6 +191,7 @@ Measure measure_closely(const ExactShape& shape, const Surface& surface, const S
   };
   double worst_u = shape.u.start(), worst_v = shape.v.start(), worst_m = 0.0;
   for (const double at_u : along_u) {
+    if (!progress.goes_on()) return Progress::stopped();
     for (const double at_v : along_v) {
       const double here_m = apart_m(at_u, at_v);
       if (here_m <= worst_m) continue;
@@ -178,18 +203,20 @@ Measure measure_closely(const ExactShape& shape, const Surface& surface, const S
   const auto spacing = [](const ShapeDirection& direction, const std::vector<double>& all) {
     return (direction.end() - direction.start()) / static_cast<double>(all.size());
   };
-  result.deviation_m =
-      std::max(result.deviation_m,
+  result->deviation_m =
+      std::max(result->deviation_m,
                peak_near(apart_m, worst_u, worst_v, spacing(shape.u, along_u), spacing(shape.v, along_v)));
   return result;
 }
 
-Measure measured(const ExactShape& shape, const Surface& surface, const ShapeKnots& u, const ShapeKnots& v,
-                 bool keeps_parameters) {
-  return keeps_parameters ? measure_closely(shape, surface, u, v) : measure(shape, surface, u, v, false);
+Result<Measure> measured(const ExactShape& shape, const Surface& surface, const ShapeKnots& u,
+                         const ShapeKnots& v, bool keeps_parameters, Progress& progress) {
+  return keeps_parameters ? measure_closely(shape, surface, u, v, progress)
+                          : measure(shape, surface, u, v, false, progress);
 }
 
 Result<FittedShape> fit_counted(const ExactShape& shape, const ShapeFit& fit) {
+  Progress progress(fit);
   const auto [u_count, v_count] = *fit.control_counts;
   auto u = ShapeKnots::counted(shape.u, fit.degree, u_count);
   auto v = ShapeKnots::counted(shape.v, fit.degree, v_count);
@@ -201,19 +228,20 @@ Result<FittedShape> fit_counted(const ExactShape& shape, const ShapeFit& fit) {
     ShapeKnots& knots = along_u ? u.value() : v.value();
     while (knots.control_count() < (along_u ? u_count : v_count)) {
       const auto error =
-          error_along(shape, along_u, knots, along_u ? v_lines : u_lines, fit.keeps_parameters);
+          error_along(shape, along_u, knots, along_u ? v_lines : u_lines, fit.keeps_parameters, progress);
       if (!error) return error.error();
       knots.refine_worst(error->at, error->error_m);
     }
   }
-  auto surface = fit_with(shape, u.value(), v.value());
+  auto surface = fit_with(shape, u.value(), v.value(), progress);
   if (!surface) return surface.error();
-  const Measure found = measured(shape, surface.value(), u.value(), v.value(), fit.keeps_parameters);
-  if (found.folds) {
+  const auto found = measured(shape, surface.value(), u.value(), v.value(), fit.keeps_parameters, progress);
+  if (!found) return found.error();
+  if (found->folds) {
     return Error{"with " + std::to_string(u_count) + " x " + std::to_string(v_count) +
                  " control points the surface folds over; give it more"};
   }
-  return FittedShape{std::move(surface).value(), found.deviation_m};
+  return FittedShape{std::move(surface).value(), found->deviation_m};
 }
 
 Error too_fine(const ShapeFit& fit, const std::string& direction) {
@@ -223,10 +251,10 @@ Error too_fine(const ShapeFit& fit, const std::string& direction) {
 }
 
 Status refine_until(const ExactShape& shape, bool along_u, double allowed_m, const ShapeFit& fit,
-                    const std::vector<double>& lines, ShapeKnots& knots) {
+                    const std::vector<double>& lines, ShapeKnots& knots, Progress& progress) {
   for (;;) {
     if (knots.control_count() > most_control_points) return too_fine(fit, along_u ? "u" : "v");
-    const auto error = error_along(shape, along_u, knots, lines, fit.keeps_parameters);
+    const auto error = error_along(shape, along_u, knots, lines, fit.keeps_parameters, progress);
     if (!error) return error.error();
     if (!knots.refine(error->at, error->error_m, allowed_m)) return {};
   }
@@ -242,16 +270,21 @@ Result<FittedShape> fit_shape(const ExactShape& shape, const ShapeFit& fit) {
   const std::vector<double> u_lines = between(u.parameters(lines_in_cell), shape.u);
   const std::vector<double> v_lines = between(v.parameters(lines_in_cell), shape.v);
   double allowed_m = direction_share * fit.tolerance_m;
+  Progress progress(fit);
   for (int round = 0; round < most_rounds; ++round) {
-    if (Status done = refine_until(shape, true, allowed_m, fit, v_lines, u); !done) return done.error();
-    if (Status done = refine_until(shape, false, allowed_m, fit, u_lines, v); !done) return done.error();
-    auto surface = fit_with(shape, u, v);
-    if (!surface) return surface.error();
-    const Measure found = measured(shape, surface.value(), u, v, fit.keeps_parameters);
-    if (!found.folds && found.deviation_m <= fit.tolerance_m) {
-      return FittedShape{std::move(surface).value(), found.deviation_m};
+    for (const bool along_u : {true, false}) {
+      const Status done = refine_until(shape, along_u, allowed_m, fit, along_u ? v_lines : u_lines,
+                                       along_u ? u : v, progress);
+      if (!done) return done.error();
     }
-    allowed_m *= found.folds ? 0.25 : std::clamp(fit.tolerance_m / found.deviation_m, 0.1, 0.8);
+    auto surface = fit_with(shape, u, v, progress);
+    if (!surface) return surface.error();
+    const auto found = measured(shape, surface.value(), u, v, fit.keeps_parameters, progress);
+    if (!found) return found.error();
+    if (!found->folds && found->deviation_m <= fit.tolerance_m) {
+      return FittedShape{std::move(surface).value(), found->deviation_m};
+    }
+    allowed_m *= found->folds ? 0.25 : std::clamp(fit.tolerance_m / found->deviation_m, 0.1, 0.8);
   }
   return too_fine(fit, "u or v");
 }

@@ -1,6 +1,7 @@
 #include "engine/shapes/lump.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace spoonbill {
 
@@ -28,7 +29,34 @@ Result<ExactShape> shape_of(const TorusSize& size) {
   return torus_shape(size);
 }
 
+double reach_of(const SphereSize& size) {
+  return size.radius_m;
+}
+// What is convex curves nowhere more than its roundings.
+double reach_of(const BoxSize& size) {
+  return size.rounding_m;
+}
+double reach_of(const CylinderSize& size) {
+  return size.rounding_m;
+}
+double reach_of(const ConeSize& size) {
+  return size.rounding_m;
+}
+double reach_of(const PlateSize& size) {
+  return 0.5 * size.thickness_m;
+}
+double reach_of(const SheetSize&) {
+  return std::numeric_limits<double>::infinity();
+}
+double reach_of(const TorusSize& size) {
+  return std::min(size.tube_radius_m, size.ring_radius_m - size.tube_radius_m);
+}
+
 }  // namespace
+
+double reach_m(const LumpSize& size) {
+  return std::visit([](const auto& sizes) { return reach_of(sizes); }, size);
+}
 
 Result<ExactShape> lump_shape(const LumpSize& size) {
   return std::visit([](const auto& sizes) { return shape_of(sizes); }, size);
@@ -47,8 +75,8 @@ double usual_tolerance_m(const ExactShape& shape) {
       high = high.cwiseMax(point);
     }
   }
-  const double size = (high - low).maxCoeff();
-  return std::clamp(1e-5, 1e-5 * size, 1e-3 * size);
+  const Vector3 size = high - low;
+  return std::min(1e-5 * std::max(1.0, size.minCoeff()), 1e-3 * size.maxCoeff());
 }
 
 }  // namespace spoonbill

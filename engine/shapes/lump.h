@@ -23,8 +23,12 @@ using LumpSize = std::variant<SphereSize, BoxSize, CylinderSize, ConeSize, Plate
 // Refused with the size that is out of range.
 Result<ExactShape> lump_shape(const LumpSize& size);
 
-// The tolerance of a lump's fit where none is named: 0.01 mm, but at most a thousandth of its body's size and
-// at least a hundredth of that.
+// Nearer than this to the shape, every point has but one place of it nearest: a surface within it that does
+// not fold meets itself nowhere (the reach of Federer 1959). Without limit of a sheet.
+double reach_m(const LumpSize& size);
+
+// The tolerance of a lump's fit where none is named: 0.01 mm; a thousandth of a body smaller than 10 mm, a
+// hundred-thousandth of one that is larger than 1 m every way.
 double usual_tolerance_m(const ExactShape& shape);
 
 }  // namespace spoonbill

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <numbers>
 
 #include "app/program.h"
@@ -187,6 +188,35 @@ TEST(New, TakesInchesByBothNames) {
     const Outcome outcome = run({"new", "box", "--size", size, "--out", place.text("box.json"), "--json"});
     ASSERT_EQ(outcome.code, exit_done) << outcome.err;
     EXPECT_NEAR(json_of(outcome.out)["size_mm"][0], 50.8, 0.03) << size;  // both faces within 0.01 mm
+  }
+}
+
+TEST(New, StopsWhenAskedTo) {
+  const Workplace place;
+  place.write("old.json", "precious");
+  sigset_t interrupt, before;
+  sigemptyset(&interrupt);
+  sigaddset(&interrupt, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &interrupt, &before);
+  raise(SIGINT);
+  const Outcome outcome = run({"new", "sphere", "--out", place.text("old.json")});
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  EXPECT_EQ(outcome.code, exit_failed);
+  EXPECT_EQ(outcome.err, "spoonbill: stopped; " + place.text("old.json") + " was not written\n");
+  EXPECT_EQ(content_of(place.path("old.json")), "precious");
+}
+
+// Of thin and wide lumps it is known that they meet themselves nowhere; looking would take minutes.
+TEST(New, MakesWideThinLumpsAtOnce) {
+  const Workplace place;
+  for (const std::vector<std::string>& lump :
+       std::vector<std::vector<std::string>>{{"torus", "--ring", "10m", "--tube", "0.1mm"},
+                                             {"cone", "--radius", "1m", "--height", "1mm"},
+                                             {"cylinder", "--radius", "5m", "--height", "0.1mm"},
+                                             {"plate", "--size", "1000x10mm", "--thickness", "2mm"}}) {
+    const Outcome outcome = run(with({"new"}, with(lump, {"--out", place.text("lump.json"), "--json"})));
+    ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+    EXPECT_LE(json_of(outcome.out)["deviation_m"], 1e-5);
   }
 }
 

@@ -56,6 +56,42 @@ TEST(FitShape, SaysWhatATightToleranceWants) {
   EXPECT_NE(refused.error().message.find("tolerance"), std::string::npos) << refused.error().message;
 }
 
+TEST(FitShape, TellsHowFarItIsAndStops) {
+  ShapeFit fit;
+  double last = 0.0;
+  int asked = 0;
+  fit.watch = [&](double share) {
+    EXPECT_GE(share, last);
+    EXPECT_LE(share, 1.0);
+    last = share;
+    ++asked;
+    return true;
+  };
+  ASSERT_TRUE(fit_shape(wave(0.02), fit));
+  EXPECT_GT(asked, 100);
+  for (int stop = 1; stop < asked; stop += 7) {
+    int left = stop;
+    fit.watch = [&](double) { return --left > 0; };
+    const auto stopped = fit_shape(wave(0.02), fit);
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().message, "stopped");
+  }
+}
+
+// Before any of the work: a break beside which more cells are needed than there may be.
+TEST(FitShape, RefusesMoreBreaksThanControlPointsAtOnce) {
+  ExactShape shape = wave(0.0);
+  shape.v.breaks.clear();
+  for (int k = 0; k <= 300; ++k) shape.v.breaks.push_back(k / 300.0);
+  shape.at = [](double, double) -> Vector3 {
+    ADD_FAILURE() << "the shape was sampled";
+    return Vector3::Zero();
+  };
+  const auto refused = fit_shape(shape);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("along v"), std::string::npos) << refused.error().message;
+}
+
 TEST(FitShape, RefusesAShapeThatIsNotFinite) {
   ExactShape shape = wave(0.0);
   shape.at = [](double u, double v) { return Vector3(u, 1.0 / (v - 0.5), v); };
