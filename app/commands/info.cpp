@@ -40,12 +40,13 @@ void add_duration(FactSheet& facts, std::uint64_t ticks) {
 }
 
 bool holds_lattices(const Scene& scene) {
+  if (!check_body_count(scene)) return false;
   return std::all_of(scene.bodies.begin(), scene.bodies.end(),
                      [](const Body& body) { return lattice_of(body).ok(); });
 }
 
-// A surface that holds no lattice may still be looked at, merged and exported; what is refused for another
-// reason is an error here too.
+// What holds no lattice, or more bodies than are sculpted together, may still be looked at, merged and
+// exported; what is refused for another reason is an error here too.
 Status add_simulated(FactSheet& facts, const Document& document, const std::string& source,
                      Console& console) {
   add_document_facts(facts, document);

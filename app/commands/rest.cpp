@@ -79,6 +79,9 @@ Status rest(const RestOptions& options, Console& console) {
   auto document = read_document_file(options.model);
   if (!document) return document.error();
   Scene& scene = document->scene;
+  if (Status few = check_body_count(scene); !few) {
+    return Error{options.model.string() + ": " + few.error().message};
+  }
   FactSheet facts;
   facts.add("File", options.model.string(), "file", options.model.string());
   Json list = Json::array();

@@ -23,6 +23,7 @@ Result<Document> document_of(const CadModel& model, const std::string& name) {
     body.name = surface.name;
     body.surface = surface.surface;
     body.trims = surface.trims;
+    body.solid = surface.solid;
     document.scene.bodies.push_back(std::move(body));
   }
   return document;

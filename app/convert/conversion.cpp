@@ -53,8 +53,10 @@ Status check_kinds(const ConversionRequest& request) {
   if (out == ModelKind::unknown) {
     return about(request.out, "names no format; " + known + ", .stl, .obj, .ply and .3mf are written");
   }
-  if (in == ModelKind::document && out == ModelKind::document) {
-    return about(request.out, "is a document like the one that is read; choose another ending");
+  if (in == ModelKind::document && out == ModelKind::document && request.bodies.empty()) {
+    return about(
+        request.out,
+        "is a document like the one that is read; choose another ending, or some bodies with --bodies");
   }
   std::error_code ignored;
   if (std::filesystem::equivalent(request.in, request.out, ignored)) {
@@ -66,6 +68,9 @@ Status check_kinds(const ConversionRequest& request) {
 // An option that changes nothing is a mistake.
 Status check_options(const ConversionRequest& request) {
   const ModelKind in = kind_of(request.in), out = kind_of(request.out);
+  if (request.unit && in == ModelKind::document && out == ModelKind::document) {
+    return about(request.out, "is in millimetres like the document that is read; leave --unit out");
+  }
   if (request.chord_m && out != ModelKind::mesh) {
     return about(request.out, "is no mesh, which has no chord error; leave --chord out");
   }
@@ -102,6 +107,7 @@ CadModel model_of(std::vector<Body> bodies, ConversionReport& report) {
     surface.name = std::move(names[k]);
     surface.surface = std::move(body.surface);
     surface.trims = std::move(body.trims);
+    surface.solid = std::move(body.solid);
     model.surfaces.push_back(std::move(surface));
   }
   return model;
@@ -124,17 +130,18 @@ Result<CadModel> read_model(const ConversionRequest& request, const CadChild& ch
 }
 
 // Those that were asked for, in that order.
-Status choose(const ConversionRequest& request, CadModel& model) {
+template <class Item>
+Status choose(const ConversionRequest& request, std::vector<Item>& items) {
   if (request.bodies.empty()) return {};
-  std::vector<CadSurface> chosen;
+  std::vector<Item> chosen;
   for (const int place : request.bodies) {
-    if (static_cast<std::size_t>(place) > model.surfaces.size()) {
-      return about(request.in, "has " + count_text(model.surfaces.size(), "body", "bodies") +
-                                   ", and --bodies names " + std::to_string(place));
+    if (static_cast<std::size_t>(place) > items.size()) {
+      return about(request.in, "has " + count_text(items.size(), "body", "bodies") + ", and --bodies names " +
+                                   std::to_string(place));
     }
-    chosen.push_back(model.surfaces[static_cast<std::size_t>(place) - 1]);
+    chosen.push_back(items[static_cast<std::size_t>(place) - 1]);
   }
-  model.surfaces = std::move(chosen);
+  items = std::move(chosen);
   return {};
 }
 
@@ -198,7 +205,25 @@ Status write_native(const CadModel& model, const ConversionRequest& request, Con
   const auto document = document_of(model, clean_cad_name(request.out.stem().string(), "model"));
   if (!document) return about(request.in, document.error().message);
   report.unit_out = "mm";
+  const std::size_t bodies = document->scene.bodies.size();
+  if (bodies > static_cast<std::size_t>(sculpted_body_count_range.high)) {
+    report.notes.push_back("of the " + std::to_string(bodies) + " bodies at most " +
+                           std::to_string(sculpted_body_count_range.high) +
+                           " are sculpted together; choose some with --bodies 1,3-5");
+  }
   return write_document(document.value(), request.out);
+}
+
+// Some of a document's bodies, as they are.
+Result<ConversionReport> choose_from_document(const ConversionRequest& request) {
+  auto document = read_document(request.in);
+  if (!document) return document.error();
+  if (Status chosen = choose(request, document->scene.bodies); !chosen) return chosen.error();
+  if (Status written = write_document(document.value(), request.out); !written) return written.error();
+  ConversionReport report, told;
+  report.unit_in = report.unit_out = millimetre.name;
+  report.surfaces = model_of(std::move(document->scene.bodies), told).surfaces;
+  return report;
 }
 
 CadChild child_of(const ConversionRequest& request, const ConversionWatch& watch, double from, double to) {
@@ -253,10 +278,13 @@ Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::file
 Result<ConversionReport> convert_file(const ConversionRequest& request, const ConversionWatch& watch) {
   if (Status kinds = check_kinds(request); !kinds) return kinds.error();
   if (Status options = check_options(request); !options) return options.error();
+  if (kind_of(request.in) == ModelKind::document && kind_of(request.out) == ModelKind::document) {
+    return choose_from_document(request);
+  }
   ConversionReport report;
   auto model = read_model(request, child_of(request, watch, 0.0, share_of_reading), report);
   if (!model) return model.error();
-  if (Status chosen = choose(request, model.value()); !chosen) return chosen.error();
+  if (Status chosen = choose(request, model->surfaces); !chosen) return chosen.error();
   return written_report(std::move(model).value(), request, watch, std::move(report));
 }
 

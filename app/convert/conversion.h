@@ -44,8 +44,8 @@ struct ConversionWatch {
 
 // The file's kind is the ending of its name: .json; .step, .stp, .iges, .igs; .stl, .obj, .ply, .3mf. Nothing
 // stands under the name of `out` before it is whole, and a file that stood there stays as it is when
-// anything fails. Refused: a mesh to come in, two documents, options that say nothing to these files, and
-// whatever the readers and writers refuse.
+// anything fails. Refused: a mesh to come in, two documents unless bodies are chosen, options that say
+// nothing to these files, and whatever the readers and writers refuse.
 Result<ConversionReport> convert_file(const ConversionRequest& request, const ConversionWatch& watch);
 
 // Whether the ending is that of a CAD file or a mesh.

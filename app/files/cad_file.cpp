@@ -29,7 +29,7 @@ constexpr std::size_t file_bytes_limit = std::size_t{512} << 20;
 const char* const smaller = "export fewer or simpler faces";
 const char* const fewer = "write fewer or simpler bodies (--bodies)";
 constexpr std::size_t longest_line = 400;  // of a note, in bytes
-constexpr Range<int> note_count_range{0, 1000}, count_range{0, 1000000};
+constexpr Range<int> note_count_range{0, 2000}, count_range{0, 1000000};
 
 std::string program_of(const CadChild& child) {
   if (!child.program.empty()) return child.program.string();

@@ -42,10 +42,10 @@ Status choose_node_budget(Body& body) {
 }  // namespace
 
 Result<FittedDocument> fitted_document(const ScanFit& fit, const std::string& name, const Material& clay) {
-  const auto most = static_cast<std::size_t>(body_count_range.high);
+  const auto most = static_cast<std::size_t>(sculpted_body_count_range.high);
   if (fit.bodies.size() > most) {
-    return Error{"has " + std::to_string(fit.bodies.size()) + " islands, a document holds at most " +
-                 std::to_string(most) + " bodies; use --islands largest"};
+    return Error{"has " + std::to_string(fit.bodies.size()) + " islands, and at most " +
+                 std::to_string(most) + " bodies are sculpted together; use --islands largest"};
   }
   FittedDocument result;
   result.document = starting_document(name, fit.bodies.front().surface, clay);

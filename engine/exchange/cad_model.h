@@ -20,6 +20,7 @@ struct CadSurface {
   std::vector<TrimLoop> trims;  // of the part that the file shows, if that is less than the surface
   // Why there are none although the file shows less; empty otherwise.
   std::string trim_problem;
+  std::string solid = {};  // the name of that which it is one of several faces of; empty of what stands alone
 };
 
 struct CadModel {
@@ -31,9 +32,9 @@ struct CadModel {
 
 struct CadReading {
   CadFormat format = CadFormat::step;
-  double unit_m = 0.0;           // of the file's numbers, whatever it declares; 0: as declared
-  double tolerance_m = 1e-5;     // of what is approximated
-  std::size_t face_limit = 500;  // files of more are refused
+  double unit_m = 0.0;            // of the file's numbers, whatever it declares; 0: as declared
+  double tolerance_m = 1e-5;      // of what is approximated
+  std::size_t face_limit = 1000;  // files of more are refused
 };
 
 struct CadWriting {

@@ -60,6 +60,7 @@ Json cad_surface_to_json(const CadSurface& surface) {
   add_trims(surface.trims, json["surface"]);
   json["deviation_m"] = surface.deviation_m;
   json["trim_problem"] = clean_cad_name(surface.trim_problem, "");
+  json["solid"] = clean_cad_name(surface.solid, "");
   return json;
 }
 
@@ -79,6 +80,7 @@ Result<CadSurface> cad_surface_from_json(std::string_view text, const std::strin
   surface_reader.finish();
   result.deviation_m = reader.number("deviation_m", {0.0, 1e3});
   result.trim_problem = reader.text("trim_problem");
+  result.solid = reader.text("solid");
   reader.finish();
   if (!surface || !reader.status().ok()) return reader.status().error();
   result.surface = *std::move(surface);

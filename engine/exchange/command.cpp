@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 10> command_names = {
     "set_symmetry", "reset_proxy",   "lift_tool", "keep_shape",   "refine_knots"};
 
 int read_body(FieldReader& reader) {
-  return reader.has("body") ? reader.integer("body", {0, body_count_range.high - 1}) : 0;
+  return reader.has("body") ? reader.integer("body", {0, sculpted_body_count_range.high - 1}) : 0;
 }
 
 SetMaterial read_set_material(FieldReader& reader) {

@@ -33,7 +33,7 @@ void read_loads(FieldReader& reader, Body& body) {
         [&](FieldReader& item) { body.supports.push_back(read_support(item)); });
 }
 
-// Version 1 had no trims, so that they are unknown there.
+// Version 1 had neither trims nor solids, so that they are unknown there.
 std::optional<Body> read_body(FieldReader reader, int version) {
   std::string name = reader.text("name");
   FieldReader surface_reader = reader.inner("surface");
@@ -55,6 +55,7 @@ std::optional<Body> read_body(FieldReader reader, int version) {
   }
   body.regions = read_material_regions(reader);
   body.trims = std::move(trims);
+  if (version > 1 && reader.has("solid")) body.solid = reader.text("solid");
   reader.finish();
   if (!reader.status().ok()) return std::nullopt;
   return body;
@@ -128,6 +129,7 @@ Json body_to_json(const Body& body) {
   for (const Support& support : body.supports) json["supports"].push_back(support_to_json(support));
   if (body.shell_thickness_m) json["shell_thickness_mm"] = length_to_json(*body.shell_thickness_m);
   add_material_regions(body.regions, json);
+  if (!body.solid.empty()) json["solid"] = body.solid;
   return json;
 }
 
@@ -189,7 +191,8 @@ Result<Document> read_document(const std::filesystem::path& file) {
 
 Status write_document(const Document& document, const std::filesystem::path& file) {
   const std::string page = json_to_page(document_to_json(document));
-  if (page.size() > document_bytes_limit) return Error{file.string() + ": not saved, larger than 64 MiB"};
+  if (page.size() > document_bytes_limit)
+    return Error{file.string() + ": not saved, larger than 64 MiB; leave bodies out"};
   auto read_back = parse_json(page, file.string() + ": not saved");
   if (!read_back.ok()) return read_back.error();
   auto checked = document_from_json(read_back.value(), file.string() + ": not saved");

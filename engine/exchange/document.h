@@ -26,8 +26,11 @@
 //        {"kind": "point", "u": 0.5, "v": 0.1, "force_n": [0, -2, 0]}],
 //      "supports": [{"region": {...},                            may be left out
 //        "motion": {"kind": "ramp", "way_mm": [0, 5, 0], "duration_s": 2}}],     may be left out: is still
-//      "shell_thickness_mm": 2},                               may be left out: solid; see shell_lattice.h
-//    "other_bodies": [{"name": ...}, ...],                       each as "body"; may be left out
+//      "shell_thickness_mm": 2,                                may be left out: solid; see shell_lattice.h
+//      "solid": "bracket"},                                    may be left out; of those of one name, each is
+//                                                              a face of one solid that came from CAD
+//    "other_bodies": [{"name": ...}, ...],                       each as "body", at most 999, of which few
+//                                                              are sculpted together; may be left out
 //    "fixing_planes": [{"point_mm": [20, 0, 0], "normal": [1, 0, 0]}],    may be left out
 //    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6,
 //      "solid": {"shape": "box", "half_extents_mm": [4, 3, 10]},  of kind solid; see below
@@ -50,11 +53,12 @@
 // surface but trims. Soft may be a surface, or a mesh that is closed; its "nodes" count along x, y and z.
 // implicit_shapes.h and triangle_mesh.h say what is meant.
 //
-// Version 2; version 1, which had no trims, is read too, and assets/schemas/document.schema.json holds for
-// both. A body's pose is where its control points stand, a tool's that of the hand. The ranges stand in
-// scene.h and material.h; knots lie within a million of zero and are equal or at least a billionth of the
-// domain apart. A length is a number, or a decimal in quotes where no double of millimetres reads back to the
-// same bits of metres (length.h). Normals of another length than 1 are scaled.
+// Version 2; version 1, which had neither trims nor solids, is read too, and
+// assets/schemas/document.schema.json holds for both. A body's pose is where its control points stand, a
+// tool's that of the hand. The ranges stand in scene.h and material.h; knots lie within a million of zero and
+// are equal or at least a billionth of the domain apart. A length is a number, or a decimal in quotes where
+// no double of millimetres reads back to the same bits of metres (length.h). Normals of another length than 1
+// are scaled.
 #pragma once
 
 #include <filesystem>

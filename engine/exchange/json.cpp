@@ -12,7 +12,7 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t depth_limit = 64;
-constexpr std::size_t value_limit = 2'000'000;
+constexpr std::size_t value_limit = 6'000'000;
 constexpr std::size_t field_limit = 1'000;
 constexpr std::size_t complaint_limit = 120;
 

@@ -25,6 +25,14 @@ Result<LatticeMesh> lattice_of(const Body& body, const FeatureMapWatch& watch) {
   return tube_lattice(body.surface, body.lattice, watch);
 }
 
+Status check_body_count(const Scene& scene) {
+  const auto count = static_cast<int>(scene.bodies.size());
+  if (count <= sculpted_body_count_range.high) return check_range("bodies", count, sculpted_body_count_range);
+  return Error{"holds " + std::to_string(count) + " bodies, and at most " +
+               std::to_string(sculpted_body_count_range.high) +
+               " are sculpted together; choose some with `spoonbill convert MODEL OUT.json --bodies 1,3-5`"};
+}
+
 Status check_symmetry(const Symmetry& symmetry) {
   if (Status status = check_position("symmetry: point_m", symmetry.point_m); !status.ok()) return status;
   return check_unit("symmetry: normal", symmetry.normal);

@@ -35,6 +35,8 @@ struct Body {
   std::vector<Support> supports = {};
   std::optional<double> shell_thickness_m = {};
   std::vector<TrimLoop> trims = {};  // keep a part of the surface: what is drawn and touched (trimmed_area.h)
+  // The name of the solid of a CAD model that it is a face of; empty where it is none.
+  std::string solid = {};
 };
 
 struct Tool {
@@ -62,7 +64,7 @@ struct Symmetry {
 };
 
 struct Scene {
-  std::vector<Body> bodies;         // those that touch push each other
+  std::vector<Body> bodies;         // those that touch push each other; of a document more than are simulated
   std::vector<FixingPlane> planes;  // each holds nodes of any body
   Tool tool;
   Sculpting sculpting;
@@ -73,8 +75,9 @@ struct Scene {
 // What files, commands and the panel's sliders accept: wide enough for any concept, finite for every solver.
 inline constexpr Range<int> control_point_count_range{2, 200};  // in each direction
 inline constexpr Range<int> node_budget_range{50, 40000};
-inline constexpr Range<int> node_count_range{2, 64};  // in each direction
-inline constexpr Range<int> body_count_range{1, 8};
+inline constexpr Range<int> node_count_range{2, 64};          // in each direction
+inline constexpr Range<int> body_count_range{1, 1000};        // of a document
+inline constexpr Range<int> sculpted_body_count_range{1, 8};  // that are simulated together
 inline constexpr Range<int> fixing_plane_count_range{0, 64};
 inline constexpr Range<double> tool_radius_range_m{0.0, 0.5};
 inline constexpr Range<int> tool_iterations_range{1, 8};
@@ -87,6 +90,9 @@ Result<LatticeMesh> lattice_of(const Body& body, const FeatureMapWatch& watch = 
 
 // What its trims keep of its surface; null without trims.
 Result<std::shared_ptr<const TrimmedArea>> trim_of(const Body& body);
+
+// Whether so many bodies are simulated together; says how to choose some.
+Status check_body_count(const Scene& scene);
 
 // Each names the field, the value and the range of the first thing that is not within it.
 Status check_loads(const Body& body);  // and supports

@@ -24,10 +24,7 @@ Status check_scene(const Scene& scene) {
   if (Status status = check_tool(scene.tool); !status.ok()) return status;
   if (Status status = check_together(scene.tool, scene.symmetry); !status.ok()) return status;
   if (Status status = check_sculpting(scene.sculpting); !status.ok()) return status;
-  if (Status status = check_range("bodies", static_cast<int>(scene.bodies.size()), body_count_range);
-      !status.ok()) {
-    return status;
-  }
+  if (Status status = check_body_count(scene); !status.ok()) return status;
   for (const Body& body : scene.bodies) {
     if (Status status = check_lattice_request(body.lattice); !status.ok()) return status;
     if (Status status = check_loads(body); !status.ok()) return status;

@@ -23,15 +23,6 @@ namespace {
 
 constexpr double coincidence_mm = 1e-6;
 
-TopoDS_Shell shell_of(const TopoDS_Face& face) {
-  TopoDS_Shell shell;
-  const BRep_Builder builder;
-  builder.MakeShell(shell);
-  builder.Add(shell, face);
-  shell.Closed(BRep_Tool::IsClosed(shell));
-  return shell;
-}
-
 // Faces apart are no shell.
 TopoDS_Shape beside_each_other(const std::vector<TopoDS_Face>& faces) {
   TopoDS_Compound compound;
@@ -64,18 +55,11 @@ TopoDS_Solid solid_of(const TopoDS_Shell& shell) {
 }
 
 Result<TopoDS_Shape> shape_of(const CadSurface& part) {
-  const auto opened = opened_parts(part.surface, part.trims);
-  if (!opened) return opened.error();
-  std::vector<TopoDS_Face> faces;
-  for (const TrimmedSurface& piece : opened.value()) {
-    const auto geometry = to_occt(piece.surface);
-    if (!geometry) return geometry.error();
-    const auto of_piece = trimmed_faces(geometry.value(), piece);
-    if (!of_piece) return of_piece.error();
-    faces.insert(faces.end(), of_piece->begin(), of_piece->end());
-  }
+  const auto made = faces_of(part);
+  if (!made) return made.error();
+  const std::vector<TopoDS_Face>& faces = made->faces;
   if (faces.size() == 1) return TopoDS_Shape(shell_of(faces.front()));
-  const TopoDS_Shape shell = opened->size() > 1 ? sewn(faces) : TopoDS_Shape();
+  const TopoDS_Shape shell = made->was_cut ? sewn(faces) : TopoDS_Shape();
   return shell.IsNull() ? beside_each_other(faces) : shell;
 }
 
@@ -95,6 +79,7 @@ Result<BodyShape> build(const CadSurface& part) {
   if (!made) return made.error();
   const TopoDS_Shape& shape = made.value();
   if (!BRepCheck_Analyzer(shape).IsValid()) return Error{"OpenCASCADE calls the face of it invalid"};
+  if (!part.solid.empty()) return BodyShape{shape, false};
   if (shape.ShapeType() == TopAbs_SHELL && shape.Closed()) {
     const TopoDS_Solid solid = solid_of(TopoDS::Shell(shape));
     if (BRepCheck_Analyzer(solid).IsValid()) return BodyShape{solid, true};
@@ -103,6 +88,30 @@ Result<BodyShape> build(const CadSurface& part) {
 }
 
 }  // namespace
+
+TopoDS_Shell shell_of(const TopoDS_Face& face) {
+  TopoDS_Shell shell;
+  const BRep_Builder builder;
+  builder.MakeShell(shell);
+  builder.Add(shell, face);
+  shell.Closed(BRep_Tool::IsClosed(shell));
+  return shell;
+}
+
+Result<PartFaces> faces_of(const CadSurface& part) {
+  const auto opened = opened_parts(part.surface, part.trims);
+  if (!opened) return opened.error();
+  PartFaces made;
+  made.was_cut = opened->size() > 1;
+  for (const TrimmedSurface& piece : opened.value()) {
+    const auto geometry = to_occt(piece.surface);
+    if (!geometry) return geometry.error();
+    const auto of_piece = trimmed_faces(geometry.value(), piece);
+    if (!of_piece) return of_piece.error();
+    made.faces.insert(made.faces.end(), of_piece->begin(), of_piece->end());
+  }
+  return made;
+}
 
 Result<BodyShape> body_shape(const CadSurface& part) {
   try {

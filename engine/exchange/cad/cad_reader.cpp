@@ -119,6 +119,7 @@ CadSurface surface_of(const NamedFace& face, FaceSurface found) {
   surface.deviation_m = found.deviation_m;
   surface.trims = std::move(found.trims);
   surface.trim_problem = std::move(found.trim_problem);
+  surface.solid = face.solid;
   return surface;
 }
 

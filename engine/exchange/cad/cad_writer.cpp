@@ -31,18 +31,13 @@
 #include <sstream>
 #include <utility>
 
-#include "engine/exchange/cad/body_shape.h"
 #include "engine/exchange/cad/occt_surface.h"
 #include "engine/exchange/cad/session.h"
 #include "engine/exchange/cad/step_text.h"
-#include "engine/exchange/cad/trimmed_face.h"
+#include "engine/exchange/cad/written_bodies.h"
 
 namespace spoonbill {
 namespace {
-
-Error about(const CadSurface& surface, const Error& error) {
-  return Error{"'" + surface.name + "': " + error.message};
-}
 
 // Seventeen digits, which read back as the same number; OpenCASCADE's own choice is six decimals. Leaving out
 // trailing zeros would lose the exponent of a number as long.
@@ -95,14 +90,12 @@ void fill_header(const opencascade::handle<IGESData_IGESModel>& model) {
   header.SetCompanyName(text(""));
 }
 
-// With a note where it is not what one expects of a body that closes.
-void tell_of(const CadSurface& surface, const BodyShape& body, CadFileContent& content) {
-  ++(body.solid ? content.solids : content.open_shells);
-  if (body.solid || !has_no_edge(surface.surface)) return;
-  content.notes.push_back("'" + surface.name +
-                          (surface.trims.empty()
-                               ? "' closes, but OpenCASCADE finds no solid in it; an open shell is written"
-                               : "' would close, but is trimmed; an open shell of what is left is written"));
+// Of the work; putting the file together takes the rest.
+constexpr double share_of_shapes = 0.5;
+
+CadProgress half_of(const CadProgress& progress) {
+  if (!progress) return {};
+  return [&progress](double share) { progress(share_of_shapes * share); };
 }
 
 Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writing,
@@ -112,14 +105,11 @@ Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writi
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
   const auto shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
   CadFileContent content;
-  for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
-    const CadSurface& surface = model.surfaces[k];
-    const auto body = body_shape(surface);
-    if (!body) return about(surface, body.error());
-    tell_of(surface, body.value(), content);
-    const TDF_Label label = shapes->AddShape(body->shape, false);
-    TDataStd_Name::Set(label, TCollection_ExtendedString(surface.name.c_str(), true));
-    if (progress) progress(0.5 * static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size()));
+  const auto bodies = written_bodies(model, half_of(progress), content);
+  if (!bodies) return bodies.error();
+  for (const WrittenBody& body : bodies.value()) {
+    const TDF_Label label = shapes->AddShape(body.shape, false);
+    TDataStd_Name::Set(label, TCollection_ExtendedString(body.name.c_str(), true));
   }
   STEPCAFControl_Writer writer;
   writer.SetColorMode(false);
@@ -180,30 +170,25 @@ bool add_surface(IGESControl_Writer& writer, const Surface& surface) {
   return geometry && writer.AddGeom(geometry.value());
 }
 
-Status add_to(IGESControl_Writer& writer, const CadSurface& surface, CadFileContent& content) {
+Status add_to(IGESControl_Writer& writer, const WrittenBody& body) {
   constexpr int solid = 186, untrimmed = 128, trimmed = 144;
-  const auto body = body_shape(surface);
-  if (!body) return body.error();
-  const bool is_whole = surface.trims.empty();
-  const int type = body->solid ? solid : is_whole ? untrimmed : trimmed;
+  const int type = body.solid ? solid : body.surface->trims.empty() ? untrimmed : trimmed;
   const int before = writer.Model()->NbEntities();
-  const bool added = type == solid       ? add_solid(writer, body->shape)
-                     : type == untrimmed ? add_surface(writer, surface.surface)
-                                         : add_faces(writer, body->shape);
-  if (!added) return Error{"OpenCASCADE makes no IGES entity of it"};
-  name_entities(writer.Model(), before, type, surface.name);
-  tell_of(surface, body.value(), content);
+  const bool added = type == solid       ? add_solid(writer, body.shape)
+                     : type == untrimmed ? add_surface(writer, body.surface->surface)
+                                         : add_faces(writer, body.shape);
+  if (!added) return Error{"'" + body.name + "': OpenCASCADE makes no IGES entity of it"};
+  name_entities(writer.Model(), before, type, body.name);
   return {};
 }
 
 Result<CadFileContent> write_iges(const CadModel& model, const CadProgress& progress) {
   IGESControl_Writer writer;
   CadFileContent content;
-  for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
-    if (Status added = add_to(writer, model.surfaces[k], content); !added) {
-      return about(model.surfaces[k], added.error());
-    }
-    if (progress) progress(0.5 * static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size()));
+  const auto bodies = written_bodies(model, half_of(progress), content);
+  if (!bodies) return bodies.error();
+  for (const WrittenBody& body : bodies.value()) {
+    if (Status added = add_to(writer, body); !added) return added.error();
   }
   writer.ComputeModel();
   fill_header(writer.Model());

@@ -13,7 +13,8 @@ using CadProgress = std::function<void(double)>;
 
 // Each surface becomes a product of its name in STEP (a MANIFOLD_SOLID_BREP where it closes, an open shell
 // where not), a named entity in IGES: 186 where it closes, 128 where not, 144 for each of its faces where it
-// is trimmed. A note tells which would close and are no solid. prepare_occt() must have been called. The
+// is trimmed. The faces of a solid become one again, of its name, where they close. Notes tell which would
+// close and are no solid. prepare_occt() must have been called. The
 // Error says what is wrong, without the file's name.
 Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writing,
                                  const CadProgress& progress = {});

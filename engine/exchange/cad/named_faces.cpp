@@ -70,6 +70,12 @@ class Collector {
     for (const NamedFace& face : found_.faces) names.push_back(face.name);
     names = told_apart(names, "face");
     for (std::size_t k = 0; k < names.size(); ++k) found_.faces[k].name = std::move(names[k]);
+    std::vector<std::string> solids;
+    for (const Solid& solid : solids_) solids.push_back(solid.name);
+    solids = told_apart(solids, "solid");
+    for (std::size_t s = 0; s < solids.size(); ++s) {
+      for (std::size_t k = solids_[s].first; k < solids_[s].end; ++k) found_.faces[k].solid = solids[s];
+    }
     return std::move(found_);
   }
 
@@ -79,10 +85,11 @@ class Collector {
     if (shape.IsNull()) return;
     for (TopExp_Explorer solids(shape, TopAbs_SOLID); solids.More(); solids.Next()) {
       const std::size_t before = found_.faces.size();
-      add_faces(label, TopExp_Explorer(solids.Current(), TopAbs_FACE), place,
-                better_name(label, solids.Current(), part_name));
+      const std::string name = better_name(label, solids.Current(), part_name);
+      add_faces(label, TopExp_Explorer(solids.Current(), TopAbs_FACE), place, name);
       const auto count = static_cast<int>(found_.faces.size() - before);
       if (count < 2) continue;
+      solids_.push_back({name, before, found_.faces.size()});
       ++found_.solids;
       found_.faces_of_solids += count;
     }
@@ -93,7 +100,7 @@ class Collector {
                  const std::string& body_name) {
     for (; faces.More(); faces.Next()) {
       const std::string name = better_name(label, faces.Current(), body_name);
-      found_.faces.push_back({TopoDS::Face(faces.Current().Moved(place)), name});
+      found_.faces.push_back({TopoDS::Face(faces.Current().Moved(place)), name, {}});
     }
   }
 
@@ -104,8 +111,15 @@ class Collector {
     return says_nothing(name) ? otherwise : name;
   }
 
+  // A range of the faces.
+  struct Solid {
+    std::string name;
+    std::size_t first = 0, end = 0;
+  };
+
   Shapes shapes_;
   NamedFaces found_;
+  std::vector<Solid> solids_;
 };
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace spoonbill {
 
 struct NamedFace {
   TopoDS_Face face;
-  std::string name;  // its own, its body's or its product's; a number follows where several share it
+  std::string name;   // its own, its body's or its product's; a number follows where several share it
+  std::string solid;  // that it is one of several faces of, by a name that no other has; or empty
 };
 
 struct NamedFaces {

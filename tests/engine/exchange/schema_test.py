@@ -40,7 +40,7 @@ def at(document, path):
 # Fields that the program does without, each by the name of what holds it.
 optional = {
     "": {"other_bodies", "fixing_planes", "ground", "symmetry", "view"},
-    "body": {"regions", "loads", "supports", "shell_thickness_mm"},
+    "body": {"regions", "loads", "supports", "shell_thickness_mm", "solid"},
     "surface": {"trims"},
     "material": {"hardening", "stiffening", "friction"},
     "lattice": {"feature_map"},
@@ -76,4 +76,17 @@ assert tried > 100, tried
 for version in (0, 3, "2", None):
     assert not validator.is_valid({**whole, "spoonbill_document": version}), version
 assert not validator.is_valid({**whole, "spoonbill_document": 1}), "version 1 had no trims"
+joined = copy.deepcopy(whole)
+for body in (joined["body"], *joined["other_bodies"]):
+    body["solid"] = "bracket"
+assert validator.is_valid(joined)
+first = {**json.loads((written / "version-1.json").read_text())}
+first["body"] = {**first["body"], "solid": "bracket"}
+assert not validator.is_valid(first), "version 1 had no solids"
+joined["body"]["solid"] = 1
+assert not validator.is_valid(joined), "a solid has a name"
+many = {**whole, "other_bodies": 999 * whole["other_bodies"][:1]}
+assert validator.is_valid(many)
+many["other_bodies"].append(whole["body"])
+assert not validator.is_valid(many), "a document holds 1000 bodies"
 print(f"{len(models)} models, {tried} fields taken away")

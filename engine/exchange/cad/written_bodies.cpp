@@ -1,0 +1,88 @@
+#include "engine/exchange/cad/written_bodies.h"
+
+#include <set>
+#include <utility>
+
+#include "engine/exchange/cad/body_shape.h"
+#include "engine/exchange/cad/joined_faces.h"
+#include "engine/exchange/cad/trimmed_face.h"
+#include "engine/exchange/cad_names.h"
+
+namespace spoonbill {
+namespace {
+
+// With a note where it is not what one expects of a body that closes.
+void tell_of(const CadSurface& surface, const BodyShape& body, CadFileContent& content) {
+  ++(body.solid ? content.solids : content.open_shells);
+  if (body.solid || !surface.solid.empty() || !has_no_edge(surface.surface)) return;
+  content.notes.push_back("'" + surface.name +
+                          (surface.trims.empty()
+                               ? "' closes, but OpenCASCADE finds no solid in it; an open shell is written"
+                               : "' would close, but is trimmed; an open shell of what is left is written"));
+}
+
+class Collector {
+ public:
+  Collector(const CadModel& model, CadFileContent& content) : model_(model), content_(content) {}
+
+  Status add(const CadSurface& surface) {
+    if (surface.solid.empty()) return add_alone(surface);
+    return joined_.insert(surface.solid).second ? add_solid(surface.solid) : Status();
+  }
+
+  std::vector<WrittenBody> take() {
+    std::vector<std::string> names;
+    for (const WrittenBody& body : bodies_) names.push_back(body.name);
+    names = told_apart(names, "body");
+    for (std::size_t k = 0; k < names.size(); ++k) bodies_[k].name = std::move(names[k]);
+    return std::move(bodies_);
+  }
+
+ private:
+  Status add_alone(const CadSurface& surface) {
+    const auto body = body_shape(surface);
+    if (!body) return Error{"'" + surface.name + "': " + body.error().message};
+    tell_of(surface, body.value(), content_);
+    bodies_.push_back({surface.name, body->shape, body->solid, &surface});
+    return {};
+  }
+
+  Status add_solid(const std::string& name) {
+    std::vector<const CadSurface*> parts;
+    for (const CadSurface& surface : model_.surfaces) {
+      if (surface.solid == name) parts.push_back(&surface);
+    }
+    const auto joined = join_faces(parts);
+    if (!joined) return joined.error();
+    for (const TopoDS_Solid& solid : joined->solids) bodies_.push_back({name, solid, true, nullptr});
+    content_.solids += static_cast<int>(joined->solids.size());
+    for (const std::size_t place : joined->loose) {
+      if (Status added = add_alone(*parts[place]); !added) return added;
+    }
+    if (!joined->loose.empty()) {
+      content_.notes.push_back(std::to_string(joined->loose.size()) + " of the " +
+                               std::to_string(parts.size()) + " faces of '" + name +
+                               "' enclose nothing together; they are written one by one");
+    }
+    return {};
+  }
+
+  const CadModel& model_;
+  CadFileContent& content_;
+  std::vector<WrittenBody> bodies_;
+  std::set<std::string> joined_;
+};
+
+}  // namespace
+
+Result<std::vector<WrittenBody>> written_bodies(const CadModel& model, const CadProgress& progress,
+                                                CadFileContent& content) {
+  Collector collector(model, content);
+  for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
+    if (Status added = collector.add(model.surfaces[k]); !added) return added.error();
+    if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size()));
+  }
+  return collector.take();
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,167 @@
+// Solids that come in as a surface for each face and go out as solids again.
+#include <gtest/gtest.h>
+
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepGProp.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <GProp_GProps.hxx>
+#include <IGESControl_Reader.hxx>
+#include <STEPControl_Reader.hxx>
+#include <STEPControl_Writer.hxx>
+#include <TopExp_Explorer.hxx>
+#include <cmath>
+
+#include "engine/exchange/cad/cad_reader.h"
+#include "engine/exchange/cad/cad_writer.h"
+#include "engine/exchange/cad/session.h"
+#include "tests/engine/exchange/cad/occt_shapes.h"
+#include "tests/engine/exchange/sample_document.h"
+
+namespace spoonbill {
+namespace {
+
+// A hundredth of a millimetre on the faces of parts of 10 to 40 mm.
+constexpr double volume_share = 2e-3;
+
+int count_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
+  int count = 0;
+  for (TopExp_Explorer each(shape, kind); each.More(); each.Next()) ++count;
+  return count;
+}
+
+double volume_mm3(const TopoDS_Shape& shape) {
+  GProp_GProps properties;
+  BRepGProp::VolumeProperties(shape, properties, 1e-6);
+  return properties.Mass();
+}
+
+template <class Reader>
+TopoDS_Shape shape_in(const std::filesystem::path& file) {
+  Reader reader;
+  EXPECT_EQ(reader.ReadFile(file.c_str()), IFSelect_RetDone);
+  reader.TransferRoots();
+  return reader.OneShape();
+}
+
+class SolidRoundTrip : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { prepare_occt(); }
+
+  CadModel read(const TopoDS_Shape& shape) const {
+    choose_unit("mm");
+    const auto file = folder_.path() / "in.step";
+    STEPControl_Writer writer;
+    EXPECT_EQ(writer.Transfer(shape, STEPControl_AsIs), IFSelect_RetDone);
+    EXPECT_EQ(writer.Write(file.c_str()), IFSelect_RetDone);
+    std::vector<CadSurface> surfaces;
+    auto model = read_cad(file, {}, [&](CadSurface part) { surfaces.push_back(std::move(part)); });
+    EXPECT_TRUE(model) << model.error().message;
+    model->surfaces = std::move(surfaces);
+    return std::move(model).value();
+  }
+
+  CadFileContent write(const CadModel& model, CadFormat format = CadFormat::step) const {
+    const auto content = write_cad(model, {format, StepSchema::ap214, "mm"});
+    EXPECT_TRUE(content) << content.error().message;
+    return content ? content.value() : CadFileContent();
+  }
+
+  TopoDS_Shape shape_of(const CadFileContent& content, CadFormat format = CadFormat::step) const {
+    const auto file = folder_.write("out", content.text);
+    return format == CadFormat::step ? shape_in<STEPControl_Reader>(file)
+                                     : shape_in<IGESControl_Reader>(file);
+  }
+
+  void expect_same_solids(const TopoDS_Shape& shape, CadFormat format) const {
+    const CadFileContent content = write(read(shape), format);
+    EXPECT_EQ(content.notes, std::vector<std::string>());
+    const TopoDS_Shape back = shape_of(content, format);
+    EXPECT_TRUE(BRepCheck_Analyzer(back).IsValid());
+    EXPECT_EQ(count_of(back, TopAbs_SOLID), count_of(shape, TopAbs_SOLID));
+    EXPECT_EQ(count_of(back, TopAbs_SHELL), count_of(shape, TopAbs_SHELL));
+    EXPECT_EQ(content.solids, count_of(shape, TopAbs_SOLID));
+    EXPECT_EQ(content.open_shells, 0);
+    EXPECT_NEAR(volume_mm3(back), volume_mm3(shape), volume_share * volume_mm3(shape));
+  }
+
+  TemporaryFolder folder_;
+};
+
+std::vector<NamedShape> hollow_solids() {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(30, 20, 10).Shape();
+  const TopoDS_Shape inside = BRepPrimAPI_MakeBox(gp_Pnt(2, 2, 2), 26, 16, 6).Shape();
+  const TopoDS_Shape ball = BRepPrimAPI_MakeSphere(gp_Pnt(15, 10, 5), 4).Shape();
+  const TopoDS_Shape around = BRepPrimAPI_MakeSphere(gp_Pnt(15, 10, 5), 9).Shape();
+  return {{"hollow box", BRepAlgoAPI_Cut(box, inside).Shape()},
+          {"box with a bubble", BRepAlgoAPI_Cut(box, ball).Shape()},
+          {"hollow ball", BRepAlgoAPI_Cut(around, ball).Shape()}};
+}
+
+TEST_F(SolidRoundTrip, SolidsOfManyFacesComeBackWhole) {
+  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+    for (const NamedShape& named : solid_shapes()) {
+      if (count_of(named.shape, TopAbs_SOLID) == 0) continue;
+      SCOPED_TRACE(named.name + (format == CadFormat::step ? ", STEP" : ", IGES"));
+      expect_same_solids(named.shape, format);
+    }
+  }
+}
+
+TEST_F(SolidRoundTrip, CavitiesStayCavities) {
+  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+    for (const NamedShape& named : hollow_solids()) {
+      SCOPED_TRACE(named.name + (format == CadFormat::step ? ", STEP" : ", IGES"));
+      EXPECT_EQ(count_of(named.shape, TopAbs_SHELL), 2);
+      expect_same_solids(named.shape, format);
+    }
+  }
+}
+
+// Whoever takes the ball out of the box has a shell that encloses nothing.
+TEST_F(SolidRoundTrip, ACavityByItselfIsNoSolid) {
+  CadModel model = read(hollow_solids()[1].shape);
+  ASSERT_EQ(model.surfaces.size(), 7u);
+  std::erase_if(model.surfaces, [](const CadSurface& part) { return part.surface.net.size() <= 4; });
+  ASSERT_EQ(model.surfaces.size(), 1u);
+  const CadFileContent content = write(model);
+  EXPECT_EQ(content.solids, 0);
+  EXPECT_EQ(content.open_shells, 1);
+  const TopoDS_Shape back = shape_of(content);
+  EXPECT_EQ(count_of(back, TopAbs_SOLID), 0);
+  EXPECT_LT(volume_mm3(back), 0.0);
+}
+
+TEST_F(SolidRoundTrip, FacesThatDoNotCloseKeepTheirNames) {
+  CadModel model = read(BRepPrimAPI_MakeBox(30, 20, 10).Shape());
+  ASSERT_EQ(model.surfaces.size(), 6u);
+  for (const CadSurface& part : model.surfaces) EXPECT_EQ(part.solid, "solid");
+  model.surfaces.pop_back();
+  const CadFileContent content = write(model);
+  EXPECT_EQ(content.solids, 0);
+  EXPECT_EQ(content.open_shells, 5);
+  EXPECT_EQ(content.notes,
+            std::vector<std::string>{
+                "5 of the 5 faces of 'solid' enclose nothing together; they are written one by one"});
+  for (const CadSurface& part : model.surfaces) {
+    EXPECT_NE(content.text.find("'" + part.name + "'"), std::string::npos);
+  }
+}
+
+// As after a copy of the bodies in a document.
+TEST_F(SolidRoundTrip, TwoSolidsOfOneNameAreTwo) {
+  CadModel model = read(BRepPrimAPI_MakeBox(30, 20, 10).Shape());
+  const std::vector<CadSurface> first = model.surfaces;
+  for (CadSurface part : first) {
+    for (double& x : part.surface.net.x) x += 0.1;
+    part.name += " again";
+    model.surfaces.push_back(std::move(part));
+  }
+  const CadFileContent content = write(model);
+  EXPECT_EQ(content.solids, 2);
+  EXPECT_NEAR(volume_mm3(shape_of(content)), 2.0 * 6000.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace spoonbill
