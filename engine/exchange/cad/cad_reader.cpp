@@ -16,6 +16,7 @@
 #include "engine/exchange/cad/external_files.h"
 #include "engine/exchange/cad/face_surface.h"
 #include "engine/exchange/cad/file_unit.h"
+#include "engine/exchange/cad/iges_lines.h"
 #include "engine/exchange/cad/lost_faces.h"
 #include "engine/exchange/cad/named_faces.h"
 
@@ -54,6 +55,7 @@ Result<Content> read_step(const std::filesystem::path& file, const CadProgress& 
 }
 
 Result<Content> read_iges(const std::filesystem::path& file, const CadProgress& progress) {
+  if (const auto whole = count_null_entities(file); !whole) return whole.error();
   IGESCAFControl_Reader reader;
   reader.SetColorMode(false);
   reader.SetLayerMode(false);

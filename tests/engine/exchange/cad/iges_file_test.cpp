@@ -1,0 +1,164 @@
+// IGES files that are damaged, or say what no other file says.
+#include <gtest/gtest.h>
+
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <IGESControl_Writer.hxx>
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "engine/exchange/cad/cad_reader.h"
+#include "engine/exchange/cad/session.h"
+#include "tests/engine/exchange/sample_document.h"
+
+namespace spoonbill {
+namespace {
+
+// What the tests change of a file of a few entities.
+struct Entity {
+  int type = 128;
+  std::string parameters;
+  int placement = 0;    // the place of another, counted from 1
+  int subordinate = 0;  // 1 where only others show it
+};
+
+std::string padded(std::string text, std::size_t length) {
+  text.resize(std::max(length, text.size()), ' ');
+  return text;
+}
+
+std::string field(long number) {
+  const std::string text = std::to_string(number);
+  return std::string(8 - text.size(), ' ') + text;
+}
+
+std::string numbered(char section, long number) {
+  const std::string text = std::to_string(number);
+  return section + std::string(7 - text.size(), '0') + text + "\n";
+}
+
+// Parameters in lines of at most 64 letters, none of which is cut.
+std::vector<std::string> lines_of(const std::string& parameters) {
+  std::vector<std::string> lines(1);
+  for (std::size_t k = 0; k < parameters.size();) {
+    const std::size_t end = std::min(parameters.find(',', k), parameters.size() - 1) + 1;
+    if (lines.back().size() + end - k > 64) lines.emplace_back();
+    lines.back() += parameters.substr(k, end - k);
+    k = end;
+  }
+  return lines;
+}
+
+// `scale_and_unit` are the parameters 13 to 15 of the global section.
+std::string iges_text(const std::vector<Entity>& entities, const std::string& scale_and_unit = "1.,2,2HMM") {
+  std::string directory, parameters;
+  long line = 1, entry = 1;
+  for (const Entity& entity : entities) {
+    const auto lines = lines_of(std::to_string(entity.type) + "," + entity.parameters + ";");
+    const std::string subordinate = "000" + std::to_string(entity.subordinate) + "0000";
+    const long placement = entity.placement == 0 ? 0 : 2 * entity.placement - 1;
+    directory += field(entity.type) + field(line) + field(0) + field(0) + field(0) + field(0) +
+                 field(placement) + field(0) + subordinate + numbered('D', entry);
+    directory +=
+        padded(field(entity.type) + field(0) + field(0) + field(static_cast<long>(lines.size())) + field(0),
+               72) +
+        numbered('D', entry + 1);
+    for (const std::string& text : lines) {
+      parameters += padded(text, 64) + field(entry) + numbered('P', line++);
+    }
+    entry += 2;
+  }
+  return padded("test", 72) + numbered('S', 1) +
+         padded("1H,,1H;,4Htest,8Htest.igs,4Htest,4Htest,32,38,6,308,15,4Htest,", 72) + numbered('G', 1) +
+         padded(scale_and_unit + ",1,0.01,15H20261124.135122,1E-07,100.,4Hroot,4Hroot,11,0;", 72) +
+         numbered('G', 2) + directory + parameters +
+         padded("S" + field(1).substr(1) + "G" + field(2).substr(1) + "D" + field(entry - 1).substr(1) + "P" +
+                    field(line - 1).substr(1),
+                72) +
+         numbered('T', 1);
+}
+
+// A sheet of 10 x 20 mm, whose corner of index 3 is lifted by 3 mm.
+std::string sheet_at(double x) {
+  const std::string left = std::to_string(x), right = std::to_string(x + 10.0);
+  return "1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.," + left + ",0.,0.," + right + ",0.,0.," +
+         left + ",20.,3.," + right + ",20.,0.,0.,1.,0.,1.";
+}
+
+struct Found {
+  std::vector<CadSurface> surfaces;
+  CadModel model;
+  std::string refusal;
+};
+
+class IgesFile : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { prepare_occt(); }
+
+  Found read(const std::string& text) const {
+    CadReading reading;
+    reading.format = CadFormat::iges;
+    Found found;
+    auto model = read_cad(folder_.write("a.igs", text), reading,
+                          [&](CadSurface part) { found.surfaces.push_back(std::move(part)); });
+    if (!model) found.refusal = model.error().message;
+    if (model) found.model = std::move(model).value();
+    return found;
+  }
+
+  std::string box() const {
+    choose_unit("mm");
+    const auto file = folder_.path() / "box.igs";
+    IGESControl_Writer writer;
+    EXPECT_TRUE(writer.AddShape(BRepPrimAPI_MakeBox(30, 20, 10).Shape()));
+    EXPECT_TRUE(writer.Write(file.c_str()));
+    return content_of(file);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(IgesFile, WhatIsWholeIsRead) {
+  const Found found = read(iges_text({{128, sheet_at(0)}, {128, sheet_at(20)}}));
+  EXPECT_EQ(found.refusal, "");
+  EXPECT_EQ(found.surfaces.size(), 2u);
+  EXPECT_TRUE(found.model.notes.empty());
+}
+
+TEST_F(IgesFile, WhatIsCutShortIsRefused) {
+  const std::string text = box();
+  ASSERT_EQ(read(text).surfaces.size(), 6u);
+  constexpr std::size_t cuts = 60;
+  for (std::size_t k = 1; k < cuts; ++k) {
+    const Found found = read(text.substr(0, text.size() * k / cuts));
+    EXPECT_NE(found.refusal, "") << k;
+    EXPECT_TRUE(found.surfaces.empty()) << k;
+  }
+  EXPECT_EQ(read(text.substr(0, text.size() / 2)).refusal,
+            "is cut short or damaged: its last line is missing; copy it whole, or export it anew");
+}
+
+TEST_F(IgesFile, ALineThatIsMissingIsMissed) {
+  const std::string text = iges_text({{128, sheet_at(0)}, {128, sheet_at(20)}});
+  for (const char section : {'S', 'G', 'D', 'P'}) {
+    SCOPED_TRACE(section);
+    std::string less = text;
+    const std::size_t end = less.find(numbered(section, 1)) + 8;
+    less.erase(end - 80, 81);
+    EXPECT_NE(read(less).refusal.find("is cut short or damaged: its last line counts"), std::string::npos);
+  }
+}
+
+TEST_F(IgesFile, AnEntityWhoseParametersLieBeyondTheEndIsRefused) {
+  std::string text = iges_text({{128, sheet_at(0)}, {128, sheet_at(20)}});
+  const std::string declared = field(0) + field(0) + field(3) + field(0);
+  const std::size_t at = text.rfind(declared);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, declared.size(), field(0) + field(0) + field(4) + field(0));
+  EXPECT_EQ(read(text).refusal,
+            "is cut short or damaged: the parameters of an entity would reach line 7 of 6; copy it whole, or "
+            "export it anew");
+}
+
+}  // namespace
+}  // namespace spoonbill
