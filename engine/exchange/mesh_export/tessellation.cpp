@@ -11,6 +11,7 @@
 #include "engine/bspline/trimmed_area.h"
 #include "engine/bspline/trimmed_grid.h"
 #include "engine/collision/levels/surface_bounds.h"
+#include "engine/exchange/mesh_export/slivers.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -258,6 +259,7 @@ Result<Tessellation> finished(const Sheet& sheet, const Surface& surface, const 
     const auto area = TrimmedArea::make(surface.u, surface.v, trims);
     if (!area) return area.error();
     result.mesh = kept_mesh(sheet, welding, area.value());
+    remove_slivers(result.mesh);
     result.closed = false;
   }
   if (is_inside_out) {

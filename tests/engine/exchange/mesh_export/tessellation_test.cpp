@@ -154,6 +154,43 @@ TEST(Tessellation, ATrimmedSurfaceStaysTrimmed) {
   EXPECT_LT(area_of(cut->mesh), 0.99 * area_of(whole->mesh));
 }
 
+double lowest_triangle_m(const TriangleMesh& mesh) {
+  double lowest = 1e30;
+  for (const TriangleCorners& corners : mesh.triangles) {
+    const Vector3 &a = mesh.vertices_m[corners[0]], &b = mesh.vertices_m[corners[1]],
+                  &c = mesh.vertices_m[corners[2]];
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    lowest = std::min(lowest, longest > 0.0 ? (b - a).cross(c - a).norm() / longest : 0.0);
+  }
+  return lowest;
+}
+
+// A window whose loop runs along the edge of the surface in many short pieces, as fitted ones do.
+TEST(Tessellation, NoTriangleIsWithoutArea) {
+  ControlNet net(4, 2);
+  for (int i = 0; i < 4; ++i) {
+    const double angle = 0.5 * i;
+    for (int j = 0; j < 2; ++j) net.set_point(i, j, {std::cos(angle), std::sin(angle), 0.7 * j});
+  }
+  const KnotVector around = KnotVector::clamped_uniform(3, 4).value(),
+                   line = KnotVector::clamped_uniform(1, 2).value();
+  const Surface sheet = make_surface(around, line, net).value();
+  std::vector<Eigen::Vector2d> corners;
+  constexpr int pieces = 41;
+  for (int k = 0; k < pieces; ++k) corners.emplace_back(0.1 + 0.8 * k / pieces, 0.0);
+  for (int k = 0; k < pieces; ++k) corners.emplace_back(0.9, 0.6 * k / pieces);
+  for (int k = 0; k < pieces; ++k) corners.emplace_back(0.9 - 0.8 * k / pieces, 0.6);
+  for (int k = 0; k < pieces; ++k) corners.emplace_back(0.1, 0.6 - 0.6 * k / pieces);
+  const TrimLoop loop = polygon_loop(around, line, corners);
+  const auto cut = tessellate(sheet, {loop}, 1e-4);
+  ASSERT_TRUE(cut) << cut.error().message;
+  EXPECT_GT(lowest_triangle_m(cut->mesh), 1e-9);
+  CadSurface part;
+  part.surface = sheet;
+  part.trims = {loop};
+  EXPECT_NEAR(area_of(cut->mesh), kept_area_m2(part), 5e-3 * area_of(cut->mesh));
+}
+
 // A small hole leaves most of the flux through a body's surface.
 TEST(Tessellation, NormalsOfATrimmedBodyAreOutward) {
   const Surface tube = ellipsoid_tube(10, 10);
