@@ -163,7 +163,7 @@ Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolera
   if (surface.IsNull()) return Error{"has no surface; export it anew"};
   auto box = box_of(face, surface);
   if (!box) return box.error();
-  const bool trimmed = is_trimmed(face, box.value());
+  const bool trimmed = is_trimmed(face, box.value(), tolerance_m / scale);
   if (trimmed) box = widened(surface, box.value());
   FaceSurface result;
   if (auto exact = exact_surface(surface, box.value())) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <IGESControl_Writer.hxx>
@@ -247,6 +249,23 @@ TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   const auto found = read_cad(file, {}, [](const CadSurface&) { FAIL() << "a surface of another file"; });
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().message, "holds no surface but names other files; export all as one");
+}
+
+// A corner of a long plate lies by a hundred-thousandth of its length beside the box.
+TEST_F(CadReader, ASlantThatExceedsTheToleranceIsATrim) {
+  BRepBuilderAPI_MakePolygon outline(gp_Pnt(0, 0, 0), gp_Pnt(90000, 0, 0), gp_Pnt(89999.5, 900, 0),
+                                     gp_Pnt(0, 900, 0), true);
+  const auto file = folder_.path() / "plate.step";
+  STEPControl_Writer writer;
+  writer.Transfer(BRepBuilderAPI_MakeFace(outline.Wire()).Shape(), STEPControl_AsIs);
+  writer.Write(file.c_str());
+  CadReading reading;
+  for (const double tolerance_m : {1e-7, 1e-5}) {
+    reading.tolerance_m = tolerance_m;
+    EXPECT_EQ(read(file, reading).surfaces.at(0).trims.size(), 1u);
+  }
+  reading.tolerance_m = 1e-3;
+  EXPECT_TRUE(read(file, reading).surfaces.at(0).trims.empty());
 }
 
 TEST_F(CadReader, MoreFacesThanTheLimitAreRefused) {
