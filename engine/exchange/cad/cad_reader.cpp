@@ -6,6 +6,7 @@
 #include <TDocStd_Document.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XSControl_WorkSession.hxx>
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <optional>
@@ -16,9 +17,13 @@
 #include "engine/exchange/cad/external_files.h"
 #include "engine/exchange/cad/face_surface.h"
 #include "engine/exchange/cad/file_unit.h"
+#include "engine/exchange/cad/iges_globals.h"
 #include "engine/exchange/cad/iges_lines.h"
 #include "engine/exchange/cad/lost_faces.h"
 #include "engine/exchange/cad/named_faces.h"
+#include "engine/exchange/cad/placements.h"
+#include "engine/number_text.h"
+#include "engine/simulation/checks.h"
 
 namespace spoonbill {
 namespace {
@@ -30,8 +35,10 @@ using OcctDocument = opencascade::handle<TDocStd_Document>;
 struct Content {
   OcctDocument document;
   FileUnit unit;
-  FaceCount faces = {};
+  LossCount losses = {};
   int external_files = 0;
+  int unread_placements = 0;
+  double model_scale = 1.0;  // of IGES
 };
 
 OcctDocument new_document() {
@@ -50,12 +57,14 @@ Result<Content> read_step(const std::filesystem::path& file, const CadProgress& 
   Content content{new_document(), unit_of(reader.Reader().StepModel())};
   content.external_files = forget_external_files(reader.Reader().StepModel());
   if (!reader.Transfer(content.document)) return Error{"holds no shape"};
-  content.faces = count_faces(reader.Reader().WS(), CadFormat::step);
+  content.losses = count_losses(reader.Reader().WS(), CadFormat::step);
+  content.unread_placements = count_unread_placements(reader.Reader().StepModel());
   return content;
 }
 
 Result<Content> read_iges(const std::filesystem::path& file, const CadProgress& progress) {
-  if (const auto whole = count_null_entities(file); !whole) return whole.error();
+  const auto null_entities = count_null_entities(file);
+  if (!null_entities) return null_entities.error();
   IGESCAFControl_Reader reader;
   reader.SetColorMode(false);
   reader.SetLayerMode(false);
@@ -64,7 +73,10 @@ Result<Content> read_iges(const std::filesystem::path& file, const CadProgress& 
   if (progress) progress(share_of_parsing);
   Content content{new_document(), unit_of(reader.IGESModel(), file)};
   if (!reader.Transfer(content.document)) return Error{"holds no shape"};
-  content.faces = count_faces(reader.WS(), CadFormat::iges);
+  content.losses = count_losses(reader.WS(), CadFormat::iges);
+  content.losses.unread -= std::min(content.losses.unread, null_entities.value());
+  content.unread_placements = count_unread_placements(reader.IGESModel());
+  content.model_scale = iges_model_scale(file);
   return content;
 }
 
@@ -79,8 +91,8 @@ void say_unit(const FileUnit& unit, const CadReading& reading, CadModel& model) 
 }
 
 Error no_surface(const Content& content) {
-  if (content.faces.all > 0) {
-    return Error{"has " + std::to_string(content.faces.all) +
+  if (content.losses.faces > 0) {
+    return Error{"has " + std::to_string(content.losses.faces) +
                  " faces, none of which can be read; export it anew"};
   }
   if (content.external_files > 0) return Error{"holds no surface but names other files; export all as one"};
@@ -88,10 +100,27 @@ Error no_surface(const Content& content) {
 }
 
 void say_losses(const Content& content, CadModel& model) {
-  if (content.faces.lost > 0) {
-    model.notes.push_back(std::to_string(content.faces.lost) + " of the file's " +
-                          std::to_string(content.faces.all) +
-                          " faces cannot be read and are missing; repair them in the CAD system");
+  const LossCount& losses = content.losses;
+  const auto say = [&](int lost, int all, const char* what) {
+    if (lost == 0) return;
+    model.notes.push_back(std::to_string(lost) + " of the file's " + std::to_string(all) + " " + what +
+                          " cannot be read and are missing; repair them in the CAD system");
+  };
+  say(losses.lost_faces, losses.faces, "faces");
+  say(losses.lost_instances, losses.instances, "placed parts");
+  if (losses.unread > 0) {
+    model.notes.push_back("damaged entities of the file: " + std::to_string(losses.unread) +
+                          "; what they belong to is missing or wrong; export it anew");
+  }
+  if (content.unread_placements > 0) {
+    model.notes.push_back(
+        "placements that scale, stretch or mirror: " + std::to_string(content.unread_placements) +
+        ", which are not read; what they place has its own size and shape; export it "
+        "without them");
+  }
+  if (content.model_scale != 1.0) {
+    model.notes.push_back("the file calls itself a model of scale " + number_text(content.model_scale) +
+                          ", which is not applied: sizes are those of the model (--unit changes them)");
   }
   if (content.external_files > 0) {
     model.notes.push_back("the file names " + std::to_string(content.external_files) +
@@ -125,13 +154,32 @@ CadSurface surface_of(const NamedFace& face, FaceSurface found) {
   return surface;
 }
 
+// A document would not take it.
+bool is_far_away(const ControlNet& net) {
+  for (const auto* coordinates : {&net.x, &net.y, &net.z}) {
+    for (const double coordinate : *coordinates) {
+      if (!position_range_m.contains(coordinate)) return true;
+    }
+  }
+  return false;
+}
+
+Result<FaceSurface> near_surface(const TopoDS_Face& face, double scale, double tolerance_m) {
+  auto found = face_surface(face, scale, tolerance_m);
+  if (found && is_far_away(found->surface.net)) {
+    return Error{"lies more than " + number_text(position_range_m.high) +
+                 " m from the origin; move it nearer in the CAD system, or check the unit"};
+  }
+  return found;
+}
+
 // Those that are no surfaces of ours are told in notes. Refused: when all are.
 Status take_faces(const std::vector<NamedFace>& faces, double scale, const CadReading& reading,
                   const TakeSurface& take, const CadProgress& progress, CadModel& model) {
   std::optional<Error> first;
   std::size_t taken = 0;
   for (std::size_t k = 0; k < faces.size(); ++k) {
-    auto found = face_surface(faces[k].face, scale, reading.tolerance_m);
+    auto found = near_surface(faces[k].face, scale, reading.tolerance_m);
     if (found) {
       take(surface_of(faces[k], std::move(found).value()));
       ++taken;

@@ -14,6 +14,8 @@
 namespace spoonbill {
 namespace {
 
+constexpr int flag_of_millimetres = 2;  // IGES 5.3, section 2.2.4.3.14
+
 std::string name_of(double millimetres) {
   static constexpr std::pair<double, const char*> known[] = {
       {1.0, "mm"},     {10.0, "cm"}, {1000.0, "m"}, {25.4, "inch"},
@@ -51,7 +53,13 @@ FileUnit unit_of(const opencascade::handle<StepData_StepModel>& model) {
 }
 
 FileUnit unit_of(const opencascade::handle<IGESData_IGESModel>& model, const std::filesystem::path& file) {
-  const double millimetres = model->GlobalSection().UnitValue();
+  double millimetres = model->GlobalSection().UnitValue();
+  if (!(millimetres > 0.0)) {
+    IGESData_GlobalSection section = model->GlobalSection();
+    section.SetUnitFlag(flag_of_millimetres);
+    model->SetGlobalSection(section);
+    millimetres = 1.0;
+  }
   return {name_of(millimetres), millimetres, declares_iges_unit(file)};
 }
 

@@ -15,6 +15,7 @@ struct FileUnit {
 };
 
 FileUnit unit_of(const opencascade::handle<StepData_StepModel>& model);
+// A unit that is none is millimetres in the model from then on: OpenCASCADE would make nothing of it.
 FileUnit unit_of(const opencascade::handle<IGESData_IGESModel>& model, const std::filesystem::path& file);
 
 }  // namespace spoonbill

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <fstream>
 #include <string_view>
 
@@ -10,7 +11,7 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t section_column = 72, most_lines = 2000, most_parameters = 26;
-constexpr std::size_t unit_flag = 13, unit_name = 14;  // counted from 0
+constexpr std::size_t model_scale = 12, unit_flag = 13, unit_name = 14;  // counted from 0
 
 // The text of the lines that are marked as global.
 std::string global_text(const std::filesystem::path& file) {
@@ -72,6 +73,16 @@ bool declares_iges_unit(const std::filesystem::path& file) {
   const std::string& flag = parameters[unit_flag];
   if (!flag.empty() && flag != as_named) return std::find(flags.begin(), flags.end(), flag) != flags.end();
   return std::find(names.begin(), names.end(), parameters[unit_name]) != names.end();
+}
+
+double iges_model_scale(const std::filesystem::path& file) {
+  const std::vector<std::string> parameters = iges_global_parameters(file);
+  if (parameters.size() <= model_scale) return 1.0;
+  std::string text = parameters[model_scale];
+  std::replace(text.begin(), text.end(), 'D', 'E');  // as Fortran has it
+  double scale = 1.0;
+  std::from_chars(text.data(), text.data() + text.size(), scale);
+  return scale;
 }
 
 }  // namespace spoonbill

@@ -15,4 +15,7 @@ std::vector<std::string> iges_global_parameters(const std::filesystem::path& fil
 // Whether it has the flag of a unit or, in its place, a unit's name, of those that the standard knows.
 bool declares_iges_unit(const std::filesystem::path& file);
 
+// How many units of the model stand for one of the real thing; 1 where that is not said.
+double iges_model_scale(const std::filesystem::path& file);
+
 }  // namespace spoonbill

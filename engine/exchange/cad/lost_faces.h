@@ -1,5 +1,4 @@
-// The faces that a CAD file has and OpenCASCADE could not make: it leaves them out and calls the transfer
-// done.
+// What a CAD file has and OpenCASCADE could not make: it leaves that out and calls the transfer done.
 #pragma once
 
 #include <XSControl_WorkSession.hxx>
@@ -8,12 +7,13 @@
 
 namespace spoonbill {
 
-struct FaceCount {
-  int all = 0;   // that the file defines
-  int lost = 0;  // that became no shape
+struct LossCount {
+  int faces = 0, lost_faces = 0;          // that the file defines, and of them those that became no shape
+  int instances = 0, lost_instances = 0;  // of parts that an IGES file defines once
+  int unread = 0;                         // IGES entities that could not be parsed, those without a type too
 };
 
 // After the transfer.
-FaceCount count_faces(const opencascade::handle<XSControl_WorkSession>& session, CadFormat format);
+LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session, CadFormat format);
 
 }  // namespace spoonbill

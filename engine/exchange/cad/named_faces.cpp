@@ -40,6 +40,11 @@ bool says_nothing(const std::string& name) {
          (name.starts_with(use) && name.find_first_not_of("0123456789", use.size()) == std::string::npos);
 }
 
+// What OpenCASCADE counts for a use without a name.
+bool is_number(const std::string& name) {
+  return name.find_first_not_of("0123456789") == std::string::npos;
+}
+
 class Collector {
  public:
   explicit Collector(Shapes shapes) : shapes_(std::move(shapes)) {}
@@ -58,9 +63,9 @@ class Collector {
       if (!XCAFDoc_ShapeTool::GetReferredShape(component, part)) continue;
       const std::string own = name_of(component), of_part = name_of(part);
       visit(part, place.Multiplied(XCAFDoc_ShapeTool::GetLocation(component)),
-            !says_nothing(own)      ? own
-            : says_nothing(of_part) ? name
-                                    : of_part,
+            !says_nothing(own) && !is_number(own) ? own
+            : says_nothing(of_part)               ? name
+                                                  : of_part,
             depth + 1);
     }
   }

@@ -251,6 +251,21 @@ TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   EXPECT_EQ(found.error().message, "holds no surface but names other files; export all as one");
 }
 
+// Which OpenCASCADE calls by the number that it counts the use with.
+TEST_F(CadReader, AUseWithoutANameHasItsPartsName) {
+  const auto file = folder_.path() / "trolley.step";
+  write_trolley(file);
+  std::string text = content_of(file);
+  const std::string named = "'spare wheel'";
+  for (std::size_t at = text.find(named); at != std::string::npos; at = text.find(named)) {
+    text.replace(at, named.size(), "''");
+  }
+  const Found found = read(folder_.write("nameless.step", text));
+  EXPECT_EQ(std::count_if(found.surfaces.begin(), found.surfaces.end(),
+                          [](const CadSurface& part) { return part.name.starts_with("wheel"); }),
+            6);
+}
+
 // A corner of a long plate lies by a hundred-thousandth of its length beside the box.
 TEST_F(CadReader, ASlantThatExceedsTheToleranceIsATrim) {
   BRepBuilderAPI_MakePolygon outline(gp_Pnt(0, 0, 0), gp_Pnt(90000, 0, 0), gp_Pnt(89999.5, 900, 0),
@@ -266,6 +281,32 @@ TEST_F(CadReader, ASlantThatExceedsTheToleranceIsATrim) {
   }
   reading.tolerance_m = 1e-3;
   EXPECT_TRUE(read(file, reading).surfaces.at(0).trims.empty());
+}
+
+// The box as a representation that is shown where an operator places it.
+std::string placed_by(std::string text, const std::string& ratios) {
+  const std::size_t end = text.rfind("ENDSEC;");
+  text.insert(end,
+              "#9001=CARTESIAN_POINT('',(0.,0.,0.));\n#9002=DIRECTION('',(1.,0.,0.));\n"
+              "#9003=DIRECTION('',(0.,1.,0.));\n#9004=DIRECTION('',(0.,0.,1.));\n"
+              "#9005=DIRECTION('',(0.,0.,-1.));\n#9006=CARTESIAN_TRANSFORMATION_OPERATOR_3D('','','',"
+              "#9002,#9003,#9001," +
+                  ratios + ");\n");
+  return text;
+}
+
+TEST_F(CadReader, PlacementsThatScaleOrMirrorAreTold) {
+  const std::string text = content_of(box_in("mm", "box.step"));
+  const auto notes = [&](const std::string& ratios) {
+    const auto told = read(folder_.write("placed.step", placed_by(text, ratios))).model.notes;
+    return std::count_if(told.begin(), told.end(), [](const std::string& note) {
+      return note.starts_with("placements that scale, stretch or mirror: 1, which are not read");
+    });
+  };
+  EXPECT_EQ(notes("1.,#9004"), 0);
+  EXPECT_EQ(notes("$,$"), 0);
+  EXPECT_EQ(notes("2.,#9004"), 1);
+  EXPECT_EQ(notes("1.,#9005"), 1);
 }
 
 TEST_F(CadReader, MoreFacesThanTheLimitAreRefused) {

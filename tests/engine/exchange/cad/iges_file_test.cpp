@@ -160,5 +160,80 @@ TEST_F(IgesFile, AnEntityWhoseParametersLieBeyondTheEndIsRefused) {
             "export it anew");
 }
 
+TEST_F(IgesFile, ABareSurfaceThatIsDamagedIsMissed) {
+  std::string damaged = sheet_at(20);
+  damaged[0] = '5';  // asks for more control points than there are
+  const Found found = read(iges_text({{128, sheet_at(0)}, {128, damaged}}));
+  EXPECT_EQ(found.surfaces.size(), 1u);
+  EXPECT_EQ(found.model.notes,
+            std::vector<std::string>{
+                "1 of the file's 2 faces cannot be read and are missing; repair them in the CAD system"});
+}
+
+TEST_F(IgesFile, APlacedPartThatIsNotReadIsMissed) {
+  const Found found = read(iges_text(
+      {{128, sheet_at(0), 0, 1}, {308, "0,4Hpart,1,1"}, {408, "3,100.,0.,0.,1."}, {408, "3,200.,0.,0.,2."}}));
+  EXPECT_EQ(found.surfaces.size(), 1u);
+  EXPECT_EQ(
+      found.model.notes,
+      std::vector<std::string>{
+          "1 of the file's 2 placed parts cannot be read and are missing; repair them in the CAD system"});
+}
+
+// A letter too many moves the columns.
+TEST_F(IgesFile, AnEntryOfTheDirectoryThatIsDamagedIsRefused) {
+  std::string text = iges_text({{128, sheet_at(0)}, {128, sheet_at(20)}, {128, sheet_at(40)}});
+  const std::size_t second = text.find(numbered('D', 3)) - 72;
+  text.insert(second + 16, "0.5");
+  EXPECT_EQ(read(text).refusal,
+            "is cut short or damaged: its last line counts 6 lines of section D, and there are 5; copy it "
+            "whole, or export it anew");
+}
+
+TEST_F(IgesFile, ACurveThatIsDamagedIsTold) {
+  const Found found = read(iges_text({{128, sheet_at(0)}, {142, "1,99,0,1,1"}}));
+  EXPECT_EQ(found.surfaces.size(), 1u);
+  EXPECT_EQ(found.model.notes,
+            std::vector<std::string>{
+                "damaged entities of the file: 1; what they belong to is missing or wrong; export it anew"});
+}
+
+TEST_F(IgesFile, AMatrixThatStretchesIsTold) {
+  const std::string stretch = "2.,0.,0.,100.,0.,1.,0.,0.,0.,0.,1.,0.",
+                    turn = "0.,-1.,0.,9.,1.,0.,0.,0.,0.,0.,1.,0.";
+  const Found turned = read(iges_text({{128, sheet_at(0), 2}, {124, turn}}));
+  EXPECT_TRUE(turned.model.notes.empty());
+  const Found found = read(iges_text({{128, sheet_at(0), 2}, {124, stretch}}));
+  ASSERT_EQ(found.model.notes.size(), 1u);
+  EXPECT_NE(found.model.notes[0].find("placements that scale, stretch or mirror: 1, which are not read"),
+            std::string::npos);
+}
+
+TEST_F(IgesFile, WhatIsFarAwayIsLeftOut) {
+  const Found found = read(iges_text({{128, sheet_at(0)}, {128, sheet_at(200000)}}));
+  EXPECT_EQ(found.surfaces.size(), 1u);
+  ASSERT_EQ(found.model.notes.size(), 1u);
+  EXPECT_NE(found.model.notes[0].find("is left out: lies more than 100 m from the origin"), std::string::npos)
+      << found.model.notes[0];
+}
+
+TEST_F(IgesFile, TheScaleOfAModelIsTold) {
+  const Found found = read(iges_text({{128, sheet_at(0)}}, "0.5,2,2HMM"));
+  ASSERT_EQ(found.model.notes.size(), 1u);
+  EXPECT_NE(found.model.notes[0].find("a model of scale 0.5, which is not applied"), std::string::npos);
+  for (const char* same : {"1.,2,2HMM", "1,2,2HMM", "1.D0,2,2HMM", ",2,2HMM"}) {
+    EXPECT_TRUE(read(iges_text({{128, sheet_at(0)}}, same)).model.notes.empty()) << same;
+  }
+}
+
+TEST_F(IgesFile, AFlagOfNoUnitIsMillimetres) {
+  const Found found = read(iges_text({{128, sheet_at(0)}}, "1.,99,2HMM"));
+  EXPECT_EQ(found.refusal, "");
+  ASSERT_EQ(found.surfaces.size(), 1u);
+  EXPECT_FALSE(found.model.unit_declared);
+  EXPECT_EQ(found.model.notes.size(), 1u);
+  EXPECT_NEAR(found.surfaces[0].surface.net.point(1, 1).y(), 0.02, 1e-12);
+}
+
 }  // namespace
 }  // namespace spoonbill
