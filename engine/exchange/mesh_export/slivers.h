@@ -1,4 +1,4 @@
-// Triangles without area, which trim loops along the lines of a grid leave.
+// Triangles without area, which trim loops leave whose corners are as high as each other.
 #pragma once
 
 #include "engine/collision/meshes/triangle_mesh.h"
