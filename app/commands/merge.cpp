@@ -172,6 +172,9 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   Body body = patches[0];
   body.surface = std::move(surface);
   body.trims.clear();
+  const bool one_solid = std::all_of(patches.begin(), patches.end(),
+                                     [&](const Body& patch) { return patch.solid == body.solid; });
+  if (!one_solid) body.solid.clear();
   if (patches.size() > 1) {
     body.name = document.name;
     document.view = Json::object();  // so that the whole of it is framed

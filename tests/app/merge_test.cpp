@@ -97,6 +97,20 @@ TEST(MergeCommand, NormalsThatPointInwardsAreToldOf) {
   }
 }
 
+TEST(MergeCommand, FacesOfOneSolidStayAFaceOfIt) {
+  const Workplace place;
+  ASSERT_EQ(run({"change", handle, "split", "v=50", "--out", place.text("halves.json")}).code, exit_done);
+  for (const std::string other : {"bracket", "lid"}) {
+    Document halves = read_document(place.path("halves.json")).value();
+    halves.scene.bodies[0].solid = "bracket";
+    halves.scene.bodies[1].solid = other;
+    place.write("faces.json", json_to_page(document_to_json(halves)));
+    ASSERT_EQ(run({"merge", place.text("faces.json"), "--out", place.text("whole.json")}).code, exit_done);
+    EXPECT_EQ(read_document(place.path("whole.json"))->scene.bodies[0].solid,
+              other == "bracket" ? "bracket" : "");
+  }
+}
+
 TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   const Workplace place;
   const std::string rod = place.text("rod.json"), ball = place.text("ball.json"),
