@@ -20,7 +20,8 @@ struct NamedMesh {
   bool closed = true;  // 3MF tells solids from sheets
 };
 
-// What takes a file's bytes, part after part.
+// What takes a file's bytes, part after part. An empty part only asks whether to go on, between steps that
+// have nothing to write yet.
 using TakeBytes = std::function<Status(std::string_view)>;
 
 // STL binary, in single precision as the format has it; OBJ as text with every digit, an object for each

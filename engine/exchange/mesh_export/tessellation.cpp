@@ -91,11 +91,13 @@ Result<Sheet> sheet_of(const Surface& surface, const Cells& cells) {
   return sheet;
 }
 
-// Of each polynomial piece, the largest error of its cells.
-Eigen::MatrixXd errors_of(const Sheet& sheet, const SurfaceBounds& bounds, const Cells& cells) {
+// Of each polynomial piece, the largest error of its cells; of those that come after a stop, none.
+Eigen::MatrixXd errors_of(const Sheet& sheet, const SurfaceBounds& bounds, const Cells& cells,
+                          const std::function<bool()>& stop) {
   Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(bounds.elements_u(), bounds.elements_v());
   std::size_t i = 0;
   for (int a = 0; a < bounds.elements_u(); ++a) {
+    if (stop && stop()) break;
     for (int k = 0; k < cells.u_cuts[static_cast<std::size_t>(a)]; ++k, ++i) {
       std::size_t j = 0;
       for (int b = 0; b < bounds.elements_v(); ++b) {
@@ -271,7 +273,7 @@ Result<Tessellation> finished(const Sheet& sheet, const Surface& surface, const 
 }  // namespace
 
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
-                                std::size_t triangle_limit) {
+                                std::size_t triangle_limit, const std::function<bool()>& stop) {
   SurfaceBounds bounds(surface.u, surface.v);
   bounds.update(surface.net);
   Cells cells = first_cells(surface, bounds, chord_m);
@@ -282,7 +284,8 @@ Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLo
     }
     const auto sheet = sheet_of(surface, cells);
     if (!sheet) return sheet.error();
-    const Eigen::MatrixXd errors = errors_of(sheet.value(), bounds, cells);
+    const Eigen::MatrixXd errors = errors_of(sheet.value(), bounds, cells, stop);
+    if (stop && stop()) return Error{"stopped"};
     if (const double largest = errors.maxCoeff(); largest <= chord_m) {
       return finished(sheet.value(), surface, trims, largest);
     }

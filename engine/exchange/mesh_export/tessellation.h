@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "engine/bspline/surface.h"
@@ -27,9 +28,11 @@ inline constexpr std::size_t exported_triangle_limit = 10'000'000;
 // (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of the bilinear patch through its corners (surface_bounds.h), and that
 // within |P00 - P10 - P01 + P11| / 4 of its triangles, those that trim loops cut too, whose corners lie on
 // the patch. An edge that a loop makes is that of its polygon, within trim_chord_share of the domain of the
-// loop. Refused: more triangles than the limit, loops that bound nothing.
+// loop. Refused: more triangles than the limit, loops that bound nothing; `stop`, asked
+// now and then, where it says so.
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
-                                std::size_t triangle_limit = exported_triangle_limit);
+                                std::size_t triangle_limit = exported_triangle_limit,
+                                const std::function<bool()>& stop = {});
 
 // By the divergence theorem; of a closed mesh, negative where its normals point inward.
 double enclosed_volume_m3(const TriangleMesh& mesh);

@@ -46,28 +46,52 @@ std::string attribute_text(const std::string& text) {
   return escaped;
 }
 
-void add_object(const NamedMesh& part, std::size_t id, std::string& xml) {
+// Whether whoever takes the bytes still wants them: the first refusal sticks.
+class Going {
+ public:
+  explicit Going(const TakeBytes& take) : take_(take) {}
+
+  bool on() {
+    if (status_.ok()) status_ = take_({});
+    return status_.ok();
+  }
+  // Not for each of what is written by the million.
+  bool on_at(std::size_t number) {
+    constexpr std::size_t between = 1 << 14;
+    return number % between == 0 ? on() : status_.ok();
+  }
+  const Status& status() const { return status_; }
+
+ private:
+  const TakeBytes& take_;
+  Status status_;
+};
+
+void add_object(const NamedMesh& part, std::size_t id, std::string& xml, Going& going) {
   constexpr double per_metre = 1e3;
   xml += "<object id=\"" + std::to_string(id) +
          (part.closed ? "\" type=\"model\" name=\"" : "\" type=\"surface\" name=\"") +
          attribute_text(part.name) + "\"><mesh><vertices>\n";
+  std::size_t written = 0;
   for (const Vector3& vertex : part.mesh.vertices_m) {
+    if (!going.on_at(written++)) return;
     xml += "<vertex x=\"" + number_text(per_metre * vertex.x()) + "\" y=\"" +
            number_text(per_metre * vertex.y()) + "\" z=\"" + number_text(per_metre * vertex.z()) + "\"/>\n";
   }
   xml += "</vertices><triangles>\n";
   for (const TriangleCorners& corners : part.mesh.triangles) {
+    if (!going.on_at(written++)) return;
     xml += "<triangle v1=\"" + std::to_string(corners[0]) + "\" v2=\"" + std::to_string(corners[1]) +
            "\" v3=\"" + std::to_string(corners[2]) + "\"/>\n";
   }
   xml += "</triangles></mesh></object>\n";
 }
 
-std::string model_xml(const std::vector<NamedMesh>& meshes) {
+std::string model_xml(const std::vector<NamedMesh>& meshes, Going& going) {
   std::string xml =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xml:lang=\"en-US\" "
       "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n<resources>\n";
-  for (std::size_t k = 0; k < meshes.size(); ++k) add_object(meshes[k], k + 1, xml);
+  for (std::size_t k = 0; k < meshes.size(); ++k) add_object(meshes[k], k + 1, xml, going);
   xml += "</resources>\n<build>\n";
   for (std::size_t k = 0; k < meshes.size(); ++k) {
     xml += "<item objectid=\"" + std::to_string(k + 1) + "\"/>\n";
@@ -108,7 +132,16 @@ class Archive {
     return false;
   }
 
-  bool pack() { return archive_ != nullptr && zip_close(std::exchange(archive_, nullptr)) == 0; }
+  // Nothing is left to be packed where it fails.
+  bool pack(Going& going) {
+    if (archive_ == nullptr) return false;
+    const auto stops = [](zip_t*, void* asked) { return static_cast<Going*>(asked)->on() ? 0 : 1; };
+    zip_register_cancel_callback_with_state(archive_, stops, nullptr, &going);
+    if (zip_close(archive_) != 0) return false;
+    archive_ = nullptr;
+    // Asked for the last time, it has been packed.
+    return going.status().ok();
+  }
 
   // Of the packed archive.
   Status hand_to(const TakeBytes& take) {
@@ -134,11 +167,13 @@ class Archive {
 }  // namespace
 
 Status write_three_mf(const std::vector<NamedMesh>& meshes, const TakeBytes& take) {
-  const std::string types = content_types, relations = relationships, model = model_xml(meshes);
+  Going going(take);
+  const std::string types = content_types, relations = relationships, model = model_xml(meshes, going);
+  if (!going.status().ok()) return going.status();
   Archive archive;
   if (!archive.add("[Content_Types].xml", types) || !archive.add("_rels/.rels", relations) ||
-      !archive.add("3D/3dmodel.model", model) || !archive.pack()) {
-    return Error{"cannot be packed"};
+      !archive.add("3D/3dmodel.model", model) || !archive.pack(going)) {
+    return going.status().ok() ? Error{"cannot be packed"} : going.status();
   }
   return archive.hand_to(take);
 }

@@ -122,5 +122,31 @@ TEST_F(MeshWriter, ARefusalOfTheTakerEndsIt) {
   }
 }
 
+// A zip is whole before its first byte is written: its taker is asked while it is made, and packed.
+TEST_F(MeshWriter, ThreeMfAsksWhetherToGoOn) {
+  const std::vector<NamedMesh> meshes = {
+      {"fine", tessellate(ellipsoid_tube(8, 10, {0, 0, 0}), {}, 2e-5).value().mesh, true}};
+  int asked = 0;
+  bool has_begun = false;
+  ASSERT_TRUE(write_meshes(meshes, MeshFormat::three_mf, 1.0, [&](std::string_view bytes) -> Status {
+    has_begun = has_begun || !bytes.empty();
+    asked += has_begun ? 0 : 1;
+    return {};
+  }));
+  ASSERT_GT(asked, 10);
+  for (const int last : {1, asked / 2, asked}) {
+    int left = last;
+    const Status stopped =
+        write_meshes(meshes, MeshFormat::three_mf, 1.0, [&](std::string_view bytes) -> Status {
+          EXPECT_TRUE(bytes.empty());
+          EXPECT_GT(left, 0);
+          if (--left > 0) return {};
+          return Error{"stopped"};
+        });
+    ASSERT_FALSE(stopped.ok());
+    EXPECT_EQ(stopped.error().message, "stopped");
+  }
+}
+
 }  // namespace
 }  // namespace spoonbill

@@ -209,6 +209,13 @@ TEST(Tessellation, MoreTrianglesThanTheLimitAreRefused) {
             std::string::npos);
 }
 
+TEST(Tessellation, StopsWhenAskedTo) {
+  const auto stopped = tessellate(ellipsoid_tube(8, 8), {}, 1e-4, 1000000, [] { return true; });
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().message, "stopped");
+  EXPECT_TRUE(tessellate(ellipsoid_tube(8, 8), {}, 1e-4, 1000000, [] { return false; }));
+}
+
 TEST(Tessellation, ACubeOfTetrahedraHasItsVolume) {
   TriangleMesh mesh;
   mesh.vertices_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
