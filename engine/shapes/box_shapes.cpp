@@ -208,6 +208,8 @@ ExactShape shape_along(const Vector3& size_m, int axis, double edge_rounding_m, 
   shape.u.breaks = box.around_breaks();
   shape.v.breaks = box.along_breaks();
   shape.pole_at_start = shape.pole_at_end = true;
+  shape.flat_to = shape.v.breaks[1];
+  shape.flat_from = shape.v.breaks[shape.v.breaks.size() - 2];
   shape.at = [=](double u, double v) {
     const Vector3 along = box.at(u, v);
     Vector3 point;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "engine/pose.h"
@@ -23,6 +24,9 @@ struct ShapeDirection {
 struct ExactShape {
   ShapeDirection u, v;
   bool pole_at_start = false, pole_at_end = false;  // of v: all u are one point there
+  // Up to where from the start of v, and from where on to its end, the shape lies in the plane of its pole: a
+  // break; none where it does not.
+  std::optional<double> flat_to = {}, flat_from = {};
   std::function<Vector3(double u, double v)> at;
 
   bool is_closed() const { return u.periodic && (v.periodic || (pole_at_start && pole_at_end)); }

@@ -114,17 +114,35 @@ Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const 
   return result;
 }
 
-// Every control point of the edge in the pole, the next ring in its tangent plane.
-void settle_pole(const ExactShape& shape, bool at_start, ControlNet& net) {
+// How many rings reach into what is flat about a pole and, as there is a knot at its border, bend no more
+// beyond it than its tangent goes on; of a shape that is nowhere flat, that of its tangent plane.
+int flat_rings(const ExactShape& shape, bool at_start, const KnotVector& v) {
+  const std::vector<double>& knots = v.knots();
+  const std::optional<double> border = at_start ? shape.flat_to : shape.flat_from;
+  if (!border || std::count(knots.begin(), knots.end(), *border) < v.degree() - 1) return 1;
+  int rings = 0;
+  for (int c = 0; c < v.control_point_count(); ++c) {
+    const auto first = static_cast<std::size_t>(c), last = first + static_cast<std::size_t>(v.degree()) + 1;
+    rings += (at_start ? knots[first] < *border : knots[last] > *border) ? 1 : 0;
+  }
+  return std::max(1, rings - 1);
+}
+
+// Every control point of the edge in the pole, the next rings in its tangent plane.
+void settle_pole(const ExactShape& shape, bool at_start, const KnotVector& knots, ControlNet& net) {
   const double v = at_start ? shape.v.start() : shape.v.end();
   const Vector3 pole = shape.at(shape.u.start(), v);
-  const int edge = at_start ? 0 : net.columns - 1, next = at_start ? 1 : net.columns - 2;
+  const int edge = at_start ? 0 : net.columns - 1, inwards = at_start ? 1 : -1;
+  const int rings = flat_rings(shape, at_start, knots);
   const std::optional<Vector3> normal = pole_normal(shape, at_start);
   for (int i = 0; i < net.rows; ++i) {
     net.set_point(i, edge, pole);
     if (!normal) continue;
-    const Vector3 point = net.point(i, next);
-    net.set_point(i, next, point - normal->dot(point - pole) * *normal);
+    for (int ring = 1; ring <= rings; ++ring) {
+      const int column = edge + ring * inwards;
+      const Vector3 point = net.point(i, column);
+      net.set_point(i, column, point - normal->dot(point - pole) * *normal);
+    }
   }
 }
 
@@ -141,8 +159,8 @@ Result<Surface> fit_with(const ExactShape& shape, const ShapeKnots& u, const Sha
   met.v_last = shape.pole_at_end;
   auto surface = fit_grid(u.knots(), v.knots(), grid, met);
   if (!surface) return surface;
-  if (shape.pole_at_start) settle_pole(shape, true, surface->net);
-  if (shape.pole_at_end) settle_pole(shape, false, surface->net);
+  if (shape.pole_at_start) settle_pole(shape, true, surface->v, surface->net);
+  if (shape.pole_at_end) settle_pole(shape, false, surface->v, surface->net);
   return surface;
 }
 

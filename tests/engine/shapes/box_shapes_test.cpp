@@ -107,6 +107,21 @@ TEST(Box, MayBeLongOrWideOrBoth) {
   }
 }
 
+// Where lines from the pole are slender, what a fit leaves of ripples would be sharp dimples.
+TEST(Box, HasFlatEndFaces) {
+  for (const BoxSize& size : {BoxSize{{0.3, 0.02, 0.003}, 0.0003}, BoxSize{{0.06, 0.04, 0.02}, 0.008}}) {
+    const auto shape = box_shape(size);
+    const Surface box = fitted(shape).surface;
+    const double to = shape->flat_to.value(), from = shape->flat_from.value(), half = 0.5 * size.size_m.x();
+    for (int i = 0; i < 40; ++i) {
+      for (int j = 0; j <= 10; ++j) {
+        EXPECT_NEAR(position(box, i / 40.0, to * j / 10.0).x(), -half, 1e-12);
+        EXPECT_NEAR(position(box, i / 40.0, from + (1.0 - from) * j / 10.0).x(), half, 1e-12);
+      }
+    }
+  }
+}
+
 TEST(Plate, MayBeLong) {
   PlateSize size{1.0, 0.01, 0.002};
   size.corner_m = usual_corner_m(size);
