@@ -15,6 +15,9 @@
 namespace spoonbill {
 namespace {
 
+// Flatter than a kilometre is flat.
+constexpr double least_curvature_per_m = 1e-3;
+
 Json numbers(const Vector3& vector) {
   return Json::array({vector.x(), vector.y(), vector.z()});
 }
@@ -26,14 +29,13 @@ Json place_json(const CurvaturePlace& place) {
           {"point_m", numbers(place.position_m)}};
 }
 
-// Null where the surface is nowhere curved that way.
+// Null where the surface is curved that way nowhere, or by rounding alone.
 Json radius_json(double curvature_per_m) {
-  return curvature_per_m > 0.0 ? Json(1.0 / curvature_per_m) : Json(nullptr);
+  return curvature_per_m > least_curvature_per_m ? Json(1.0 / curvature_per_m) : Json(nullptr);
 }
 
 void add_radius(FactSheet& facts, const char* label, double curvature_per_m, const CurvaturePlace& place) {
-  // Flatter than a kilometre is flat.
-  if (!(curvature_per_m > 1e-3)) return;
+  if (!(curvature_per_m > least_curvature_per_m)) return;
   facts.add(label, short_length_text(1.0 / curvature_per_m) + " at " + place_text(place.position_m), "",
             nullptr);
 }

@@ -49,6 +49,16 @@ TEST(Check, MeasuresATorus) {
   EXPECT_TRUE(body["degenerate"].empty());
 }
 
+// Straight along, it is curved one way and by rounding alone the other.
+TEST(Check, AStraightTubeHasNoHollowRadius) {
+  const Workplace place;
+  place.write("profile.csv", "radius_mm,height_mm\n10,0\n10,20\n10,40\n");
+  made(place, {"new", "lathe", "--profile", place.text("profile.csv")});
+  const Json body = check_of(place, "made.json")["bodies"][0];
+  EXPECT_NEAR(body["smallest_convex_radius_m"], 0.01, 5e-4);
+  EXPECT_TRUE(body["smallest_concave_radius_m"].is_null()) << body["smallest_concave_radius_m"];
+}
+
 TEST(Check, SaysWhatIsWrongAndEndsWellAllTheSame) {
   const Workplace place;
   Document sheet = made(place, {"new", "plate", "--size", "100x60mm", "--sheet"});
