@@ -175,8 +175,9 @@ Status write_mesh_file(const CadModel& model, const ConversionRequest& request, 
   report.triangles = report.closed_meshes = 0;
   std::size_t left = exported_triangle_limit;
   for (const CadSurface& part : model.surfaces) {
+    auto tessellation =
+        tessellate(part.surface, part.trims, request.chord_m.value_or(usual_chord_m), left, watch.stop);
     if (watch.stop && watch.stop()) return about(request.out, "stopped");
-    auto tessellation = tessellate(part.surface, part.trims, request.chord_m.value_or(usual_chord_m), left);
     if (!tessellation) return about(request.out, "'" + part.name + "': " + tessellation.error().message);
     *report.triangles += tessellation->mesh.triangles.size();
     *report.closed_meshes += tessellation->closed ? 1 : 0;
