@@ -8,6 +8,7 @@
 
 #include "engine/collision/meshes/vertex_join.h"
 #include "engine/fitting/nearest_points.h"
+#include "engine/fitting/quantiles.h"
 #include "engine/fitting/side_cutting.h"
 #include "engine/fitting/voxels.h"
 
@@ -151,12 +152,6 @@ std::vector<NodePair> pairs_of_mesh(const Scan& scan, const std::vector<std::uin
     for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(node_of[t[k]], node_of[t[(k + 1) % 3]]);
   }
   return pairs;
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // The nearest nodes of each, unless they are far beyond what is usual or face the other way.

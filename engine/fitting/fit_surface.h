@@ -30,8 +30,9 @@ struct FittedSurface {
 
 // Cubic. `start` gives the nodes their first parameters. Alternates least squares with new parameters by the
 // closest points, from few control points to many, knots where errors are; outliers weigh less (Huber 1964).
-// Where the surface folds its fairness is raised until it does not, or no further. Closed shapes get outward
-// normals.
+// The fairness is the most that points left out of a fit bear; where the surface folds it is raised until it
+// does not, or no further. Of several ways to hold points to their face of a thin wall the best is taken.
+// Closed shapes get outward normals.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings);
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/fitting/nearest_points.h"
+#include "engine/fitting/quantiles.h"
 
 namespace spoonbill {
 namespace {
@@ -204,12 +205,6 @@ double length_of(const std::vector<Vector2>& way) {
   double length = 0.0;
   for (std::size_t k = 1; k < way.size(); ++k) length += (way[k] - way[k - 1]).norm();
   return length;
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // How much of both faces has points on it, no deeper than a face is thick: of a grid of sectors and lengths.

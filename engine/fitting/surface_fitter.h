@@ -9,6 +9,7 @@
 
 #include "engine/fitting/fit_surface.h"
 #include "engine/fitting/folds.h"
+#include "engine/fitting/quantiles.h"
 #include "engine/fitting/scattered_fit.h"
 
 namespace spoonbill {
@@ -28,11 +29,7 @@ struct FittedData {
 
 // The distance within which 95 % of them are.
 inline double ninety_fifth(std::span<const double> distances) {
-  std::vector<double> sorted(distances.begin(), distances.end());
-  const auto place =
-      sorted.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(sorted.size() - 1));
-  std::nth_element(sorted.begin(), place, sorted.end());
-  return *place;
+  return quantile_of({distances.begin(), distances.end()}, 0.95);
 }
 
 // A difference of parameters of a period of one, the short way around.
