@@ -47,6 +47,7 @@ Error OutputFile::failure(std::string_view what) const {
 }
 
 Status OutputFile::write(std::string_view text) {
+  if (text.empty()) return {};  // it may have no address, which fwrite must have
   if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) {
     return failure("cannot be written");
   }

@@ -92,11 +92,12 @@ TEST(Program, AKilledRecordingReplaysUpToTheCut) {
   EXPECT_EQ(facts["ticks"].get<int>() % 100, 0);
 }
 
-// A file may grow to 12 KiB here; what is performed takes more, and its header less.
+// A file may grow to 12 KiB here; what is performed takes more, also where half of the ticks are missed, and
+// its header less.
 TEST(Program, ALiveRecordingThatIsCutIsAFailure) {
   const Workplace place;
   place.write("live.json", R"({"spoonbill_script": 1, "model": "model.json",
-    "steps": [{"start_mm": [50, 14, 0]}, {"move_to_mm": [50, 6, 0], "over_s": 1}, {"move_to_mm": [50, 14, 0], "over_s": 1}]})");
+    "steps": [{"start_mm": [50, 14, 0]}, {"move_to_mm": [50, 6, 0], "over_s": 3}, {"move_to_mm": [50, 14, 0], "over_s": 3}]})");
   const Outcome outcome = run_process(
       program, {"record", place.text("live.json"), "--live", "--out", place.text("live.jsonl"), "--json"},
       "trap '' XFSZ; ulimit -f 24;");

@@ -168,7 +168,7 @@ TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
   EXPECT_GT(all.faults, ticks / 5000);
   EXPECT_GT(all.buzzes, ticks / 100'000);
   EXPECT_GT(all.with_force, ticks / 40);
-  EXPECT_GT(all.limited, ticks / 400);
+  EXPECT_GT(all.limited, ticks / 1000);
 }
 
 Scene random_scene(Random& random) {
