@@ -18,7 +18,7 @@
 #include "engine/collision/meshes/mesh_distance.h"
 #include "engine/collision/surfaces/surface_pair_collider.h"
 #include "engine/exchange/document.h"
-#include "engine/material/lattice/tube_lattice.h"
+#include "engine/material/lattice/closed_surface.h"
 
 namespace spoonbill {
 namespace {

@@ -132,12 +132,6 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   facts.add("Kind", kind.parser->get_name(), "kind", kind.parser->get_name());
   add_size_fact(facts, fitted->surface);
   add_shape_facts(facts, made->shape, fitted.value(), fit.tolerance_m);
-  std::vector<std::string> remarks;
-  if (made->shape.is_closed() && made->shape.v.periodic) {
-    remarks.emplace_back(
-        "closed both ways, which no lattice fills: to look at, merge and export, not to press");
-  }
-  add_remarks(facts, remarks);
   facts.print(console.out, options.json);
   return {};
 }

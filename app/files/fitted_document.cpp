@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "app/start/starting_document.h"
+#include "engine/material/lattice/tube_lattice.h"
 
 namespace spoonbill {
 namespace {
@@ -24,28 +27,36 @@ double thickness_for(Body body, double size_m) {
   return thickness;
 }
 
-// The largest number of nodes with which the body has a lattice: scans have places where cells of the usual
-// size would fold.
-Status choose_node_budget(Body& body) {
+bool has_lattice_along(const Body& body) {
+  return body.shell_thickness_m ? lattice_of(body).ok() : tube_lattice(body.surface, body.lattice).ok();
+}
+
+// The largest number of nodes with which a lattice runs along the body: scans have places where cells of the
+// usual size would fold. The usual number where none does that is worth having.
+void choose_node_budget(Body& body) {
   const int usual = body.lattice.node_budget;
-  Status first;
-  for (const int share : {1, 2, 4, 8, 16}) {
+  for (const int share : {1, 2, 4}) {
     body.lattice.node_budget = std::max(node_budget_range.low, usual / share);
-    const auto lattice = lattice_of(body);
-    if (lattice) return {};
-    if (first) first = lattice.error();
+    if (has_lattice_along(body)) return;
   }
   body.lattice.node_budget = usual;
-  return first;
+}
+
+std::optional<std::string> remark_on_lattice(const Body& body) {
+  const auto lattice = lattice_of(body);
+  const std::string name = "body \"" + body.name + "\" ";
+  if (!lattice) return name + "cannot be simulated yet: " + lattice.error().message;
+  if (lattice->along.empty()) return std::nullopt;
+  return name + "is sculpted in a box of cells: a lattice along it would fold";
 }
 
 }  // namespace
 
 Result<FittedDocument> fitted_document(const ScanFit& fit, const std::string& name, const Material& clay) {
-  const auto most = static_cast<std::size_t>(sculpted_body_count_range.high);
+  const auto most = static_cast<std::size_t>(body_count_range.high);
   if (fit.bodies.size() > most) {
-    return Error{"has " + std::to_string(fit.bodies.size()) + " islands, and at most " +
-                 std::to_string(most) + " bodies are sculpted together; use --islands largest"};
+    return Error{"has " + std::to_string(fit.bodies.size()) + " islands, and a document holds at most " +
+                 std::to_string(most) + " bodies; use --islands largest"};
   }
   FittedDocument result;
   result.document = starting_document(name, fit.bodies.front().surface, clay);
@@ -57,10 +68,12 @@ Result<FittedDocument> fitted_document(const ScanFit& fit, const std::string& na
     body.surface = fitted.surface;
     body.material = clay;
     if (fitted.kind != ShapeKind::closed) body.shell_thickness_m = thickness_for(body, fitted.size_m.norm());
-    if (Status fits = choose_node_budget(body); !fits) {
-      result.remarks.push_back("body \"" + body.name + "\" cannot be simulated yet: " + fits.error().message);
-    }
+    choose_node_budget(body);
+    if (auto remark = remark_on_lattice(body)) result.remarks.push_back(std::move(*remark));
     result.document.scene.bodies.push_back(std::move(body));
+  }
+  if (Status few = check_body_count(result.document.scene); !few) {
+    result.remarks.push_back(few.error().message);
   }
   return result;
 }

@@ -215,7 +215,7 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
   mapping.base_ = mapping.current_;
   const KnotVector& v = mapping.rest_.v;
   RefitConstraints constraints{columns_to_hold(v, fixed), true, true};
-  if (lattice.mesh().thin) {
+  if (lattice.mesh().thin || v.is_periodic()) {
     constraints.keep_first = is_clamped(v, false);
     constraints.keep_last = is_clamped(v, true);
     mapping.first_pole_ = is_pole(mapping.rest_, false);

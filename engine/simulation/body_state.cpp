@@ -39,6 +39,11 @@ Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const 
 }
 
 std::string remark_on(const BodyState& body) {
+  if (!body.lattice.mesh().along.empty()) {
+    return "lattice: a box of cells about the body, since none along it holds; what is thinner than a cell "
+           "is "
+           "stiffer in bending than its material";
+  }
   if (body.core) return {};
   const LatticeReport& report = body.lattice.report();
   int worst = 0;

@@ -22,7 +22,7 @@ Status check_point(const Load& load, std::size_t place, const Surface& surface) 
 
 Result<LatticeMesh> lattice_of(const Body& body, const FeatureMapWatch& watch) {
   if (body.shell_thickness_m) return shell_lattice(body.surface, *body.shell_thickness_m, body.lattice);
-  return tube_lattice(body.surface, body.lattice, watch);
+  return solid_lattice(body.surface, body.lattice, watch);
 }
 
 Status check_body_count(const Scene& scene) {

@@ -10,7 +10,7 @@
 #include "engine/bspline/trim_loop.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/material/lattice/shell_lattice.h"
-#include "engine/material/lattice/tube_lattice.h"
+#include "engine/material/lattice/solid_lattice.h"
 #include "engine/material/lattice_materials.h"
 #include "engine/material/material.h"
 #include "engine/range.h"
@@ -23,8 +23,8 @@
 
 namespace spoonbill {
 
-// A solid body bounded by one tube: periodic in u, closed by a pole at both ends of v. Or, with a thickness,
-// a thin shell behind one (see shell_lattice.h).
+// A solid body bounded by one tube, periodic in u and closed by a pole at both ends of v, or by one ring,
+// periodic in both. Or, with a thickness, a thin shell behind one (see shell_lattice.h).
 struct Body {
   std::string name;
   Surface surface;

@@ -4,6 +4,7 @@
 #include <climits>
 #include <string>
 
+#include "engine/material/lattice/closed_surface.h"
 #include "engine/simulation/scene.h"
 
 namespace spoonbill {

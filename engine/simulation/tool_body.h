@@ -9,7 +9,7 @@
 #include "engine/bspline/surface.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/collision/solids/implicit/implicit_shapes.h"
-#include "engine/material/lattice/tube_lattice.h"
+#include "engine/material/lattice/lattice_request.h"
 #include "engine/material/material.h"
 #include "engine/simulation/fixing_plane.h"
 

@@ -68,6 +68,24 @@ TEST_F(FitTest, CloudBecomesADocumentThatOpens) {
   EXPECT_FALSE(json_of(info.out).at("lattice").is_null()) << info.out;
 }
 
+TEST_F(FitTest, MoreIslandsThanAreSculptedTogetherAreKeptAndToldOf) {
+  constexpr int balls = 9;
+  const Scan ball = ellipsoid_cloud(400, {0.01, 0.01, 0.01});
+  std::string text;
+  for (int b = 0; b < balls; ++b) {
+    Scan moved = ball;
+    for (Vector3& point : moved.points_m) point.x() += 0.05 * b;
+    text += xyz_of(moved, 1e3);
+  }
+  const Json json =
+      json_of_fit(write("balls.xyz", text), {"--islands", "all", "--control", "8x8", "--kind", "closed"});
+  EXPECT_EQ(json.at("bodies").size(), balls);
+  EXPECT_NE(json.at("remarks").dump().find("holds 9 bodies, and at most 8 are sculpted together"),
+            std::string::npos)
+      << json.at("remarks");
+  EXPECT_EQ(read_document(out())->scene.bodies.size(), balls);
+}
+
 TEST_F(FitTest, SheetBecomesAShellThatOpens) {
   const Scan waves = random_cloud(5000, 3, [](double s, double t) { return on_waves(s, t, 0.1, 0.004); });
   const Json json =
@@ -244,11 +262,23 @@ TEST_F(RealScans, SpoonsHandleAndBowlAreMerged) {
   const Json check = json_of(run_process(SPOONBILL_PROGRAM, {"check", spoon, "--json"}).out).at("bodies")[0];
   EXPECT_EQ(check.at("closedness"), "solid");
   EXPECT_TRUE(check.at("sound")) << check.at("problems");
+  const Json info = json_of(run_process(SPOONBILL_PROGRAM, {"info", spoon, "--json"}).out);
+  EXPECT_FALSE(info.at("lattice").is_null()) << info.at("no_lattice_because");
 }
 
 TEST_F(RealScans, SpoonBridgedIsOneBodyWithinAMillimetre) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   expect_good("ycb_031_spoon.ply", {"--islands", "bridge"}, 0.184, 1);
+}
+
+// Whatever was scanned can be pressed: bowls with their wall lie in a box of cells.
+TEST_F(RealScans, AllHoldALattice) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  for (const char* scan : {"ycb_024_bowl.ply", "ycb_016_pear.ply"}) {
+    json_of_fit((scans_ / scan).string(), {"--control", "24x24"});
+    const Json info = json_of(run_process(SPOONBILL_PROGRAM, {"info", out(), "--json"}).out);
+    EXPECT_FALSE(info.at("lattice").is_null()) << scan << info.at("no_lattice_because");
+  }
 }
 
 TEST_F(RealScans, DepthCameraBowlWithinAMillimetre) {

@@ -113,6 +113,28 @@ void take_shell_shares(const LatticeMesh& mesh, LatticeMesh& coarse) {
   coarse.cell_shares.assign(coarse.cell_count(), volume_of(mesh) / volume_of(coarse));
 }
 
+// Of a box that holds the body in part, the mean share of the finer cells that a coarser one spans.
+void take_box_shares(const LatticeMesh& mesh, LatticeMesh& coarse) {
+  constexpr int stations = 4;  // of each axis; coarse cells span at most some two finer ones
+  const auto finer = [&](std::size_t axis, int cell, int station) {
+    const double along = (cell + (station + 0.5) / stations) / (coarse.count[axis] - 1);
+    return std::min(static_cast<int>(along * (mesh.count[axis] - 1)), mesh.count[axis] - 2);
+  };
+  coarse.cell_shares.assign(coarse.cell_count(), 0.0);
+  for (int k = 0; k + 1 < coarse.count[2]; ++k) {
+    for (int i = 0; i + 1 < coarse.count[0]; ++i) {
+      for (int j = 0; j + 1 < coarse.count[1]; ++j) {
+        double& share = coarse.cell_shares[coarse.cell_index(i, j, k)];
+        for (int s = 0; s < stations * stations * stations; ++s) {
+          share += mesh.share(finer(0, i, s / (stations * stations)), finer(1, j, s / stations % stations),
+                              finer(2, k, s % stations)) /
+                   (stations * stations * stations);
+        }
+      }
+    }
+  }
+}
+
 Result<LatticeMesh> coarser(const LatticeMesh& mesh, const std::vector<Vector3>& nodes) {
   Result<LatticeMesh> block = coarse_block(mesh, extents(mesh, nodes));
   if (!block.ok()) return block;
@@ -125,6 +147,7 @@ Result<LatticeMesh> coarser(const LatticeMesh& mesh, const std::vector<Vector3>&
     }
   }
   if (mesh.thin) take_shell_shares(mesh, coarse);
+  if (!mesh.thin && !mesh.cell_shares.empty()) take_box_shares(mesh, coarse);
   return coarse;
 }
 

@@ -83,9 +83,10 @@ class Hull {
   std::size_t last_ = 0;  // the nearest of the point before
 };
 
-// How far out of the block's middle line a node lies, 0 to 1, counted in nodes. A shell has no middle line.
+// How far out of the block's middle line a node lies, 0 to 1, counted in nodes. A shell has no middle line,
+// nor a box about a surface.
 double out_of_middle(const LatticeMesh& mesh, int node) {
-  if (mesh.thin) return 1.0;
+  if (mesh.thin || !mesh.along.empty()) return 1.0;
   const std::array<int, 3> at = mesh.place(node);
   const double s = 2.0 * at[0] / (mesh.count[0] - 1) - 1.0, t = 2.0 * at[1] / (mesh.count[1] - 1) - 1.0;
   return std::max(std::abs(s), std::abs(t));
@@ -98,12 +99,14 @@ Hull hull_of(const LatticeMesh& mesh) {
   return Hull(std::move(faces));
 }
 
-// Without depths.
+// Without depths but those that the mesh has.
 std::vector<BodyPlace> places_on_block(const LatticeMesh& mesh) {
   std::vector<BodyPlace> places(mesh.nodes.size());
   for (int n = 0; n < mesh.node_count(); ++n) {
     BodyPlace& place = places[static_cast<std::size_t>(n)];
-    place.along = static_cast<double>(mesh.place(n)[2]) / (mesh.count[2] - 1);
+    place.along = mesh.along.empty() ? static_cast<double>(mesh.place(n)[2]) / (mesh.count[2] - 1)
+                                     : mesh.along[static_cast<std::size_t>(n)];
+    if (!mesh.depth_m.empty()) place.depth_m = mesh.depth_m[static_cast<std::size_t>(n)];
     if (!mesh.turns.empty()) place.around = mesh.turns[static_cast<std::size_t>(n)];
   }
   return places;
@@ -123,6 +126,12 @@ std::array<int, 8> corners_of(const LatticeMesh& mesh, int i, int j, int k) {
     corners[static_cast<std::size_t>(c)] = mesh.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1));
   }
   return corners;
+}
+
+double mean_depth_m(const std::vector<BodyPlace>& nodes, const std::array<int, 8>& corners) {
+  double sum = 0.0;
+  for (const int corner : corners) sum += at(nodes, corner).depth_m;
+  return sum / 8.0;
 }
 
 Status check_shares(const char* field, const Range<double>& shares, bool may_pass_seam) {
@@ -145,8 +154,9 @@ bool contains(const BodyRegion& region, const BodyPlace& place) {
 }
 
 std::vector<BodyPlace> node_places(const LatticeMesh& mesh) {
-  Hull hull = hull_of(mesh);
   std::vector<BodyPlace> places = places_on_block(mesh);
+  if (!mesh.depth_m.empty()) return places;
+  Hull hull = hull_of(mesh);
   for (int n = 0; n < mesh.node_count(); ++n) {
     const std::array<int, 3> at = mesh.place(n);
     const auto node = static_cast<std::size_t>(n);
@@ -190,8 +200,10 @@ std::vector<BodyPlace> cell_places(const LatticeMesh& mesh) {
     for (int i = 0; i + 1 < mesh.count[0]; ++i) {
       for (int j = 0; j + 1 < mesh.count[1]; ++j) {
         BodyPlace& place = places[mesh.cell_index(i, j, k)];
-        place = mean_place(mesh, nodes, corners_of(mesh, i, j, k));
-        place.depth_m = hull.distance(trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5));
+        const std::array<int, 8> corners = corners_of(mesh, i, j, k);
+        place = mean_place(mesh, nodes, corners);
+        place.depth_m = mesh.depth_m.empty() ? hull.distance(trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5))
+                                             : mean_depth_m(nodes, corners);
       }
     }
   }

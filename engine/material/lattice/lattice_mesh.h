@@ -25,8 +25,11 @@ struct LatticeMesh {
   // How much of each cell there is, in the order of its first corners; empty: all of every one.
   std::vector<double> cell_shares;
   std::vector<NodePlace> places;  // of each node; empty: the block is the body
-  std::vector<double>
-      turns;  // of each node of a tube: where around it, 0 to 1 in the sense of u; 0 on its axis
+  // Of each node of a tube or ring: where around it, 0 to 1 in the sense of u; 0 on its axis.
+  std::vector<double> turns;
+  // Of each node of a box about a surface: where along the body, 0 to 1, and how deep in it; empty of others,
+  // whose block tells both.
+  std::vector<double> along, depth_m;
 
   int index(int i, int j, int k) const { return (k * count[0] + i) * count[1] + j; }
   // The inverse: i, j, k.

@@ -11,9 +11,9 @@
 namespace spoonbill {
 
 // How many nodes a body gets across (first, second) and along (third) itself, or along x, y and z where it
-// is made of triangles, or along u, through and along v of a shell (around, through and along of one that
-// closes, the first node around counted again as the last): given, or counted out so that cells are
-// near-cubic and at most `node_budget` nodes are spent.
+// is made of triangles or lies in a box of cells (solid_lattice.h), or along u, through and along v of a
+// shell (around, through and along of one that closes, the first node around counted again as the last):
+// given, or counted out so that cells are near-cubic and at most `node_budget` nodes are spent.
 struct LatticeRequest {
   int node_budget = 2000;
   std::optional<std::array<int, 3>> counts;  // each at least 2

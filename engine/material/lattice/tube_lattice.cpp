@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/material/lattice/closed_surface.h"
 #include "engine/material/lattice/share_table.h"
 #include "engine/material/lattice/tube_rings.h"
 #include "engine/material/lattice/unfolding.h"
@@ -17,9 +18,6 @@ namespace {
 
 // Of the width: flatter bodies have cells that no spring holds open.
 constexpr double least_thickness = 1e-4;
-// Of the radius: how little the points of a ring lie out along their normals where it is pressed flat, by
-// rounding of positions and normals.
-constexpr double flat = 1e-9;
 
 // The parameter u of the ring's point towards which a node of a slice lies from the middle, any in the
 // middle, and how far out it lies, 0 to 1.
@@ -180,35 +178,6 @@ std::optional<TubeBlock> unfolded_block(const Surface& surface, const Profile& p
 }
 
 }  // namespace
-
-Status check_closed_tube(const Surface& surface) {
-  if (!surface.u.is_periodic()) return Error{"surface: u must be periodic for a closed body"};
-  if (surface.v.is_periodic()) {
-    return Error{"surface: v must be open, with a pole at both ends, for a closed body"};
-  }
-  const Ring first = sample_ring(surface, surface.v.domain_start());
-  const Ring last = sample_ring(surface, surface.v.domain_end());
-  const double size = (last.centre - first.centre).norm();
-  if (!(size > 0.0)) return Error{"surface: the poles at both ends of v coincide; the body has no length"};
-  if (first.perimeter > 1e-6 * size || last.perimeter > 1e-6 * size) {
-    return Error{"surface: both ends of v must be poles (all control points of the edge in one place)"};
-  }
-  const double middle = parameter_at(surface.v, 0.5);
-  const Ring ring = sample_ring(surface, middle);
-  double outward = 0.0, radius = 0.0;
-  for (int s = 0; s < ring_samples; s += 8) {
-    const double u = parameter_at(surface.u, static_cast<double>(s) / ring_samples);
-    outward += unit_normal(surface, u, middle).dot(ring.points[s] - ring.centre);
-    radius += (ring.points[s] - ring.centre).norm();
-  }
-  if (!(std::abs(outward) > flat * radius)) {
-    return Error{"surface: flat in the middle, where it encloses no volume; a body must be thick everywhere"};
-  }
-  if (!(outward > 0.0)) {
-    return Error{"surface: normals point inward; reverse the order of the control points in u"};
-  }
-  return {};
-}
 
 Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& request,
                                  const FeatureMapWatch& watch) {

@@ -8,10 +8,6 @@
 
 namespace spoonbill {
 
-// Whether the surface is a closed tube: periodic in u, a single point (a pole) at both ends of v, normals
-// outward. The message says which of these fails.
-Status check_closed_tube(const Surface& surface);
-
 // The lattice of a closed tube-like or box-like body. Slices lie at constant v, evenly along the body; the
 // nodes of a ring are spaced by arc length, since spacing by angle gives slender cells and twice the
 // substeps; the two end slices lie on the caps. Where cells fold so, as of a body that is hollow about a

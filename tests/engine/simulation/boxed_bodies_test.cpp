@@ -1,0 +1,96 @@
+// Bodies that lie in a box of cells: they keep still untouched, give way where they are pressed, and rest on
+// the ground.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/engine/allocations.h"
+#include "tests/engine/collision/surfaces/sheets.h"
+#include "tests/engine/effort.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double ring_m = 0.02, tube_m = 0.005, tool_radius_m = 0.004;
+
+Scene held_ring(double flatness = 1.0) {
+  Scene scene = small_handle();
+  Body& body = scene.bodies[0];
+  body.surface = round_torus(ring_m, tube_m);
+  for (double& y : body.surface.net.y) y *= flatness;
+  body.lattice = {1500, {}};
+  scene.planes = {{Vector3(-ring_m, 0.0, 0.0), Vector3::UnitX()}};
+  scene.tool.radius_m = tool_radius_m;
+  return scene;
+}
+
+double farthest_moved_m(const Simulation& simulation, const Surface& before) {
+  double farthest = 0.0;
+  for (int i = 0; i < before.net.rows; ++i) {
+    for (int j = 0; j < before.net.columns; ++j) {
+      farthest = std::max(farthest, (simulation.surface().net.point(i, j) - before.net.point(i, j)).norm());
+    }
+  }
+  return farthest;
+}
+
+double lowest_m(const Simulation& simulation) {
+  const std::vector<double>& y = simulation.surface().net.y;
+  return *std::min_element(y.begin(), y.end());
+}
+
+// The sides of a flat one lie within one cell of each other: neither is pushed out by the other.
+TEST(BoxedBody, KeepsStillUntouched) {
+  for (const double flatness : {1.0, 0.2, 0.05}) {
+    const Scene scene = held_ring(flatness);
+    Simulation simulation = simulate(scene);
+    for (int tick = 0; tick < effort(200); ++tick) simulation.advance(above(0.0, 0.1));
+    EXPECT_LT(farthest_moved_m(simulation, scene.bodies[0].surface), 1e-9) << flatness;
+  }
+}
+
+TEST(BoxedBody, IsDentedAndKeepsItsDent) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  Simulation simulation = simulate(held_ring());
+  double largest_n = 0.0;
+  for (int tick = 0; tick < 1500; ++tick) {
+    const double way_m = tick < 600 ? 0.004 * tick / 600.0 : tick < 800 ? 0.004 : -0.02;
+    const double force = simulation.advance(above(ring_m, tube_m + tool_radius_m - way_m)).force_n.norm();
+    if (tick < 800) largest_n = std::max(largest_n, force);
+  }
+  EXPECT_GT(largest_n, 0.0);
+  const double moved_m = farthest_moved_m(simulation, held_ring().bodies[0].surface);
+  EXPECT_GT(moved_m, 0.001);
+  EXPECT_LT(moved_m, 0.01);
+}
+
+TEST(BoxedBody, TickAllocatesNothing) {
+  Simulation simulation = simulate(held_ring());
+  const double touch_m = tube_m + tool_radius_m;
+  for (int tick = 0; tick < 5; ++tick) simulation.advance(above(ring_m, touch_m - 1e-4 * tick));
+  const std::size_t before = allocation_count();
+  for (int tick = 0; tick < 20; ++tick) simulation.advance(above(ring_m, touch_m - 1e-4 * tick));
+  EXPECT_EQ(allocation_count(), before);
+}
+
+// Springs and the implicit block alike, which must weigh what the ring does and not what fills the box.
+TEST(BoxedBody, RestsOnTheGround) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  for (const double youngs_modulus_pa : {2e5, 2e9}) {
+    Scene scene = held_ring();
+    scene.planes.clear();
+    scene.bodies[0].material.plastic = false;
+    scene.bodies[0].material.youngs_modulus_pa = youngs_modulus_pa;
+    scene.sculpting.gravity_m_per_s2 = {0.0, -9.81, 0.0};
+    scene.sculpting.damping_per_s = 20.0;
+    scene.ground = Ground{{0.0, -tube_m, 0.0}, Vector3::UnitY(), 0.5};
+    Simulation simulation = simulate(scene);
+    for (int tick = 0; tick < 1000; ++tick) simulation.advance(above(0.0, 0.1));
+    EXPECT_NEAR(lowest_m(simulation), -tube_m, 0.1 * tube_m) << youngs_modulus_pa;
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill
