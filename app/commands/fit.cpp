@@ -97,6 +97,7 @@ Status fit(const FitOptions& options, Console& console) {
   }
   std::vector<std::string> remarks = document->remarks;
   if (const auto remark = size_remark(file.value(), fitted.value())) remarks.push_back(*remark);
+  if (const auto remark = looseness_remark(fitted.value())) remarks.push_back(*remark);
   add_remarks(facts, remarks);
   facts.print(console.out, options.json);
   return {};

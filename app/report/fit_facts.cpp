@@ -1,5 +1,6 @@
 #include "app/report/fit_facts.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -127,6 +128,17 @@ std::optional<std::string> size_remark(const ScanFile& file, const ScanFit& fit)
   if (usual_m.contains(longest_m)) return std::nullopt;
   return "the scan is " + short_length_text(longest_m) + " long; if its numbers are not in " +
          std::string(file.unit.name) + ", name their unit with --unit";
+}
+
+std::optional<std::string> looseness_remark(const ScanFit& fit) {
+  constexpr double close_share = 0.01;
+  const auto is_loose = [&](const FittedBody& body) {
+    return body.errors.data_to_surface.p95_m > close_share * body.size_m.maxCoeff();
+  };
+  if (std::none_of(fit.bodies.begin(), fit.bodies.end(), is_loose)) return std::nullopt;
+  return "5 % of the scan or more is further off than a hundredth of its size; a handle, or a hole through "
+         "the "
+         "body, has no place on one surface, so fit its parts; fine detail asks for more control points";
 }
 
 void add_fit_facts(FactSheet& facts, const ScanFit& fit) {

@@ -228,7 +228,7 @@ TEST_F(MeshFileTest, AnyByteMayBeWrong) {
   MeshReading reading = by_program();
   reading.patience = 1s;  // some bytes send Assimp round for ever
   Random random(77);
-  const int trials = random_cases(12, 300);
+  const int trials = random_cases(12, 150);
   const std::vector<std::pair<std::string, std::string>> files = {{"a.stl", binary_stl(box)},
                                                                   {"b.stl", ascii_stl(box)},
                                                                   {"c.obj", obj_text(box)},

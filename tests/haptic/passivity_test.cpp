@@ -132,7 +132,7 @@ void expect_simulation_passive(double x_m, int runs, unsigned seed) {
 }
 
 int simulated_runs() {
-  return random_cases(3, 40);
+  return random_cases(3, 24);
 }
 
 TEST(Passivity, TheHeldPartGivesBackNoMoreThanItTook) {

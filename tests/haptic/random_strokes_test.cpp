@@ -213,7 +213,7 @@ Watched stroke(Random& random, Simulation& simulation) {
 
 TEST(RandomStrokes, NeverLeaveTheBodyBroken) {
   // Three seconds each: a minute, or ten.
-  const int strokes = sanitized ? 3 : random_cases(20, 200);
+  const int strokes = sanitized ? 3 : random_cases(20, 100);
   const std::vector<Material> bundled = bundled_materials();
   ASSERT_GE(bundled.size(), 12U);
   Random random(21);

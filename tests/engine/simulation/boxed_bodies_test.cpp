@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "engine/bspline/knot_vector.h"
 #include "tests/engine/allocations.h"
-#include "tests/engine/collision/surfaces/sheets.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
 
@@ -15,12 +16,30 @@ namespace {
 
 constexpr double ring_m = 0.02, tube_m = 0.005, tool_radius_m = 0.004;
 
+// A torus about y, its tube round to 5 %: of few control points, which a tick moves quickly.
+Surface ring() {
+  constexpr int around = 20, along = 8;
+  ControlNet net(around, along);
+  const auto turn = [](int index, int count) { return 2.0 * std::numbers::pi * index / count; };
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j < along; ++j) {
+      const double out = ring_m + tube_m * std::cos(turn(j, along));
+      net.set_point(i, j,
+                    {out * std::cos(turn(i, around)), tube_m * std::sin(turn(j, along)),
+                     -out * std::sin(turn(i, around))});
+    }
+  }
+  return make_surface(KnotVector::periodic_uniform(2, around).value(),
+                      KnotVector::periodic_uniform(2, along).value(), std::move(net))
+      .value();
+}
+
 Scene held_ring(double flatness = 1.0) {
   Scene scene = small_handle();
   Body& body = scene.bodies[0];
-  body.surface = round_torus(ring_m, tube_m);
+  body.surface = ring();
   for (double& y : body.surface.net.y) y *= flatness;
-  body.lattice = {1500, {}};
+  body.lattice = {800, {}};
   scene.planes = {{Vector3(-ring_m, 0.0, 0.0), Vector3::UnitX()}};
   scene.tool.radius_m = tool_radius_m;
   return scene;
@@ -46,7 +65,7 @@ TEST(BoxedBody, KeepsStillUntouched) {
   for (const double flatness : {1.0, 0.2, 0.05}) {
     const Scene scene = held_ring(flatness);
     Simulation simulation = simulate(scene);
-    for (int tick = 0; tick < effort(200); ++tick) simulation.advance(above(0.0, 0.1));
+    for (int tick = 0; tick < effort(100); ++tick) simulation.advance(above(0.0, 0.1));
     EXPECT_LT(farthest_moved_m(simulation, scene.bodies[0].surface), 1e-9) << flatness;
   }
 }
@@ -55,10 +74,10 @@ TEST(BoxedBody, IsDentedAndKeepsItsDent) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Simulation simulation = simulate(held_ring());
   double largest_n = 0.0;
-  for (int tick = 0; tick < 1500; ++tick) {
-    const double way_m = tick < 600 ? 0.004 * tick / 600.0 : tick < 800 ? 0.004 : -0.02;
+  for (int tick = 0; tick < 900; ++tick) {
+    const double way_m = tick < 400 ? 0.004 * tick / 400.0 : tick < 500 ? 0.004 : -0.02;
     const double force = simulation.advance(above(ring_m, tube_m + tool_radius_m - way_m)).force_n.norm();
-    if (tick < 800) largest_n = std::max(largest_n, force);
+    if (tick < 500) largest_n = std::max(largest_n, force);
   }
   EXPECT_GT(largest_n, 0.0);
   const double moved_m = farthest_moved_m(simulation, held_ring().bodies[0].surface);
@@ -87,7 +106,7 @@ TEST(BoxedBody, RestsOnTheGround) {
     scene.sculpting.damping_per_s = 20.0;
     scene.ground = Ground{{0.0, -tube_m, 0.0}, Vector3::UnitY(), 0.5};
     Simulation simulation = simulate(scene);
-    for (int tick = 0; tick < 1000; ++tick) simulation.advance(above(0.0, 0.1));
+    for (int tick = 0; tick < 500; ++tick) simulation.advance(above(0.0, 0.1));
     EXPECT_NEAR(lowest_m(simulation), -tube_m, 0.1 * tube_m) << youngs_modulus_pa;
   }
 }

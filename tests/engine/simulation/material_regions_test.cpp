@@ -232,7 +232,7 @@ Material random_material(Random& random, bool plainly_elastic) {
 
 // Random materials in random regions, and strokes at up to 5 m/s: everything stays finite and near.
 TEST(MaterialRegions, NoStrokeBlowsThemUp) {
-  const int trials = random_cases(12, 200);
+  const int trials = random_cases(12, 100);
   Random random(31);
   for (int trial = 0; trial < trials; ++trial) {
     const bool plainly_elastic = random.integer(0, 2) == 0;

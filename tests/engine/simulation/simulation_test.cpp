@@ -229,7 +229,7 @@ struct RandomStroke {
 
 // Random materials, tools and strokes at up to 5 m/s: everything stays finite and near.
 TEST(Simulation, NoSettingBlowsItUp) {
-  const int trials = random_cases(12, 200);
+  const int trials = random_cases(12, 100);
   Random random(77);
   for (int trial = 0; trial < trials; ++trial) {
     Scene scene = small_handle();

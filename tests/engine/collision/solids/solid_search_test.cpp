@@ -66,7 +66,7 @@ Pose pose_near_contact(Random& random, const Surface& surface, const Box& bounds
 }
 
 TEST(SolidSearch, AgreesWithDenseSampling) {
-  const int trials = random_cases(500, 20000);
+  const int trials = random_cases(500, 10000);
   Random random(51);
   int touching = 0;
   for (int trial = 0; trial < trials; ++trial) {

@@ -71,16 +71,13 @@ TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
 
 // Wherever the rim is in v: a ring in the middle may lie on the outside, on the rim or on the inside.
 TEST(SolidLattice, OfAWalledBowlHasItsVolume) {
-  constexpr double radius_m = 0.05;
   for (const double rim : {0.35, 0.65}) {
-    for (const double wall_m : {0.01, 0.003}) {
-      const Surface bowl = walled_bowl(radius_m, wall_m, rim);
-      ASSERT_TRUE(check_closed_tube(bowl).ok()) << rim << check_closed_tube(bowl).error().message;
-      const Result<LatticeMesh> mesh = solid_lattice(bowl, {2000, {}});
-      ASSERT_TRUE(mesh.ok()) << mesh.error().message;
-      EXPECT_NEAR(filled_m3(mesh.value()) / enclosed_volume_m3(bowl), 1.0, 0.02) << rim << " " << wall_m;
-      for (const double along : mesh->along) EXPECT_TRUE(along >= 0.0 && along <= 1.0);
-    }
+    const Surface bowl = walled_bowl(0.05, 0.003, rim);
+    ASSERT_TRUE(check_closed_tube(bowl).ok()) << rim << check_closed_tube(bowl).error().message;
+    const Result<LatticeMesh> mesh = solid_lattice(bowl, {2000, {}});
+    ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+    EXPECT_NEAR(filled_m3(mesh.value()) / enclosed_volume_m3(bowl), 1.0, 0.02) << rim;
+    for (const double along : mesh->along) EXPECT_TRUE(along >= 0.0 && along <= 1.0);
   }
 }
 
