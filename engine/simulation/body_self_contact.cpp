@@ -1,26 +1,16 @@
 #include "engine/simulation/body_self_contact.h"
 
 namespace spoonbill {
-namespace {
-
-double margin_m(const BodyState& body) {
-  return contact_margin_cells * static_cast<double>(body.lattice.cell_size_m());
-}
-
-}  // namespace
-
 BodySelfContact::BodySelfContact(const BodyState& body) {
-  if (body.mesh() != nullptr) return;
+  if (body.mesh() != nullptr || body.lattice.mesh().slender) return;
   proximity_ = std::make_unique<SelfProximity>(body.mapping().nested(), body.mapping().rest(),
                                                static_cast<double>(body.lattice.cell_size_m()));
-  if (body.lattice.mesh().along.empty()) return;
-  proximity_->find(body.mapping().rest(), margin_m(body));
-  if (!proximity_->points().empty()) proximity_.reset();
 }
 
 bool BodySelfContact::add_contacts(const NumberedBody& body, BodyContacts& contacts) const {
   if (!proximity_) return true;
-  proximity_->find(body.state->mapping().current(), margin_m(*body.state));
+  const double margin = contact_margin_cells * static_cast<double>(body.state->lattice.cell_size_m());
+  proximity_->find(body.state->mapping().current(), margin);
   if (const TrimmedArea* const trim = body.state->trim.get()) {
     proximity_->keep_if([&](const NearPoint& near) {
       return trim->contains(near.u, near.v) && trim->contains(near.other_u, near.other_v);

@@ -13,9 +13,9 @@ namespace spoonbill {
 // twice what two bodies come to, since both sides follow a dent only in part.
 inline constexpr double self_depth_limit_cells = 2.0 * body_depth_limit_cells;
 
-// One owner, the simulation; rebuilt with the mapping of the body. add_contacts() allocates nothing. Of a
-// body in a box of cells (solid_lattice.h) that is thinner than a cell somewhere, one side looks like the
-// other pressed through it at rest already: such a body does not meet itself.
+// One owner, the simulation; rebuilt with the mapping of the body. add_contacts() allocates nothing. A body
+// in a box of cells (solid_lattice.h) that is thinner than two of them somewhere does not meet itself: its
+// far side would look like its near one pressed through it.
 class BodySelfContact {
  public:
   explicit BodySelfContact(const BodyState& body);

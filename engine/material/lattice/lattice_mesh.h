@@ -30,6 +30,8 @@ struct LatticeMesh {
   // Of each node of a box about a surface: where along the body, 0 to 1, and how deep in it; empty of others,
   // whose block tells both.
   std::vector<double> along, depth_m;
+  // Of such a box: whether the body is thinner than two cells anywhere.
+  bool slender = false;
 
   int index(int i, int j, int k) const { return (k * count[0] + i) * count[1] + j; }
   // The inverse: i, j, k.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "engine/bspline/unit_normal.h"
 #include "engine/collision/meshes/mesh_parts.h"
 #include "engine/collision/meshes/shell_distance.h"
 #include "engine/material/lattice/box_lattice.h"
@@ -62,6 +63,17 @@ void place_nodes(const Surface& surface, const ClosedSkin& skin, const ShellDist
   }
 }
 
+// From each vertex inwards.
+bool is_slender(const Surface& surface, const ClosedSkin& skin, const ShellDistance& inside, double cell_m) {
+  for (std::size_t vertex = 0; vertex < skin.u.size(); ++vertex) {
+    const Vector3 inward = -cell_m * unit_normal(surface, skin.u[vertex], skin.v[vertex]);
+    for (const double cells : {1.0, 2.0}) {
+      if (!(inside.at(skin.mesh.vertices_m[vertex] + cells * inward).distance_m < 0.0)) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Result<LatticeMesh> surface_in_box(const Surface& surface, const LatticeRequest& request) {
@@ -73,7 +85,9 @@ Result<LatticeMesh> surface_in_box(const Surface& surface, const LatticeRequest&
   const Result<std::array<int, 3>> counts = lattice_counts(request, size);
   if (!counts) return counts.error();
   Result<LatticeMesh> box = box_lattice(inside, volume, skin.mesh.vertices_m, counts.value());
-  if (box) place_nodes(surface, skin, inside, box.value());
+  if (!box) return box;
+  place_nodes(surface, skin, inside, box.value());
+  box->slender = is_slender(surface, skin, inside, box->mean_edge());
   return box;
 }
 
