@@ -50,7 +50,8 @@
 // half_length_mm), box (half_extents_mm), cone (base_radius_mm, height_mm), torus (ring_radius_mm,
 // tube_radius_mm), half_space, superquadric (semi_axes_mm, exponent_along, exponent_around), mesh
 // (vertices_mm, triangles as three places of vertices each), and surface, with the fields of a body's
-// surface but trims. Soft may be a surface, or a mesh that is closed; its "nodes" count along x, y and z.
+// surface but trims. Soft may be a surface, or a mesh that is closed; its "nodes" count along x, y and z,
+// as those of a body that lies in a box of cells (solid_lattice.h).
 // implicit_shapes.h and triangle_mesh.h say what is meant.
 //
 // Version 2; version 1, which had neither trims nor solids, is read too, and
