@@ -191,8 +191,9 @@ Result<Document> read_document(const std::filesystem::path& file) {
 
 Status write_document(const Document& document, const std::filesystem::path& file) {
   const std::string page = json_to_page(document_to_json(document));
-  if (page.size() > document_bytes_limit)
+  if (page.size() > document_bytes_limit) {
     return Error{file.string() + ": not saved, larger than 64 MiB; leave bodies out"};
+  }
   auto read_back = parse_json(page, file.string() + ": not saved");
   if (!read_back.ok()) return read_back.error();
   auto checked = document_from_json(read_back.value(), file.string() + ": not saved");

@@ -118,6 +118,7 @@ Error not_around_its_middle() {
 
 std::vector<Eigen::Vector2d> loop_of(const std::vector<LineCrossing>& crossings) {
   std::vector<Eigen::Vector2d> loop;
+  loop.reserve(crossings.size());
   for (const LineCrossing& crossing : crossings) loop.emplace_back(crossing.other_u, crossing.other_v);
   return loop;
 }

@@ -64,8 +64,9 @@ int count_unread_placements(const opencascade::handle<IGESData_IGESModel>& model
   int count = 0;
   for (int k = 1; k <= model->NbEntities(); ++k) {
     const auto entity = model->Entity(k);
-    if (!entity.IsNull() && entity->HasTransf() && !keeps_angles(entity->Transf()->Value().VectorialPart()))
+    if (!entity.IsNull() && entity->HasTransf() && !keeps_angles(entity->Transf()->Value().VectorialPart())) {
       ++count;
+    }
   }
   return count;
 }

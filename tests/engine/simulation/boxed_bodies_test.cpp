@@ -71,7 +71,6 @@ TEST(BoxedBody, KeepsStillUntouched) {
 }
 
 TEST(BoxedBody, IsDentedAndKeepsItsDent) {
-  if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Simulation simulation = simulate(held_ring());
   double largest_n = 0.0;
   for (int tick = 0; tick < 900; ++tick) {
