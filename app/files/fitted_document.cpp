@@ -32,10 +32,12 @@ bool has_lattice_along(const Body& body) {
 }
 
 // The largest number of nodes with which a lattice runs along the body: scans have places where cells of the
-// usual size would fold. The usual number where none does that is worth having.
+// usual size would fold. The usual number where none does: a solid then lies in a box of that many, which is
+// worth more than a lattice of few along it.
 void choose_node_budget(Body& body) {
   const int usual = body.lattice.node_budget;
-  for (const int share : {1, 2, 4}) {
+  const int most = body.shell_thickness_m ? 16 : 4;
+  for (int share = 1; share <= most; share *= 2) {
     body.lattice.node_budget = std::max(node_budget_range.low, usual / share);
     if (has_lattice_along(body)) return;
   }

@@ -136,9 +136,8 @@ std::optional<std::string> looseness_remark(const ScanFit& fit) {
     return body.errors.data_to_surface.p95_m > close_share * body.size_m.maxCoeff();
   };
   if (std::none_of(fit.bodies.begin(), fit.bodies.end(), is_loose)) return std::nullopt;
-  return "5 % of the scan or more is further off than a hundredth of its size; a handle, or a hole through "
-         "the "
-         "body, has no place on one surface, so fit its parts; fine detail asks for more control points";
+  return "5 % of the scan or more is further off than a hundredth of its size; a handle or a hole has no "
+         "place on one surface, so fit its parts; fine detail asks for more control points";
 }
 
 void add_fit_facts(FactSheet& facts, const ScanFit& fit) {

@@ -15,7 +15,7 @@
 
 namespace spoonbill {
 
-// A closed tube, as bodies are.
+// A closed tube.
 struct SurfaceSolid {
   Surface surface;
 };
