@@ -61,11 +61,10 @@ Status add_simulated(FactSheet& facts, const Document& document, const std::stri
   }
   Snapshot snapshot;
   write_snapshot(session.value(), snapshot);
-  add_simulation_facts(facts, snapshot);
+  add_simulation_facts(facts, snapshot, document.scene.bodies);
   add_elasticity_facts(facts, session->simulation);
   add_remarks(facts, session->simulation.remarks());
-  const bool has_map = document.scene.bodies[0].lattice.feature_map.has_value();
-  add_cell_facts(facts, session->simulation.lattice().mesh(), has_map ? maps.report() : std::nullopt);
+  add_cell_facts(facts, session->simulation, maps.reports());
   return {};
 }
 

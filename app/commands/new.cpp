@@ -17,6 +17,7 @@
 #include "app/report/document_facts.h"
 #include "app/report/progress_bar.h"
 #include "app/report/quantity_text.h"
+#include "app/report/surface_extent.h"
 #include "app/start/shipped_materials.h"
 #include "app/start/starting_document.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
@@ -130,8 +131,13 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   FactSheet facts;
   facts.add("File", options.out.string(), "file", options.out.string());
   facts.add("Kind", kind.parser->get_name(), "kind", kind.parser->get_name());
-  add_size_fact(facts, fitted->surface);
+  add_size_fact(facts, extent_of(fitted->surface));
   add_shape_facts(facts, made->shape, fitted.value(), fit.tolerance_m);
+  std::vector<std::string> remarks;
+  if (made->shape.is_closed() && made->shape.v.periodic) {
+    remarks.emplace_back("a ring is sculpted in a box of cells: no lattice can be bent along it");
+  }
+  add_remarks(facts, remarks);
   facts.print(console.out, options.json);
   return {};
 }

@@ -37,10 +37,10 @@ Json millimetres_of(const Vector3& size_m) {
 
 void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces) {
   Json bodies = Json::array();
-  Box all = extent_of(surfaces.front().surface);
+  Box all = extent_of(surfaces.front().surface, surfaces.front().trims);
   double deviation_m = 0.0;
   for (const CadSurface& part : surfaces) {
-    const Box extent = extent_of(part.surface);
+    const Box extent = extent_of(part.surface, part.trims);
     const Vector3 size = extent.high - extent.low;
     all = joined(all, extent);
     std::string text = size_text(size) + ", " + net_text(part.surface);

@@ -47,21 +47,71 @@ std::string kind_text(const Body& body) {
   return body.shell_thickness_m ? ", a shell of " + length_text(*body.shell_thickness_m) : "";
 }
 
-// Those after the first, which alone is told of at length.
-void add_other_bodies(FactSheet& facts, const std::vector<Body>& bodies) {
-  Json names = Json::array();
-  for (const Body& body : bodies) names.push_back(body.name);
-  facts.add("", "", "bodies", names);
-  for (std::size_t b = 1; b < bodies.size(); ++b) {
-    const Box extent = extent_of(bodies[b].surface);
-    const KnotVector &u = bodies[b].surface.u, &v = bodies[b].surface.v;
-    facts.add("Body " + std::to_string(b + 1),
-              bodies[b].name + kind_text(bodies[b]) + ": " + size_text(extent.high - extent.low) +
-                  ", degrees " + std::to_string(u.degree()) + " and " + std::to_string(v.degree()) + ", " +
-                  std::to_string(u.control_point_count()) + " x " + std::to_string(v.control_point_count()) +
-                  " control points",
-              "", nullptr);
+Json millimetres_of(const Vector3& size_m) {
+  return {1e3 * size_m.x(), 1e3 * size_m.y(), 1e3 * size_m.z()};
+}
+
+std::string material_text(const Material& material) {
+  return material.name + ": E " + modulus_text(material.youngs_modulus_pa) + ", Poisson " +
+         number_text(material.poissons_ratio) + ", density " + density_text(material.density_kg_per_m3);
+}
+
+std::string decimals_text(double value, int decimals) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
+}
+
+void add_trim_facts(FactSheet& facts, const Body& body, Json& json) {
+  const auto trim = trim_of(body);
+  if (!trim || !trim.value()) return;
+  const double away = 1.0 - kept_area_share(body.surface, *trim.value());
+  const std::string loops = body.trims.size() == 1 ? " loop" : " loops";
+  facts.add("Trimmed",
+            "by " + std::to_string(body.trims.size()) + loops + ", " + decimals_text(100.0 * away, 1) +
+                " % of the area away",
+            "", nullptr);
+  json["trims"] = {{"loops", body.trims.size()}, {"area_share_away", away}};
+}
+
+void add_region_facts(FactSheet& facts, const Body& body, Json& json) {
+  if (body.regions.empty()) return;
+  add_material_regions(body.regions, json);
+  for (std::size_t r = 0; r < body.regions.size(); ++r) {
+    const MaterialRegion& region = body.regions[r];
+    facts.add("Region " + std::to_string(r + 1), place_text(region.region) + ": " + made_of_text(region), "",
+              nullptr);
   }
+}
+
+// Lines go to the sheet, the body's JSON is returned.
+Json add_body_facts(FactSheet& facts, const std::string& label, const Body& body, const Vector3& size_m,
+                    bool at_length) {
+  const Closing closing = closing_of(body.surface);
+  Json json = {{"name", body.name}, {"size_mm", millimetres_of(size_m)}};
+  json["closedness"] = name_of(closing.closedness);
+  json["material"] = material_to_json(body.material);
+  if (body.shell_thickness_m) json["shell_thickness_m"] = *body.shell_thickness_m;
+  std::string text = body.name + kind_text(body);
+  if (label != "Body") text += ", " + size_text(size_m);
+  if (!body.solid.empty()) {
+    text += ", a face of \"" + body.solid + "\"";
+    json["solid"] = body.solid;
+  }
+  facts.add(label, text, "", nullptr);
+  if (!at_length) return json;
+  facts.add("Along u", direction_text(body.surface.u), "", nullptr);
+  facts.add("Along v", direction_text(body.surface.v), "", nullptr);
+  facts.add("Surface", closing_text(closing), "", nullptr);
+  add_trim_facts(facts, body, json);
+  facts.add("Material", material_text(body.material), "", nullptr);
+  add_region_facts(facts, body, json);
+  return json;
+}
+
+// What is told of a body that is alone stands in the sheet itself too, where "name" is the document's.
+void add_alone(FactSheet& facts, const Json& told) {
+  for (const auto& [field, value] : told.items()) facts.add("", "", field == "name" ? "body" : field, value);
 }
 
 // 1 is a box, 0 a cell about to fold over.
@@ -76,87 +126,92 @@ Json quality_facts(const CellQuality& quality) {
   return {{"worst_jacobian", quality.worst_jacobian}, {"volume_spread", quality.volume_spread}};
 }
 
-std::string decimals_text(double value, int decimals) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
-}
-
 std::string three_text(const double (&values)[3], double scale, int decimals) {
   return decimals_text(scale * values[0], decimals) + " / " + decimals_text(scale * values[1], decimals) +
          " / " + decimals_text(scale * values[2], decimals);
 }
 
-}  // namespace
-
-void add_document_facts(FactSheet& facts, const Document& document) {
-  const Body& body = document.scene.bodies[0];
-  facts.add("Name", document.name, "name", document.name);
-  facts.add("Unit", "mm (of the file's lengths)", "unit", "mm");
-  add_size_fact(facts, body.surface);
-  facts.add("Body", body.name + kind_text(body), "body", body.name);
-  if (body.shell_thickness_m) facts.add("", "", "shell_thickness_m", *body.shell_thickness_m);
-  facts.add("Along u", direction_text(body.surface.u), "", nullptr);
-  facts.add("Along v", direction_text(body.surface.v), "", nullptr);
-  Json surfaces = Json::array();
-  for (const Body& one : document.scene.bodies) surfaces.push_back(surface_facts(one.surface));
-  facts.add("", "", "surfaces", surfaces);
-  const Closing closing = closing_of(body.surface);
-  facts.add("Surface", closing_text(closing), "closedness", name_of(closing.closedness));
-  add_trim_facts(facts, body);
-  add_material_facts(facts, body.material);
-  add_region_facts(facts, body);
-  add_other_bodies(facts, document.scene.bodies);
-  facts.add("Fixing planes", std::to_string(document.scene.planes.size()), "fixing_planes",
-            document.scene.planes.size());
+Json add_simulated_body(FactSheet& facts, const std::string& of, const BodySnapshot& body) {
+  const LatticeSnapshot& lattice = body.lattice;
+  const auto fixed = std::count(lattice.fixed.begin(), lattice.fixed.end(), std::uint8_t{1});
+  facts.add("Lattice" + of,
+            std::to_string(lattice.count[0]) + " x " + std::to_string(lattice.count[1]) + " x " +
+                std::to_string(lattice.count[2]) + " nodes, " + std::to_string(fixed) + " of them fixed",
+            "", nullptr);
+  facts.add("Mass" + of, grams_text(body.material.mass_kg) + " (the lattice's)", "", nullptr);
+  facts.add("Felt E" + of, modulus_text(body.material.felt_youngs_modulus_pa), "", nullptr);
+  const int implicit = body.material.implicit_nodes;
+  facts.add(
+      "Solver" + of,
+      implicit > 0 ? "implicit, " + std::to_string(implicit) + " nodes of hexahedra" : "explicit springs", "",
+      nullptr);
+  const Json counts = {lattice.count[0], lattice.count[1], lattice.count[2]};
+  return {{"lattice", {{"nodes", counts}, {"node_count", lattice.x.size()}, {"fixed_node_count", fixed}}},
+          {"mass_kg", body.material.mass_kg},
+          {"felt_youngs_modulus_pa", body.material.felt_youngs_modulus_pa},
+          {"solver", {{"kind", implicit > 0 ? "implicit" : "explicit"}, {"implicit_nodes", implicit}}}};
 }
 
-void add_trim_facts(FactSheet& facts, const Body& body) {
-  const auto trim = trim_of(body);
-  if (!trim || !trim.value()) return;
-  const double away = 1.0 - kept_area_share(body.surface, *trim.value());
-  const std::string loops = body.trims.size() == 1 ? " loop" : " loops";
-  facts.add("Trimmed",
-            "by " + std::to_string(body.trims.size()) + loops + ", " + decimals_text(100.0 * away, 1) +
-                " % of the area away",
-            "trims", {{"loops", body.trims.size()}, {"area_share_away", away}});
-}
-
-void add_size_fact(FactSheet& facts, const Surface& surface) {
-  const Box extent = extent_of(surface);
-  const Vector3 size = extent.high - extent.low;
-  facts.add("Size", size_text(size), "size_mm", {1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z()});
-}
-
-void add_material_facts(FactSheet& facts, const Material& material) {
-  facts.add("Material",
-            material.name + ": E " + modulus_text(material.youngs_modulus_pa) + ", Poisson " +
-                number_text(material.poissons_ratio) + ", density " +
-                density_text(material.density_kg_per_m3),
-            "material", material_to_json(material));
-}
-
-void add_cell_facts(FactSheet& facts, const LatticeMesh& mesh, const std::optional<FeatureMapReport>& map) {
+Json add_cells_of(FactSheet& facts, const std::string& of, const LatticeMesh& mesh,
+                  const FeatureMapReport* map) {
   const CellQuality quality = quality_of(mesh);
   Json json = quality_facts(quality);
   if (map) {
     json["before_feature_map"] = quality_facts(map->before);
     json["feature_map_share"] = map->share;
-    facts.add("Cells before", quality_text(map->before), "", nullptr);
+    facts.add("Cells before" + of, quality_text(map->before), "", nullptr);
   }
-  facts.add(map ? "Cells mapped" : "Cells", quality_text(quality), "cells", json);
+  facts.add((map ? "Cells mapped" : "Cells") + of, quality_text(quality), "", nullptr);
+  return json;
 }
 
-void add_region_facts(FactSheet& facts, const Body& body) {
-  if (body.regions.empty()) return;
-  Json json;
-  add_material_regions(body.regions, json);
-  for (std::size_t r = 0; r < body.regions.size(); ++r) {
-    const MaterialRegion& region = body.regions[r];
-    facts.add("Region " + std::to_string(r + 1), place_text(region.region) + ": " + made_of_text(region), "",
-              nullptr);
+}  // namespace
+
+void add_document_facts(FactSheet& facts, const Document& document) {
+  const std::vector<Body>& bodies = document.scene.bodies;
+  facts.add("Name", document.name, "name", document.name);
+  facts.add("Unit", "mm (of the file's lengths)", "unit", "mm");
+  std::vector<Box> extents;
+  for (const Body& body : bodies) extents.push_back(extent_of(body.surface, body.trims));
+  Box all = extents.front();
+  for (const Box& extent : extents) all = joined(all, extent);
+  add_size_fact(facts, all);
+  const bool alone = bodies.size() == 1;
+  const bool at_length = bodies.size() <= static_cast<std::size_t>(sculpted_body_count_range.high);
+  Json told = Json::array(), surfaces = Json::array();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::string label = alone ? "Body" : "Body " + std::to_string(b + 1);
+    told.push_back(add_body_facts(facts, label, bodies[b], extents[b].high - extents[b].low, at_length));
+    surfaces.push_back(surface_facts(bodies[b].surface));
   }
-  facts.add("", "", "regions", json["regions"]);
+  if (alone) add_alone(facts, told.front());
+  facts.add("", "", "bodies", told);
+  facts.add("", "", "surfaces", surfaces);
+  facts.add("Fixing planes", std::to_string(document.scene.planes.size()), "fixing_planes",
+            document.scene.planes.size());
+}
+
+void add_size_fact(FactSheet& facts, const Box& extent) {
+  const Vector3 size_m = extent.high - extent.low;
+  facts.add("Size", size_text(size_m), "size_mm", millimetres_of(size_m));
+}
+
+void add_material_facts(FactSheet& facts, const Material& material) {
+  facts.add("Material", material_text(material), "material", material_to_json(material));
+}
+
+void add_cell_facts(FactSheet& facts, const Simulation& simulation,
+                    const std::vector<FeatureMapReport>& maps) {
+  const std::vector<Body>& bodies = simulation.scene().bodies;
+  Json told = Json::array();
+  std::size_t mapped = 0;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const bool has_map = bodies[b].lattice.feature_map && mapped < maps.size();
+    const FeatureMapReport* map = has_map ? &maps[mapped++] : nullptr;
+    const std::string of = bodies.size() == 1 ? "" : " of " + bodies[b].name;
+    told.push_back(add_cells_of(facts, of, simulation.lattice(static_cast<int>(b)).mesh(), map));
+  }
+  facts.add("", "", "cells", bodies.size() == 1 ? told.front() : told);
 }
 
 void add_elasticity_facts(FactSheet& facts, const Simulation& simulation) {
@@ -179,23 +234,18 @@ void add_elasticity_facts(FactSheet& facts, const Simulation& simulation) {
   facts.add("", "", "achieved", all);
 }
 
-void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot) {
-  const LatticeSnapshot& lattice = snapshot.bodies[0].lattice;
-  const auto fixed = std::count(lattice.fixed.begin(), lattice.fixed.end(), std::uint8_t{1});
-  const Json counts = {lattice.count[0], lattice.count[1], lattice.count[2]};
-  facts.add("Lattice",
-            std::to_string(lattice.count[0]) + " x " + std::to_string(lattice.count[1]) + " x " +
-                std::to_string(lattice.count[2]) + " nodes, " + std::to_string(fixed) + " of them fixed",
-            "lattice", {{"nodes", counts}, {"node_count", lattice.x.size()}, {"fixed_node_count", fixed}});
-  facts.add("Mass", grams_text(snapshot.bodies[0].material.mass_kg) + " (the lattice's)", "mass_kg",
-            snapshot.bodies[0].material.mass_kg);
-  facts.add("Felt E", modulus_text(snapshot.bodies[0].material.felt_youngs_modulus_pa),
-            "felt_youngs_modulus_pa", snapshot.bodies[0].material.felt_youngs_modulus_pa);
-  const int implicit = snapshot.bodies[0].material.implicit_nodes;
-  facts.add(
-      "Solver",
-      implicit > 0 ? "implicit, " + std::to_string(implicit) + " nodes of hexahedra" : "explicit springs",
-      "solver", {{"kind", implicit > 0 ? "implicit" : "explicit"}, {"implicit_nodes", implicit}});
+void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot, const std::vector<Body>& bodies) {
+  Json told = Json::array();
+  double mass_kg = 0.0;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::string of = bodies.size() == 1 ? "" : " of " + bodies[b].name;
+    told.push_back(add_simulated_body(facts, of, snapshot.bodies[b]));
+    mass_kg += snapshot.bodies[b].material.mass_kg;
+  }
+  if (bodies.size() == 1) add_alone(facts, told.front());
+  for (std::size_t b = 0; b < bodies.size(); ++b) told[b]["body"] = bodies[b].name;
+  facts.add("", "", "simulated", told);
+  facts.add(bodies.size() == 1 ? "" : "Mass", grams_text(mass_kg) + " together", "mass_kg", mass_kg);
 }
 
 }  // namespace spoonbill

@@ -11,9 +11,7 @@ FeatureMapWatch MapProgress::watch() {
             bar_.show(static_cast<std::uint64_t>(steps * share), static_cast<std::uint64_t>(steps));
             return true;
           },
-          [this](const FeatureMapReport& report) {
-            if (!report_) report_ = report;
-          }};
+          [this](const FeatureMapReport& report) { reports_.push_back(report); }};
 }
 
 }  // namespace spoonbill

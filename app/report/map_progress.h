@@ -2,7 +2,7 @@
 // made of the cells.
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "app/report/progress_bar.h"
 #include "engine/material/lattice/feature_map.h"
@@ -15,12 +15,12 @@ class MapProgress {
   explicit MapProgress(Console& console, bool asked_for = false);
 
   FeatureMapWatch watch();
-  // Of the first map that was done; none where no body asks for one.
-  const std::optional<FeatureMapReport>& report() const { return report_; }
+  // Of the maps that were done, in the order of the bodies that ask for one.
+  const std::vector<FeatureMapReport>& reports() const { return reports_; }
 
  private:
   ProgressBar bar_;
-  std::optional<FeatureMapReport> report_;
+  std::vector<FeatureMapReport> reports_;
 };
 
 }  // namespace spoonbill

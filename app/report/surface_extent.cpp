@@ -1,23 +1,55 @@
 #include "app/report/surface_extent.h"
 
 #include "engine/bspline/grid.h"
+#include "engine/bspline/trimmed_grid.h"
 
 namespace spoonbill {
 namespace {
 
 constexpr int samples = 201;
 
+Box nothing() {
+  const Vector3 far = Vector3::Constant(1e30);
+  return {far, -far};
+}
+
+Box with(const Box& box, const Vector3& point) {
+  return joined(box, {point, point});
+}
+
+// Cells that loops cross are cut along them, so that an edge counts as far as it goes.
+Box extent_within(const Surface& surface, const Grid& grid, const TrimmedArea& area) {
+  const TrimmedGrid trimmed = trim_grid(grid.u, grid.v, area);
+  const auto columns = static_cast<std::size_t>(grid.columns());
+  const std::size_t count = grid.u.parameters.size() * columns;
+  std::vector<bool> kept(count, false);
+  for (const auto& triangle : trimmed.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      if (vertex < count) kept[vertex] = true;
+    }
+  }
+  Box box = nothing();
+  for (std::size_t s = 0; s < count; ++s) {
+    if (!kept[s]) continue;
+    box = with(box, position(surface, grid.u.parameters[s / columns], grid.v.parameters[s % columns]));
+  }
+  for (const CutVertex& cut : trimmed.vertices) box = with(box, position(surface, cut.u, cut.v));
+  return box;
+}
+
 }  // namespace
 
-Box extent_of(const Surface& surface) {
-  const Vector3 far = Vector3::Constant(1e30);
-  Box box{far, -far};
+Box extent_of(const Surface& surface, const std::vector<TrimLoop>& trims) {
+  const auto u_parameters = uniform_parameters(surface.u, samples);
   const auto v_parameters = uniform_parameters(surface.v, samples);
-  for (const double u : uniform_parameters(surface.u, samples)) {
-    for (const double v : v_parameters) {
-      const Vector3 point = position(surface, u, v);
-      box = joined(box, {point, point});
-    }
+  if (!trims.empty()) {
+    const auto area = TrimmedArea::make(surface.u, surface.v, trims);
+    const auto grid = make_grid(surface.u, surface.v, u_parameters, v_parameters);
+    if (area && grid) return extent_within(surface, grid.value(), area.value());
+  }
+  Box box = nothing();
+  for (const double u : u_parameters) {
+    for (const double v : v_parameters) box = with(box, position(surface, u, v));
   }
   return box;
 }

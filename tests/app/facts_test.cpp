@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "app/program.h"
+#include "app/report/surface_extent.h"
 #include "engine/bspline/surface.h"
 #include "engine/exchange/document.h"
 #include "engine/simulation/simulation.h"
@@ -46,12 +47,42 @@ TEST(Info, TellsOfEveryBody) {
       placed(two.scene.bodies[1].surface, {Vector3(0.0, 0.5, 0.0), Quaternion::Identity()});
   place.write("two.json", json_to_page(document_to_json(two)));
   const Json facts = json_of(run({"info", place.text("two.json"), "--json"}).out);
-  EXPECT_EQ(facts["bodies"], Json::array({two.scene.bodies[0].name, "other"}));
+  ASSERT_EQ(facts["bodies"].size(), 2U);
+  EXPECT_EQ(facts["bodies"][0]["name"], two.scene.bodies[0].name);
+  EXPECT_EQ(facts["bodies"][1]["name"], "other");
+  EXPECT_NEAR(facts["bodies"][1]["size_mm"][0], 60.0, 0.01);
+  EXPECT_EQ(facts["bodies"][1]["closedness"], "solid");
+  EXPECT_NEAR(facts["size_mm"][1].get<double>() - facts["bodies"][1]["size_mm"][1].get<double>(), 500.0,
+              1e-6);
+  ASSERT_EQ(facts["simulated"].size(), 2U);
+  EXPECT_EQ(facts["simulated"][1]["body"], "other");
+  EXPECT_NEAR(facts["mass_kg"], 2.0 * facts["simulated"][1]["mass_kg"].get<double>(), 1e-12);
+  EXPECT_EQ(facts["cells"].size(), 2U);
   ASSERT_EQ(facts["surfaces"].size(), 2U);
   EXPECT_EQ(facts["surfaces"][1]["v"]["control_points"], two.scene.bodies[1].surface.net.columns);
   const std::string lines = run({"info", place.text("two.json")}).out;
   EXPECT_NE(lines.find("Body 2"), std::string::npos) << lines;
   EXPECT_NE(lines.find("periodic, from 0 to "), std::string::npos) << lines;
+}
+
+// A handle of which a loop keeps the side of a quarter of its length is as long as that.
+TEST(Info, TheSizeOfATrimmedBodyIsOfWhatIsKept) {
+  const Workplace place;
+  Document model = read_document(place.path("model.json")).value();
+  Body& body = model.scene.bodies[0];
+  const Vector3 whole = extent_of(body.surface).high - extent_of(body.surface).low;
+  const auto polygon = [&](double share) {
+    const KnotVector &u = body.surface.u, &v = body.surface.v;
+    const double u0 = u.domain_start(), v0 = v.domain_start();
+    const double u1 = u0 + share * (u.domain_end() - u0), v1 = v0 + share * (v.domain_end() - v0);
+    return make_polygon_loop(u, v, {{u0, v0}, {u1, v0}, {u1, v1}, {u0, v1}}).value();
+  };
+  body.trims = {polygon(0.25)};
+  const Box kept = extent_of(body.surface, body.trims);
+  EXPECT_LT((kept.high - kept.low).maxCoeff(), 0.5 * whole.maxCoeff());
+  place.write("corner.json", json_to_page(document_to_json(model)));
+  const Json facts = json_of(run({"info", place.text("corner.json"), "--json"}).out);
+  EXPECT_NEAR(facts["size_mm"][0], 1e3 * (kept.high - kept.low).x(), 1e-6);
 }
 
 // The lattice's own report, and the regions as the document has them.
