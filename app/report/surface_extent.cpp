@@ -6,7 +6,9 @@
 namespace spoonbill {
 namespace {
 
-constexpr int samples = 201;
+// The cells that loops cross are cut along them, which takes longer: fewer do, for the loops themselves
+// count.
+constexpr int samples = 201, trimmed_samples = 61;
 
 Box nothing() {
   const Vector3 far = Vector3::Constant(1e30);
@@ -17,7 +19,6 @@ Box with(const Box& box, const Vector3& point) {
   return joined(box, {point, point});
 }
 
-// Cells that loops cross are cut along them, so that an edge counts as far as it goes.
 Box extent_within(const Surface& surface, const Grid& grid, const TrimmedArea& area) {
   const TrimmedGrid trimmed = trim_grid(grid.u, grid.v, area);
   const auto columns = static_cast<std::size_t>(grid.columns());
@@ -40,15 +41,15 @@ Box extent_within(const Surface& surface, const Grid& grid, const TrimmedArea& a
 }  // namespace
 
 Box extent_of(const Surface& surface, const std::vector<TrimLoop>& trims) {
-  const auto u_parameters = uniform_parameters(surface.u, samples);
-  const auto v_parameters = uniform_parameters(surface.v, samples);
   if (!trims.empty()) {
     const auto area = TrimmedArea::make(surface.u, surface.v, trims);
-    const auto grid = make_grid(surface.u, surface.v, u_parameters, v_parameters);
+    const auto grid = make_grid(surface.u, surface.v, uniform_parameters(surface.u, trimmed_samples),
+                                uniform_parameters(surface.v, trimmed_samples));
     if (area && grid) return extent_within(surface, grid.value(), area.value());
   }
   Box box = nothing();
-  for (const double u : u_parameters) {
+  const auto v_parameters = uniform_parameters(surface.v, samples);
+  for (const double u : uniform_parameters(surface.u, samples)) {
     for (const double v : v_parameters) box = with(box, position(surface, u, v));
   }
   return box;
