@@ -11,6 +11,7 @@
 #include "engine/bspline/reparameterise.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/merging/join_row.h"
+#include "engine/merging/round_part.h"
 
 namespace spoonbill {
 
@@ -155,8 +156,9 @@ class KeptPart {
 
 Error no_single_pieces() {
   return Error{
-      "its trims leave no part that lines of constant u, or of constant v, cross in one piece each; fill its "
-      "holes, and cut it off where it ends in a point"};
+      "its trims leave no part that lines of constant u, or of constant v, cross in one piece each, and no "
+      "disc "
+      "or ring with smooth edges; fill its holes, and cut it off where it ends in a point"};
 }
 
 Result<FittedShape> resampled_between(const Surface& surface, const KeptPart& part, const Interval& piece,
@@ -263,7 +265,10 @@ Result<FittedShape> untrimmed(const Surface& surface, const std::vector<TrimLoop
   const KeptPart part(polygons);
   if (part.is_cut_in_single_pieces()) return resampled(surface, part, tolerance_m);
   const KeptPart turned(exchanged_polygons(polygons));
-  if (!turned.is_cut_in_single_pieces()) return no_single_pieces();
+  if (!turned.is_cut_in_single_pieces()) {
+    auto round = round_part(surface, polygons, tolerance_m);
+    return round ? std::move(*round) : no_single_pieces();
+  }
   auto result = resampled(exchanged(surface), turned, tolerance_m);
   if (result) result->surface = exchanged(result->surface);
   return result;

@@ -13,9 +13,9 @@ namespace spoonbill {
 
 // What the loops keep, its edges in v on the trims, u ending where the kept part does; C0 along lines through
 // corners of the trims, which are taken as their polygons (polygon_of). Lines of constant u must each meet
-// the kept part in one piece; where they do not, lines of constant v are tried. Without loops the surface
-// itself. Refused: holes and other parts that neither cuts into single pieces, a part that ends in a point
-// where no line is left of it.
+// the kept part in one piece; where they do not, lines of constant v are tried, then lines towards the middle
+// of a disc or of a hole (round_part.h). Without loops the surface itself. Refused: holes and other parts
+// that none cuts into single pieces, a part that ends in a point where no line is left of it.
 Result<FittedShape> untrimmed(const Surface& surface, const std::vector<TrimLoop>& trims, double tolerance_m);
 
 }  // namespace spoonbill

@@ -1,6 +1,7 @@
 #include "engine/merging/tube_ends.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -153,16 +154,21 @@ std::vector<std::pair<PatchEdge, PatchEdge>> nearest_ends(const std::vector<Surf
     PatchEdge a, b;
     double apart_m;
   };
-  std::vector<std::pair<PatchEdge, Vector3>> ends;
+  // The middle of a flat disc is as near to a ring as its edge is: of those the one that is as wide.
+  constexpr double width_share = 0.01;
+  std::vector<std::pair<PatchEdge, TubeEnd>> ends;
   for (int p = 0; p < static_cast<int>(tubes.size()); ++p) {
     const auto [first, last] = tube_sides(tubes[p]);
-    for (const Side side : {first, last}) ends.push_back({{p, side}, tube_end(tubes[p], side).middle_m});
+    for (const Side side : {first, last}) ends.push_back({{p, side}, tube_end(tubes[p], side)});
   }
   std::vector<Pair> pairs;
   for (std::size_t a = 0; a < ends.size(); ++a) {
     for (std::size_t b = a + 1; b < ends.size(); ++b) {
       if (ends[a].first.patch == ends[b].first.patch) continue;
-      pairs.push_back({ends[a].first, ends[b].first, (ends[a].second - ends[b].second).norm()});
+      const TubeEnd &one = ends[a].second, &other = ends[b].second;
+      pairs.push_back(
+          {ends[a].first, ends[b].first,
+           (one.middle_m - other.middle_m).norm() + width_share * std::abs(one.radius_m - other.radius_m)});
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(),

@@ -37,7 +37,8 @@ Result<Joined> with_cap(const Surface& surface, Side side, double height_m, cons
 // Refused where half of the tube would go.
 Result<Surface> opened_pole(const Surface& surface, Side side, double wide_enough_m);
 
-// The pairs of ends by which tubes hang together: nearest ends first, each used once.
+// The pairs of ends by which tubes hang together: nearest ends first, of equally near ones those that are
+// about as wide, each used once.
 std::vector<std::pair<PatchEdge, PatchEdge>> nearest_ends(const std::vector<Surface>& tubes);
 
 }  // namespace spoonbill

@@ -1,0 +1,126 @@
+#include "engine/merging/round_part.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "engine/bspline/grid.h"
+#include "engine/bspline/grid_fit.h"
+#include "engine/merging/merge.h"
+#include "engine/merging/trimmed_patch.h"
+#include "engine/study/enclosed_mass.h"
+#include "engine/study/surface_check.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// A plane at the height `y_m` from -0.05 to 0.05 m in x and z, facing up or down.
+Surface plane(double y_m, bool up) {
+  Surface surface;
+  surface.u = surface.v = KnotVector::clamped_uniform(1, 2).value();
+  surface.net = ControlNet(2, 2);
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      const double first = 0.1 * i - 0.05, second = 0.1 * j - 0.05;
+      surface.net.set_point(i, j, up ? Vector3(second, y_m, first) : Vector3(first, y_m, second));
+    }
+  }
+  return surface;
+}
+
+// A circle about `middle_m` on the plane, as chords of a third of a degree.
+TrimLoop circle(const Surface& surface, double radius_m, bool hole,
+                const Eigen::Vector2d& middle_m = {0, 0}) {
+  std::vector<Eigen::Vector2d> corners;
+  constexpr int count = 1080;
+  for (int k = 0; k < count; ++k) {
+    const double turn = (hole ? -2.0 : 2.0) * pi * k / count;
+    corners.emplace_back((middle_m.x() + radius_m * std::cos(turn) + 0.05) / 0.1,
+                         (middle_m.y() + radius_m * std::sin(turn) + 0.05) / 0.1);
+  }
+  return make_polygon_loop(surface.u, surface.v, corners).value();
+}
+
+// About y, from the height `low_m` to `high_m`, facing outwards, its seam elsewhere than a disc's.
+Surface side(double radius_m, double low_m, double high_m) {
+  const auto u = KnotVector::periodic_uniform(3, 24).value();
+  const auto v = KnotVector::clamped_uniform(3, 6).value();
+  PointGrid points{uniform_parameters_without_seam(u, 96), uniform_parameters(v, 20), {}};
+  for (const double a : points.u) {
+    for (const double b : points.v) {
+      const double turn = 1.0 - 2.0 * pi * a;
+      points.points_m.emplace_back(radius_m * std::cos(turn), low_m + (high_m - low_m) * b,
+                                   radius_m * std::sin(turn));
+    }
+  }
+  return fit_grid(u, v, points).value();
+}
+
+TEST(RoundPart, ADiscEndsInAPoleAndKeepsItsArea) {
+  for (const bool up : {true, false}) {
+    const Surface sheet = plane(0.02, up);
+    const auto disc = untrimmed(sheet, {circle(sheet, 0.03, false, {0.01, -0.005})}, 1e-6);
+    ASSERT_TRUE(disc) << disc.error().message;
+    EXPECT_LE(disc->deviation_m, 1e-6);
+    const Surface& surface = disc->surface;
+    EXPECT_TRUE(surface.u.is_periodic());
+    // Chords of a third of a degree take 5e-6 of the circle's area, an edge within a micrometre 7e-5.
+    EXPECT_NEAR(enclosed_mass(surface).area_m2 / (pi * 0.03 * 0.03), 1.0, 8e-5);
+    EXPECT_GT((up ? 1.0 : -1.0) * unit_normal(surface, 0.3, 0.5).y(), 0.99);
+    const Vector3 pole = position(surface, 0.1, surface.v.domain_end());
+    EXPECT_LT((pole - position(surface, 0.6, surface.v.domain_end())).norm(), 1e-15);
+  }
+}
+
+// The edge of a hole that is out of the middle is met all the same.
+TEST(RoundPart, ARingRunsFromItsEdgeToItsHole) {
+  const Surface sheet = plane(0.0, true);
+  const auto ring = untrimmed(
+      sheet, {circle(sheet, 0.01, true, {0.008, 0.0}), circle(sheet, 0.04, false, {0.0, 0.0})}, 1e-6);
+  ASSERT_TRUE(ring) << ring.error().message;
+  const double area = pi * (0.04 * 0.04 - 0.01 * 0.01);
+  EXPECT_NEAR(enclosed_mass(ring->surface).area_m2 / area, 1.0, 1e-4);
+  EXPECT_GT(unit_normal(ring->surface, 0.3, 0.5).y(), 0.99);
+  for (double u = 0.0; u < 1.0; u += 0.05) {
+    const Vector3 outer = position(ring->surface, u, ring->surface.v.domain_start());
+    const Vector3 inner = position(ring->surface, u, ring->surface.v.domain_end());
+    EXPECT_NEAR(outer.norm(), 0.04, 2e-6);
+    EXPECT_NEAR((inner - Vector3(0.0, 0.0, 0.008)).norm(), 0.01, 2e-6);
+  }
+}
+
+// A drum as CAD systems have it: its side, and a plane at each end trimmed by a circle.
+TEST(RoundPart, ADrumOfThreeFacesBecomesOneClosedBody) {
+  const Surface top = plane(0.03, true), bottom = plane(-0.01, false);
+  const auto lid = untrimmed(top, {circle(top, 0.02, false)}, 2e-6);
+  const auto base = untrimmed(bottom, {circle(bottom, 0.02, false)}, 2e-6);
+  ASSERT_TRUE(lid && base);
+  MergeRequest request;
+  request.join.continuity = 0;
+  request.join.tolerance_m = 5e-5;
+  const auto drum = merge({lid->surface, side(0.02, -0.01, 0.03), base->surface}, request);
+  ASSERT_TRUE(drum) << drum.error().message;
+  EXPECT_LE(drum->deviation_m, 5e-5);
+  EXPECT_NEAR(enclosed_mass(drum->surface).volume_m3 / (pi * 0.02 * 0.02 * 0.04), 1.0, 1e-3);
+}
+
+TEST(RoundPart, CornersAndLinesThatMeetAnEdgeTwiceAreRefused) {
+  const Surface sheet = plane(0.0, true);
+  const auto square =
+      make_polygon_loop(sheet.u, sheet.v, {{0.2, 0.2}, {0.8, 0.2}, {0.8, 0.8}, {0.2, 0.8}}).value();
+  EXPECT_FALSE(untrimmed(sheet, {square, circle(sheet, 0.01, true)}, 1e-6));
+  // A kidney, about whose middle it is not star-shaped.
+  std::vector<Eigen::Vector2d> kidney;
+  for (int k = 0; k < 720; ++k) {
+    const double turn = 2.0 * pi * k / 720, reach = 0.1 + 0.28 * std::sin(turn / 2.0);
+    kidney.emplace_back(0.45 + reach * std::cos(turn), 0.5 + reach * std::sin(turn));
+  }
+  EXPECT_FALSE(round_part(sheet, {kidney, {{0.7, 0.5}, {0.7, 0.51}, {0.71, 0.5}}}, 1e-6).has_value());
+}
+
+}  // namespace
+}  // namespace spoonbill
