@@ -13,8 +13,8 @@ Error about(std::size_t region, const std::string& message) {
 }
 
 // Which of the lattice's cells the region holds become of its material.
-Status take_material(const MaterialRegion& region, const std::vector<BodyPlace>& cells,
-                     LatticeMaterials& materials) {
+Status take_material(const MaterialRegion& region, const LatticeMesh& mesh,
+                     const std::vector<BodyPlace>& cells, LatticeMaterials& materials) {
   const auto number = static_cast<std::uint8_t>(materials.materials.size());
   materials.materials.push_back(*region.material);
   materials.of_cell.resize(cells.size(), 0);
@@ -22,7 +22,7 @@ Status take_material(const MaterialRegion& region, const std::vector<BodyPlace>&
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (!contains(region.region, cells[c])) continue;
     materials.of_cell[c] = number;
-    holds_any = true;
+    holds_any |= mesh.filled.empty() || mesh.filled[c];
   }
   if (holds_any) return {};
   return Error{": holds the middle of no cell of the lattice; make it larger or give the lattice more nodes"};
@@ -72,7 +72,7 @@ Result<LatticeMaterials> lattice_materials(const LatticeMesh& mesh, const Materi
       return about(r, "." + status.error().message);
     }
     if (regions[r].material) {
-      if (const Status status = take_material(regions[r], cells, materials); !status.ok()) {
+      if (const Status status = take_material(regions[r], mesh, cells, materials); !status.ok()) {
         return about(r, status.error().message);
       }
     }

@@ -154,6 +154,10 @@ DistanceSample ShellDistance::at(const Vector3& point_m) const {
   return {side * distance, normal_at(found).normalized()};
 }
 
+std::uint32_t ShellDistance::nearest_triangle(const Vector3& point_m) const {
+  return tree_.order()[nearest(point_m).triangle];
+}
+
 bool ShellDistance::is_convex() const {
   if (kind_ != Kind::solid || !is_told_by_normals() || triangles_.size() > convex_triangles) return false;
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {

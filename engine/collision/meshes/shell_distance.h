@@ -25,6 +25,9 @@ class ShellDistance {
   // the material is; sheets: never negative.
   DistanceSample at(const Vector3& point_m) const;
 
+  // Which of the triangles, as they were given, the point is nearest to.
+  std::uint32_t nearest_triangle(const Vector3& point_m) const;
+
   const Box& bounds() const { return tree_.nodes()[0].box; }
 
   // Whether the side is told by the normals of faces, edges and vertices, the latter weighted by angles

@@ -83,10 +83,9 @@ class Hull {
   std::size_t last_ = 0;  // the nearest of the point before
 };
 
-// How far out of the block's middle line a node lies, 0 to 1, counted in nodes. A shell has no middle line,
-// nor a box about a surface.
+// How far out of the block's middle line a node lies, 0 to 1, counted in nodes. A shell has no middle line.
 double out_of_middle(const LatticeMesh& mesh, int node) {
-  if (mesh.thin || !mesh.along.empty()) return 1.0;
+  if (mesh.thin) return 1.0;
   const std::array<int, 3> at = mesh.place(node);
   const double s = 2.0 * at[0] / (mesh.count[0] - 1) - 1.0, t = 2.0 * at[1] / (mesh.count[1] - 1) - 1.0;
   return std::max(std::abs(s), std::abs(t));
@@ -126,12 +125,6 @@ std::array<int, 8> corners_of(const LatticeMesh& mesh, int i, int j, int k) {
     corners[static_cast<std::size_t>(c)] = mesh.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1));
   }
   return corners;
-}
-
-double mean_depth_m(const std::vector<BodyPlace>& nodes, const std::array<int, 8>& corners) {
-  double sum = 0.0;
-  for (const int corner : corners) sum += at(nodes, corner).depth_m;
-  return sum / 8.0;
 }
 
 Status check_shares(const char* field, const Range<double>& shares, bool may_pass_seam) {
@@ -193,6 +186,7 @@ BodyPlace mean_place(const LatticeMesh& mesh, const std::vector<BodyPlace>& node
 }
 
 std::vector<BodyPlace> cell_places(const LatticeMesh& mesh) {
+  if (!mesh.middles.empty()) return mesh.middles;
   Hull hull = hull_of(mesh);
   const std::vector<BodyPlace> nodes = places_on_block(mesh);
   std::vector<BodyPlace> places(mesh.cell_count());
@@ -202,8 +196,7 @@ std::vector<BodyPlace> cell_places(const LatticeMesh& mesh) {
         BodyPlace& place = places[mesh.cell_index(i, j, k)];
         const std::array<int, 8> corners = corners_of(mesh, i, j, k);
         place = mean_place(mesh, nodes, corners);
-        place.depth_m = mesh.depth_m.empty() ? hull.distance(trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5))
-                                             : mean_depth_m(nodes, corners);
+        place.depth_m = hull.distance(trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5));
       }
     }
   }

@@ -14,22 +14,16 @@ namespace spoonbill {
 
 // Plain data. All of the body as it is made.
 struct BodyRegion {
-  Range<double> along{0.0, 1.0};   // of the body's length, from the first pole
+  Range<double> along{0.0, 1.0};   // of the body's length in the sense of v; of a ring, of its turn
   Range<double> around{0.0, 1.0};  // of a turn in the sense of u; low above high: across the seam
   Range<double> depth_m{0.0, std::numeric_limits<double>::infinity()};  // below the surface, at rest
 };
 
-// Where a point of a body is, in the same terms.
-struct BodyPlace {
-  double along = 0.0;
-  double around = 0.0;  // 0 on the axis, which has none
-  double depth_m = 0.0;
-};
-
 bool contains(const BodyRegion& region, const BodyPlace& place);
 
-// One of each node, at rest. The depth is the distance to the faces of the block's hull. Of a block that is
-// no tube, shares count along the block, and around is 0.
+// One of each node, at rest. The depth is the distance to the faces of the block's hull, in a box about a
+// surface that to the surface; nodes beside the body are in no region. Of a block that is no tube, shares
+// count along the block, and around is 0.
 std::vector<BodyPlace> node_places(const LatticeMesh& mesh);
 
 // Of some of the nodes, of which all places are given: the mean of their shares along, and of their turns, of
@@ -39,7 +33,7 @@ std::vector<BodyPlace> node_places(const LatticeMesh& mesh);
 BodyPlace mean_place(const LatticeMesh& mesh, const std::vector<BodyPlace>& nodes, std::span<const int> of);
 
 // One of each cell, of its middle, by LatticeMesh::cell_index(): its own depth, and the mean_place() of its
-// corners.
+// corners; in a box about a surface LatticeMesh::middles.
 std::vector<BodyPlace> cell_places(const LatticeMesh& mesh);
 
 // The shares within 0 to 1 and in order, the depths at least 0 and in order; the message names the field.

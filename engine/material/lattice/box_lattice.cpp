@@ -44,7 +44,7 @@ double inside_share(const ShellDistance& solid, const CellCorners& corners) {
 }
 
 // Of the body are the corners of its cells; on the shell, those of void ones too, or of the box's sides.
-void find_places(LatticeMesh& box, const std::vector<bool>& filled) {
+void find_places(LatticeMesh& box) {
   box.places.assign(static_cast<std::size_t>(box.node_count()), NodePlace::beside_body);
   for (int n = 0; n < box.node_count(); ++n) {
     const std::array<int, 3> at = box.place(n);
@@ -53,7 +53,7 @@ void find_places(LatticeMesh& box, const std::vector<bool>& filled) {
       const std::array<int, 3> cell = {at[0] - (c >> 2 & 1), at[1] - (c >> 1 & 1), at[2] - (c & 1)};
       bool exists = true;
       for (int axis = 0; axis < 3; ++axis) exists &= cell[axis] >= 0 && cell[axis] < box.count[axis] - 1;
-      if (exists && filled[box.cell_index(cell[0], cell[1], cell[2])]) ++cells;
+      if (exists && box.is_filled(cell[0], cell[1], cell[2])) ++cells;
     }
     NodePlace& place = box.places[static_cast<std::size_t>(n)];
     if (cells > 0) place = cells == 8 ? NodePlace::in_body : NodePlace::on_shell;
@@ -73,10 +73,10 @@ Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
   }
   LatticeMesh box = box_mesh(size, counts);
   for (Vector3& node : box.nodes) node += bounds.low;
-  std::vector<bool> filled(box.cell_count(), false);  // from where it holds any skin
+  box.filled.assign(box.cell_count(), false);
   for (const Vector3& point : skin_m) {
     const auto [i, j, k] = locate(box, point).cell;
-    filled[box.cell_index(i, j, k)] = true;
+    box.filled[box.cell_index(i, j, k)] = true;
   }
   box.cell_shares.assign(box.cell_count(), void_share);
   double volume = 0.0;
@@ -86,27 +86,37 @@ Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
         const CellCorners corners = box.cell(i, j, k);
         const double share = inside_share(inside, corners);
         const std::size_t cell = box.cell_index(i, j, k);
-        filled[cell] = filled[cell] || share > 0.0;
-        if (filled[cell]) box.cell_shares[cell] = std::max(share, least_filled_share);
+        box.filled[cell] = box.filled[cell] || share > 0.0;
+        if (box.filled[cell]) box.cell_shares[cell] = std::max(share, least_filled_share);
         volume += box.cell_shares[cell] * cell_volume(corners);
       }
     }
   }
   for (double& share : box.cell_shares) share *= volume_m3 / volume;
-  find_places(box, filled);
+  find_places(box);
   return box;
 }
 
-EmbeddedPoint embed_in_box(const LatticeMesh& box, const Vector3& point_m) {
+CellPoint point_in_box(const LatticeMesh& box, const Vector3& point_m) {
   const auto [cell, local] = locate(box, point_m);
-  EmbeddedPoint point;
-  point.count = 8;
+  CellPoint point;
   for (int c = 0; c < 8; ++c) {
     const std::array<int, 3> bit = {c >> 2 & 1, c >> 1 & 1, c & 1};
     double weight = 1.0;
     for (int axis = 0; axis < 3; ++axis) weight *= bit[axis] == 1 ? local[axis] : 1.0 - local[axis];
-    point.node[c] = box.index(cell[0] + bit[0], cell[1] + bit[1], cell[2] + bit[2]);
-    point.weight[c] = static_cast<float>(weight);
+    point.nodes[c] = box.index(cell[0] + bit[0], cell[1] + bit[1], cell[2] + bit[2]);
+    point.weights[c] = weight;
+  }
+  return point;
+}
+
+EmbeddedPoint embed_in_box(const LatticeMesh& box, const Vector3& point_m) {
+  const CellPoint in_cell = point_in_box(box, point_m);
+  EmbeddedPoint point;
+  point.count = 8;
+  for (int c = 0; c < 8; ++c) {
+    point.node[c] = in_cell.nodes[c];
+    point.weight[c] = static_cast<float>(in_cell.weights[c]);
   }
   return point;
 }

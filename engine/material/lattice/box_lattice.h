@@ -30,6 +30,7 @@ Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
                                 std::span<const Vector3> skin_m, std::array<int, 3> counts);
 
 // A point in such a lattice at rest, of the cell that holds it or that it is nearest to.
+CellPoint point_in_box(const LatticeMesh& box, const Vector3& point_m);
 EmbeddedPoint embed_in_box(const LatticeMesh& box, const Vector3& point_m);
 
 }  // namespace spoonbill

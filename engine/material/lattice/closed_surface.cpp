@@ -50,16 +50,13 @@ Status check_outward(const Surface& surface) {
   return Error{"surface: encloses no volume; a body must be thick everywhere"};
 }
 
-std::vector<double> parameters_of(const KnotVector& knots) {
-  constexpr int most_pieces = 8;
-  const int elements = static_cast<int>(knots.breakpoints().size()) - 1;
-  const int pieces = std::clamp(skin_samples / elements, 2, most_pieces);
-  return nested_parameters(knots, pieces, 0).parameters;
-}
-
-void add_triangle(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  const Vector3 &at_a = mesh.vertices_m[a], &at_b = mesh.vertices_m[b], &at_c = mesh.vertices_m[c];
-  if ((at_b - at_a).cross(at_c - at_a).squaredNorm() > 0.0) mesh.triangles.push_back({a, b, c});
+// Leaves out what has no area, as beside a pole.
+void add_triangle(ClosedSkin& skin, const TriangleCorners& corners, const std::array<double, 2>& middle) {
+  const std::vector<Vector3>& at = skin.mesh.vertices_m;
+  const Vector3& first = at[corners[0]];
+  if (!((at[corners[1]] - first).cross(at[corners[2]] - first).squaredNorm() > 0.0)) return;
+  skin.mesh.triangles.push_back(corners);
+  skin.middles.push_back(middle);
 }
 
 }  // namespace
@@ -79,8 +76,18 @@ Status check_closed(const Surface& surface) {
   return check_outward(surface);
 }
 
+std::vector<double> skin_parameters(const KnotVector& knots) {
+  constexpr int most_pieces = 8;
+  const int elements = static_cast<int>(knots.breakpoints().size()) - 1;
+  const int pieces = std::clamp(skin_samples / elements, 2, most_pieces);
+  return nested_parameters(knots, pieces, 0).parameters;
+}
+
 ClosedSkin skin_of(const Surface& surface) {
-  const std::vector<double> u = parameters_of(surface.u), v = parameters_of(surface.v);
+  return skin_between(surface, skin_parameters(surface.u), skin_parameters(surface.v));
+}
+
+ClosedSkin skin_between(const Surface& surface, const std::vector<double>& u, const std::vector<double>& v) {
   const std::size_t rows = u.size() - 1, last = v.size() - 1;
   const bool ring = surface.v.is_periodic();
   ClosedSkin skin;
@@ -105,8 +112,10 @@ ClosedSkin skin_of(const Surface& surface) {
   }
   for (std::size_t i = 0; i < rows; ++i) {
     for (std::size_t j = 0; j < last; ++j) {
-      add_triangle(skin.mesh, vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1));
-      add_triangle(skin.mesh, vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1));
+      add_triangle(skin, {vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)},
+                   {(u[i] + 2.0 * u[i + 1]) / 3.0, (2.0 * v[j] + v[j + 1]) / 3.0});
+      add_triangle(skin, {vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)},
+                   {(2.0 * u[i] + u[i + 1]) / 3.0, (v[j] + 2.0 * v[j + 1]) / 3.0});
     }
   }
   return skin;

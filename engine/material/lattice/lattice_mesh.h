@@ -12,6 +12,28 @@ namespace spoonbill {
 
 enum class NodePlace : std::uint8_t { beside_body, in_body, on_shell };
 
+// Where a point of a body is, in the body's own coordinates; not a number of a node beside the body.
+struct BodyPlace {
+  double along = 0.0;   // of the body's length, 0 to 1; of a ring, of its turn
+  double around = 0.0;  // of a turn, 0 to 1; 0 on the axis, which has none
+  double depth_m = 0.0;
+};
+
+// A point that follows a cell: weights that sum to 1, none negative.
+struct CellPoint {
+  std::array<int, 8> nodes{};
+  std::array<double, 8> weights{};
+};
+
+// The skin of a body in a box of cells, as coarse as the cells are: closed, so that even pressure on it sums
+// to nothing however it is bent.
+struct BodySkin {
+  using Triangle = std::array<std::uint32_t, 3>;
+  std::vector<CellPoint> points;
+  std::vector<Triangle> triangles;  // counter-clockwise seen from outside
+  std::vector<BodyPlace> middles;   // of the triangles
+};
+
 // i and j run across the body, k along it, slowest: neighbours in memory are near whatever the body's length,
 // and what a plane holds of it is one stretch of memory.
 struct LatticeMesh {
@@ -24,13 +46,17 @@ struct LatticeMesh {
   std::vector<Vector3> nodes;  // m
   // How much of each cell there is, in the order of its first corners; empty: all of every one.
   std::vector<double> cell_shares;
+  std::vector<bool> filled;       // whether a cell holds any of the body, in that order; empty: every one
   std::vector<NodePlace> places;  // of each node; empty: the block is the body
   // Of each node of a tube or ring: where around it, 0 to 1 in the sense of u; 0 on its axis.
   std::vector<double> turns;
-  // Of each node of a box about a surface: where along the body, 0 to 1, and how deep in it; empty of others,
-  // whose block tells both.
+  // Of each node of a box about a surface: where along the body, 0 to 1, and how deep in it, not a number
+  // beside the body; empty of others, whose block tells both.
   std::vector<double> along, depth_m;
-  // Of such a box: whether the body is thinner than two cells anywhere.
+  // Of such a box: where the skin is nearest to the middle of each cell, and how deep that is, 0 outside; the
+  // skin that bears its pressure; whether the body is thinner than two cells anywhere.
+  std::vector<BodyPlace> middles;
+  BodySkin skin;
   bool slender = false;
 
   int index(int i, int j, int k) const { return (k * count[0] + i) * count[1] + j; }
@@ -56,6 +82,7 @@ struct LatticeMesh {
   double share(int i, int j, int k) const {
     return cell_shares.empty() ? 1.0 : cell_shares[cell_index(i, j, k)];
   }
+  bool is_filled(int i, int j, int k) const { return filled.empty() || filled[cell_index(i, j, k)]; }
   // The corners of the cell whose first corner is (i, j, k): bit 0 of the corner adds to k, bit 1 to j, bit 2
   // to i.
   std::array<Vector3, 8> cell(int i, int j, int k) const;

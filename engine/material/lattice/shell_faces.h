@@ -1,4 +1,5 @@
-// The quads that bound a lattice: what bears pressure, and what an area of the body is counted by.
+// The quads that bound a block of cells that is the body: what bears pressure, and what an area of the body
+// is counted by. A body in a box of cells has a BodySkin for that.
 #pragma once
 
 #include <array>

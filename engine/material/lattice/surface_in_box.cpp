@@ -1,13 +1,16 @@
 #include "engine/material/lattice/surface_in_box.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "engine/bspline/unit_normal.h"
 #include "engine/collision/meshes/mesh_parts.h"
 #include "engine/collision/meshes/shell_distance.h"
+#include "engine/material/lattice/body_skin.h"
 #include "engine/material/lattice/box_lattice.h"
 #include "engine/material/lattice/closed_surface.h"
 #include "engine/material/lattice/share_table.h"
@@ -41,26 +44,92 @@ ShareTable shares_along(const Surface& surface) {
   return shares;
 }
 
-std::size_t nearest_vertex(const std::vector<Vector3>& vertices, const Vector3& point) {
-  const auto nearer = [&](const Vector3& a, const Vector3& b) {
-    return (a - point).squaredNorm() < (b - point).squaredNorm();
-  };
-  return static_cast<std::size_t>(std::min_element(vertices.begin(), vertices.end(), nearer) -
-                                  vertices.begin());
-}
+// Where on the body a point of its surface is, or any point by the nearest sample of the surface.
+class Places {
+ public:
+  Places(const Surface& surface, const ClosedSkin& skin, const ShellDistance& inside)
+      : skin_(skin),
+        inside_(inside),
+        along_(shares_along(surface)),
+        start_(surface.u.domain_start()),
+        period_(surface.u.domain_end() - start_) {}
 
-void place_nodes(const Surface& surface, const ClosedSkin& skin, const ShellDistance& inside,
-                 LatticeMesh& box) {
-  const ShareTable along = shares_along(surface);
-  const double start = surface.u.domain_start(), period = surface.u.domain_end() - start;
+  BodyPlace on_surface(double u, double v) const {
+    const double turns = (u - start_) / period_;
+    return {along_.at(v), turns - std::floor(turns), 0.0};
+  }
+
+  BodyPlace at(const Vector3& point) const {
+    const TriangleCorners& corners = skin_.mesh.triangles[inside_.nearest_triangle(point)];
+    const auto squared = [&](std::uint32_t corner) {
+      return (skin_.mesh.vertices_m[corner] - point).squaredNorm();
+    };
+    const std::uint32_t nearest = *std::min_element(
+        corners.begin(), corners.end(),
+        [&](std::uint32_t one, std::uint32_t other) { return squared(one) < squared(other); });
+    BodyPlace place = on_surface(skin_.u[nearest], skin_.v[nearest]);
+    place.depth_m = std::max(0.0, -inside_.at(point).distance_m);
+    return place;
+  }
+
+ private:
+  const ClosedSkin& skin_;
+  const ShellDistance& inside_;
+  ShareTable along_;
+  double start_, period_;
+};
+
+void place_nodes(const Places& places, LatticeMesh& box) {
+  constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t n = 0; n < box.nodes.size(); ++n) {
     const bool beside = box.places[n] == NodePlace::beside_body;
-    const std::size_t vertex = beside ? 0 : nearest_vertex(skin.mesh.vertices_m, box.nodes[n]);
-    const double turns = (skin.u[vertex] - start) / period;
-    box.along.push_back(along.at(skin.v[vertex]));
-    box.turns.push_back(turns - std::floor(turns));
-    box.depth_m.push_back(beside ? 0.0 : std::max(0.0, -inside.at(box.nodes[n]).distance_m));
+    const BodyPlace place = beside ? BodyPlace{nowhere, nowhere, nowhere} : places.at(box.nodes[n]);
+    box.along.push_back(place.along);
+    box.turns.push_back(place.around);
+    box.depth_m.push_back(place.depth_m);
   }
+}
+
+// Those of void cells too, which so are of what they lie about: they then do not stiffen anything softer.
+void place_cells(const Places& places, LatticeMesh& box) {
+  box.middles.resize(box.cell_count());
+  for (int k = 0; k + 1 < box.count[2]; ++k) {
+    for (int i = 0; i + 1 < box.count[0]; ++i) {
+      for (int j = 0; j + 1 < box.count[1]; ++j) {
+        box.middles[box.cell_index(i, j, k)] = places.at(trilinear(box.cell(i, j, k), 0.5, 0.5, 0.5));
+      }
+    }
+  }
+}
+
+// Halves a triangle across its longest edge until none is longer than half a cell, and takes what it halves.
+void add_between(const std::array<Vector3, 3>& corners, const Vector3& cell_m, std::vector<Vector3>& points) {
+  constexpr double longest_cells = 0.5;
+  std::size_t longest = 0;
+  std::array<double, 3> cells{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    cells[c] = (corners[(c + 1) % 3] - corners[c]).cwiseQuotient(cell_m).norm();
+    if (cells[c] > cells[longest]) longest = c;
+  }
+  if (!(cells[longest] > longest_cells)) return;
+  const Vector3 &from = corners[longest], &to = corners[(longest + 1) % 3],
+                &across = corners[(longest + 2) % 3];
+  points.emplace_back(0.5 * (from + to));
+  const Vector3 middle = points.back();
+  add_between({from, middle, across}, cell_m, points);
+  add_between({middle, to, across}, cell_m, points);
+}
+
+// So near each other that no cell that the skin passes through is missed but where it cuts off a corner.
+std::vector<Vector3> points_on(const ClosedSkin& skin, const Vector3& size,
+                               const std::array<int, 3>& counts) {
+  const Vector3 cell_m = size.cwiseQuotient(Vector3(counts[0] - 1, counts[1] - 1, counts[2] - 1));
+  std::vector<Vector3> points = skin.mesh.vertices_m;
+  const std::vector<Vector3>& at = skin.mesh.vertices_m;
+  for (const TriangleCorners& t : skin.mesh.triangles) {
+    add_between({at[t[0]], at[t[1]], at[t[2]]}, cell_m, points);
+  }
+  return points;
 }
 
 // From each vertex inwards.
@@ -84,9 +153,13 @@ Result<LatticeMesh> surface_in_box(const Surface& surface, const LatticeRequest&
   if (Status thick = check_thick(skin, volume, size.maxCoeff()); !thick) return thick.error();
   const Result<std::array<int, 3>> counts = lattice_counts(request, size);
   if (!counts) return counts.error();
-  Result<LatticeMesh> box = box_lattice(inside, volume, skin.mesh.vertices_m, counts.value());
+  Result<LatticeMesh> box =
+      box_lattice(inside, volume, points_on(skin, size, counts.value()), counts.value());
   if (!box) return box;
-  place_nodes(surface, skin, inside, box.value());
+  const Places places(surface, skin, inside);
+  place_nodes(places, box.value());
+  place_cells(places, box.value());
+  box->skin = body_skin(surface, box.value(), [&](double u, double v) { return places.on_surface(u, v); });
   box->slender = is_slender(surface, skin, inside, box->mean_edge());
   return box;
 }

@@ -9,7 +9,9 @@
 #include "engine/material/lattice/body_region.h"
 #include "engine/material/lattice/closed_surface.h"
 #include "engine/material/lattice/tube_lattice.h"
+#include "engine/material/lattice_materials.h"
 #include "tests/engine/collision/surfaces/sheets.h"
+#include "tests/engine/material/block.h"
 #include "tests/engine/material/lattice/revolved.h"
 
 namespace spoonbill {
@@ -46,8 +48,14 @@ double filled_m3(const LatticeMesh& mesh) {
   return volume;
 }
 
+constexpr double ring_m = 0.04, tube_m = 0.01;
+
+// Of the middles of its tube's circles.
+Vector3 middle_of_ring(const Vector3& at) {
+  return ring_m * Vector3(at.x(), 0.0, at.z()).normalized();
+}
+
 TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
-  constexpr double ring_m = 0.04, tube_m = 0.01;
   const Surface ring = round_torus(ring_m, tube_m);
   const LatticeMesh mesh = solid_lattice(ring, {4000, {}}).value();
   // Chords of 80 and more a turn, in both directions.
@@ -56,17 +64,83 @@ TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
   int inside = 0;
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     const Vector3& at = mesh.nodes[n];
-    const double out = std::hypot(at.x(), at.z()) - ring_m, depth = tube_m - std::hypot(out, at.y());
-    EXPECT_NEAR(places[n].depth_m, mesh.places[n] == NodePlace::beside_body ? 0.0 : std::max(0.0, depth),
-                0.02 * tube_m);
+    const Vector3 middle = middle_of_ring(at);
+    const double depth = tube_m - (at - middle).norm();
+    if (mesh.places[n] == NodePlace::beside_body) {
+      EXPECT_FALSE(contains({}, places[n])) << n;
+      continue;
+    }
+    EXPECT_TRUE(contains({}, places[n])) << n;
+    EXPECT_NEAR(places[n].depth_m, std::max(0.0, depth), 0.02 * tube_m);
     if (depth < 0.0 || depth > 0.8 * tube_m) continue;
     ++inside;
-    const Vector3 middle = ring_m * Vector3(at.x(), 0.0, at.z()).normalized();
     const Vector3 nearest = middle + tube_m * (at - middle).normalized();
     // Half the diagonal of a cell of the samples: 160 and 180 a turn.
     EXPECT_LT((position(ring, places[n].around, places[n].along) - nearest).norm(), 0.0012);
   }
   EXPECT_GT(inside, 100);
+}
+
+// Over the seams as elsewhere, and of a cell whose corners lie on both sides of the tube.
+TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
+  const Surface ring = round_torus(ring_m, tube_m);
+  const LatticeMesh mesh = solid_lattice(ring, {4000, {}}).value();
+  const std::vector<BodyPlace> places = cell_places(mesh);
+  int filled = 0;
+  for (int k = 0; k + 1 < mesh.count[2]; ++k) {
+    for (int i = 0; i + 1 < mesh.count[0]; ++i) {
+      for (int j = 0; j + 1 < mesh.count[1]; ++j) {
+        const Vector3 at = trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5), middle = middle_of_ring(at);
+        const BodyPlace& place = places[mesh.cell_index(i, j, k)];
+        const double depth = tube_m - (at - middle).norm();
+        EXPECT_NEAR(place.depth_m, std::max(0.0, depth), 0.02 * tube_m);
+        if (!mesh.is_filled(i, j, k) || depth > 0.8 * tube_m) continue;
+        ++filled;
+        const Vector3 nearest = middle + tube_m * (at - middle).normalized();
+        // Half the diagonal of a cell of the samples, as above.
+        EXPECT_LT((position(ring, place.around, place.along) - nearest).norm(), 0.0012) << i << j << k;
+      }
+    }
+  }
+  EXPECT_GT(filled, 500);
+}
+
+// A foot a ten-thousandth as soft: what fills the hollow must stay as soft as the wall about it.
+TEST(SolidLattice, TheHollowOfABowlIsOfWhatIsAboutIt) {
+  const LatticeMesh mesh = solid_lattice(walled_bowl(0.05, 0.003, 0.65), {2000, {}}).value();
+  ASSERT_FALSE(mesh.along.empty());
+  MaterialRegion foot;
+  foot.region.along = {0.0, 0.1};
+  foot.material = elastic_material(1e9, 0.3, 1000.0);
+  const LatticeMaterials materials =
+      lattice_materials(mesh, elastic_material(1e5, 0.3, 1000.0), {&foot, 1}).value();
+  int stiff = 0, in_hollow = 0;
+  for (int k = 0; k + 1 < mesh.count[2]; ++k) {
+    for (int i = 0; i + 1 < mesh.count[0]; ++i) {
+      for (int j = 0; j + 1 < mesh.count[1]; ++j) {
+        const bool is_foot = materials.index_of(mesh.cell_index(i, j, k)) == 1;
+        const Vector3 at = trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5);
+        const bool hollow = !mesh.is_filled(i, j, k) && at.norm() < 0.045;
+        EXPECT_FALSE(is_foot && hollow) << at.transpose();
+        stiff += is_foot && mesh.is_filled(i, j, k) ? 1 : 0;
+        in_hollow += hollow ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(stiff, 3);
+  EXPECT_GT(in_hollow, 100);
+}
+
+// Far smaller than a cell: where v and u begin nothing of it is in the ring but the skin.
+TEST(SolidLattice, ARegionWithoutSurfaceNodesHasNoFriction) {
+  MaterialRegion spot;
+  spot.region.along = spot.region.around = {0.0, 1e-9};
+  spot.friction = 0.9;
+  const LatticeMesh mesh = solid_lattice(round_torus(ring_m, 0.97 * tube_m), {400, {}}).value();
+  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+    ASSERT_FALSE(mesh.along[n] <= 1e-9 && mesh.turns[n] <= 1e-9) << "the spot is empty";
+  }
+  EXPECT_FALSE(lattice_materials(mesh, Material(), {&spot, 1}).ok());
 }
 
 // Wherever the rim is in v: a ring in the middle may lie on the outside, on the rim or on the inside.
@@ -77,7 +151,12 @@ TEST(SolidLattice, OfAWalledBowlHasItsVolume) {
     const Result<LatticeMesh> mesh = solid_lattice(bowl, {2000, {}});
     ASSERT_TRUE(mesh.ok()) << mesh.error().message;
     EXPECT_NEAR(filled_m3(mesh.value()) / enclosed_volume_m3(bowl), 1.0, 0.02) << rim;
-    for (const double along : mesh->along) EXPECT_TRUE(along >= 0.0 && along <= 1.0);
+    ASSERT_EQ(mesh->along.size(), mesh->nodes.size()) << "no box of cells";
+    for (std::size_t n = 0; n < mesh->nodes.size(); ++n) {
+      const double along = mesh->along[n];
+      EXPECT_TRUE(mesh->places[n] == NodePlace::beside_body ? std::isnan(along)
+                                                            : along >= 0.0 && along <= 1.0);
+    }
   }
 }
 
