@@ -24,6 +24,7 @@ class BodyLoads {
   bool empty() const { return nodes_.empty(); }
   const std::vector<NodeForce>& forces() const { return forces_; }
   const std::vector<PressedFace>& pressures() const { return pressures_; }
+  const PressedSkin& pressed_skin() const { return pressed_skin_; }  // of a body in a box of cells
 
   // Sets the node forces of the lattice, and of what moves it where something does, to this share of the
   // loads as the body is bent now.
@@ -34,6 +35,7 @@ class BodyLoads {
 
   std::vector<NodeForce> forces_;
   std::vector<PressedFace> pressures_;
+  PressedSkin pressed_skin_;
   std::vector<int> nodes_;        // all that are loaded
   std::vector<Vector3> force_n_;  // by node of the lattice: working memory
 };

@@ -43,6 +43,7 @@ void find_strain(const LatticeMesh& bent, RestShape& shape) {
   for (int i = 0; i + 1 < bent.count[0]; ++i) {
     for (int j = 0; j + 1 < bent.count[1]; ++j) {
       for (int k = 0; k + 1 < bent.count[2]; ++k) {
+        if (!bent.is_filled(i, j, k)) continue;
         const CellCorners corners = shape.mesh.cell(i, j, k), moved = bent.cell(i, j, k);
         for (int face = 0; face < 6; ++face) {
           Vector3 at = Vector3::Constant(0.5);
@@ -60,19 +61,24 @@ void find_strain(const LatticeMesh& bent, RestShape& shape) {
 void measure(const StaticBody& body, const StaticLoads& loads, RestShape& shape) {
   LatticeMesh bent = shape.mesh;
   const std::vector<Vector3>& moved = shape.result.displacement_m;
+  double furthest_m = -1.0;
   for (std::size_t n = 0; n < moved.size(); ++n) {
     bent.nodes[n] += moved[n];
     shape.reaction_n += shape.result.reaction_n[n];
     shape.load_n += body.mass_kg(static_cast<int>(n)) * loads.gravity_m_per_s2;
-    if (moved[n].norm() > moved[static_cast<std::size_t>(shape.furthest_node)].norm()) {
-      shape.furthest_node = static_cast<int>(n);
-    }
+    const bool beside = !bent.places.empty() && bent.places[n] == NodePlace::beside_body;
+    if (beside || moved[n].norm() <= furthest_m) continue;
+    furthest_m = moved[n].norm();
+    shape.furthest_node = static_cast<int>(n);
   }
   for (const NodeForce& force : loads.forces) shape.load_n += force.force_n;
   for (const PressedFace& face : loads.pressures) {
     const auto at = [&](std::size_t c) { return bent.nodes[static_cast<std::size_t>(face.nodes[c])]; };
     shape.load_n -= face.pressure_pa * vector_area(at(0), at(1), at(2), at(3));
   }
+  PressedSkin skin = loads.pressed_skin;
+  skin.find_forces([&](int node) { return bent.nodes[static_cast<std::size_t>(node)]; },
+                   [&](int, const Vector3& force_n) { shape.load_n += force_n; });
   find_strain(bent, shape);
 }
 
@@ -88,7 +94,8 @@ Result<RestShape> rest_shape(const Scene& scene, int body,
   const Result<StaticBody> body_at_rest =
       StaticBody::make(state->lattice.mesh(), state->lattice.materials(), CellKind::hexahedra);
   if (!body_at_rest.ok()) return body_at_rest.error();
-  const StaticLoads loads{scene.sculpting.gravity_m_per_s2, state->loads.forces(), state->loads.pressures()};
+  const StaticLoads loads{scene.sculpting.gravity_m_per_s2, state->loads.forces(), state->loads.pressures(),
+                          state->loads.pressed_skin()};
   StaticSettings settings;
   settings.progress = progress;
   Result<StaticResult> result = rest_under_load(body_at_rest.value(), loads, held, settings);

@@ -10,6 +10,7 @@
 #include "engine/material/cells/corotated_cell.h"
 #include "engine/material/cells/spring_cell.h"
 #include "engine/material/lattice_materials.h"
+#include "engine/material/statics/pressed_skin.h"
 #include "engine/result.h"
 
 namespace spoonbill {
@@ -35,6 +36,7 @@ struct StaticLoads {
   Vector3 gravity_m_per_s2 = Vector3::Zero();
   std::vector<NodeForce> forces;
   std::vector<PressedFace> pressures;
+  PressedSkin pressed_skin = {};
 };
 
 // One coordinate of a node that is given.

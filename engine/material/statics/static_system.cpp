@@ -141,6 +141,14 @@ StaticSystem::Coordinates StaticSystem::loads(const StaticLoads& loads, const Co
     forces.segment<3>(3 * static_cast<Eigen::Index>(force.node)) += force.force_n;
   }
   for (const PressedFace& face : loads.pressures) add_pressure(face, body_->mesh(), at, forces);
+  PressedSkin skin = loads.pressed_skin;
+  skin.find_forces(
+      [&](int node) -> Vector3 {
+        return body_->mesh().nodes[static_cast<std::size_t>(node)] + at_node(at, node);
+      },
+      [&](int node, const Vector3& force_n) {
+        forces.segment<3>(3 * static_cast<Eigen::Index>(node)) += force_n;
+      });
   return forces;
 }
 

@@ -1,0 +1,247 @@
+// Loads and supports of bodies that lie in a box of cells act on the body, and not on the box.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "engine/material/lattice/solid_lattice.h"
+#include "engine/material/statics/static_solver.h"
+#include "engine/simulation/body_loads.h"
+#include "engine/simulation/body_state.h"
+#include "engine/simulation/body_supports.h"
+#include "engine/simulation/rest_shape.h"
+#include "tests/engine/collision/surfaces/sheets.h"
+#include "tests/engine/material/block.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double ring_m = 0.03, tube_m = 0.01;
+
+// About y, `around` counts about it and `along` about its tube.
+LatticeMesh ring_in_box() {
+  return solid_lattice(round_torus(ring_m, tube_m), {3000, {}}).value();
+}
+
+BodyLoads loads_on(const LatticeMesh& mesh, const std::vector<Load>& loads) {
+  return BodyLoads::make(loads, mesh, [](double, double) { return EmbeddedPoint(); }).value();
+}
+
+SpringLattice springs(const LatticeMesh& mesh) {
+  return SpringLattice::make(mesh, elastic_material(1e5, 0.3, 1000.0), 1e5, InstructionSet::baseline).value();
+}
+
+Vector3 applied_n(const SpringLattice& lattice, int node) {
+  return {lattice.applied_force(0)[node], lattice.applied_force(1)[node], lattice.applied_force(2)[node]};
+}
+
+struct NetForce {
+  Vector3 force_n = Vector3::Zero(), moment_nm = Vector3::Zero();
+  double sum_n = 0.0;  // of the sizes
+};
+
+NetForce net_of(const SpringLattice& lattice) {
+  NetForce net;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const Vector3 force = applied_n(lattice, n);
+    net.force_n += force;
+    net.moment_nm += lattice.position(n).cross(force);
+    net.sum_n += force.norm();
+  }
+  return net;
+}
+
+void expect_on_the_body(const SpringLattice& lattice) {
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    if (lattice.mesh().places[static_cast<std::size_t>(n)] != NodePlace::beside_body) continue;
+    EXPECT_EQ(applied_n(lattice, n).norm(), 0.0) << n;
+  }
+}
+
+// However the ring is bent. Single precision of the forces.
+TEST(BoxedLoads, PressureAllAroundNeitherMovesNorTurnsABody) {
+  const LatticeMesh mesh = ring_in_box();
+  SpringLattice lattice = springs(mesh);
+  BodyLoads loads = loads_on(mesh, {PressureLoad{{}, 500.0}});
+  for (const double bend : {0.0, 0.2}) {
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      const Vector3& at = mesh.nodes[static_cast<std::size_t>(n)];
+      const double way_m = bend * ring_m;
+      lattice.set_displacement(n, {way_m * std::sin(60.0 * at.y()), way_m * std::cos(70.0 * at.x()),
+                                   way_m * std::sin(50.0 * (at.x() + at.z()))});
+    }
+    loads.apply(1.0, lattice, nullptr);
+    const NetForce net = net_of(lattice);
+    EXPECT_GT(net.sum_n, 0.5 * 500.0 * 4.0 * pi * pi * ring_m * tube_m);
+    EXPECT_LT(net.force_n.norm(), 1e-6 * net.sum_n) << bend;
+    EXPECT_LT(net.moment_nm.norm(), 1e-6 * ring_m * net.sum_n) << bend;
+    expect_on_the_body(lattice);
+  }
+}
+
+// That on half a ring is what a pressure on the discs where it is cut would be. The skin's polygons about the
+// tube are a few percent smaller than its circle.
+TEST(BoxedLoads, PressureOnAHalfPushesAsOnItsCuts) {
+  const LatticeMesh mesh = ring_in_box();
+  SpringLattice lattice = springs(mesh);
+  BodyRegion half;
+  half.around = {0.25, 0.75};
+  loads_on(mesh, {PressureLoad{half, 500.0}}).apply(1.0, lattice, nullptr);
+  const NetForce net = net_of(lattice);
+  EXPECT_NEAR(net.force_n.norm() / (500.0 * 2.0 * pi * tube_m * tube_m), 1.0, 0.04);
+  const Surface ring = round_torus(ring_m, tube_m);
+  const Vector3 middle = position(ring, 0.5, 0.0);
+  const Vector3 outward = Vector3(middle.x(), 0.0, middle.z()).normalized();
+  EXPECT_LT(outward.dot(net.force_n.normalized()), -0.99) << "inward, for the outer side is the longer one";
+  expect_on_the_body(lattice);
+}
+
+Vector3 at_node(const LatticeMesh& mesh, const std::vector<Vector3>& moved, int node) {
+  return mesh.nodes[static_cast<std::size_t>(node)] + moved[static_cast<std::size_t>(node)];
+}
+
+double skin_volume_m3(const LatticeMesh& mesh, const std::vector<Vector3>& moved) {
+  const auto at = [&](std::uint32_t point) {
+    Vector3 sum = Vector3::Zero();
+    const CellPoint& follows = mesh.skin.points[point];
+    for (std::size_t c = 0; c < 8; ++c) sum += follows.weights[c] * at_node(mesh, moved, follows.nodes[c]);
+    return sum;
+  };
+  double volume = 0.0;
+  for (const BodySkin::Triangle& t : mesh.skin.triangles)
+    volume += at(t[0]).dot(at(t[1]).cross(at(t[2]))) / 6.0;
+  return volume;
+}
+
+// Six coordinates of three nodes of the body, as many as keep it from moving as a whole: what is left of them
+// bears nothing where the loads balance.
+std::vector<HeldAxis> held_loosely(const LatticeMesh& mesh) {
+  const auto nearest = [&](const Vector3& place) {
+    int best = 0;
+    for (int n = 1; n < mesh.node_count(); ++n) {
+      if ((mesh.nodes[static_cast<std::size_t>(n)] - place).norm() <
+          (mesh.nodes[static_cast<std::size_t>(best)] - place).norm()) {
+        best = n;
+      }
+    }
+    return best;
+  };
+  const int a = nearest({ring_m, 0, 0}), b = nearest({-ring_m, 0, 0}), c = nearest({0, 0, ring_m});
+  return {{a, 0, 0.0}, {a, 1, 0.0}, {a, 2, 0.0}, {b, 1, 0.0}, {b, 2, 0.0}, {c, 1, 0.0}};
+}
+
+// The strain of a volume under uniform pressure is 3 (1 - 2 nu) p / E. Cells that hold a part of the body are
+// as stiff as if it were spread in them, and less than a tenth of one counts as that.
+TEST(BoxedLoads, PressureAllAroundShrinksARing) {
+  const LatticeMesh mesh = ring_in_box();
+  const double youngs = 1e5, poisson = 0.3, share = 1e-3;
+  const BodyLoads loads = loads_on(mesh, {PressureLoad{{}, share * youngs}});
+  const StaticBody body =
+      StaticBody::make(mesh, elastic_material(youngs, poisson, 1000.0), CellKind::hexahedra).value();
+  const StaticResult rest =
+      rest_under_load(body, {Vector3::Zero(), loads.forces(), loads.pressures(), loads.pressed_skin()},
+                      held_loosely(mesh))
+          .value();
+  const std::vector<Vector3> still(mesh.nodes.size(), Vector3::Zero());
+  const double before = skin_volume_m3(mesh, still);
+  EXPECT_NEAR(before / (2.0 * pi * pi * ring_m * tube_m * tube_m), 1.0, 0.04);
+  const double change = skin_volume_m3(mesh, rest.displacement_m) / before - 1.0;
+  EXPECT_NEAR(change / (-3.0 * (1.0 - 2.0 * poisson) * share), 1.0, 0.1);
+  Vector3 reaction = Vector3::Zero();
+  for (const Vector3& n : rest.reaction_n) reaction += n;
+  EXPECT_LT(reaction.norm(), 1e-6 * share * youngs * ring_m * tube_m);
+}
+
+TEST(BoxedLoads, AForceOnAPartIsAllOnThatPart) {
+  const LatticeMesh mesh = ring_in_box();
+  const Vector3 force_n(0.1, -0.2, 0.3);
+  BodyRegion quarter;
+  quarter.around = {0.25, 0.5};
+  const Vector3 middle = position(round_torus(ring_m, tube_m), 0.375, 0.0);
+  for (const ForceShare shared_by : {ForceShare::surface, ForceShare::volume}) {
+    SpringLattice lattice = springs(mesh);
+    loads_on(mesh, {ForceLoad{quarter, force_n, shared_by}}).apply(1.0, lattice, nullptr);
+    EXPECT_LT((net_of(lattice).force_n - force_n).norm(), 1e-6);
+    expect_on_the_body(lattice);
+    Vector3 centre = Vector3::Zero();
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      centre += applied_n(lattice, n).norm() / force_n.norm() * mesh.nodes[static_cast<std::size_t>(n)];
+    }
+    // Over a quarter turn the mean is at 2 sqrt(2) / pi of the radius, and further out by the tube's square,
+    // for the outer side is longer. A cell is 3 mm long.
+    EXPECT_NEAR(centre.norm(), 2.0 * std::numbers::sqrt2 / pi * ring_m, 0.1 * ring_m);
+    EXPECT_GT(Vector3(middle.x(), 0.0, middle.z()).normalized().dot(centre.normalized()), 0.999);
+  }
+}
+
+TEST(BoxedLoads, ASupportHoldsNothingBesideTheBody) {
+  const LatticeMesh mesh = ring_in_box();
+  for (const BodyRegion& region : {BodyRegion{{0.0, 0.1}}, BodyRegion{}}) {
+    const SpringLattice lattice = springs(mesh);
+    BodySupports supports = BodySupports::make({Support{region, {}}}, mesh).value();
+    std::vector<std::uint8_t> held(mesh.nodes.size(), 0);
+    supports.take_nodes(lattice, held);
+    EXPECT_GT(std::accumulate(held.begin(), held.end(), 0), 20);
+    for (std::size_t n = 0; n < held.size(); ++n) {
+      EXPECT_FALSE(held[n] != 0 && mesh.places[n] == NodePlace::beside_body) << n;
+    }
+  }
+}
+
+// Springs and the implicit block alike weigh what the ring does, and not what fills the box. The triangles of
+// its skin, over a hundred a turn, leave out less than a thousandth.
+TEST(BoxedLoads, ABodyWeighsWhatItIs) {
+  Body body = small_handle().bodies[0];
+  body.surface = round_torus(ring_m, tube_m);
+  body.material = elastic_material(2e9, 0.3, 1000.0);
+  const BodyState state = make_body_state(body, {}, InstructionSet::baseline).value();
+  ASSERT_TRUE(state.core.has_value());
+  const double mass_kg = 1000.0 * 2.0 * pi * pi * ring_m * tube_m * tube_m;
+  EXPECT_NEAR(state.lattice.mass_kg() / mass_kg, 1.0, 2e-3);
+  const LatticeMesh& block = state.core->mesh();
+  double of_block_kg = 0.0;
+  for (int k = 0; k + 1 < block.count[2]; ++k) {
+    for (int i = 0; i + 1 < block.count[0]; ++i) {
+      for (int j = 0; j + 1 < block.count[1]; ++j) {
+        of_block_kg += 1000.0 * block.share(i, j, k) * cell_volume(block.cell(i, j, k));
+      }
+    }
+  }
+  // Its cells take samples of the lattice's.
+  EXPECT_NEAR(of_block_kg / mass_kg, 1.0, 0.05);
+}
+
+// Held at one side, it swings down furthest at the other; the corners of the box beyond move further.
+TEST(BoxedLoads, RestTellsWhatTheBodyDoes) {
+  Scene scene = small_handle();
+  Body& body = scene.bodies[0];
+  body.surface = round_torus(ring_m, tube_m);
+  body.lattice = {2000, {}};
+  body.material = elastic_material(1e5, 0.3, 1000.0);
+  body.loads = {PressureLoad{{}, 100.0}};
+  scene.planes = {{Vector3(-ring_m, 0.0, 0.0), Vector3::UnitX()}};
+  scene.sculpting.gravity_m_per_s2 = {0.0, 0.0, -9.81};
+  const Result<RestShape> rest = rest_shape(scene, 0);
+  ASSERT_TRUE(rest.ok()) << rest.error().message;
+  const LatticeMesh& mesh = rest->mesh;
+  const std::vector<Vector3>& moved = rest->result.displacement_m;
+  const auto furthest = std::max_element(
+      moved.begin(), moved.end(), [](const Vector3& a, const Vector3& b) { return a.norm() < b.norm(); });
+  ASSERT_EQ(mesh.places[static_cast<std::size_t>(furthest - moved.begin())], NodePlace::beside_body);
+  EXPECT_NE(mesh.places[static_cast<std::size_t>(rest->furthest_node)], NodePlace::beside_body);
+  const double from_tube =
+      std::hypot(std::hypot(rest->strained_m.x(), rest->strained_m.z()) - ring_m, rest->strained_m.y());
+  // A cell that holds some of the ring reaches out of it by its diagonal at most.
+  EXPECT_LT(from_tube, tube_m + std::numbers::sqrt3 * mesh.mean_edge());
+  const double weight_n = 2.0 * pi * pi * ring_m * tube_m * tube_m * 1000.0 * 9.81;
+  // The void cells weigh a thousandth; the pressure sums to nothing.
+  EXPECT_NEAR(rest->load_n.z() / -weight_n, 1.0, 0.01);
+  EXPECT_LT((rest->load_n + rest->reaction_n).norm(), 1e-4 * weight_n);
+}
+
+}  // namespace
+}  // namespace spoonbill
