@@ -13,6 +13,21 @@ std::string rounded_text(double number) {
   return number_text(std::round(10.0 * number) / 10.0);
 }
 
+// Of a body that its springs move.
+std::string remark_on_slender_cells(const BodyState& body) {
+  if (body.core) return {};
+  const LatticeReport& report = body.lattice.report();
+  int worst = 0;
+  const auto off = [&](int axis) { return std::abs(report.youngs_modulus_ratio[axis] - 1.0); };
+  for (int axis = 1; axis < 3; ++axis) {
+    if (off(axis) > off(worst)) worst = axis;
+  }
+  if (!(off(worst) > slender_stiffness_limit)) return {};
+  return std::string("cells too slender to sculpt with, ") +
+         rounded_text(report.youngs_modulus_ratio[worst]) + " times as stiff as the material along " +
+         "xyz"[worst] + "; give a node_budget instead of nodes";
+}
+
 }  // namespace
 
 Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const LatticeMaterials& materials,
@@ -39,22 +54,12 @@ Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const 
 }
 
 std::string remark_on(const BodyState& body) {
-  if (!body.lattice.mesh().along.empty()) {
-    return "lattice: a box of cells about the body, since none along it holds; what is thinner than a cell "
-           "is "
-           "stiffer in bending than its material";
-  }
-  if (body.core) return {};
-  const LatticeReport& report = body.lattice.report();
-  int worst = 0;
-  const auto off = [&](int axis) { return std::abs(report.youngs_modulus_ratio[axis] - 1.0); };
-  for (int axis = 1; axis < 3; ++axis) {
-    if (off(axis) > off(worst)) worst = axis;
-  }
-  if (!(off(worst) > slender_stiffness_limit)) return {};
-  return std::string("lattice: cells too slender to sculpt with, ") +
-         rounded_text(report.youngs_modulus_ratio[worst]) + " times as stiff as the material along " +
-         "xyz"[worst] + "; give a node_budget instead of nodes";
+  const std::string slender = remark_on_slender_cells(body);
+  if (body.lattice.mesh().along.empty()) return slender.empty() ? slender : "lattice: " + slender;
+  return "lattice: a box of cells about the body, since none along it holds; nodes count along x, y and z, "
+         "a feature map does nothing, and what is thinner than a cell is stiffer in bending than its "
+         "material" +
+         (slender.empty() ? slender : "; " + slender);
 }
 
 std::vector<std::uint8_t> nodes_behind(const SpringLattice& lattice, const std::vector<FixingPlane>& planes) {

@@ -215,6 +215,17 @@ TEST(BoxedLoads, ABodyWeighsWhatItIs) {
   EXPECT_NEAR(of_block_kg / mass_kg, 1.0, 0.05);
 }
 
+TEST(BoxedLoads, RemarksTellOfTheBoxAndOfItsCells) {
+  Body body = small_handle().bodies[0];
+  body.surface = round_torus(ring_m, tube_m);
+  for (const bool slender : {false, true}) {
+    if (slender) body.lattice.counts = {5, 4, 40};
+    const std::string remark = remark_on(make_body_state(body, {}, InstructionSet::baseline).value());
+    EXPECT_NE(remark.find("nodes count along x, y and z"), std::string::npos) << remark;
+    EXPECT_EQ(remark.find("cells too slender") != std::string::npos, slender) << remark;
+  }
+}
+
 // Held at one side, it swings down furthest at the other; the corners of the box beyond move further.
 TEST(BoxedLoads, RestTellsWhatTheBodyDoes) {
   Scene scene = small_handle();
