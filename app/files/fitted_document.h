@@ -12,7 +12,7 @@ namespace spoonbill {
 
 struct FittedDocument {
   Document document;
-  std::vector<std::string> remarks;  // what the program will not do with a body, and why
+  std::vector<std::string> remarks;  // what the program does otherwise with a body, or not at all, and why
 };
 
 // A starting_document() of bodies of clay, held and with a tool as suits the first: solid where they are

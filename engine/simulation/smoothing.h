@@ -7,6 +7,9 @@
 // stays. To first order this is the flow d' = -(d^4 d / ds^4) of the displacement along the normal, as a thin
 // plate's that gives way. What is smaller than a cell the lattice does not know, and the mass is as before
 // even where a little volume comes or goes.
+//
+// The shell is that of the block of cells. The skin of a body in a box of cells lies inside the block: it
+// follows its nodes, which go to the middle of their neighbours as all nodes inside do.
 #pragma once
 
 #include <array>
@@ -38,7 +41,7 @@ class Smoothing {
   using Pair = std::array<int, 2>;
   struct ShellNode {
     std::array<Pair, 2> pairs{};
-    int pair_count = 0;  // 0 inside the body, 1 at a corner of the block
+    int pair_count = 0;  // 0 inside the block, 1 at its corners
   };
   struct Curvature {
     Vector3 normal;                         // unit

@@ -93,7 +93,7 @@ TEST(BoxedBody, TickAllocatesNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// Springs and the implicit block alike, which must weigh what the ring does and not what fills the box.
+// Springs and the implicit block alike.
 TEST(BoxedBody, RestsOnTheGround) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs_modulus_pa : {2e5, 2e9}) {

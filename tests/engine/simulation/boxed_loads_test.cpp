@@ -12,6 +12,7 @@
 #include "engine/simulation/body_state.h"
 #include "engine/simulation/body_supports.h"
 #include "engine/simulation/rest_shape.h"
+#include "tests/engine/allocations.h"
 #include "tests/engine/collision/surfaces/sheets.h"
 #include "tests/engine/material/block.h"
 #include "tests/engine/simulation/handle.h"
@@ -74,7 +75,9 @@ TEST(BoxedLoads, PressureAllAroundNeitherMovesNorTurnsABody) {
       lattice.set_displacement(n, {way_m * std::sin(60.0 * at.y()), way_m * std::cos(70.0 * at.x()),
                                    way_m * std::sin(50.0 * (at.x() + at.z()))});
     }
+    const std::size_t allocations = allocation_count();
     loads.apply(1.0, lattice, nullptr);
+    EXPECT_EQ(allocation_count(), allocations);
     const NetForce net = net_of(lattice);
     EXPECT_GT(net.sum_n, 0.5 * 500.0 * 4.0 * pi * pi * ring_m * tube_m);
     EXPECT_LT(net.force_n.norm(), 1e-6 * net.sum_n) << bend;
