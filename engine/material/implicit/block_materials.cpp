@@ -3,27 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/material/implicit/grid_stretches.h"
+
 namespace spoonbill {
 namespace {
-
-// A stretch of a block's cell that lies in one cell of the lattice, along one axis.
-struct Stretch {
-  int cell;          // of the lattice
-  double low, high;  // -1 to 1 in the block's cell
-};
-
-std::vector<Stretch> stretches(int block_cell, int block_count, int lattice_count) {
-  // Less of a cell than this is rounding.
-  constexpr double least = 1e-9;
-  std::vector<Stretch> result;
-  const double scale = static_cast<double>(block_count - 1) / (lattice_count - 1);
-  for (int cell = 0; cell + 1 < lattice_count; ++cell) {
-    const double low = std::max(2.0 * (cell * scale - block_cell) - 1.0, -1.0);
-    const double high = std::min(2.0 * ((cell + 1) * scale - block_cell) - 1.0, 1.0);
-    if (high - low > least) result.push_back({cell, low, high});
-  }
-  return result;
-}
 
 using Part = BlockMaterials::Part;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/material/implicit/grid_stretches.h"
 #include "engine/material/lattice/lattice_request.h"
 
 namespace spoonbill {
@@ -113,23 +114,30 @@ void take_shell_shares(const LatticeMesh& mesh, LatticeMesh& coarse) {
   coarse.cell_shares.assign(coarse.cell_count(), volume_of(mesh) / volume_of(coarse));
 }
 
-// Of a box that holds the body in part, the mean share of the finer cells that a coarser one spans.
+// What the finer cells of a box have of the body in a coarser one: of each, by how much of it they overlap.
+// Cells of a box are alike, so that the body's mass stays what it is.
+double overlapped_share(const LatticeMesh& mesh, const std::array<std::vector<Stretch>, 3>& overlaps) {
+  double share = 0.0;
+  for (const Stretch& k : overlaps[2]) {
+    for (const Stretch& i : overlaps[0]) {
+      for (const Stretch& j : overlaps[1]) {
+        share += i.share() * j.share() * k.share() * mesh.share(i.cell, j.cell, k.cell);
+      }
+    }
+  }
+  return share;
+}
+
 void take_box_shares(const LatticeMesh& mesh, LatticeMesh& coarse) {
-  constexpr int stations = 4;  // of each axis; coarse cells span at most some two finer ones
-  const auto finer = [&](std::size_t axis, int cell, int station) {
-    const double along = (cell + (station + 0.5) / stations) / (coarse.count[axis] - 1);
-    return std::min(static_cast<int>(along * (mesh.count[axis] - 1)), mesh.count[axis] - 2);
+  const auto overlaps = [&](std::size_t axis, int cell) {
+    return stretches(cell, coarse.count[axis], mesh.count[axis]);
   };
   coarse.cell_shares.assign(coarse.cell_count(), 0.0);
   for (int k = 0; k + 1 < coarse.count[2]; ++k) {
     for (int i = 0; i + 1 < coarse.count[0]; ++i) {
       for (int j = 0; j + 1 < coarse.count[1]; ++j) {
-        double& share = coarse.cell_shares[coarse.cell_index(i, j, k)];
-        for (int s = 0; s < stations * stations * stations; ++s) {
-          share += mesh.share(finer(0, i, s / (stations * stations)), finer(1, j, s / stations % stations),
-                              finer(2, k, s % stations)) /
-                   (stations * stations * stations);
-        }
+        coarse.cell_shares[coarse.cell_index(i, j, k)] =
+            overlapped_share(mesh, {overlaps(0, i), overlaps(1, j), overlaps(2, k)});
       }
     }
   }
