@@ -19,16 +19,34 @@ bool on_shell(const LatticeMesh& mesh, int node) {
   return mesh.place_of(at[0], at[1], at[2]) == NodePlace::on_shell;
 }
 
-// The node on the shell that has most of a sample; -1 where none has any.
-int node_of(const LatticeMesh& mesh, const EmbeddedPoint& sample) {
+// Whether the body lies in a box of cells, whose nodes are beside its skin, not on it.
+bool is_boxed(const LatticeMesh& mesh) {
+  return !mesh.along.empty();
+}
+
+// The node that has most of a sample, of those that `may` have any; -1 where none has.
+template <class May>
+int most_of(const EmbeddedPoint& sample, const May& may) {
   int node = -1;
   float most = 0.0f;
   for (int i = 0; i < sample.count; ++i) {
-    if (!(sample.weight[i] > most) || !on_shell(mesh, sample.node[i])) continue;
+    if (!(sample.weight[i] > most) || !may(sample.node[i])) continue;
     most = sample.weight[i];
     node = sample.node[i];
   }
   return node;
+}
+
+// One on the shell; in a box, where all of a sample's are within, any.
+int node_of(const LatticeMesh& mesh, const EmbeddedPoint& sample) {
+  const int node = most_of(sample, [&](int of) { return on_shell(mesh, of); });
+  return node < 0 && is_boxed(mesh) ? most_of(sample, [](int) { return true; }) : node;
+}
+
+int nearest_to(const std::vector<double>& parameters, double parameter) {
+  const auto after = std::lower_bound(parameters.begin(), parameters.end() - 1, parameter);
+  const bool before = after != parameters.begin() && parameter - *(after - 1) < *after - parameter;
+  return static_cast<int>(after - parameters.begin()) - (before ? 1 : 0);
 }
 
 Vector3 place_of(const SpringLattice& lattice, const EmbeddedPoint& sample) {
@@ -51,36 +69,55 @@ OnGround::OnGround(std::span<const BodyState> bodies) : contacts_(capacity_for(b
   for (const BodyState& body : bodies) bodies_.push_back(footings_of(body));
 }
 
+std::vector<OnGround::Hung> OnGround::hung_on_nodes(const BodyState& body, const SkinHeights& heights) {
+  const LatticeMesh& mesh = body.lattice.mesh();
+  std::vector<Hung> result(mesh.nodes.size());
+  const Grid& grid = body.mapping().nested().grid;
+  for (int s = 0; s < grid.rows() * grid.columns(); ++s) {
+    const int node = node_of(mesh, body.mapping().sample(s));
+    if (node >= 0) result[static_cast<std::size_t>(mesh.joined(node))].followed.push_back(s);
+  }
+  for (int i = 0; i < heights.rows(); ++i) {
+    for (int j = 0; j < heights.columns(); ++j) {
+      const int node = node_of(mesh, body.mapping().at(heights.u(i), heights.v(j)));
+      if (node >= 0) result[static_cast<std::size_t>(mesh.joined(node))].skin.push_back({i, j});
+    }
+  }
+  if (!is_boxed(mesh)) return result;
+  for (Hung& on_node : result) {
+    if (!on_node.followed.empty()) continue;
+    for (const Sample& at : on_node.skin) {
+      const int row = nearest_to(grid.u.parameters, heights.u(at.row));
+      on_node.followed.push_back(row * grid.columns() + nearest_to(grid.v.parameters, heights.v(at.column)));
+    }
+  }
+  return result;
+}
+
 OnGround::BodyFootings OnGround::footings_of(const BodyState& body) {
   const LatticeMesh& mesh = body.lattice.mesh();
   const Surface& skin = body.mapping().current();
   // The mapping has a grid of these knots, and so have the heights.
-  BodyFootings of_body{SkinHeights::make(skin.u, skin.v).value(), {}, {}, {}};
-  std::vector<std::vector<Sample>> hanging(mesh.nodes.size());
-  std::vector<std::vector<int>> followed(mesh.nodes.size());
-  const Grid& grid = body.mapping().nested().grid;
-  for (int s = 0; s < grid.rows() * grid.columns(); ++s) {
-    const int node = node_of(mesh, body.mapping().sample(s));
-    if (node >= 0) followed[static_cast<std::size_t>(mesh.joined(node))].push_back(s);
-  }
-  for (int i = 0; i < of_body.heights.rows(); ++i) {
-    for (int j = 0; j < of_body.heights.columns(); ++j) {
-      const int node = node_of(mesh, body.mapping().at(of_body.heights.u(i), of_body.heights.v(j)));
-      if (node >= 0) hanging[static_cast<std::size_t>(mesh.joined(node))].push_back({i, j});
-    }
-  }
+  BodyFootings of_body{
+      SkinHeights::make(skin.u, skin.v).value(), static_cast<double>(body.lattice.cell_size_m()), {}, {}, {}};
+  const std::vector<Hung> hung = hung_on_nodes(body, of_body.heights);
+  const bool boxed = is_boxed(mesh);
   for (int n = 0; n < mesh.node_count(); ++n) {
-    if (!on_shell(mesh, n) || mesh.joined(n) != n) continue;
-    const std::vector<Sample>& samples = hanging[static_cast<std::size_t>(n)];
-    const std::vector<int>& follow = followed[static_cast<std::size_t>(n)];
+    const Hung& on_node = hung[static_cast<std::size_t>(n)];
+    if (boxed ? on_node.followed.empty() : !on_shell(mesh, n) || mesh.joined(n) != n) continue;
     Footing& footing = of_body.footings.emplace_back();
     footing.node = n;
     footing.first = static_cast<int>(of_body.samples.size());
-    footing.count = static_cast<int>(samples.size());
+    footing.count = static_cast<int>(on_node.skin.size());
     footing.first_followed = static_cast<int>(of_body.followed.size());
-    footing.followed_count = static_cast<int>(follow.size());
-    of_body.samples.insert(of_body.samples.end(), samples.begin(), samples.end());
-    of_body.followed.insert(of_body.followed.end(), follow.begin(), follow.end());
+    footing.followed_count = static_cast<int>(on_node.followed.size());
+    of_body.samples.insert(of_body.samples.end(), on_node.skin.begin(), on_node.skin.end());
+    of_body.followed.insert(of_body.followed.end(), on_node.followed.begin(), on_node.followed.end());
+    for (const int s : on_node.followed) {
+      const Vector3 sample_m = body.mapping().sample(s).rest_m(body.lattice);
+      const double away_m = (sample_m - mesh.nodes[static_cast<std::size_t>(n)]).norm();
+      if (boxed) of_body.hang_m = std::max(of_body.hang_m, away_m);
+    }
   }
   return of_body;
 }
@@ -114,20 +151,21 @@ void OnGround::take_skin(const BodyFootings& of_body, double followed_m, double 
 
 void OnGround::find(int number, const BodyState& body, const Ground& ground, double reach_m, double time_s) {
   BodyFootings& of_body = bodies_[static_cast<std::size_t>(number)];
-  const double cell_m = static_cast<double>(body.lattice.cell_size_m());
+  const double look_m = reach_m + of_body.hang_m;
   // Of a shell the skin is the middle, and the nodes are where its faces are.
-  const bool thin = body.lattice.mesh().thin;
-  if (!thin &&
-      !of_body.heights.take(body.mapping().current(), ground.point_m, ground.normal, reach_m + cell_m)) {
+  const bool thin = body.lattice.mesh().thin, boxed = is_boxed(body.lattice.mesh());
+  if (!thin && !of_body.heights.take(body.mapping().current(), ground.point_m, ground.normal, look_m)) {
     for (Footing& footing : of_body.footings) footing.is_near = false;
     return;
   }
   for (Footing& footing : of_body.footings) {
     double gap_m = ground.normal.dot(body.lattice.position(footing.node) - ground.point_m);
-    if (gap_m > reach_m + cell_m) {
+    if (gap_m > look_m) {
       footing.is_near = false;
       continue;
     }
+    // A corner of a cell may stand out of the skin, and is no part of the body.
+    if (boxed) gap_m = std::numeric_limits<double>::infinity();
     for (int s = footing.first_followed; s < footing.first_followed + footing.followed_count; ++s) {
       const EmbeddedPoint& sample = body.mapping().sample(of_body.followed[static_cast<std::size_t>(s)]);
       gap_m = std::min(gap_m, ground.normal.dot(place_of(body.lattice, sample) - ground.point_m));

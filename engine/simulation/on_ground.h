@@ -39,8 +39,10 @@ class OnGround {
   const GroundContacts& contacts() const { return contacts_; }
 
  private:
-  // A node on the surface, with what hangs on it: samples of the mapping, which follow the lattice, and the
-  // skin that the control net makes of them, which lies a little elsewhere.
+  // A node on the surface, or of a box of cells one that any of the surface hangs on; with what hangs on it:
+  // samples of the mapping, which follow the lattice, and the skin that the control net makes of them, which
+  // lies a little elsewhere. Of a box, which has nodes beside the surface, each has a sample: where none
+  // hangs on it, those nearest to its skin.
   struct Footing {
     int node = 0;
     int first_followed = 0, followed_count = 0;  // in followed
@@ -51,13 +53,19 @@ class OnGround {
   struct Sample {
     int row = 0, column = 0;
   };
+  struct Hung {  // on a node
+    std::vector<int> followed;
+    std::vector<Sample> skin;
+  };
   struct BodyFootings {
     SkinHeights heights;
+    double hang_m;  // how far from its node anything hangs, at rest
     std::vector<Footing> footings;
     std::vector<int> followed;  // of the mapping
     std::vector<Sample> samples;
   };
 
+  static std::vector<Hung> hung_on_nodes(const BodyState& body, const SkinHeights& heights);
   static BodyFootings footings_of(const BodyState& body);
   void find(int number, const BodyState& body, const Ground& ground, double reach_m, double time_s);
   void take_skin(const BodyFootings& of_body, double followed_m, double time_s, Footing& footing) const;
