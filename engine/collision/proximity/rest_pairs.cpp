@@ -101,13 +101,14 @@ void RestPairs::reach_from(int block, std::vector<double>& distances) const {
     const int i = at / columns, j = at % columns;
     for (int row = i - 1; row <= i + 1; ++row) {
       if (!rest_.u.is_periodic() && (row < 0 || row >= rows)) continue;
-      for (int column = std::max(0, j - 1); column <= std::min(j + 1, columns - 1); ++column) {
-        const int to = (row + rows) % rows * columns + column;
+      for (int column = j - 1; column <= j + 1; ++column) {
+        if (!rest_.v.is_periodic() && (column < 0 || column >= columns)) continue;
+        const int to = (row + rows) % rows * columns + (column + columns) % columns;
         offer(to, distance + step_between(at, to));
       }
     }
     // Across a pole.
-    if (j != 0 && j != columns - 1) continue;
+    if (rest_.v.is_periodic() || (j != 0 && j != columns - 1)) continue;
     for (int row = 0; row < rows; ++row) {
       offer(row * columns + j, distance + step_between(at, row * columns + j));
     }

@@ -174,10 +174,11 @@ void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std:
                                   double reach) {
   SurfaceLevels& levels = near_.levels();
   const int side = levels.step(0), columns = levels.nested().grid.columns();
+  const bool ring = levels.surface().v.is_periodic();
   for (int i = element.i; i < element.i + side; ++i) {
     for (int j = element.j; j <= element.j + side; ++j) {
       // Those at its end are the next element's, those of a pole one place.
-      const bool pole = j == 0 || j == columns - 1;
+      const bool pole = !ring && (j == 0 || j == columns - 1);
       if (pole ? i > 0 : j == element.j + side) continue;
       const int sample = i * columns + j;
       const Vector3 point = levels.sample(sample);

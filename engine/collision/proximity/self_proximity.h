@@ -38,6 +38,8 @@ class SelfProximity {
 
   // Of the last find().
   const std::vector<NearPoint>& points() const { return near_.points(); }
+  // Nothing was near in the last find(): the next one costs next to nothing.
+  bool is_clear() const { return clear_; }
   // A capacity was met, and points may be missing. Remedy: fewer control points or a smaller margin.
   bool overflow() const { return missing_elements_ || near_.overflow(); }
 
