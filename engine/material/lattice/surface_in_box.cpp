@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "engine/bspline/unit_normal.h"
@@ -132,13 +133,29 @@ std::vector<Vector3> points_on(const ClosedSkin& skin, const Vector3& size,
   return points;
 }
 
-// From each vertex inwards.
+// Whether straight in from a point of the skin its far side is, which looks the other way to within half a
+// right angle, before two cells are. The face beyond a sharp edge may be nearer than that, and is no far
+// side.
+bool is_thin_at(const ShellDistance& inside, const Vector3& skin_m, const Vector3& normal, double cell_m) {
+  constexpr double far_side = -std::numbers::sqrt2 / 2.0;
+  constexpr int bisections = 20;
+  const auto at = [&](double cells) { return inside.at(skin_m - cells * cell_m * normal); };
+  for (const double cells : {1.0, 2.0}) {
+    if (at(cells).distance_m < 0.0) continue;
+    double in = 0.0, out = cells;
+    for (int k = 0; k < bisections; ++k) {
+      const double middle = 0.5 * (in + out);
+      (at(middle).distance_m < 0.0 ? in : out) = middle;
+    }
+    return at(out).gradient.dot(normal) < far_side;
+  }
+  return false;
+}
+
 bool is_slender(const Surface& surface, const ClosedSkin& skin, const ShellDistance& inside, double cell_m) {
   for (std::size_t vertex = 0; vertex < skin.u.size(); ++vertex) {
-    const Vector3 inward = -cell_m * unit_normal(surface, skin.u[vertex], skin.v[vertex]);
-    for (const double cells : {1.0, 2.0}) {
-      if (!(inside.at(skin.mesh.vertices_m[vertex] + cells * inward).distance_m < 0.0)) return true;
-    }
+    const Vector3 normal = unit_normal(surface, skin.u[vertex], skin.v[vertex]);
+    if (is_thin_at(inside, skin.mesh.vertices_m[vertex], normal, cell_m)) return true;
   }
   return false;
 }

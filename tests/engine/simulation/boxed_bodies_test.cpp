@@ -90,6 +90,30 @@ TEST(BoxedBody, KeepsStillUntouched) {
   }
 }
 
+// As thick as wide, so that it can meet itself, and of four faces: beside an edge no face is near to the
+// next.
+TEST(BoxedBody, WithSharpEdgesKeepsStillUntouched) {
+  constexpr int along = 24;
+  ControlNet net(4, along);
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < along; ++j) {
+      const double angle = 2.0 * std::numbers::pi * j / along;
+      const double out = ring_m + (i < 2 ? tube_m : -tube_m), up = i == 0 || i == 3 ? tube_m : -tube_m;
+      net.set_point(i, j, {out * std::cos(angle), up, -out * std::sin(angle)});
+    }
+  }
+  Scene scene = held_ring();
+  Surface& surface = scene.bodies[0].surface;
+  surface = make_surface(KnotVector::periodic_uniform(1, 4).value(),
+                         KnotVector::periodic_uniform(2, along).value(), std::move(net))
+                .value();
+  Simulation simulation = simulate(scene);
+  ASSERT_FALSE(simulation.lattice().mesh().slender);
+  const Surface before = simulation.surface();
+  for (int tick = 0; tick < effort(100); ++tick) simulation.advance(above(0.0, 0.1));
+  EXPECT_LT(farthest_moved_m(simulation, before), 1e-9);
+}
+
 TEST(BoxedBody, IsDentedAndKeepsItsDent) {
   Simulation simulation = simulate(held_ring());
   double largest_n = 0.0;

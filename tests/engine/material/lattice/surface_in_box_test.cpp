@@ -1,0 +1,61 @@
+// Which bodies in a box of cells are thinner than two of them.
+#include "engine/material/lattice/surface_in_box.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "tests/engine/collision/surfaces/sheets.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double ring_m = 0.02;
+
+// A ring about y of this section: corners, m outwards from the ring and upwards, clockwise.
+Surface edged_ring(const std::vector<std::array<double, 2>>& section) {
+  constexpr int along = 24;
+  const int around = static_cast<int>(section.size());
+  ControlNet net(around, along);
+  for (int i = 0; i < around; ++i) {
+    const auto [out, up] = section[static_cast<std::size_t>(i)];
+    for (int j = 0; j < along; ++j) {
+      const double angle = 2.0 * std::numbers::pi * j / along;
+      net.set_point(i, j, {(ring_m + out) * std::cos(angle), up, -(ring_m + out) * std::sin(angle)});
+    }
+  }
+  return make_surface(KnotVector::periodic_uniform(1, around).value(),
+                      KnotVector::periodic_uniform(3, along).value(), std::move(net))
+      .value();
+}
+
+Surface boxed_ring(double wide_m, double high_m) {
+  const double out = 0.5 * wide_m, up = 0.5 * high_m;
+  return edged_ring({{out, up}, {out, -up}, {-out, -up}, {-out, up}});
+}
+
+bool is_slender(const Surface& surface) {
+  const Result<LatticeMesh> mesh = surface_in_box(surface, {2000, {}});
+  EXPECT_TRUE(mesh.ok()) << mesh.error().message;
+  return mesh->slender;
+}
+
+// Cells of 2 to 2.5 mm.
+TEST(SurfaceInBox, IsSlenderWhereItsSidesAreNearerThanTwoCells) {
+  EXPECT_FALSE(is_slender(round_torus(ring_m, 0.005)));
+  EXPECT_TRUE(is_slender(round_torus(ring_m, 0.0015)));
+  EXPECT_TRUE(is_slender(boxed_ring(0.01, 0.003)));
+  EXPECT_TRUE(is_slender(boxed_ring(0.003, 0.01)));
+}
+
+TEST(SurfaceInBox, IsNotSlenderForItsEdges) {
+  EXPECT_FALSE(is_slender(boxed_ring(0.01, 0.01)));
+  // Equilateral: the faces meet at 60 degrees.
+  EXPECT_FALSE(is_slender(edged_ring({{0.0, 0.0115}, {0.01, -0.0058}, {-0.01, -0.0058}})));
+}
+
+}  // namespace
+}  // namespace spoonbill
