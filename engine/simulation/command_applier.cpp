@@ -43,9 +43,17 @@ Status CommandApplier::operator()(const RemovePlanes&) {
   return set_planes({});
 }
 
+// A body was checked when it was modelled; a B-spline surface takes as long as a mesh of it does.
+Status CommandApplier::check_changes(const Tool& tool) const {
+  if (tool.kind != ToolKind::solid || !tool.body || tool.body != state.kept.back()) return check_tool(tool);
+  Tool bodiless = tool;
+  bodiless.kind = ToolKind::point;
+  return check_tool(bodiless);
+}
+
 Status CommandApplier::operator()(const SetTool& command) {
   const Tool& tool = command.tool;
-  if (Status status = check_tool(tool); !status.ok()) return status;
+  if (Status status = check_changes(tool); !status.ok()) return status;
   if (Status status = check_together(tool, state.scene.symmetry); !status.ok()) return status;
   if (tool.kind == ToolKind::solid && tool.body != state.kept.back()) {
     Result<ToolModel> model = make_tool_model(tool, state.set);

@@ -25,6 +25,7 @@ struct CommandApplier {
  private:
   void release();
   Status check_body(int body) const;
+  Status check_changes(const Tool& tool) const;
   void take_model(ToolModel model);
   void make_contacts();
   Status set_planes(std::vector<FixingPlane> planes);

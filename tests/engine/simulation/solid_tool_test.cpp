@@ -193,6 +193,24 @@ TEST(SolidTool, IsExchangedWhileTheSimulationRuns) {
   ASSERT_TRUE(simulation.restore(shape).ok());
 }
 
+// Whoever drags a slider sends a command for each step of it.
+TEST(SolidTool, ABodyThatIsHeldIsNotMeshedAgainForAnotherSetting) {
+  Tool tool = solid(SurfaceSolid{finger()});
+  Simulation simulation = simulate(held_handle(tool));
+  tool.iterations = 7;
+  tool.action = ToolAction::pull;
+  const Command change = SetTool{tool};
+  const std::size_t before = allocation_count();
+  EXPECT_TRUE(simulation.apply(change).ok());
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_EQ(simulation.scene().tool.iterations, 7);
+  tool.iterations = 0;
+  EXPECT_FALSE(simulation.apply(SetTool{tool}).ok());
+  Tool empty;
+  empty.kind = ToolKind::solid;
+  EXPECT_FALSE(simulation.apply(SetTool{empty}).ok());
+}
+
 // What a sphere does is the same whatever was held before it.
 TEST(SolidTool, LeavesNothingOfItselfToASphere) {
   const Tool solids[] = {solid(ImplicitShape(BoxShape{{0.02, 0.02, 0.02}})), solid(SurfaceSolid{finger()})};
