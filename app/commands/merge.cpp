@@ -115,7 +115,8 @@ struct Parts {
 
 struct Outcome {
   Merged merged;
-  std::vector<Joint> corners;  // of each body but the first with what those before it became
+  std::vector<Joint> corners;       // of each body but the first with what those before it became
+  std::vector<std::size_t> turned;  // the bodies whose normals pointed inwards
 };
 
 // C1 for a fillet: an arc and what it touches cannot be C2 without making it tighter.
@@ -132,6 +133,10 @@ void add_remarks_of_merging(const MergeOptions& options, const Outcome& outcome,
   const Surface& surface = outcome.merged.surface;
   if (closing_of(surface).closedness == Closedness::solid && enclosed_mass(surface).volume_m3 < 0.0) {
     remarks.emplace_back("its normals point inwards; reverse u with change");
+  }
+  for (const std::size_t place : outcome.turned) {
+    remarks.push_back("the normals of patch " + std::to_string(place + 1) +
+                      " pointed inwards; it was turned around first");
   }
   if (options.fillet_m > 0.0) {
     add_tight_fillet(outcome.merged.surface, outcome.corners.back(), options.fillet_m, continuity_of(options),
@@ -215,10 +220,10 @@ Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options,
     request.join.spent_m = parts.untrimmed_m;
     auto merged = merge(patches, request);
     if (!merged) return merged.error();
-    return Outcome{std::move(merged).value(), {}};
+    return Outcome{std::move(merged).value(), {}, {}};
   }
   if (patches.size() < 2) return Error{"one body alone crosses none; name another one"};
-  Outcome outcome{{patches[0], 0.0, {}}, {}};
+  Outcome outcome{{patches[0], 0.0, {}}, {}, {}};
   Merged& merged = outcome.merged;
   request.join.tolerance_m =
       (request.join.tolerance_m - parts.untrimmed_m) / static_cast<double>(patches.size() - 1);
@@ -229,6 +234,8 @@ Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options,
     merged.surface = std::move(next->surface);
     merged.deviation_m += next->deviation_m;
     outcome.corners.push_back(next->corner);
+    if (next->first_was_inward) outcome.turned.push_back(p - 1);
+    if (next->second_was_inward) outcome.turned.push_back(p);
   }
   return outcome;
 }

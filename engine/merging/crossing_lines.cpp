@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -10,12 +11,15 @@
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/lines_from_loop.h"
 #include "engine/merging/tube_ends.h"
+#include "engine/place_text.h"
 
 namespace spoonbill {
 
 namespace {
 
 constexpr int lines_looked_at = 24;
+// Where a body pokes out of the other it may do so between two of those lines.
+constexpr int lines_searched = 8 * lines_looked_at;
 
 Surface along_v(const Surface& patch) {
   if (!is_tube(patch) || patch.u.is_periodic()) return patch;
@@ -28,9 +32,9 @@ Surface turned_around(const Surface& patch) {
   return reversed(reversed(patch, Direction::v), Direction::u);
 }
 
-std::vector<double> lines_of(const Surface& patch) {
-  return patch.u.is_periodic() ? uniform_parameters_without_seam(patch.u, lines_looked_at)
-                               : uniform_parameters(patch.u, lines_looked_at);
+std::vector<double> lines_of(const Surface& patch, int count = lines_looked_at) {
+  return patch.u.is_periodic() ? uniform_parameters_without_seam(patch.u, count)
+                               : uniform_parameters(patch.u, count);
 }
 
 bool is_closed_body(const Surface& patch) {
@@ -49,10 +53,10 @@ double line_length_m(const Surface& patch, double u, double from, double to) {
   return length;
 }
 
-// What a patch's lines say of the other: how many cross it and more than once, whether what is kept lies
-// before the crossing, and where they cross.
+// What a patch's lines say of the other: how many cross it, whether what is kept lies before the crossing,
+// and where they cross.
 struct Crossed {
-  int lines = 0, repeatedly = 0;
+  int lines = 0;
   double kept_before = 0.0;  // votes
   std::vector<LineCrossing> crossings;
 };
@@ -64,7 +68,6 @@ Crossed look(const Surface& patch, const Surface& other, const CrossingFinder& f
     const auto found = finder.of_line(patch, u);
     if (found.empty()) continue;
     ++crossed.lines;
-    if (found.size() > 1) ++crossed.repeatedly;
     const LineCrossing& crossing = found.front();
     crossed.crossings.push_back(crossing);
     const SurfacePoint here = evaluate(patch, u, crossing.along);
@@ -96,11 +99,36 @@ Error not_crossed() {
       "give the patches in the other order, or move it through"};
 }
 
-Error goes_through() {
+Error closed_both_ways() {
   return Error{
-      "the first patch goes through the other and would lose what is on the far side; cut it where it is "
-      "inside, "
-      "and merge the two parts one after the other"};
+      "a patch is closed around both u and v, and what another one adds to a ring is no tube; split the ring "
+      "open with change"};
+}
+
+Error goes_through(const Vector3& place_m) {
+  return Error{"the first patch goes through the other and would lose what is on the far side, from " +
+               place_text(place_m) +
+               " on; cut it where it is inside, and merge the two parts one after the other"};
+}
+
+Error pokes_out(const Vector3& place_m) {
+  return Error{"the first patch leaves the other again at " + place_text(place_m) +
+               " and would lose what lies outside there; move it so that its end is all inside, make the end "
+               "narrower, or give the patches in the other order"};
+}
+
+// Of the first each line keeps what lies before where it enters the other: none may come out once more.
+Status check_stays_inside(const Surface& first, const CrossingFinder& other) {
+  int repeatedly = 0;
+  std::optional<Vector3> place_m;
+  for (const double u : lines_of(first, lines_searched)) {
+    const auto found = other.of_line(first, u);
+    if (found.size() < 2) continue;
+    ++repeatedly;
+    if (!place_m) place_m = found[1].point_m;
+  }
+  if (!place_m) return {};
+  return 2 * repeatedly > lines_searched ? goes_through(*place_m) : pokes_out(*place_m);
 }
 
 Error not_side_by_side() {
@@ -177,13 +205,19 @@ Result<Surface> running_along(const CrossingPatches& patches, const std::vector<
 }  // namespace
 
 Result<CrossingPatches> facing_each_other(const Surface& first, const Surface& second) {
+  for (const Surface* patch : {&first, &second}) {
+    if (patch->u.is_periodic() && patch->v.is_periodic()) return closed_both_ways();
+  }
   CrossingPatches patches{along_v(first), along_v(second), false};
-  Crossed of_first = look(patches.first, patches.second, CrossingFinder(patches.second));
+  const CrossingFinder finder(patches.second);
+  const Crossed of_first = look(patches.first, patches.second, finder);
   if (of_first.lines < lines_looked_at) return not_crossed();
-  const bool closed = is_closed_body(patches.second);
-  if (closed && 2 * of_first.repeatedly > lines_looked_at) return goes_through();
-  patches.beside_pole = closed && !goes_around_pole(patches.second, of_first.crossings);
   if (of_first.kept_before < 0.0) patches.first = turned_around(patches.first);
+  const bool closed = is_closed_body(patches.second);
+  if (closed) {
+    if (Status inside = check_stays_inside(patches.first, finder); !inside) return inside.error();
+  }
+  patches.beside_pole = closed && !goes_around_pole(patches.second, of_first.crossings);
   if (patches.beside_pole) {
     patches.second = from_nearer_pole(patches.second, of_first.crossings);
   } else {

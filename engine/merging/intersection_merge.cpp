@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/bspline/reparameterise.h"
 #include "engine/merging/crossing_lines.h"
 #include "engine/merging/fold_search.h"
 #include "engine/merging/joint_edges.h"
@@ -16,6 +17,7 @@
 #include "engine/number_text.h"
 #include "engine/place_text.h"
 #include "engine/shapes/fit_shape.h"
+#include "engine/study/enclosed_mass.h"
 
 namespace spoonbill {
 
@@ -165,10 +167,15 @@ Joint corner_of(const Joined& joined) {
   return corner;
 }
 
-}  // namespace
+// Which side of it is outside is told by its normals.
+bool is_inward(const Surface& patch) {
+  if (!is_tube(patch)) return false;
+  const auto [start, end] = tube_sides(patch);
+  return is_pole(patch, start) && is_pole(patch, end) && enclosed_mass(patch).volume_m3 < 0.0;
+}
 
-Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
-                                         const IntersectionRequest& request) {
+Result<IntersectionMerge> merge_outward(const Surface& first, const Surface& second,
+                                        const IntersectionRequest& request) {
   const auto patches = facing_each_other(first, second);
   if (!patches) return patches.error();
   auto parts = fitted_parts(patches.value(), request);
@@ -187,6 +194,19 @@ Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& se
   if (Status sound = check_folds(joined->surface, first, second); !sound) return sound.error();
   const Joint corner = corner_of(joined.value());
   return IntersectionMerge{std::move(joined->surface), before_m + joined->deviation_m, corner};
+}
+
+}  // namespace
+
+Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
+                                         const IntersectionRequest& request) {
+  const bool first_inward = is_inward(first), second_inward = is_inward(second);
+  auto merged = merge_outward(first_inward ? reversed(first, Direction::u) : first,
+                              second_inward ? reversed(second, Direction::u) : second, request);
+  if (!merged) return merged;
+  merged->first_was_inward = first_inward;
+  merged->second_was_inward = second_inward;
+  return merged;
 }
 
 }  // namespace spoonbill

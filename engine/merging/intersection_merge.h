@@ -17,13 +17,15 @@ struct IntersectionMerge {
   double deviation_m = 0.0;  // to the patches, outside the fillet
   // Where the patches meet; its blend is the fillet, which leaves them from blend_start to blend_end along v.
   Joint corner;
+  bool first_was_inward = false, second_was_inward = false;
 };
 
 // Of closed bodies each keeps what lies outside the other; of open patches the longer part of their lines.
-// The first keeps its parameters around. A closed body that the first does not cross around one of its poles
-// is run through from the crossing to the pole on the far side (LinesFromLoop). Refused: patches whose lines
-// of constant u do not each cross the other or do not follow each other along the crossing, one that goes
-// through a closed body, a fillet that does not fit.
+// A closed body whose normals point inwards is turned around first. The first keeps its parameters around. A
+// closed body that the first does not cross around one of its poles is run through from the crossing to the
+// pole on the far side (LinesFromLoop). Refused: patches whose lines of constant u do not each cross the
+// other or do not follow each other along the crossing, one that leaves a closed body again, as where it goes
+// through, a fillet that does not fit. The message names where.
 Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
                                          const IntersectionRequest& request);
 

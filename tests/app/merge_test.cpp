@@ -146,6 +146,14 @@ TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   ASSERT_EQ(tighter.code, exit_done) << tighter.err;
   EXPECT_EQ(json_of(tighter.out)["continuity"], 2);
   EXPECT_EQ(json_of(tighter.out)["remarks"].size(), 1U) << tighter.out;
+  const std::string inward = place.text("inward.json");
+  ASSERT_EQ(run({"change", ball, "reverse", "u", "--out", inward}).code, exit_done);
+  const Outcome turned =
+      run({"merge", rod, inward, "--intersect", "--out", place.text("turned.json"), "--json"});
+  ASSERT_EQ(turned.code, exit_done) << turned.err;
+  EXPECT_NE(turned.out.find("the normals of patch 2 pointed inwards; it was turned around"),
+            std::string::npos)
+      << turned.out;
   // The hollow is as wide as asked where nothing bends more.
   const Json curved = json_of(run({"check", knob, "--json"}).out)["bodies"][0];
   EXPECT_NEAR(curved["smallest_concave_radius_m"].get<double>(), 0.003, 2e-4);

@@ -7,10 +7,13 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <string>
 #include <tuple>
+#include <utility>
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
+#include "engine/bspline/reparameterise.h"
 #include "engine/merging/fold_search.h"
 #include "engine/merging/tube_ends.h"
 #include "engine/study/curvature_range.h"
@@ -288,6 +291,56 @@ TEST(IntersectionMerge, ABodyThatIsAsWideAsTheOtherIsRefusedBeforeItIsFitted) {
   const auto merged = merge_crossing(rod(Vector3(1, 0, 0)), drum.surface(), {});
   ASSERT_FALSE(merged.ok());
   EXPECT_NE(merged.error().message.find("as wide"), std::string::npos) << merged.error().message;
+}
+
+// Of a ball of 20 mm, 8 mm wide about an axis 6 mm beside the middle: the lower rim is 14 mm off and 16 mm
+// down, 1.3 mm outside, where a third of the lines lead.
+TEST(IntersectionMerge, ARimThatLooksOutOfTheBallIsRefusedWhereItDoes) {
+  const Drum drum{0.008, 0.023, 0.001};
+  const Quaternion along_y(Eigen::AngleAxisd(-0.5 * pi, Vector3::UnitX()));
+  for (const auto& [shift, turn] : {std::pair(Vector3(0.006, 0, 0.007), Quaternion::Identity()),
+                                    std::pair(Vector3(0.006, 0.007, 0), along_y)}) {
+    const auto merged = merge_crossing(placed(drum.surface(), {shift, turn}), ball(), {});
+    ASSERT_FALSE(merged.ok());
+    const std::string& told = merged.error().message;
+    const std::size_t at = told.find("leaves the other again at (1");
+    EXPECT_NE(at, std::string::npos) << told;
+    EXPECT_NE(told.find("make the end narrower"), std::string::npos) << told;
+  }
+  // All inside, it is a knob.
+  const auto merged =
+      merge_crossing(placed(drum.surface(), {Vector3(0.003, 0, 0.011), Quaternion::Identity()}), ball(), {});
+  EXPECT_TRUE(merged.ok()) << merged.error().message;
+}
+
+TEST(IntersectionMerge, BodiesWhoseNormalsPointInwardsAreTurnedAroundFirst) {
+  const Surface standing = rod(Vector3(0, 0, 1)), outward = ball();
+  const double union_m3 = enclosed_mass(merge_crossing(standing, outward, {})->surface).volume_m3;
+  ASSERT_GT(union_m3, enclosed_mass(outward).volume_m3);
+  for (const auto& [first, second] :
+       {std::pair(false, true), std::pair(true, false), std::pair(true, true)}) {
+    const auto merged = merge_crossing(first ? reversed(standing, Direction::u) : standing,
+                                       second ? reversed(outward, Direction::u) : outward, {});
+    ASSERT_TRUE(merged.ok()) << merged.error().message;
+    EXPECT_EQ(merged->first_was_inward, first);
+    EXPECT_EQ(merged->second_was_inward, second);
+    // The same surface, but for where its knots are added.
+    EXPECT_NEAR(enclosed_mass(merged->surface).volume_m3, union_m3, 1e-3 * union_m3);
+  }
+}
+
+TEST(IntersectionMerge, ARingIsRefused) {
+  const auto knots = KnotVector::periodic_uniform(3, 12).value();
+  ControlNet net(12, 12);
+  for (int i = 0; i < 12; ++i) {
+    for (int j = 0; j < 12; ++j) {
+      const double turn = pi * i / 6.0, around = pi * j / 6.0, out = 0.02 + 0.008 * std::cos(around);
+      net.set_point(i, j, {out * std::cos(turn), out * std::sin(turn), 0.008 * std::sin(around)});
+    }
+  }
+  const auto merged = merge_crossing(rod(Vector3(1, 0, 0)), Surface{knots, knots, net}, {});
+  ASSERT_FALSE(merged.ok());
+  EXPECT_NE(merged.error().message.find("closed around both"), std::string::npos) << merged.error().message;
 }
 
 TEST(IntersectionMerge, WhatGoesThroughIsRefused) {
