@@ -4,10 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/bspline/grid.h"
+#include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/place_text.h"
 
 namespace spoonbill {
 
@@ -81,6 +86,30 @@ Result<Surface> cap_of(const Surface& tube, double height_m) {
   return make_surface(tube.u, knots.value(), std::move(net));
 }
 
+// Spokes are straight, and a flat cap's normal stays the same along each: it folds over where a spoke's
+// normal points against the ring's area.
+std::optional<Vector3> place_of_fold_in_flat(const Surface& cap) {
+  constexpr int spokes_in_piece = 16;
+  const double start = cap.v.domain_start();
+  std::vector<SurfacePoint> rim;
+  Vector3 area = Vector3::Zero();
+  for (const double u : nested_parameters(cap.u, spokes_in_piece, 0).parameters) {
+    rim.push_back(evaluate(cap, u, start));
+    area += rim.back().du.cross(rim.back().dv);
+  }
+  for (const SurfacePoint& point : rim) {
+    if (point.du.cross(point.dv).dot(area) < 0.0) return point.position_m;
+  }
+  return std::nullopt;
+}
+
+Error flat_cap_folds(const Vector3& place_m) {
+  return Error{
+      "a flat cap folds over at " + place_text(place_m) +
+      ", for the middle of the ring does not see its rim there; cut the tube where it is rounder and "
+      "cap it there"};
+}
+
 }  // namespace
 
 bool is_tube(const Surface& surface) {
@@ -115,6 +144,9 @@ Result<Joined> with_cap(const Surface& surface, Side side, double height_m, cons
   if (!clamped) return clamped.error();
   auto cap = cap_of(clamped.value(), height_m);
   if (!cap) return cap.error();
+  if (height_m == 0.0) {
+    if (const auto place_m = place_of_fold_in_flat(cap.value())) return flat_cap_folds(*place_m);
+  }
   JoinRequest capping = request;
   capping.shared_parameters = true;
   if (height_m == 0.0) capping.continuity = 0;

@@ -30,6 +30,7 @@ TubeEnd tube_end(const Surface& surface, Side side);
 // Closes an open end by a cap that bulges by `height_m` over a ring that is about plane; at a height above
 // zero the cap continues the tube's sides with the continuity that is asked, at zero it is flat and meets
 // them at an edge. A quarter of an ellipse, by the cubic that has its tangents and its middle (Goldapp 1991).
+// Refused: a flat cap of a ring whose middle does not see all of its rim, which would fold over.
 Result<Joined> with_cap(const Surface& surface, Side side, double height_m, const JoinRequest& request);
 
 // Cuts a pole off so that the tube ends in a ring to be joined: where its sides first run straight (the

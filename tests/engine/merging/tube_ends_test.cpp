@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <vector>
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
@@ -150,6 +151,45 @@ TEST(TubeEnds, AWasherIsCappedFlatAlone) {
   ASSERT_FALSE(refused.ok());
   EXPECT_NE(refused.error().message.find("cap it flat"), std::string::npos) << refused.error().message;
   EXPECT_TRUE(with_cap(washer, Side::v_start, 0.0, c2()).ok());
+}
+
+// A tube about the z axis with this outline.
+Surface outline_tube(const KnotVector& u, const std::function<Eigen::Vector2d(double)>& outline) {
+  const auto v = KnotVector::clamped_uniform(3, 6).value();
+  PointGrid points{
+      uniform_parameters_without_seam(u, 4 * u.control_point_count()), uniform_parameters(v, 12), {}};
+  for (const double a : points.u) {
+    for (const double b : points.v) points.points_m.emplace_back(outline(a).x(), outline(a).y(), 0.05 * b);
+  }
+  return fit_grid(u, v, points).value();
+}
+
+// Along an arc of the angle to and fro, 4 mm wide.
+Eigen::Vector2d along_bean(double u, double angle) {
+  const double turn = 2 * pi * u, out = 0.02 + 0.002 * std::sin(turn), at = 0.5 * angle * std::cos(turn);
+  return {out * std::cos(at), out * std::sin(at)};
+}
+
+TEST(TubeEnds, AFlatCapThatWouldFoldIsRefusedWhereItDoes) {
+  const auto around = KnotVector::periodic_uniform(3, 48).value();
+  const Surface bent = outline_tube(around, [](double u) { return along_bean(u, 0.8 * pi); });
+  const Surface slightly = outline_tube(around, [](double u) { return along_bean(u, 0.05 * pi); });
+  for (const Side side : {Side::v_start, Side::v_end}) {
+    const auto refused = with_cap(bent, side, 0.0, c2());
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().message.find("a flat cap folds over at ("), std::string::npos)
+        << refused.error().message;
+    EXPECT_TRUE(with_cap(slightly, side, 0.0, c2()).ok());
+  }
+  // Of an angle's profile, whose plates meet at edges.
+  const auto plates = KnotVector::periodic_uniform(1, 6).value();
+  const std::vector<Eigen::Vector2d> corners{{0, 0},         {0.03, 0},     {0.03, 0.002},
+                                             {0.002, 0.002}, {0.002, 0.03}, {0, 0.03}};
+  const Surface angle = outline_tube(plates, [&](double u) {
+    const int k = static_cast<int>(6.0 * u);
+    return Eigen::Vector2d(corners[k] + (6.0 * u - k) * (corners[(k + 1) % 6] - corners[k]));
+  });
+  EXPECT_FALSE(with_cap(angle, Side::v_end, 0.0, c2()).ok());
 }
 
 }  // namespace
