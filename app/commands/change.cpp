@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +25,7 @@ constexpr Range<double> tolerance_range_m{1e-9, 0.1};
 struct ChangeOptions {
   std::filesystem::path model, out;
   AskedChange change;
+  std::optional<int> continuity;  // where it is asked for
   int body = 1;
   double tolerance_m = 1e-5;
   bool json = false;
@@ -71,6 +73,8 @@ void report(const ChangeOptions& options, const std::vector<Body>& bodies, doubl
 }
 
 Status change(const ChangeOptions& options, Console& console) {
+  AskedChange asked = options.change;
+  if (options.continuity) asked.continuity = *options.continuity;
   auto document = read_document_file(options.model);
   if (!document) return document.error();
   std::vector<Body>& bodies = document->scene.bodies;
@@ -79,7 +83,7 @@ Status change(const ChangeOptions& options, Console& console) {
                  ", and --body names " + std::to_string(options.body)};
   }
   const std::size_t place = static_cast<std::size_t>(options.body) - 1;
-  auto result = changed(bodies[place].surface, bodies[place].trims, options.change, options.tolerance_m);
+  auto result = changed(bodies[place].surface, bodies[place].trims, asked, options.tolerance_m);
   if (!result) {
     return Error{options.model.string() + ": body \"" + bodies[place].name + "\": " + result.error().message};
   }
@@ -121,6 +125,16 @@ CommandEntry add_change(CLI::App& root) {
       [](const std::string& text) { return parse_length(text, tolerance_range_m); },
       [options](double length_m) { options->tolerance_m = length_m; },
       "For changes that are not exact, " + short_length_text(options->tolerance_m) + " unless told");
+  add_parsed_option(
+      *parser, "--continuity", "C0..C8", parse_continuity,
+      [options](int order) { options->continuity = order; },
+      "Of the seam that close makes, C2 unless told; C0 keeps an edge");
+  // By then both have been read, in whichever order they came.
+  parser->final_callback([options] {
+    if (options->continuity && options->change.kind != ChangeKind::close) {
+      throw CLI::ValidationError("--continuity", "is of the seam that 'close' makes; leave it out");
+    }
+  });
   add_json_option(*parser, options->json);
   return {parser, [options](Console& console) { return change(*options, console); }};
 }

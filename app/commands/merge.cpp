@@ -38,7 +38,6 @@ constexpr Range<double> fillet_range_m{0.0, 1.0};
 constexpr Range<double> twist_range{-1.0, 1.0};
 // Of the tolerance, for making a trimmed patch whole.
 constexpr double trimmed_share = 0.25;
-constexpr int highest_continuity = max_degree - 1;
 constexpr Range<int> model_count_range{1, 64};
 
 struct MergeOptions {
@@ -51,16 +50,6 @@ struct MergeOptions {
   double fillet_m = 0.0;
   bool json = false;
 };
-
-// "C2"
-Result<int> parse_continuity(const std::string& text) {
-  if (text.size() == 2 && (text[0] == 'C' || text[0] == 'c') && text[1] >= '0' &&
-      text[1] <= '0' + highest_continuity) {
-    return text[1] - '0';
-  }
-  return Error{"'" + excerpt(text) + "' is not a continuity from C0 to C" +
-               std::to_string(highest_continuity)};
-}
 
 // "-0.25"
 Result<double> parse_twist(const std::string& text) {
@@ -278,14 +267,13 @@ CommandEntry add_merge(CLI::App& root) {
   auto options = std::make_shared<MergeOptions>();
   CLI::App* parser = root.add_subcommand("merge", "Make one surface of several patches");
   parser->footer(
-      "The patches are the bodies of all models, counted from 1, and make a row or a full grid; which edges\n"
-      "belong together is found by where they lie. Closed bodies that do not touch are opened at their "
-      "nearest\n"
-      "ends and bridged. Where the continuity is there already the result is exact; elsewhere control "
-      "points\n"
-      "are added beside the joint until the tolerance holds. Trimmed bodies are resampled up to their trims. "
-      "Material and tool are the first model's;\n"
-      "regions, loads and supports of the patches are left out.\n"
+      "The patches are the bodies of all models, counted from 1, and make a row, a ring or a full grid;\n"
+      "which edges belong together is found by where they lie. Where the last lie on the first, as of a\n"
+      "ring, the result is closed around. Closed bodies that do not touch are opened at their nearest\n"
+      "ends and bridged. Where the continuity is there already the result is exact; elsewhere control\n"
+      "points are added beside the joint until the tolerance holds. Trimmed bodies are resampled up to\n"
+      "their trims. Material and tool are the first model's; regions, loads and supports of the patches\n"
+      "are left out.\n"
       "Example: spoonbill merge bowl.json handle.json --continuity C2 --out spoon.json");
   parser->add_option("MODEL", options->models, "Documents (.json)")->required();
   add_document_output(*parser, options->out, "The merged document (.json)")->required();

@@ -21,6 +21,7 @@ std::string edges_text(const PatchEdge& a, const PatchEdge& b) {
 std::string joint_text(const MergedJoint& merged) {
   const Joint& joint = merged.joint;
   const std::string edges = edges_text(merged.a, merged.b);
+  if (merged.closes) return edges + ", edge to edge, which closes the surface around";
   if (!joint.bridged) return edges + ", edge to edge";
   if (joint.cut_back_m == 0.0) {
     return edges + ", bridged over a gap of " + short_length_text(joint.gap_m) + " by a blend of " +
@@ -85,6 +86,7 @@ void add_joints(FactSheet& facts, const std::vector<MergedJoint>& joints) {
   for (const MergedJoint& merged : joints) {
     facts.add("Joint", joint_text(merged), "", nullptr);
     list.push_back(joint_json(edge_text(merged.a), edge_text(merged.b), merged.along, merged.joint));
+    list.back()["closes"] = merged.closes;
   }
   facts.add("", "", "joints", list);
 }
@@ -106,9 +108,10 @@ void add_corners(FactSheet& facts, const std::vector<Joint>& corners) {
 void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::string>& remarks) {
   for (const MergedJoint& merged : joints) {
     if (merged.joint.cut_back_m > 0.0) continue;
-    remarks.push_back(
-        "the blend was not applied to " + edges_text(merged.a, merged.b) +
-        (merged.joint.bridged ? ": the gap between them is longer" : ": they meet as smoothly as asked"));
+    remarks.push_back("the blend was not applied to " + edges_text(merged.a, merged.b) +
+                      (merged.closes          ? ": the seam that they make is closed within the tolerance"
+                       : merged.joint.bridged ? ": the gap between them is longer"
+                                              : ": they meet as smoothly as asked"));
   }
 }
 
@@ -123,11 +126,9 @@ void add_tight_fillet(const Surface& merged, const Joint& corner, double fillet_
                                     : "; a smaller tolerance brings it nearer"));
 }
 
-void add_left_open(const std::vector<std::pair<PatchEdge, PatchEdge>>& pairs,
-                   std::vector<std::string>& remarks) {
-  for (const auto& [a, b] : pairs) {
-    remarks.push_back(edges_text(a, b) +
-                      " touch too and stay open; close the merged surface around with change");
+void add_left_open(const std::vector<OpenEdges>& edges, std::vector<std::string>& remarks) {
+  for (const auto& [a, b, why] : edges) {
+    remarks.push_back(edges_text(a, b) + " touch too and stay open: " + why);
   }
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "app/report/fact_sheet.h"
@@ -24,7 +23,6 @@ void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::
 void add_tight_fillet(const Surface& merged, const Joint& corner, double fillet_m, int continuity,
                       std::vector<std::string>& remarks);
 
-void add_left_open(const std::vector<std::pair<PatchEdge, PatchEdge>>& pairs,
-                   std::vector<std::string>& remarks);
+void add_left_open(const std::vector<OpenEdges>& edges, std::vector<std::string>& remarks);
 
 }  // namespace spoonbill

@@ -132,6 +132,14 @@ Result<Pose> parse_pose(std::string_view text) {
   return pose;
 }
 
+Result<int> parse_continuity(const std::string& text) {
+  constexpr int highest = max_degree - 1;
+  if (text.size() == 2 && (text[0] == 'C' || text[0] == 'c') && text[1] >= '0' && text[1] <= '0' + highest) {
+    return text[1] - '0';
+  }
+  return Error{"'" + excerpt(text) + "' is not a continuity from C0 to C" + std::to_string(highest)};
+}
+
 Result<std::vector<int>> parse_places(std::string_view text) {
   constexpr Range<int> range{1, 1000};
   const Error refusal{"'" + excerpt(text) + "' is not a list like 1,3-5 of places from 1 to 1000"};

@@ -35,6 +35,9 @@ Result<double> parse_length(std::string_view text, Range<double> range_m);
 // those before it that have none.
 Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t count, Range<double> range_m);
 
+// "C2": an order of continuity from C0 to C8, which the highest degree can have.
+Result<int> parse_continuity(const std::string& text);
+
 // "1,3-5": places counted from 1, at most 1000 of them, each once and in the order given.
 Result<std::vector<int>> parse_places(std::string_view text);
 

@@ -158,7 +158,7 @@ Result<ChangedSurfaces> move_seam(const Surface& surface, const AskedChange& ask
 }
 
 Result<ChangedSurfaces> close_around(const Surface& surface, const AskedChange& asked, double tolerance_m) {
-  auto closed = closed_around(surface, asked.direction, 2, tolerance_m);
+  auto closed = closed_around(surface, asked.direction, asked.continuity, tolerance_m);
   if (!closed) return closed.error();
   return ChangedSurfaces{{std::move(closed->surface)}, {}, closed->deviation_m, true};
 }

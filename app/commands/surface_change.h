@@ -28,6 +28,7 @@ struct AskedChange {
   int number = 1;          // a degree, or how many knots
   Side side = Side::v_end;
   double height_m = 0.0;  // of a cap
+  int continuity = 2;     // of the seam where a direction is closed
 };
 
 // Of words such as {"insert", "v=0.3", "2"}. Refused: those that no surface could make sense of.

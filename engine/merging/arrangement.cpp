@@ -1,6 +1,7 @@
 #include "engine/merging/arrangement.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <string>
@@ -68,6 +69,65 @@ Error layout_error(int patch, const char* what) {
                "; merge patches that make a row or a full grid, or name the edges"};
 }
 
+// The matches that do not lead from a patch to where the other one lies: by one they close the grid around,
+// if every row or column has one.
+void sort_mismatches(const std::vector<std::optional<Place>>& places, const std::vector<EdgeMatch>& matches,
+                     Arrangement& arrangement) {
+  arrangement.closing_u.clear();
+  arrangement.closing_v.clear();
+  arrangement.left_open.clear();
+  for (const EdgeMatch& match : matches) {
+    const Place &there = *places[match.b.patch],
+                beside = neighbour(*places[match.a.patch], match.a.side, match.b.side, match.reversed);
+    if (beside == there) continue;
+    const int da = std::abs(beside.a - there.a), db = std::abs(beside.b - there.b);
+    const bool held_alike = beside.orientation == there.orientation;
+    if (held_alike && da == arrangement.rows && db == 0) {
+      arrangement.closing_u.push_back(match);
+    } else if (held_alike && db == arrangement.columns && da == 0) {
+      arrangement.closing_v.push_back(match);
+    } else {
+      arrangement.left_open.push_back(match);
+    }
+  }
+  const auto open_unless_all = [&](std::vector<EdgeMatch>& closing, int count) {
+    if (static_cast<int>(closing.size()) == count) return;
+    arrangement.left_open.insert(arrangement.left_open.end(), closing.begin(), closing.end());
+    closing.clear();
+  };
+  open_unless_all(arrangement.closing_u, arrangement.columns);
+  open_unless_all(arrangement.closing_v, arrangement.rows);
+}
+
+// So that the seam of a ring lies before the first patch, which is at 0.
+bool start_rings_at_first(const Arrangement& arrangement, std::vector<std::optional<Place>>& places) {
+  const auto wrapped = [](int place, int count) { return (place % count + count) % count; };
+  for (std::optional<Place>& place : places) {
+    if (!arrangement.closing_u.empty()) place->a = wrapped(place->a, arrangement.rows);
+    if (!arrangement.closing_v.empty()) place->b = wrapped(place->b, arrangement.columns);
+  }
+  return !arrangement.closing_u.empty() || !arrangement.closing_v.empty();
+}
+
+Result<Arrangement> with_cells(Arrangement arrangement, const std::vector<std::optional<Place>>& places,
+                               int low_a, int low_b) {
+  const std::size_t cells = static_cast<std::size_t>(arrangement.rows) * arrangement.columns;
+  arrangement.patches.assign(cells, -1);
+  arrangement.orientations.resize(cells);
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    const int cell = arrangement.cell(places[p]->a - low_a, places[p]->b - low_b);
+    if (arrangement.patches[cell] >= 0) {
+      return layout_error(static_cast<int>(p), "lies where another one does");
+    }
+    arrangement.patches[cell] = static_cast<int>(p);
+    arrangement.orientations[cell] = places[p]->orientation;
+  }
+  for (const int patch : arrangement.patches) {
+    if (patch < 0) return layout_error(static_cast<int>(places.size()) - 1, "leaves a gap in the grid");
+  }
+  return arrangement;
+}
+
 }  // namespace
 
 Surface oriented(const Surface& surface, const Orientation& orientation) {
@@ -90,7 +150,7 @@ TurnedSide turned(Side side, const Orientation& orientation) {
 }
 
 Result<Arrangement> arrange(const std::vector<Surface>& patches, const std::vector<EdgeMatch>& matches) {
-  const auto places = places_of(patches.size(), matches);
+  auto places = places_of(patches.size(), matches);
   int low_a = 0, low_b = 0, high_a = 0, high_b = 0;
   for (std::size_t p = 0; p < places.size(); ++p) {
     if (!places[p]) return layout_error(static_cast<int>(p), "hangs on no other");
@@ -99,26 +159,14 @@ Result<Arrangement> arrange(const std::vector<Surface>& patches, const std::vect
     low_b = std::min(low_b, places[p]->b);
     high_b = std::max(high_b, places[p]->b);
   }
-  Arrangement arrangement{high_a - low_a + 1, high_b - low_b + 1, {}, {}, {}};
-  const std::size_t cells = static_cast<std::size_t>(arrangement.rows) * arrangement.columns;
-  arrangement.patches.assign(cells, -1);
-  arrangement.orientations.resize(cells);
-  for (std::size_t p = 0; p < places.size(); ++p) {
-    const int cell = arrangement.cell(places[p]->a - low_a, places[p]->b - low_b);
-    if (arrangement.patches[cell] >= 0) {
-      return layout_error(static_cast<int>(p), "lies where another one does");
-    }
-    arrangement.patches[cell] = static_cast<int>(p);
-    arrangement.orientations[cell] = places[p]->orientation;
-  }
-  for (const int patch : arrangement.patches) {
-    if (patch < 0) return layout_error(static_cast<int>(places.size()) - 1, "leaves a gap in the grid");
-  }
-  for (const EdgeMatch& match : matches) {
-    const Place beside_a = neighbour(*places[match.a.patch], match.a.side, match.b.side, match.reversed);
-    if (beside_a != *places[match.b.patch]) arrangement.left_open.push_back(match);
-  }
-  return arrangement;
+  Arrangement arrangement;
+  arrangement.rows = high_a - low_a + 1;
+  arrangement.columns = high_b - low_b + 1;
+  sort_mismatches(places, matches, arrangement);
+  if (start_rings_at_first(arrangement, places)) sort_mismatches(places, matches, arrangement);
+  if (!arrangement.closing_u.empty()) low_a = 0;
+  if (!arrangement.closing_v.empty()) low_b = 0;
+  return with_cells(std::move(arrangement), places, low_a, low_b);
 }
 
 }  // namespace spoonbill

@@ -30,14 +30,16 @@ struct Arrangement {
   int rows = 0, columns = 0;
   std::vector<int> patches;
   std::vector<Orientation> orientations;
-  std::vector<EdgeMatch>
-      left_open;  // whose patches lie elsewhere, as at the ends of a row that closes a ring
+  // By which every patch of the last row meets that of the first in its column, where the grid is a ring
+  // along u; those of its columns where it is one along v.
+  std::vector<EdgeMatch> closing_u, closing_v;
+  std::vector<EdgeMatch> left_open;  // whose patches lie elsewhere
 
   int cell(int a, int b) const { return a * columns + b; }
 };
 
 // From matches that hold all patches together. Refused where they do not make a full rectangle of cells, each
-// with one patch; the message names a patch.
+// with one patch; the message names a patch. A ring starts at the first patch.
 Result<Arrangement> arrange(const std::vector<Surface>& patches, const std::vector<EdgeMatch>& matches);
 
 }  // namespace spoonbill

@@ -4,15 +4,21 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/merging/fold_search.h"
+#include "engine/merging/seam.h"
 #include "engine/merging/tube_ends.h"
 #include "engine/number_text.h"
+#include "engine/place_text.h"
 
 namespace spoonbill {
 
 namespace {
+
+constexpr double rounding_m = 1e-12;
 
 struct Grid {
   const std::vector<Surface>& patches;
@@ -32,10 +38,12 @@ Side own_side(Side in_grid, const Orientation& orientation) {
   return in_grid;
 }
 
+// From a cell to the next along a direction, which after the last is the first.
 MergedJoint described(const Grid& grid, int a, int b, Direction along, const Joint& joint) {
   const Arrangement& all = grid.arrangement;
   const int cell = all.cell(a, b);
-  const int next = along == Direction::u ? all.cell(a + 1, b) : all.cell(a, b + 1);
+  const int next =
+      along == Direction::u ? all.cell((a + 1) % all.rows, b) : all.cell(a, (b + 1) % all.columns);
   const Side end = along == Direction::u ? Side::u_end : Side::v_end;
   return {{all.patches[cell], own_side(end, all.orientations[cell])},
           {all.patches[next], own_side(opposite(end), all.orientations[next])},
@@ -65,14 +73,63 @@ Result<std::vector<Joined>> joined_along_v(const Grid& grid, const JoinRequest& 
   return joined;
 }
 
-// Of the tolerance, for joining along u what was joined along v.
-constexpr double second_share = 0.5;
+// Shares the tolerance out to the steps of a merge: each may spend its part of what those before it left.
+class ToleranceShares {
+ public:
+  ToleranceShares(const JoinRequest& request, int steps) : request_(request), steps_(steps) {}
 
-Result<Merged> merge_grid(const Grid& grid, const JoinRequest& request) {
-  JoinRequest along_v = request;
-  const bool both = grid.arrangement.rows > 1 && grid.arrangement.columns > 1;
-  if (both) along_v.spent_m += second_share * request.tolerance_m;
-  auto rows = joined_along_v(grid, along_v);
+  JoinRequest next(double spent_m) {
+    JoinRequest step = request_;
+    step.spent_m += spent_m;
+    const double left_m = std::max(0.0, step.tolerance_m - step.spent_m);
+    step.spent_m += left_m * (steps_ - 1) / steps_;
+    --steps_;
+    return step;
+  }
+
+ private:
+  JoinRequest request_;
+  int steps_;
+};
+
+Result<Approximation> closed_without_folds(const Surface& surface, Direction direction,
+                                           const JoinRequest& request) {
+  auto closed = closed_around(surface, direction, request.continuity, request.tolerance_m - request.spent_m);
+  if (!closed || closed->deviation_m <= rounding_m) return closed;
+  const auto place_m = place_of_fold(closed->surface);
+  if (!place_m || place_of_fold(surface)) return closed;
+  return Error{"the surface would fold over at " + place_text(*place_m)};
+}
+
+// Where the grid is a ring along the direction.
+void close_ring(const Grid& grid, Direction direction, ToleranceShares& shares, Merged& merged) {
+  const Arrangement& all = grid.arrangement;
+  const bool along_u = direction == Direction::u;
+  const std::vector<EdgeMatch>& matches = along_u ? all.closing_u : all.closing_v;
+  if (matches.empty()) return;
+  auto closed = closed_without_folds(merged.surface, direction, shares.next(merged.deviation_m));
+  if (!closed) {
+    for (const EdgeMatch& match : matches) {
+      merged.left_open.push_back({match.a, match.b, closed.error().message});
+    }
+    return;
+  }
+  merged.surface = std::move(closed->surface);
+  merged.deviation_m += closed->deviation_m;
+  Joint joint;
+  for (const EdgeMatch& match : matches) joint.gap_m = std::max(joint.gap_m, match.gap_m);
+  joint.apart_m = joint.gap_m;
+  joint.blend_start = joint.blend_end = knots_along(merged.surface, direction).domain_end();
+  for (int k = 0; k < static_cast<int>(matches.size()); ++k) {
+    merged.joints.push_back(
+        described(grid, along_u ? all.rows - 1 : k, along_u ? k : all.columns - 1, direction, joint));
+    merged.joints.back().closes = true;
+  }
+}
+
+Result<Merged> joined_grid(const Grid& grid, const JoinRequest& request, ToleranceShares& shares) {
+  const Arrangement& all = grid.arrangement;
+  auto rows = joined_along_v(grid, all.columns > 1 ? shares.next(0.0) : request);
   if (!rows) return rows.error();
   Merged merged;
   std::vector<Surface> strips;
@@ -89,15 +146,29 @@ Result<Merged> merge_grid(const Grid& grid, const JoinRequest& request) {
     merged.surface = std::move(rows.value()[0].surface);
     return merged;
   }
-  JoinRequest along_u = request;
-  along_u.spent_m += merged.deviation_m;
-  auto whole = join_row(std::move(strips), along_u);
+  auto whole = join_row(std::move(strips), shares.next(merged.deviation_m));
   if (!whole) return whole.error();
   merged.deviation_m += whole->deviation_m;
   for (std::size_t a = 0; a < whole->joints.size(); ++a) {
-    merged.joints.push_back(described(grid, static_cast<int>(a), 0, Direction::u, whole->joints[a]));
+    for (int b = 0; b < all.columns; ++b) {
+      merged.joints.push_back(described(grid, static_cast<int>(a), b, Direction::u, whole->joints[a]));
+    }
   }
   merged.surface = exchanged(whole->surface);
+  return merged;
+}
+
+Result<Merged> merge_grid(const Grid& grid, const JoinRequest& request) {
+  const Arrangement& all = grid.arrangement;
+  int steps = 0;
+  for (const bool step : {all.columns > 1, all.rows > 1, !all.closing_u.empty(), !all.closing_v.empty()}) {
+    steps += step ? 1 : 0;
+  }
+  ToleranceShares shares(request, steps);
+  auto merged = joined_grid(grid, request, shares);
+  if (!merged) return merged;
+  close_ring(grid, Direction::u, shares, merged.value());
+  close_ring(grid, Direction::v, shares, merged.value());
   return merged;
 }
 
@@ -133,6 +204,23 @@ std::vector<ChosenEdges> wanted_edges(const std::vector<Surface>& patches, const
   return wanted;
 }
 
+// Of tubes one after the other, the ends that are left, where they touch.
+void add_closing_ends(const std::vector<Surface>& tubes, double touching_m, std::vector<EdgeMatch>& matches) {
+  std::vector<PatchEdge> free;
+  for (int p = 0; p < static_cast<int>(tubes.size()); ++p) {
+    const auto [first, last] = tube_sides(tubes[p]);
+    for (const PatchEdge end : {PatchEdge{p, first}, PatchEdge{p, last}}) {
+      const bool taken = std::any_of(matches.begin(), matches.end(), [&](const EdgeMatch& match) {
+        return match.a == end || match.b == end;
+      });
+      if (!taken && is_joinable(tubes[p], end.side)) free.push_back(end);
+    }
+  }
+  if (free.size() != 2 || free[0].patch == free[1].patch) return;
+  const auto match = match_edges(tubes, free[0], free[1]);
+  if (match && match->gap_m <= touching_m) matches.push_back(match.value());
+}
+
 Result<std::vector<EdgeMatch>> matches_for(std::vector<Surface>& patches, const MergeRequest& request) {
   const std::vector<ChosenEdges> wanted = wanted_edges(patches, request);
   if (wanted.empty()) return matches_of(patches, request.join.tolerance_m);
@@ -145,6 +233,7 @@ Result<std::vector<EdgeMatch>> matches_for(std::vector<Surface>& patches, const 
     if (!match) return match.error();
     matches.push_back(match.value());
   }
+  if (request.chosen.empty()) add_closing_ends(patches, request.join.tolerance_m, matches);
   return matches;
 }
 
@@ -203,8 +292,12 @@ Status check_left_open(const Arrangement& arrangement, const std::vector<ChosenE
                "out, and close the merged surface around if it is a ring"};
 }
 
+Error not_closed(const OpenEdges& edges) {
+  return Error{text_of(edges.a) + " and " + text_of(edges.b) +
+               " cannot be joined to close the surface around: " + edges.why};
+}
+
 constexpr int most_patches = 64;
-constexpr double rounding_m = 1e-12;
 
 Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
   const int count = static_cast<int>(patches.size());
@@ -243,7 +336,10 @@ Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& re
                                       [](const ChosenEdges& edges) { return edges.reversed.has_value(); });
   auto merged = merge_grid({ready, arrangement.value()}, join);
   if (!merged) return merged;
-  for (const EdgeMatch& match : arrangement->left_open) merged->left_open.emplace_back(match.a, match.b);
+  if (!request.chosen.empty() && !merged->left_open.empty()) return not_closed(merged->left_open.front());
+  for (const EdgeMatch& match : arrangement->left_open) {
+    merged->left_open.push_back({match.a, match.b, "their patches lie elsewhere in the grid"});
+  }
   if (merged->deviation_m > join.tolerance_m - join.spent_m + rounding_m) {
     return Error{"the patches can be merged within " + short_length_text(merged->deviation_m + join.spent_m) +
                  "; allow a larger tolerance than " + short_length_text(join.tolerance_m)};

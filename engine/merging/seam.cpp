@@ -49,7 +49,9 @@ Result<Approximation> closed_around(const Surface& surface, Direction direction,
     return Error{"the first and the last edge are " + short_length_text(gap_m) +
                  " apart; allow a larger tolerance or bring them together"};
   }
-  const auto period = period_of(knots, continuity);
+  const auto raised = elevated(knots, std::max(knots.degree(), continuity + 1));
+  if (!raised) return raised.error();
+  const auto period = period_of(raised.value(), continuity);
   if (!period) return period.error();
   return approximated(surface, direction, period.value(), tolerance_m, largest_count);
 }

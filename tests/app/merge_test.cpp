@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <string>
 
 #include "app/program.h"
 #include "engine/bspline/change_knots.h"
+#include "engine/bspline/reparameterise.h"
 #include "engine/exchange/document.h"
 #include "tests/app/workplace.h"
 
@@ -64,6 +66,30 @@ TEST(MergeCommand, ASplitHandleIsWholeAgain) {
   for (double v = 0.0; v <= 100.0; v += 1.3) {
     EXPECT_LT((position(before, 0.3, v) - position(after, 0.3, v)).norm(), 1e-12);
   }
+}
+
+TEST(MergeCommand, AHandleCutInFourAlongIsClosedAroundAgain) {
+  const Workplace place;
+  Document document = read_document(handle).value();
+  const Body whole = document.scene.bodies[0];
+  document.scene.bodies.assign(4, whole);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double start = 0.25 * static_cast<double>(k);
+    document.scene.bodies[k].name = "quarter " + std::to_string(k);
+    document.scene.bodies[k].surface = part_of(whole.surface, Direction::u, start, start + 0.25).value();
+  }
+  place.write("quarters.json", json_to_page(document_to_json(document)));
+  const Outcome outcome =
+      run({"merge", place.text("quarters.json"), "--out", place.text("whole.json"), "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const Json joints = json_of(outcome.out)["joints"];
+  ASSERT_EQ(joints.size(), 4U);
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(joints[k]["closes"], k == 3);
+  EXPECT_FALSE(json_of(run({"info", place.text("whole.json"), "--json"}).out)["lattice"].is_null());
+  const Outcome told = run({"merge", place.text("quarters.json"), "--out", place.text("whole.json")});
+  EXPECT_NE(told.out.find("4.u_end and 1.u_start, edge to edge, which closes the surface around"),
+            std::string::npos)
+      << told.out;
 }
 
 TEST(MergeCommand, ABlendIsToldOf) {
@@ -272,6 +298,12 @@ TEST(ChangeCommand, OpenedAndCappedAndClosed) {
   ASSERT_EQ(run({"change", handle, "split", "u=0.5", "--out", slit}).code, exit_done);
   ASSERT_EQ(run({"change", slit, "close", "u", "--out", closed}).code, exit_done);
   EXPECT_TRUE(surface_of(place.path("closed.json")).u.is_periodic());
+  const auto knots_at_seam = [&] {
+    return knot_multiplicities(surface_of(place.path("closed.json")).u).front().multiplicity;
+  };
+  EXPECT_EQ(knots_at_seam(), 1);
+  ASSERT_EQ(run({"change", slit, "close", "u", "--continuity", "C0", "--out", closed}).code, exit_done);
+  EXPECT_EQ(knots_at_seam(), 3);
 }
 
 // A thickness would keep what closed from being sculpted.
@@ -327,6 +359,10 @@ TEST(ChangeCommand, RefusesInOneLine) {
     EXPECT_NE(outcome.err.find(told), std::string::npos) << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(out));
   }
+  const Outcome seamless = run({"change", handle, "--continuity", "C1", "simplify", "--out", out});
+  EXPECT_EQ(seamless.code, exit_wrong_use);
+  EXPECT_TRUE(is_clean_failure(seamless)) << seamless.err;
+  EXPECT_NE(seamless.err.find("is of the seam that 'close' makes"), std::string::npos) << seamless.err;
   const Outcome second = run({"change", handle, "exchange", "--body", "2", "--out", out});
   EXPECT_EQ(second.code, exit_failed);
   EXPECT_NE(second.err.find("has 1 body, and --body names 2"), std::string::npos) << second.err;

@@ -42,7 +42,7 @@ TEST(ChosenEdges, ThatContradictEachOtherAreRefused) {
   EXPECT_NE(ring.find("patch 1's v_start and patch 2's v_end cannot be joined"), std::string::npos) << ring;
 }
 
-TEST(FoundEdges, OfARingOfSheetsAreToldOf) {
+TEST(FoundEdges, OfARingOfSheetsCloseItAround) {
   std::vector<Surface> parts;
   const Surface whole = ring_strip(0.0, 0.03, 16, 0.0);
   for (const double start : {0.0, 0.25, 0.5, 0.75}) {
@@ -50,7 +50,12 @@ TEST(FoundEdges, OfARingOfSheetsAreToldOf) {
   }
   const auto merged = merge(parts, request_of(2));
   ASSERT_TRUE(merged.ok()) << merged.error().message;
-  EXPECT_EQ(merged->left_open.size(), 1U);
+  EXPECT_TRUE(merged->left_open.empty());
+  ASSERT_TRUE(merged->surface.u.is_periodic());
+  EXPECT_LT(merged->deviation_m, 1e-12);
+  for (double u = 0.0; u < 1.0; u += 0.03) {
+    EXPECT_LT((position(merged->surface, u, 0.4) - position(whole, u, 0.4)).norm(), 1e-12);
+  }
   EXPECT_TRUE(merge({parts[0], parts[1]}, request_of(2))->left_open.empty());
 }
 

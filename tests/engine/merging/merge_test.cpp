@@ -85,7 +85,7 @@ TEST(Merge, GridsInAnyOrderAndHeldInAnyWay) {
     const auto merged = merge(parts, request_of(2));
     ASSERT_TRUE(merged.ok()) << merged.error().message;
     EXPECT_LT(largest_difference(whole, merged->surface), 1e-11);
-    EXPECT_EQ(merged->joints.size(), 8u);  // six along v, two along u
+    EXPECT_EQ(merged->joints.size(), 12u);  // six along each
   }
 }
 
