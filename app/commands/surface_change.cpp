@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/commands/option_values.h"
+#include "engine/bspline/knot_removal.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/excerpt.h"
 #include "engine/merging/seam.h"
@@ -120,6 +121,16 @@ Result<ChangedSurfaces> insert(const Surface& surface, const AskedChange& asked,
   return exactly(insert_knot(surface, asked.direction, asked.parameter, asked.number), true);
 }
 
+Result<ChangedSurfaces> remove(const Surface& surface, const AskedChange& asked, double tolerance_m) {
+  auto fewer = without_knot(surface, asked.direction, asked.parameter, asked.number);
+  if (fewer && fewer->deviation_m > tolerance_m) {
+    return Error{"to take the knot at " + number_text(asked.parameter) + " out leaves a deviation of " +
+                 short_length_text(fewer->deviation_m) + "; allow a larger tolerance than " +
+                 short_length_text(tolerance_m) + ", or take it out fewer times"};
+  }
+  return nearly(std::move(fewer));
+}
+
 Result<ChangedSurfaces> set_degree(const Surface& surface, const AskedChange& asked, double tolerance_m) {
   const KnotVector& knots = knots_along(surface, asked.direction);
   if (asked.number >= knots.degree()) {
@@ -208,6 +219,8 @@ const std::vector<Change>& all_changes() {
       {ChangeKind::split, place, 1, split, nullptr, "split", "v=0.5",
        "cut in two there, or open around where it is closed"},
       {ChangeKind::insert, knots, 1, insert, nullptr, "insert", "v=0.5 [2]", "a knot, so many times; exact"},
+      {ChangeKind::remove, knots, 1, remove, nullptr, "remove", "v=0.5 [2]",
+       "a knot, so many times, within the tolerance"},
       {ChangeKind::degree, degree, 2, set_degree, nullptr, "degree", "v 5",
        "raise the degree (exact) or lower it within the tolerance"},
       {ChangeKind::simplify, none, 0, simplify, nullptr, "simplify", "",

@@ -18,14 +18,14 @@ struct ChangedSurfaces {
   bool keeps_parameters = true;  // so that regions, loads and supports stay where they were
 };
 
-enum class ChangeKind { split, insert, degree, simplify, reverse, exchange, seam, close, cap, open };
+enum class ChangeKind { split, insert, remove, degree, simplify, reverse, exchange, seam, close, cap, open };
 
 // What the words mean; only what the kind asks for has a meaning.
 struct AskedChange {
   ChangeKind kind = ChangeKind::simplify;
   Direction direction = Direction::u;
   double parameter = 0.0;  // of the direction
-  int number = 1;          // a degree, or how many knots
+  int number = 1;          // a degree, or how many copies of a knot
   Side side = Side::v_end;
   double height_m = 0.0;  // of a cap
   int continuity = 2;     // of the seam where a direction is closed

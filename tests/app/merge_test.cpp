@@ -263,6 +263,14 @@ TEST(ChangeCommand, EachChangeDoesWhatItSays) {
   change({"insert", "v=33", "2"});
   expect_same_surface(1e-15);
   EXPECT_EQ(after().v.control_point_count(), before.v.control_point_count() + 2);
+  const std::string finer = place.text("finer.json");
+  ASSERT_EQ(run({"change", handle, "insert", "v=33", "2", "--out", finer}).code, exit_done);
+  const Outcome removed =
+      run({"change", finer, "remove", "v=33", "2", "--out", place.text("out.json"), "--json"});
+  ASSERT_EQ(removed.code, exit_done) << removed.err;
+  EXPECT_LT(json_of(removed.out)["deviation_m"].get<double>(), 1e-12);
+  expect_same_surface(1e-12);
+  EXPECT_EQ(after().v, before.v);
   EXPECT_EQ(change({"degree", "u", "5"})["deviation_m"], 0.0);
   expect_same_surface(1e-15);
   EXPECT_EQ(after().u.degree(), 5);
@@ -342,6 +350,11 @@ TEST(ChangeCommand, RefusesInOneLine) {
       {{"degree", "v", "2.5"}, exit_wrong_use, "not a whole number"},
       {{"insert", "v=50", "9"}, exit_failed, "multiplicity 9"},
       {{"insert", "v=1e-300"}, exit_failed, "too near the one at 0"},
+      {{"remove", "v=50.01"}, exit_failed, "no knot stands at 50.01; the nearest is at"},
+      {{"remove", "v=0"}, exit_failed, "is an end of the direction"},
+      {{"remove", "u=0"}, exit_failed, "the seam takes a knot"},
+      {{"remove", "u=0.5"}, exit_failed, "leaves a deviation of"},
+      {{"remove"}, exit_wrong_use, "is asked for as: remove v=0.5"},
       {{"insert", "v=50", "0"}, exit_wrong_use, "not a whole number from 1"},
       {{"close", "u"}, exit_failed, "closed already"},
       {{"close", "v"}, exit_failed, "apart"},
