@@ -11,6 +11,7 @@
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
 #include "app/commands/surface_change.h"
+#include "app/commands/watched_work.h"
 #include "app/files/document_file.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
@@ -83,13 +84,20 @@ Status change(const ChangeOptions& options, Console& console) {
                  ", and --body names " + std::to_string(options.body)};
   }
   const std::size_t place = static_cast<std::size_t>(options.body) - 1;
-  auto result = changed(bodies[place].surface, bodies[place].trims, asked, options.tolerance_m);
-  if (!result) {
-    return Error{options.model.string() + ": body \"" + bodies[place].name + "\": " + result.error().message};
-  }
+  auto result = WatchedWork(console, "Changing", options.out)
+                    .done([&](const WorkWatch& watch) -> Result<ChangedSurfaces> {
+                      auto made = changed(bodies[place].surface, bodies[place].trims, asked,
+                                          options.tolerance_m, watch);
+                      if (made) return made;
+                      return Error{options.model.string() + ": body \"" + bodies[place].name +
+                                   "\": " + made.error().message};
+                    });
+  if (!result) return result.error();
   const double deviation_m = result->deviation_m;
   std::vector<std::string> remarks;
   replace_body(bodies, place, std::move(result).value(), remarks);
+  // A file becomes whole: what asks to stop now waits for it.
+  const InterruptWatch until_written;
   if (Status written = write_document(document.value(), options.out); !written) return written;
   report(options, bodies, deviation_m, remarks, console);
   return {};

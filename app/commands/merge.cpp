@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,10 +16,10 @@
 #include "app/commands/merge_report.h"
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
+#include "app/commands/watched_work.h"
 #include "app/files/document_file.h"
 #include "app/interrupt.h"
 #include "app/report/fact_sheet.h"
-#include "app/report/progress_bar.h"
 #include "app/report/quantity_text.h"
 #include "engine/excerpt.h"
 #include "engine/merging/intersection_merge.h"
@@ -196,15 +195,12 @@ Result<Parts> read_parts(const MergeOptions& options) {
   return parts;
 }
 
-// Those that cross are merged one after the other, each by its share of the tolerance. `go_on` is asked
-// before each with the share that is done.
-Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options,
-                               const std::function<bool(double)>& go_on) {
+// Those that cross are merged one after the other, each by its share of the tolerance.
+Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options, const WorkWatch& watch) {
   const std::vector<Surface>& patches = parts.patches;
   MergeRequest request = options.request;
   request.join.continuity = continuity_of(options);
-  const Error stopped{"stopped; " + options.out.string() + " was not written"};
-  if (!go_on(0.0)) return stopped;
+  request.join.watch = watch;
   if (!options.crossing) {
     request.join.spent_m = parts.untrimmed_m;
     auto merged = merge(patches, request);
@@ -216,8 +212,9 @@ Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options,
   Merged& merged = outcome.merged;
   request.join.tolerance_m =
       (request.join.tolerance_m - parts.untrimmed_m) / static_cast<double>(patches.size() - 1);
+  const double each = 1.0 / static_cast<double>(patches.size() - 1);
   for (std::size_t p = 1; p < patches.size(); ++p) {
-    if (!go_on(static_cast<double>(p - 1) / static_cast<double>(patches.size() - 1))) return stopped;
+    request.join.watch = watch.part(each * static_cast<double>(p - 1), each * static_cast<double>(p));
     auto next = merge_crossing(merged.surface, patches[p], {request.join, options.fillet_m});
     if (!next) return Error{"patch " + std::to_string(p + 1) + ": " + next.error().message};
     merged.surface = std::move(next->surface);
@@ -230,17 +227,8 @@ Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options,
 }
 
 Result<Outcome> merge_with_progress(const MergeOptions& options, const Parts& parts, Console& console) {
-  InterruptWatch interrupt;
-  ProgressBar bar(console, "Merging", false);
-  const auto go_on = [&](double share) {
-    bar.show(static_cast<std::uint64_t>(1000.0 * share), 1000);
-    return !interrupt.requested();
-  };
-  auto outcome = merged_surface(parts, options, go_on);
-  // The last step may have been long.
-  if (outcome && !go_on(1.0)) outcome = Error{"stopped; " + options.out.string() + " was not written"};
-  if (interrupt.requested()) interrupt.answer();
-  return outcome;
+  WatchedWork work(console, "Merging", options.out);
+  return work.done([&](const WorkWatch& watch) { return merged_surface(parts, options, watch); });
 }
 
 Status merge_models(const MergeOptions& options, Console& console) {

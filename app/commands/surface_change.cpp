@@ -21,6 +21,12 @@ namespace {
 constexpr int control_points_limit = 200;
 constexpr Range<double> cap_height_range_m{0.0, 1.0};
 
+// What a change may cost.
+struct Allowed {
+  double tolerance_m;
+  WorkWatch watch;
+};
+
 // What the words after a change's name mean, in their order.
 using Words = std::vector<Status (*)(const std::string& word, AskedChange& asked)>;
 
@@ -28,7 +34,7 @@ struct Change {
   ChangeKind kind;
   Words words;
   std::size_t fewest_words;
-  Result<ChangedSurfaces> (*make)(const Surface& surface, const AskedChange& asked, double tolerance_m);
+  Result<ChangedSurfaces> (*make)(const Surface& surface, const AskedChange& asked, const Allowed& allowed);
   // Where the change does not keep the parameters, what becomes of a trim loop; null where that is nothing.
   TrimLoop (*turn_trim)(const Surface& surface, const AskedChange& asked, const TrimLoop& loop);
   const char *name, *form, *what;
@@ -95,7 +101,7 @@ Result<ChangedSurfaces> nearly(Result<Approximation> result) {
   return ChangedSurfaces{{std::move(result->surface)}, {}, result->deviation_m, true};
 }
 
-Result<ChangedSurfaces> split(const Surface& surface, const AskedChange& asked, double) {
+Result<ChangedSurfaces> split(const Surface& surface, const AskedChange& asked, const Allowed&) {
   const KnotVector& knots = knots_along(surface, asked.direction);
   if (knots.is_periodic()) {
     // Around a seam there is one cut.
@@ -110,7 +116,7 @@ Result<ChangedSurfaces> split(const Surface& surface, const AskedChange& asked, 
   return ChangedSurfaces{{std::move(first).value(), std::move(second).value()}, {}, 0.0, false};
 }
 
-Result<ChangedSurfaces> insert(const Surface& surface, const AskedChange& asked, double) {
+Result<ChangedSurfaces> insert(const Surface& surface, const AskedChange& asked, const Allowed&) {
   const KnotVector& knots = knots_along(surface, asked.direction);
   const double near = same_knot_share * (knots.domain_end() - knots.domain_start());
   for (const double knot : knots.breakpoints()) {
@@ -121,17 +127,17 @@ Result<ChangedSurfaces> insert(const Surface& surface, const AskedChange& asked,
   return exactly(insert_knot(surface, asked.direction, asked.parameter, asked.number), true);
 }
 
-Result<ChangedSurfaces> remove(const Surface& surface, const AskedChange& asked, double tolerance_m) {
+Result<ChangedSurfaces> remove(const Surface& surface, const AskedChange& asked, const Allowed& allowed) {
   auto fewer = without_knot(surface, asked.direction, asked.parameter, asked.number);
-  if (fewer && fewer->deviation_m > tolerance_m) {
+  if (fewer && fewer->deviation_m > allowed.tolerance_m) {
     return Error{"to take the knot at " + number_text(asked.parameter) + " out leaves a deviation of " +
                  short_length_text(fewer->deviation_m) + "; allow a larger tolerance than " +
-                 short_length_text(tolerance_m) + ", or take it out fewer times"};
+                 short_length_text(allowed.tolerance_m) + ", or take it out fewer times"};
   }
   return nearly(std::move(fewer));
 }
 
-Result<ChangedSurfaces> set_degree(const Surface& surface, const AskedChange& asked, double tolerance_m) {
+Result<ChangedSurfaces> set_degree(const Surface& surface, const AskedChange& asked, const Allowed& allowed) {
   const KnotVector& knots = knots_along(surface, asked.direction);
   if (asked.number >= knots.degree()) {
     const auto higher = elevated(knots, asked.number);
@@ -145,44 +151,49 @@ Result<ChangedSurfaces> set_degree(const Surface& surface, const AskedChange& as
   }
   const auto lower = reduced(knots, asked.number);
   if (!lower) return lower.error();
-  return nearly(approximated(surface, asked.direction, lower.value(), tolerance_m, control_points_limit));
+  return nearly(approximated(surface, asked.direction, lower.value(), allowed.tolerance_m,
+                             control_points_limit, allowed.watch));
 }
 
-Result<ChangedSurfaces> simplify(const Surface& surface, const AskedChange&, double tolerance_m) {
-  auto along_u = without_spare_knots(surface, Direction::u, 0.5 * tolerance_m);
+Result<ChangedSurfaces> simplify(const Surface& surface, const AskedChange&, const Allowed& allowed) {
+  auto along_u =
+      without_spare_knots(surface, Direction::u, 0.5 * allowed.tolerance_m, allowed.watch.part(0.0, 0.5));
   if (!along_u) return along_u.error();
-  auto both = without_spare_knots(along_u->surface, Direction::v, 0.5 * tolerance_m);
+  auto both = without_spare_knots(along_u->surface, Direction::v, 0.5 * allowed.tolerance_m,
+                                  allowed.watch.part(0.5, 1.0));
   if (!both) return both.error();
   return ChangedSurfaces{{std::move(both->surface)}, {}, along_u->deviation_m + both->deviation_m, true};
 }
 
-Result<ChangedSurfaces> reverse(const Surface& surface, const AskedChange& asked, double) {
+Result<ChangedSurfaces> reverse(const Surface& surface, const AskedChange& asked, const Allowed&) {
   return exactly(reversed(surface, asked.direction), false);
 }
 
-Result<ChangedSurfaces> exchange(const Surface& surface, const AskedChange&, double) {
+Result<ChangedSurfaces> exchange(const Surface& surface, const AskedChange&, const Allowed&) {
   return exactly(exchanged(surface), false);
 }
 
-Result<ChangedSurfaces> move_seam(const Surface& surface, const AskedChange& asked, double) {
+Result<ChangedSurfaces> move_seam(const Surface& surface, const AskedChange& asked, const Allowed&) {
   return exactly(with_seam_at(surface, asked.direction, asked.parameter), false);
 }
 
-Result<ChangedSurfaces> close_around(const Surface& surface, const AskedChange& asked, double tolerance_m) {
-  auto closed = closed_around(surface, asked.direction, asked.continuity, tolerance_m);
+Result<ChangedSurfaces> close_around(const Surface& surface, const AskedChange& asked,
+                                     const Allowed& allowed) {
+  auto closed = closed_around(surface, asked.direction, asked.continuity, allowed.tolerance_m, allowed.watch);
   if (!closed) return closed.error();
   return ChangedSurfaces{{std::move(closed->surface)}, {}, closed->deviation_m, true};
 }
 
-Result<ChangedSurfaces> cap(const Surface& surface, const AskedChange& asked, double tolerance_m) {
+Result<ChangedSurfaces> cap(const Surface& surface, const AskedChange& asked, const Allowed& allowed) {
   JoinRequest request;
-  request.tolerance_m = tolerance_m;
+  request.tolerance_m = allowed.tolerance_m;
+  request.watch = allowed.watch;
   auto capped = with_cap(surface, asked.side, asked.height_m, request);
   if (!capped) return capped.error();
   return ChangedSurfaces{{std::move(capped->surface)}, {}, capped->deviation_m, false};
 }
 
-Result<ChangedSurfaces> open_end(const Surface& surface, const AskedChange& asked, double) {
+Result<ChangedSurfaces> open_end(const Surface& surface, const AskedChange& asked, const Allowed&) {
   return exactly(opened_pole(surface, asked.side, HUGE_VAL), false);
 }
 
@@ -260,10 +271,10 @@ Result<AskedChange> parse_change(const std::vector<std::string>& words) {
 }
 
 Result<ChangedSurfaces> changed(const Surface& surface, const std::vector<TrimLoop>& trims,
-                                const AskedChange& asked, double tolerance_m) {
+                                const AskedChange& asked, double tolerance_m, const WorkWatch& watch) {
   const auto change = std::find_if(all_changes().begin(), all_changes().end(),
                                    [&](const Change& one) { return one.kind == asked.kind; });
-  auto result = change->make(surface, asked, tolerance_m);
+  auto result = change->make(surface, asked, {tolerance_m, watch});
   if (!result) return result;
   if (Status turned = turn_trims(*change, surface, asked, trims, result.value()); !turned) {
     return turned.error();

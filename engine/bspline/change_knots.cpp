@@ -238,10 +238,12 @@ Result<Neighbourhood> around_knot(const Surface& surface, Direction direction, i
 
 // What each copy of an inner knot costs with those before it, the cheapest first, as far as that is within
 // the tolerance; found in the knot's neighbourhood alone, which is much faster than over the whole direction.
-std::vector<SpareKnot> spare_knots(const Surface& surface, Direction direction, double tolerance_m) {
+Result<std::vector<SpareKnot>> spare_knots(const Surface& surface, Direction direction, double tolerance_m,
+                                           const WorkWatch& watch) {
   std::vector<SpareKnot> spare;
   const auto all = knot_multiplicities(knots_along(surface, direction));
   for (std::size_t k = 1; k < all.size(); ++k) {
+    if (!watch.goes_on(static_cast<double>(k) / static_cast<double>(all.size()))) return WorkWatch::stopped();
     const auto near = around_knot(surface, direction, static_cast<int>(k));
     if (!near) continue;
     std::vector<SpareKnot> copies;
@@ -302,9 +304,10 @@ Result<Approximation> over_coarser_knots(const Surface& surface, Direction direc
 }
 
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
-                                   double tolerance_m, int largest_count) {
+                                   double tolerance_m, int largest_count, const WorkWatch& watch) {
   KnotVector knots = first;
-  for (;;) {
+  for (RoundsDone done(0.3);; done.step()) {
+    if (!watch.goes_on(done.share())) return WorkWatch::stopped();
     auto fit = fitted(surface, direction, knots);
     if (!fit) return fit.error();
     const double deviation_m = largest_of(fit->difference);
@@ -321,16 +324,21 @@ Result<Approximation> approximated(const Surface& surface, Direction direction, 
   }
 }
 
-Result<Approximation> without_spare_knots(const Surface& surface, Direction direction, double tolerance_m) {
+Result<Approximation> without_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
+                                          const WorkWatch& watch) {
   Approximation best{surface, 0.0};
-  for (;;) {
+  for (RoundsDone done(0.2);; done.step()) {
     // As many of the cheapest as can go together; what they cost then is another matter, so once more.
-    const std::vector<SpareKnot> spare = spare_knots(best.surface, direction, tolerance_m);
+    const auto spare =
+        spare_knots(best.surface, direction, tolerance_m, watch.part(done.share(), done.share()));
+    if (!spare) return spare.error();
     const KnotVector knots = knots_along(best.surface, direction);
-    std::size_t few = 0, many = spare.size();
+    std::size_t few = 0, many = spare->size();
     while (few < many) {
+      done.step();
+      if (!watch.goes_on(done.share())) return WorkWatch::stopped();
       const std::size_t count = (few + many + 1) / 2;
-      const auto fewer = without_knots(knots, std::span(spare).first(count));
+      const auto fewer = without_knots(knots, std::span(spare.value()).first(count));
       auto fit = fewer ? over_coarser_knots(surface, direction, fewer.value()) : fewer.error();
       const bool allowed = fit && fit->deviation_m <= tolerance_m;
       if (allowed) {

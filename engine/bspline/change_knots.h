@@ -9,6 +9,7 @@
 #include "engine/bspline/knot_vectors.h"
 #include "engine/bspline/surface.h"
 #include "engine/result.h"
+#include "engine/work_watch.h"
 
 namespace spoonbill {
 
@@ -32,12 +33,15 @@ Result<Approximation> over_coarser_knots(const Surface& surface, Direction direc
                                          const KnotVector& coarser);
 
 // The same with pieces of `first` halved where the deviation asks, until it is at most `tolerance_m`. Refused
-// where `largest_count` control points do not reach it; the message tells what they reach.
+// where `largest_count` control points do not reach it; the message tells what they reach. Stopped by the
+// watch.
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
-                                   double tolerance_m, int largest_count);
+                                   double tolerance_m, int largest_count, const WorkWatch& watch = {});
 
-// As few knots as the tolerance allows to remove, the cheapest first. Ends and degree stay.
-Result<Approximation> without_spare_knots(const Surface& surface, Direction direction, double tolerance_m);
+// As few knots as the tolerance allows to remove, the cheapest first. Ends and degree stay. Stopped by the
+// watch.
+Result<Approximation> without_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
+                                          const WorkWatch& watch = {});
 
 // The knot vector of a direction.
 const KnotVector& knots_along(const Surface& surface, Direction direction);

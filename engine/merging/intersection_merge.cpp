@@ -26,6 +26,12 @@ namespace {
 // Of the tolerance, for each of the parts, whose edges then meet within twice of it; joining them takes the
 // rest. More for one whose roundings lie askew to its lines, as they do that start beside a pole.
 constexpr double part_share = 0.2, askew_share = 0.5;
+// Of the work, for each of up to three parts.
+constexpr double fitted_share = 0.25;
+
+double between(double from, double to, double share) {
+  return from + (to - from) * share;
+}
 
 using LineShape = std::function<Vector3(double u, const CornerLine& line, double s)>;
 
@@ -55,7 +61,7 @@ Error not_reached(bool with_fillet) {
 }
 
 Result<FittedShape> fitted_part(const Surface& first, CornerLines& lines, const PartShape& part,
-                                bool with_fillet, double tolerance_m) {
+                                bool with_fillet, double tolerance_m, const WorkWatch& watch) {
   bool missed = false;
   ExactShape exact;
   exact.u = {first.u.is_periodic(), {first.u.domain_start(), first.u.domain_end()}};
@@ -75,18 +81,19 @@ Result<FittedShape> fitted_part(const Surface& first, CornerLines& lines, const 
   fit.tolerance_m = share * tolerance_m;
   fit.keeps_parameters = true;
   fit.least_spans = few_spans;
+  constexpr double first_try = 0.5;
+  fit.watch = [&](double done) { return watch.goes_on(first_try * done); };
   auto fitted = fit_shape(exact, fit);
+  if (!watch.goes_on(first_try)) return WorkWatch::stopped();
   if (!fitted && !missed) {
+    fit.watch = [&](double done) { return watch.goes_on(between(first_try, 1.0, done)); };
     fit.least_spans = local_spans;
     fitted = fit_shape(exact, fit);
+    if (!watch.goes_on(1.0)) return WorkWatch::stopped();
   }
   if (missed) return not_reached(with_fillet);
   if (!fitted) return not_fitted(fitted.error(), share, tolerance_m);
   return fitted;
-}
-
-double between(double from, double to, double share) {
-  return from + (to - from) * share;
 }
 
 // From one touching point to the other, about the ball's centre.
@@ -131,7 +138,9 @@ Result<Parts> fitted_parts(const CrossingPatches& patches, const IntersectionReq
   Parts parts;
   for (const PartShape* part : {&of_first, &of_fillet, &of_second}) {
     if (part == &of_fillet && request.fillet_m == 0.0) continue;
-    auto fitted = fitted_part(first, lines, *part, request.fillet_m > 0.0, request.join.tolerance_m);
+    const double done = static_cast<double>(parts.surfaces.size());
+    const WorkWatch watch = request.join.watch.part(done * fitted_share, (done + 1.0) * fitted_share);
+    auto fitted = fitted_part(first, lines, *part, request.fillet_m > 0.0, request.join.tolerance_m, watch);
     if (!fitted) return fitted.error();
     parts.deviation_m = std::max(parts.deviation_m, fitted->deviation_m);
     parts.surfaces.push_back(std::move(fitted->surface));
@@ -184,6 +193,7 @@ Result<IntersectionMerge> merge_outward(const Surface& first, const Surface& sec
   JoinRequest join = request.join;
   join.tolerance_m -= before_m;
   join.blend_m = 0.0;
+  join.watch = request.join.watch.part(3.0 * fitted_share, 1.0);
   join.shared_parameters = true;
   if (request.fillet_m == 0.0) join.continuity = 0;
   auto joined = join_row(std::move(parts->surfaces), join);

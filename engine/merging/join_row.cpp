@@ -136,9 +136,15 @@ double deviation_from_m(const Surface& merged, const Surface& patch) {
   return std::max({at_few, largest, near});
 }
 
-double measured_deviation_m(const Surface& merged, const std::vector<Surface>& placed) {
+Result<double> measured_deviation_m(const Surface& merged, const std::vector<Surface>& placed,
+                                    const WorkWatch& watch) {
   double largest = 0.0;
-  for (const Surface& patch : placed) largest = std::max(largest, deviation_from_m(merged, patch));
+  for (std::size_t p = 0; p < placed.size(); ++p) {
+    if (!watch.goes_on(static_cast<double>(p) / static_cast<double>(placed.size()))) {
+      return WorkWatch::stopped();
+    }
+    largest = std::max(largest, deviation_from_m(merged, placed[p]));
+  }
   return largest;
 }
 
@@ -190,6 +196,9 @@ Status check_folds(const Surface& merged, const std::vector<Surface>& placed,
                "blend, or cut a piece off"};
 }
 
+// Of the work.
+constexpr double prepared_share = 0.3, approximated_share = 0.6;
+
 }  // namespace
 
 Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request) {
@@ -205,9 +214,12 @@ Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request)
   if (!knots) return knots.error();
   if (Status status = check_count(knots.value(), request.largest_count); !status) return status.error();
   auto merged = approximated(whole.value(), Direction::v, knots.value(), tolerance_left_m(row, request),
-                             request.largest_count);
+                             request.largest_count, request.watch.part(0.0, approximated_share));
   if (!merged) return merged.error();
-  const double deviation_m = row.deviation_m + measured_deviation_m(merged->surface, placed.value());
+  const auto measured_m =
+      measured_deviation_m(merged->surface, placed.value(), request.watch.part(approximated_share, 1.0));
+  if (!measured_m) return measured_m.error();
+  const double deviation_m = row.deviation_m + measured_m.value();
   std::vector<Joint> described = described_joints(merged->surface, placed.value(), row);
   if (!request.bridges_may_fold) {
     Status sound = check_folds(merged->surface, placed.value(), described, merged->deviation_m);
@@ -217,9 +229,12 @@ Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request)
 }
 
 Result<Joined> join_row(std::vector<Surface> patches, const JoinRequest& request) {
-  const auto rows = prepare_rows({std::move(patches)}, request);
+  JoinRequest preparing = request, joining = request;
+  preparing.watch = request.watch.part(0.0, prepared_share);
+  joining.watch = request.watch.part(prepared_share, 1.0);
+  const auto rows = prepare_rows({std::move(patches)}, preparing);
   if (!rows) return rows.error();
-  return join_prepared(rows.value()[0], request);
+  return join_prepared(rows.value()[0], joining);
 }
 
 }  // namespace spoonbill

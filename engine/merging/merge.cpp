@@ -63,20 +63,27 @@ Result<std::vector<Joined>> joined_along_v(const Grid& grid, const JoinRequest& 
   for (int a = 0; a < grid.arrangement.rows; ++a) {
     for (int b = 0; b < grid.arrangement.columns; ++b) rows[a].push_back(grid.at(a, b));
   }
-  const auto prepared = prepare_rows(std::move(rows), request);
+  constexpr double prepared_share = 0.3;
+  JoinRequest step = request;
+  step.watch = request.watch.part(0.0, prepared_share);
+  const auto prepared = prepare_rows(std::move(rows), step);
   if (!prepared) return prepared.error();
+  const double each = (1.0 - prepared_share) / static_cast<double>(prepared->size());
   for (const PreparedRow& row : prepared.value()) {
-    auto result = join_prepared(row, request);
+    const double done = prepared_share + each * static_cast<double>(joined.size());
+    step.watch = request.watch.part(done, done + each);
+    auto result = join_prepared(row, step);
     if (!result) return result.error();
     joined.push_back(std::move(result).value());
   }
   return joined;
 }
 
-// Shares the tolerance out to the steps of a merge: each may spend its part of what those before it left.
-class ToleranceShares {
+// Shares the tolerance and the watch out to the steps of a merge: each may spend its part of what those
+// before it left.
+class Steps {
  public:
-  ToleranceShares(const JoinRequest& request, int steps) : request_(request), steps_(steps) {}
+  Steps(const JoinRequest& request, int steps) : request_(request), steps_(steps) {}
 
   JoinRequest next(double spent_m) {
     JoinRequest step = request_;
@@ -84,17 +91,22 @@ class ToleranceShares {
     const double left_m = std::max(0.0, step.tolerance_m - step.spent_m);
     step.spent_m += left_m * (steps_ - 1) / steps_;
     --steps_;
+    const double end = steps_ == 0 ? 1.0 : done_ + (1.0 - done_) / (steps_ + 1);
+    step.watch = request_.watch.part(done_, end);
+    done_ = end;
     return step;
   }
 
  private:
   JoinRequest request_;
   int steps_;
+  double done_ = 0.0;
 };
 
 Result<Approximation> closed_without_folds(const Surface& surface, Direction direction,
                                            const JoinRequest& request) {
-  auto closed = closed_around(surface, direction, request.continuity, request.tolerance_m - request.spent_m);
+  auto closed = closed_around(surface, direction, request.continuity, request.tolerance_m - request.spent_m,
+                              request.watch);
   if (!closed || closed->deviation_m <= rounding_m) return closed;
   const auto place_m = place_of_fold(closed->surface);
   if (!place_m || place_of_fold(surface)) return closed;
@@ -102,17 +114,19 @@ Result<Approximation> closed_without_folds(const Surface& surface, Direction dir
 }
 
 // Where the grid is a ring along the direction.
-void close_ring(const Grid& grid, Direction direction, ToleranceShares& shares, Merged& merged) {
+Status close_ring(const Grid& grid, Direction direction, Steps& steps, Merged& merged) {
   const Arrangement& all = grid.arrangement;
   const bool along_u = direction == Direction::u;
   const std::vector<EdgeMatch>& matches = along_u ? all.closing_u : all.closing_v;
-  if (matches.empty()) return;
-  auto closed = closed_without_folds(merged.surface, direction, shares.next(merged.deviation_m));
+  if (matches.empty()) return {};
+  const JoinRequest step = steps.next(merged.deviation_m);
+  auto closed = closed_without_folds(merged.surface, direction, step);
+  if (!step.watch.goes_on(1.0)) return WorkWatch::stopped();
   if (!closed) {
     for (const EdgeMatch& match : matches) {
       merged.left_open.push_back({match.a, match.b, closed.error().message});
     }
-    return;
+    return {};
   }
   merged.surface = std::move(closed->surface);
   merged.deviation_m += closed->deviation_m;
@@ -125,11 +139,12 @@ void close_ring(const Grid& grid, Direction direction, ToleranceShares& shares, 
         described(grid, along_u ? all.rows - 1 : k, along_u ? k : all.columns - 1, direction, joint));
     merged.joints.back().closes = true;
   }
+  return {};
 }
 
-Result<Merged> joined_grid(const Grid& grid, const JoinRequest& request, ToleranceShares& shares) {
+Result<Merged> joined_grid(const Grid& grid, const JoinRequest& request, Steps& steps) {
   const Arrangement& all = grid.arrangement;
-  auto rows = joined_along_v(grid, all.columns > 1 ? shares.next(0.0) : request);
+  auto rows = joined_along_v(grid, all.columns > 1 ? steps.next(0.0) : request);
   if (!rows) return rows.error();
   Merged merged;
   std::vector<Surface> strips;
@@ -146,7 +161,7 @@ Result<Merged> joined_grid(const Grid& grid, const JoinRequest& request, Toleran
     merged.surface = std::move(rows.value()[0].surface);
     return merged;
   }
-  auto whole = join_row(std::move(strips), shares.next(merged.deviation_m));
+  auto whole = join_row(std::move(strips), steps.next(merged.deviation_m));
   if (!whole) return whole.error();
   merged.deviation_m += whole->deviation_m;
   for (std::size_t a = 0; a < whole->joints.size(); ++a) {
@@ -160,15 +175,16 @@ Result<Merged> joined_grid(const Grid& grid, const JoinRequest& request, Toleran
 
 Result<Merged> merge_grid(const Grid& grid, const JoinRequest& request) {
   const Arrangement& all = grid.arrangement;
-  int steps = 0;
+  int count = 0;
   for (const bool step : {all.columns > 1, all.rows > 1, !all.closing_u.empty(), !all.closing_v.empty()}) {
-    steps += step ? 1 : 0;
+    count += step ? 1 : 0;
   }
-  ToleranceShares shares(request, steps);
-  auto merged = joined_grid(grid, request, shares);
+  Steps steps(request, count);
+  auto merged = joined_grid(grid, request, steps);
   if (!merged) return merged;
-  close_ring(grid, Direction::u, shares, merged.value());
-  close_ring(grid, Direction::v, shares, merged.value());
+  for (const Direction direction : {Direction::u, Direction::v}) {
+    if (Status status = close_ring(grid, direction, steps, merged.value()); !status) return status.error();
+  }
   return merged;
 }
 
@@ -324,10 +340,12 @@ Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request) {
   if (Status status = check(patches, request); !status) return status.error();
   if (patches.size() == 1) return Merged{patches[0], 0.0, {}};
+  if (!request.join.watch.goes_on(0.0)) return WorkWatch::stopped();
   if (Status status = check_different(patches, request.join.tolerance_m); !status) return status.error();
   std::vector<Surface> ready = patches;
   const auto matches = matches_for(ready, request);
   if (!matches) return matches.error();
+  if (!request.join.watch.goes_on(0.0)) return WorkWatch::stopped();
   const auto arrangement = arrange(ready, matches.value());
   if (!arrangement) return arrangement.error();
   if (Status status = check_left_open(arrangement.value(), request.chosen); !status) return status.error();

@@ -170,7 +170,10 @@ Result<std::vector<PreparedRow>> prepare_rows(std::vector<std::vector<Surface>> 
   if (Status status = share_domains(rows); !status) return status.error();
   std::vector<PreparedRow> prepared;
   for (std::vector<Surface>& row : rows) {
-    auto compatible = compatible_along_v(std::move(row), request);
+    const double done = static_cast<double>(prepared.size()), count = static_cast<double>(rows.size());
+    JoinRequest of_row = request;
+    of_row.watch = request.watch.part(done / count, (done + 1.0) / count);
+    auto compatible = compatible_along_v(std::move(row), of_row);
     if (!compatible) return compatible.error();
     prepared.push_back({std::move(compatible->patches), {}, compatible->deviation_m});
   }

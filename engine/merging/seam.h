@@ -9,8 +9,9 @@ namespace spoonbill {
 
 // A periodic direction with the continuity asked at its seam, whose degree is raised where that takes more:
 // exact where derivatives agree there, else fitted with knots added beside the seam until the tolerance
-// holds. Refused: a direction that is closed already, edges that are more than the tolerance apart.
+// holds. Refused: a direction that is closed already, edges that are more than the tolerance apart. Stopped
+// by the watch.
 Result<Approximation> closed_around(const Surface& surface, Direction direction, int continuity,
-                                    double tolerance_m);
+                                    double tolerance_m, const WorkWatch& watch = {});
 
 }  // namespace spoonbill

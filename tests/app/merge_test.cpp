@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <sstream>
 #include <string>
 
 #include "app/program.h"
@@ -137,14 +138,9 @@ TEST(MergeCommand, FacesOfOneSolidStayAFaceOfIt) {
   }
 }
 
-TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
-  const Workplace place;
-  const std::string rod = place.text("rod.json"), ball = place.text("ball.json"),
-                    knob = place.text("knob.json");
-  ASSERT_EQ(run({"new", "cylinder", "--radius", "6mm", "--height", "60mm", "--out", rod}).code, exit_done);
-  ASSERT_EQ(run({"new", "sphere", "--radius", "20mm", "--out", ball}).code, exit_done);
-  // The rod stands in the ball's middle, upright.
-  Document moved = read_document(rod).value();
+// rod.json of the workplace upright in the ball's middle.
+void stand_in_middle(const Workplace& place, const std::string& ball) {
+  Document moved = read_document(place.path("rod.json")).value();
   Vector3 low = moved.scene.bodies[0].surface.net.point(0, 0);
   for (int i = 0; i < moved.scene.bodies[0].surface.net.rows; ++i) {
     for (int j = 0; j < moved.scene.bodies[0].surface.net.columns; ++j) {
@@ -157,6 +153,15 @@ TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   Surface& surface = moved.scene.bodies[0].surface;
   surface = placed(surface, {Vector3(0, middle.y() - low.y(), 0), Quaternion::Identity()});
   place.write("rod.json", json_to_page(document_to_json(moved)));
+}
+
+TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
+  const Workplace place;
+  const std::string rod = place.text("rod.json"), ball = place.text("ball.json"),
+                    knob = place.text("knob.json");
+  ASSERT_EQ(run({"new", "cylinder", "--radius", "6mm", "--height", "60mm", "--out", rod}).code, exit_done);
+  ASSERT_EQ(run({"new", "sphere", "--radius", "20mm", "--out", ball}).code, exit_done);
+  stand_in_middle(place, ball);
   const Outcome outcome =
       run({"merge", rod, ball, "--intersect", "--fillet", "3mm", "--out", knob, "--json"});
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;
@@ -405,6 +410,55 @@ TEST(ChangeCommand, SaysWhatItLeavesOut) {
   EXPECT_EQ(remarks({"change", grip, "insert", "v=40", "--out", out, "--json"}), 0U);
   EXPECT_EQ(remarks({"change", handle, "split", "v=40", "--out", out, "--json"}), 2U);
   EXPECT_EQ(remarks({"merge", grip, bowl, "--out", out, "--json"}), 1U);
+}
+
+// Of a person who watches, and who presses Ctrl+C as soon as the bar shows some progress.
+class ImpatientTerminal : public std::stringbuf {
+ public:
+  int shown_percent() const { return shown_percent_; }
+
+ protected:
+  int sync() override {
+    const std::string text = str();
+    const std::size_t end = text.rfind(" %"), start = text.rfind("] ");
+    if (end == std::string::npos || start == std::string::npos || start > end) return 0;
+    shown_percent_ = std::stoi(text.substr(start + 2, end - start - 2));
+    if (shown_percent_ > 0 && !pressed_) raise(SIGINT);
+    pressed_ = pressed_ || shown_percent_ > 0;
+    return 0;
+  }
+
+ private:
+  int shown_percent_ = 0;
+  bool pressed_ = false;
+};
+
+TEST(MergeCommand, StopsInTheMiddleOfTheWork) {
+  const Workplace place;
+  place.write("out.json", "mine");
+  const std::string rod = place.text("rod.json"), ball = place.text("ball.json"),
+                    out = place.text("out.json"), finer = place.text("finer.json");
+  ASSERT_EQ(run({"new", "cylinder", "--radius", "6mm", "--height", "60mm", "--out", rod}).code, exit_done);
+  ASSERT_EQ(run({"new", "sphere", "--radius", "20mm", "--out", ball}).code, exit_done);
+  stand_in_middle(place, ball);
+  ASSERT_EQ(run({"change", ball, "degree", "v", "4", "--out", finer}).code, exit_done);
+  const std::vector<std::vector<std::string>> commands{{"merge", handle, bowl, "--out", out},
+                                                       {"merge", rod, ball, "--intersect", "--out", out},
+                                                       {"change", finer, "simplify", "--out", out},
+                                                       {"change", handle, "degree", "v", "2", "--out", out}};
+  for (const auto& arguments : commands) {
+    ImpatientTerminal terminal;
+    std::ostream err(&terminal);
+    std::ostringstream said;
+    Console console{said, err, true};
+    EXPECT_EQ(run_program(arguments, console), exit_failed) << arguments[2];
+    EXPECT_GT(terminal.shown_percent(), 0);
+    EXPECT_LT(terminal.shown_percent(), 100) << arguments[2];
+    EXPECT_NE(terminal.str().find("spoonbill: stopped; " + out + " was not written"), std::string::npos)
+        << terminal.str();
+    EXPECT_TRUE(said.str().empty());
+    EXPECT_EQ(std::filesystem::file_size(out), 4U);
+  }
 }
 
 TEST(MergeCommand, StopsWhenAskedTo) {

@@ -1,6 +1,7 @@
 // Rows and grids of patches whose last edges lie on their first.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -197,6 +198,28 @@ TEST(Ring, PipesThatMeetAtBothEndsDoToo) {
     EXPECT_TRUE(merged->surface.u.is_periodic());
     EXPECT_TRUE(merged->surface.v.is_periodic());
     EXPECT_LT(merged->deviation_m, 1e-11);
+  }
+}
+
+TEST(Ring, StopsWhereverItIsAskedTo) {
+  MergeRequest request = request_of(1, 2e-4);
+  std::vector<double> shares;
+  request.join.watch = WorkWatch([&](double share) {
+    shares.push_back(share);
+    return true;
+  });
+  ASSERT_TRUE(merge(square_tube(), request).ok());
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(shares.front(), 0.0);
+  EXPECT_EQ(shares.back(), 1.0);
+  ASSERT_GT(shares.size(), 10U);
+  for (std::size_t stop = 0; stop < shares.size(); ++stop) {
+    std::size_t asked = 0;
+    request.join.watch = WorkWatch([&](double) { return asked++ < stop; });
+    const auto merged = merge(square_tube(), request);
+    ASSERT_FALSE(merged.ok()) << stop;
+    EXPECT_EQ(merged.error().message, "stopped");
+    EXPECT_LE(asked, stop + 2);  // at once
   }
 }
 
