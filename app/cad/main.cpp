@@ -3,6 +3,7 @@
 //
 //   spoonbill-cad read step|iges FILE UNIT_M TOLERANCE_M FACE_LIMIT      UNIT_M 0: as the file declares
 //   spoonbill-cad write step|iges ap214|ap242 mm|cm|m|in                 with frames on its standard input
+//   spoonbill-cad solids CHORD_M TRIANGLE_LIMIT                          the same, and no text but meshes
 #include <fcntl.h>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -22,6 +23,8 @@
 #include "engine/exchange/cad/cad_reader.h"
 #include "engine/exchange/cad/cad_writer.h"
 #include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad/solid_meshes.h"
+#include "engine/exchange/cad_solid_stream.h"
 #include "engine/exchange/cad_stream.h"
 
 namespace spoonbill {
@@ -111,12 +114,27 @@ void answer_write(const std::vector<std::string>& arguments, std::ostream& out) 
   write_frame(out, CadFrameKind::ending, json_to_line(ending));
 }
 
+// Each solid, then which surfaces are in none.
+void answer_solids(const SolidMeshing& meshing, std::ostream& out) {
+  const auto model = model_of(std::cin);
+  if (!model) return write_cad_failure(out, model.error().message);
+  const auto found = mesh_solids(model.value(), meshing, [&](double share) { write_progress(out, share); });
+  if (!found) return write_cad_failure(out, found.error().message);
+  for (const CadSolid& solid : found->solids)
+    write_frame(out, CadFrameKind::solid, cad_solid_to_bytes(solid));
+  const Json ending = {{"loose", found->loose}, {"notes", found->notes}};
+  write_frame(out, CadFrameKind::ending, json_to_line(ending));
+}
+
 int serve(const std::vector<std::string>& arguments) {
   CadReading reading;
   const bool reads = arguments.size() == 6 && arguments[0] == "read" && parse(arguments[3], reading.unit_m) &&
                      parse(arguments[4], reading.tolerance_m) && parse(arguments[5], reading.face_limit);
   const bool writes = arguments.size() == 4 && arguments[0] == "write";
-  if (!reads && !writes) {
+  SolidMeshing meshing;
+  const bool meshes = arguments.size() == 3 && arguments[0] == "solids" &&
+                      parse(arguments[1], meshing.chord_m) && parse(arguments[2], meshing.triangle_limit);
+  if (!reads && !writes && !meshes) {
     std::cerr << "spoonbill-cad: is run by spoonbill itself; see `spoonbill convert --help`\n";
     return wrong_use;
   }
@@ -126,6 +144,7 @@ int serve(const std::vector<std::string>& arguments) {
     prepare_occt();
     if (reads) answer_read(arguments, reading, out);
     if (writes) answer_write(arguments, out);
+    if (meshes) answer_solids(meshing, out);
   } catch (const std::bad_alloc&) {
     write_cad_failure(out, "bad allocation");
   } catch (const std::exception& exception) {

@@ -62,7 +62,8 @@ CommandEntry add_convert(CLI::App& root) {
       "(.stl,\n"
       ".obj, .ply, .3mf). Bodies that close become solids in STEP and IGES, and watertight meshes; each "
       "face\n"
-      "of a CAD file becomes a body, those of one solid too. OUT appears whole or not at all.\n"
+      "of a CAD file becomes a body, those of one solid too, which leave as that solid again where they\n"
+      "close, in a mesh as well; gaps of theirs that are bridged are said. OUT appears whole or not at all.\n"
       "Example: spoonbill convert assets/models/spoon-handle.json handle.step --schema ap242");
   parser->add_option("IN", options->request.in, "A document or a CAD file")->required();
   parser->add_option("OUT", options->request.out, "The file to write; its ending is its format")->required();

@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "app/convert/cad_document.h"
+#include "app/convert/model_meshes.h"
 #include "app/files/output_file.h"
 #include "app/report/quantity_text.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/mesh_export/mesh_writer.h"
-#include "engine/exchange/mesh_export/tessellation.h"
 #include "engine/number_text.h"
 
 namespace spoonbill {
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double usual_chord_m = 5e-5, usual_tolerance_m = 1e-5;
 // Of the whole work; writing takes the rest.
-constexpr double share_of_reading = 0.5;
+constexpr double share_of_reading = 0.5, share_of_solids = 0.7;
 
 enum class ModelKind { document, cad, mesh, unknown };
 
@@ -167,34 +167,44 @@ Status write_model(const CadModel& model, const ConversionRequest& request, cons
   return store(request.out, content->text);
 }
 
+CadChild child_of(const ConversionRequest& request, const ConversionWatch& watch, double from, double to) {
+  CadChild child;
+  child.program = request.cad_program;
+  child.stop = watch.stop;
+  if (watch.progress) {
+    child.progress = [report = watch.progress, from, to](double share) {
+      report(from + share * (to - from));
+    };
+  }
+  return child;
+}
+
 Status write_mesh_file(const CadModel& model, const ConversionRequest& request, const ConversionWatch& watch,
                        ConversionReport& report) {
   const MeshFormat format = mesh_format_of(request.out);
   const LengthUnit unit = request.unit.value_or(format == MeshFormat::ply ? metre : millimetre);
-  std::vector<NamedMesh> meshes;
+  ModelMeshing meshing;
+  meshing.chord_m = request.chord_m.value_or(usual_chord_m);
+  meshing.file = request.out;
+  meshing.child = child_of(request, watch, share_of_reading, share_of_solids);
+  meshing.progress = watch.progress;
+  meshing.progress_from = share_of_solids;
+  auto made = mesh_model(model, meshing);
+  if (!made) return made.error();
+  report.notes.insert(report.notes.end(), made->notes.begin(), made->notes.end());
+  report.chord_error_m = made->chord_error_m;
+  report.meshes = made->meshes.size();
   report.triangles = report.closed_meshes = 0;
-  std::size_t left = exported_triangle_limit;
-  for (const CadSurface& part : model.surfaces) {
-    auto tessellation =
-        tessellate(part.surface, part.trims, request.chord_m.value_or(usual_chord_m), left, watch.stop);
-    if (watch.stop && watch.stop()) return about(request.out, "stopped");
-    if (!tessellation) return about(request.out, "'" + part.name + "': " + tessellation.error().message);
-    *report.triangles += tessellation->mesh.triangles.size();
-    *report.closed_meshes += tessellation->closed ? 1 : 0;
-    left -= tessellation->mesh.triangles.size();
-    report.chord_error_m = std::max(report.chord_error_m, tessellation->chord_error_m);
-    meshes.push_back({part.name, std::move(tessellation->mesh), tessellation->closed});
-    if (watch.progress) {
-      watch.progress(share_of_reading + (1.0 - share_of_reading) * static_cast<double>(meshes.size()) /
-                                            static_cast<double>(model.surfaces.size() + 1));
-    }
+  for (const NamedMesh& mesh : made->meshes) {
+    *report.triangles += mesh.mesh.triangles.size();
+    *report.closed_meshes += mesh.closed ? 1 : 0;
   }
   report.unit_out = unit.name;
   auto out = OutputFile::create(request.out);
   if (!out) return out.error();
   // What the file refuses names it, what the writer refuses does not.
   Status taken;
-  const Status written = write_meshes(meshes, format, unit.metres, [&](std::string_view bytes) {
+  const Status written = write_meshes(made->meshes, format, unit.metres, [&](std::string_view bytes) {
     taken = watch.stop && watch.stop() ? Status(about(request.out, "stopped")) : out->write(bytes);
     return taken;
   });
@@ -225,18 +235,6 @@ Result<ConversionReport> choose_from_document(const ConversionRequest& request) 
   report.unit_in = report.unit_out = millimetre.name;
   report.surfaces = model_of(std::move(document->scene.bodies), told).surfaces;
   return report;
-}
-
-CadChild child_of(const ConversionRequest& request, const ConversionWatch& watch, double from, double to) {
-  CadChild child;
-  child.program = request.cad_program;
-  child.stop = watch.stop;
-  if (watch.progress) {
-    child.progress = [report = watch.progress, from, to](double share) {
-      report(from + share * (to - from));
-    };
-  }
-  return child;
 }
 
 // Into a report that already tells what was read.

@@ -31,9 +31,9 @@ struct ConversionReport {
   std::string unit_in, unit_out;
   bool unit_declared = true;
   std::vector<CadSurface> surfaces;
-  std::optional<int> solids, open_shells;               // of a CAD file that was written
-  std::optional<std::size_t> triangles, closed_meshes;  // of a mesh that was written
-  double chord_error_m = 0.0;                           // that the mesh keeps
+  std::optional<int> solids, open_shells;                       // of a CAD file that was written
+  std::optional<std::size_t> triangles, meshes, closed_meshes;  // of a mesh file that was written
+  double chord_error_m = 0.0;                                   // that the meshes keep
   std::vector<std::string> notes;
 };
 
@@ -42,6 +42,9 @@ struct ConversionWatch {
   std::function<bool()> stop;
 };
 
+// The faces of one solid leave as that solid, in a CAD file and in a mesh, where they close; notes tell where
+// they do not.
+//
 // The file's kind is the ending of its name: .json; .step, .stp, .iges, .igs; .stl, .obj, .ply, .3mf. Nothing
 // stands under the name of `out` before it is whole, and a file that stood there stays as it is when
 // anything fails. Refused: a mesh to come in, two documents unless bodies are chosen, options that say

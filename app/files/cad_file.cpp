@@ -16,6 +16,7 @@
 #include "app/files/foreign_file.h"
 #include "app/process/child_output.h"
 #include "engine/exchange/cad_names.h"
+#include "engine/exchange/cad_solid_stream.h"
 #include "engine/exchange/cad_stream.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/file_format.h"
@@ -241,6 +242,34 @@ Result<CadFileContent> make_cad_file(const CadModel& model, const CadWriting& wr
   if (!read) return read.error();
   if (content.text.empty()) return Error{file.string() + ": the writer made nothing of it"};
   return content;
+}
+
+Result<CadSolids> make_cad_solids(const CadModel& model, const SolidMeshing& meshing,
+                                  const std::filesystem::path& file, const CadChild& child) {
+  const ModelInMemory input(model);
+  if (!input.complete()) return Error{file.string() + ": there is no memory left to mesh it through"};
+  auto output = ChildOutput::start(
+      {program_of(child), "solids", number_text(meshing.chord_m), std::to_string(meshing.triangle_limit)},
+      child.patience, input.descriptor());
+  if (!output) return Error{file.string() + ": " + output.error().message};
+  Conversation conversation(std::move(output).value(), file, child, Conversation::Work::writing);
+  CadSolids found;
+  const auto ending = conversation.listen([&](const CadFrame& frame) -> Status {
+    if (frame.kind != CadFrameKind::solid || found.solids.size() >= model.surfaces.size()) {
+      return not_in_form(file);
+    }
+    auto solid = cad_solid_from_bytes(frame.content, model.surfaces.size(), file.string());
+    if (!solid) return solid.error();
+    found.solids.push_back(std::move(solid).value());
+    return {};
+  });
+  if (!ending) return ending.error();
+  const Status read = read_ending(ending.value(), file, [&](FieldReader& reader) {
+    found.loose = read_places(reader, "loose", model.surfaces.size());
+    found.notes = read_notes(reader);
+  });
+  if (!read) return read.error();
+  return found;
 }
 
 }  // namespace spoonbill

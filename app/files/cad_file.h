@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "engine/exchange/cad_model.h"
+#include "engine/exchange/cad_solid.h"
 #include "engine/result.h"
 
 namespace spoonbill {
@@ -33,5 +34,10 @@ Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReadi
 // The text of a CAD file, to be written whole. `file` is its name in messages.
 Result<CadFileContent> make_cad_file(const CadModel& model, const CadWriting& writing,
                                      const std::filesystem::path& file, const CadChild& child = {});
+
+// Those solids of the model that several of its faces bound, as watertight meshes. `file` is the name of the
+// model in messages. Refused: as make_cad_file() does; more triangles than the limit.
+Result<CadSolids> make_cad_solids(const CadModel& model, const SolidMeshing& meshing,
+                                  const std::filesystem::path& file, const CadChild& child = {});
 
 }  // namespace spoonbill

@@ -82,8 +82,9 @@ void add_conversion_facts(FactSheet& facts, const ConversionReport& report) {
                   " of the surface",
               "triangles", *report.triangles);
     facts.add("Watertight",
-              std::to_string(*report.closed_meshes) + " of " + std::to_string(report.surfaces.size()),
+              std::to_string(*report.closed_meshes) + " of " + std::to_string(report.meshes.value_or(0)),
               "closed_meshes", *report.closed_meshes);
+    facts.add("", "", "meshes", report.meshes.value_or(0));
     facts.add("", "", "chord_error_m", report.chord_error_m);
   }
   for (const std::string& note : report.notes) facts.add("Note", note, "", nullptr);

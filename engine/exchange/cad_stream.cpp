@@ -17,7 +17,7 @@ struct Head {
 };
 
 bool is_known(std::uint64_t letters) {
-  for (const CadFrameKind kind : {CadFrameKind::progress, CadFrameKind::surface, CadFrameKind::file,
+  for (const CadFrameKind kind : {CadFrameKind::progress, CadFrameKind::surface, CadFrameKind::file, CadFrameKind::solid,
                                   CadFrameKind::ending, CadFrameKind::failure}) {
     if (letters == static_cast<std::uint64_t>(kind)) return true;
   }

@@ -20,6 +20,7 @@ enum class CadFrameKind : std::uint64_t {
   progress = 0x676f72706c6e7073,  // "spnlprog" in little-endian order: a share in thousandths
   surface = 0x667275736c6e7073,   // "spnlsurf"
   file = 0x656c69666c6e7073,      // "spnlfile": the text of a CAD file
+  solid = 0x646c6f736c6e7073,     // "spnlsold": what cad_solid_stream.h says
   ending = 0x20646e656c6e7073,    // "spnlend ": what is said of all surfaces together
   failure = 0x6c6961666c6e7073    // "spnlfail": the line that says why there is nothing
 };

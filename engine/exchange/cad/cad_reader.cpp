@@ -134,7 +134,7 @@ void say_solids(const NamedFaces& named, CadModel& model) {
   const std::string faces = std::to_string(named.faces_of_solids);
   model.notes.push_back("the " + faces + " faces of " +
                         (named.solids == 1 ? "a solid" : std::to_string(named.solids) + " solids") +
-                        " come as a body each, not joined");
+                        " come in as a body each; they leave joined where they still close");
 }
 
 // Metres for each of what OpenCASCADE made of the file's numbers, which are millimetres if the unit is right.

@@ -1,5 +1,6 @@
 #include "engine/exchange/cad/joined_faces.h"
 
+#include <BRepAdaptor_Curve.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepClass3d_SolidClassifier.hxx>
@@ -8,8 +9,12 @@
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
 #include <Standard_Failure.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
+#include <TopTools_ListOfShape.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Vertex.hxx>
@@ -19,12 +24,18 @@
 #include <utility>
 
 #include "engine/exchange/cad/body_shape.h"
+#include "engine/exchange/cad/occt_surface.h"
+#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {
 
 // From what files round to what two faces, each approximated, may miss each other by.
 constexpr double tolerances_mm[] = {1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1};
+
+// What two faces that are as near to others as is usual may miss each other by.
+constexpr double expected_gap_m = 2e-5;
+constexpr int gap_samples = 16;
 
 // Sewing makes faces anew, on the same geometry.
 using PartOf = std::map<const Geom_Surface*, std::size_t>;
@@ -100,8 +111,35 @@ void add(const FaceCounts& more, FaceCounts& counts) {
   for (const auto& [part, count] : more) counts[part] += count;
 }
 
+// The points of both faces that the edge between them holds for one.
+double gap_along_m(const TopoDS_Edge& edge, const TopoDS_Face& one, const TopoDS_Face& other) {
+  const BRepAdaptor_Curve here(edge, one), there(edge, other);
+  double widest_mm = 0.0;
+  for (int k = 0; k <= gap_samples; ++k) {
+    const double share = static_cast<double>(k) / gap_samples;
+    const auto at = [share](const BRepAdaptor_Curve& curve) {
+      return curve.Value(curve.FirstParameter() + share * (curve.LastParameter() - curve.FirstParameter()));
+    };
+    widest_mm = std::max(widest_mm, at(here).Distance(at(there)));
+  }
+  return widest_mm / millimetres_per_metre;
+}
+
+double widest_gap_m(const TopoDS_Shape& shape) {
+  TopTools_IndexedDataMapOfShapeListOfShape faces_of_edge;
+  TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces_of_edge);
+  double widest_m = 0.0;
+  for (int k = 1; k <= faces_of_edge.Extent(); ++k) {
+    const TopoDS_Edge& edge = TopoDS::Edge(faces_of_edge.FindKey(k));
+    const TopTools_ListOfShape& faces = faces_of_edge(k);
+    if (BRep_Tool::Degenerated(edge) || faces.Extent() != 2) continue;
+    widest_m = std::max(widest_m, gap_along_m(edge, TopoDS::Face(faces.First()), TopoDS::Face(faces.Last())));
+  }
+  return widest_m;
+}
+
 struct Solids {
-  std::vector<TopoDS_Solid> solids;
+  std::vector<JoinedSolid> solids;
   FaceCounts faces;
 };
 
@@ -118,7 +156,9 @@ Solids solids_of(const std::vector<ClosedShell>& shells) {
       add(cavity.faces, faces);
     }
     if (!BRepCheck_Analyzer(solid).IsValid()) continue;
-    found.solids.push_back(solid);
+    JoinedSolid joined{solid, widest_gap_m(solid), {}};
+    for (const auto& [part, count] : faces) joined.places.push_back(part);
+    found.solids.push_back(std::move(joined));
     add(faces, found.faces);
   }
   return found;
@@ -169,7 +209,30 @@ Result<JoinedFaces> join(const std::vector<const CadSurface*>& parts) {
   return joined;
 }
 
+double explained_gap_m(const std::vector<const CadSurface*>& parts) {
+  double explained_m = expected_gap_m;
+  for (const CadSurface* part : parts) explained_m = std::max(explained_m, 2.0 * part->deviation_m);
+  return explained_m;
+}
+
 }  // namespace
+
+std::vector<std::string> notes_of(const JoinedFaces& joined, const std::string& name,
+                                  const std::vector<const CadSurface*>& parts,
+                                  const std::string& what_becomes_of_loose) {
+  std::vector<std::string> notes;
+  double gap_m = 0.0;
+  for (const JoinedSolid& solid : joined.solids) gap_m = std::max(gap_m, solid.gap_m);
+  if (gap_m > explained_gap_m(parts)) {
+    notes.push_back("the faces of '" + name + "' miss each other by up to " + short_length_text(gap_m) +
+                    "; they are joined over that as if they met");
+  }
+  if (!joined.loose.empty()) {
+    notes.push_back(std::to_string(joined.loose.size()) + " of the " + std::to_string(parts.size()) +
+                    " faces of '" + name + "' enclose nothing together; " + what_becomes_of_loose);
+  }
+  return notes;
+}
 
 Result<JoinedFaces> join_faces(const std::vector<const CadSurface*>& parts) {
   try {

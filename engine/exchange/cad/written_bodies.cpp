@@ -54,16 +54,13 @@ class Collector {
     }
     const auto joined = join_faces(parts);
     if (!joined) return joined.error();
-    for (const TopoDS_Solid& solid : joined->solids) bodies_.push_back({name, solid, true, nullptr});
+    for (const JoinedSolid& solid : joined->solids) bodies_.push_back({name, solid.shape, true, nullptr});
     content_.solids += static_cast<int>(joined->solids.size());
     for (const std::size_t place : joined->loose) {
       if (Status added = add_alone(*parts[place]); !added) return added;
     }
-    if (!joined->loose.empty()) {
-      content_.notes.push_back(std::to_string(joined->loose.size()) + " of the " +
-                               std::to_string(parts.size()) + " faces of '" + name +
-                               "' enclose nothing together; they are written one by one");
-    }
+    const auto notes = notes_of(joined.value(), name, parts, "they are written one by one");
+    content_.notes.insert(content_.notes.end(), notes.begin(), notes.end());
     return {};
   }
 

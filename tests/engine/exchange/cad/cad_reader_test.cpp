@@ -131,7 +131,8 @@ TEST_F(CadReader, AssembliesArePlacedAndNamed) {
   EXPECT_EQ(count("spare wheel"), 3);
   EXPECT_EQ(count("deck"), 6);
   EXPECT_EQ(found.model.notes,
-            std::vector<std::string>{"the 12 faces of 3 solids come as a body each, not joined"});
+            std::vector<std::string>{
+                "the 12 faces of 3 solids come in as a body each; they leave joined where they still close"});
   // To what a cylinder of 5 mm may deviate.
   EXPECT_LT((middle_of(found.surfaces, "wheel") - Vector3(0.1, 0.0, 0.001)).norm(), 2e-5);
   EXPECT_LT((middle_of(found.surfaces, "spare wheel") - Vector3(0.1, 0.0, 0.031)).norm(), 2e-5);

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <TopoDS_Shape.hxx>
+#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "engine/exchange/cad_model.h"
 
 namespace spoonbill {
 
@@ -14,7 +17,14 @@ struct NamedShape {
 
 // Primitives and parts of them, sweeps, lofts, fillets, cuts, shells.
 std::vector<NamedShape> solid_shapes();
+// With cavities.
+std::vector<NamedShape> hollow_solids();
+// A box with a hole drilled through it and an edge rounded.
+TopoDS_Shape drilled_box();
 // Single faces: rational, of high degrees, trimmed, offset, of revolution.
 std::vector<NamedShape> single_faces();
+
+// What comes in of a STEP file that OpenCASCADE writes into the folder. prepare_occt() must have been called.
+CadModel read_through_step(const TopoDS_Shape& shape, const std::filesystem::path& folder);
 
 }  // namespace spoonbill

@@ -1,3 +1,5 @@
+#include <gtest/gtest.h>
+
 #include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
@@ -22,6 +24,7 @@
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepPrimAPI_MakeWedge.hxx>
 #include <GeomAPI_Interpolate.hxx>
+#include <STEPControl_Writer.hxx>
 #include <TColgp_HArray1OfPnt.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_ListOfShape.hxx>
@@ -33,6 +36,8 @@
 #include <gp_GTrsf.hxx>
 #include <numbers>
 
+#include "engine/exchange/cad/cad_reader.h"
+#include "engine/exchange/cad/session.h"
 #include "tests/engine/exchange/cad/occt_shapes.h"
 
 namespace spoonbill {
@@ -217,6 +222,37 @@ std::vector<NamedShape> solid_shapes() {
   add_sweeps(all);
   add_features(all);
   return all;
+}
+
+std::vector<NamedShape> hollow_solids() {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(30, 20, 10).Shape();
+  const TopoDS_Shape inside = BRepPrimAPI_MakeBox(gp_Pnt(2, 2, 2), 26, 16, 6).Shape();
+  const TopoDS_Shape ball = BRepPrimAPI_MakeSphere(gp_Pnt(15, 10, 5), 4).Shape();
+  const TopoDS_Shape around = BRepPrimAPI_MakeSphere(gp_Pnt(15, 10, 5), 9).Shape();
+  return {{"hollow box", BRepAlgoAPI_Cut(box, inside).Shape()},
+          {"box with a bubble", BRepAlgoAPI_Cut(box, ball).Shape()},
+          {"hollow ball", BRepAlgoAPI_Cut(around, ball).Shape()}};
+}
+
+TopoDS_Shape drilled_box() {
+  const TopoDS_Shape box = with_one_fillet(BRepPrimAPI_MakeBox(30, 20, 10).Shape(), 4);
+  const TopoDS_Shape drill =
+      BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(18, 10, -5), gp_Dir(0, 0, 1)), 3, 20).Shape();
+  return BRepAlgoAPI_Cut(box, drill).Shape();
+}
+
+CadModel read_through_step(const TopoDS_Shape& shape, const std::filesystem::path& folder) {
+  choose_unit("mm");
+  const auto file = folder / "in.step";
+  STEPControl_Writer writer;
+  EXPECT_EQ(writer.Transfer(shape, STEPControl_AsIs), IFSelect_RetDone);
+  EXPECT_EQ(writer.Write(file.c_str()), IFSelect_RetDone);
+  std::vector<CadSurface> surfaces;
+  auto model = read_cad(file, {}, [&](CadSurface part) { surfaces.push_back(std::move(part)); });
+  EXPECT_TRUE(model) << model.error().message;
+  if (!model) return {};
+  model->surfaces = std::move(surfaces);
+  return std::move(model).value();
 }
 
 }  // namespace spoonbill

@@ -1,19 +1,15 @@
 // Solids that come in as a surface for each face and go out as solids again.
 #include <gtest/gtest.h>
 
-#include <BRepAlgoAPI_Cut.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepGProp.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
-#include <BRepPrimAPI_MakeSphere.hxx>
 #include <GProp_GProps.hxx>
 #include <IGESControl_Reader.hxx>
 #include <STEPControl_Reader.hxx>
-#include <STEPControl_Writer.hxx>
 #include <TopExp_Explorer.hxx>
 #include <cmath>
 
-#include "engine/exchange/cad/cad_reader.h"
 #include "engine/exchange/cad/cad_writer.h"
 #include "engine/exchange/cad/session.h"
 #include "tests/engine/exchange/cad/occt_shapes.h"
@@ -49,18 +45,7 @@ class SolidRoundTrip : public testing::Test {
  protected:
   static void SetUpTestSuite() { prepare_occt(); }
 
-  CadModel read(const TopoDS_Shape& shape) const {
-    choose_unit("mm");
-    const auto file = folder_.path() / "in.step";
-    STEPControl_Writer writer;
-    EXPECT_EQ(writer.Transfer(shape, STEPControl_AsIs), IFSelect_RetDone);
-    EXPECT_EQ(writer.Write(file.c_str()), IFSelect_RetDone);
-    std::vector<CadSurface> surfaces;
-    auto model = read_cad(file, {}, [&](CadSurface part) { surfaces.push_back(std::move(part)); });
-    EXPECT_TRUE(model) << model.error().message;
-    model->surfaces = std::move(surfaces);
-    return std::move(model).value();
-  }
+  CadModel read(const TopoDS_Shape& shape) const { return read_through_step(shape, folder_.path()); }
 
   CadFileContent write(const CadModel& model, CadFormat format = CadFormat::step) const {
     const auto content = write_cad(model, {format, StepSchema::ap214, "mm"});
@@ -88,16 +73,6 @@ class SolidRoundTrip : public testing::Test {
 
   TemporaryFolder folder_;
 };
-
-std::vector<NamedShape> hollow_solids() {
-  const TopoDS_Shape box = BRepPrimAPI_MakeBox(30, 20, 10).Shape();
-  const TopoDS_Shape inside = BRepPrimAPI_MakeBox(gp_Pnt(2, 2, 2), 26, 16, 6).Shape();
-  const TopoDS_Shape ball = BRepPrimAPI_MakeSphere(gp_Pnt(15, 10, 5), 4).Shape();
-  const TopoDS_Shape around = BRepPrimAPI_MakeSphere(gp_Pnt(15, 10, 5), 9).Shape();
-  return {{"hollow box", BRepAlgoAPI_Cut(box, inside).Shape()},
-          {"box with a bubble", BRepAlgoAPI_Cut(box, ball).Shape()},
-          {"hollow ball", BRepAlgoAPI_Cut(around, ball).Shape()}};
-}
 
 TEST_F(SolidRoundTrip, SolidsOfManyFacesComeBackWhole) {
   for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {

@@ -1,0 +1,156 @@
+// Documents whose bodies are faces of one solid, as CAD parts come in: converted and checked as that solid.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <map>
+#include <sstream>
+#include <utility>
+
+#include "app/program.h"
+#include "engine/exchange/document.h"
+#include "tests/app/process.h"
+#include "tests/engine/exchange/sample_document.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double metres_per_mm = 1e-3;
+
+// From a corner along two sides, whose cross product points outwards.
+Surface plate(const Vector3& corner_mm, const Vector3& u_mm, const Vector3& v_mm) {
+  ControlNet net(2, 2);
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) net.set_point(i, j, metres_per_mm * (corner_mm + i * u_mm + j * v_mm));
+  }
+  const KnotVector knots = KnotVector::clamped_uniform(1, 2).value();
+  return make_surface(knots, knots, std::move(net)).value();
+}
+
+// Of 30 x 20 x 10 mm, six bodies; the top is that much too high.
+Document box_of_faces(double too_high_mm = 0.0) {
+  const Vector3 x(30, 0, 0), y(0, 20, 0), z(0, 0, 10), none = Vector3::Zero();
+  const std::array<Surface, 6> faces = {plate(z + Vector3(0, 0, too_high_mm), x, y),
+                                        plate(none, y, x),
+                                        plate(none, x, z),
+                                        plate(y, z, x),
+                                        plate(none, z, y),
+                                        plate(x, y, z)};
+  Document document = sample_document();
+  const Body like = document.scene.bodies[0];
+  document.scene.bodies.clear();
+  for (const Surface& face : faces) {
+    Body body = like;
+    body.name = "face " + std::to_string(document.scene.bodies.size() + 1);
+    body.surface = face;
+    body.solid = "bracket";
+    document.scene.bodies.push_back(std::move(body));
+  }
+  return document;
+}
+
+class JoinedSolids : public testing::Test {
+ protected:
+  void save(const std::string& name, const Document& document) const {
+    place_.write(name, json_to_page(document_to_json(document)));
+  }
+
+  static Json facts_of(std::vector<std::string> arguments) {
+    arguments.push_back("--json");
+    const Outcome outcome = run_process(SPOONBILL_PROGRAM, arguments);
+    EXPECT_EQ(outcome.code, exit_done) << outcome.err;
+    return json_of(outcome.out);
+  }
+
+  Json convert(const std::string& in, const std::string& out) const {
+    return facts_of({"convert", place_.text(in), place_.text(out)});
+  }
+
+  Workplace place_;
+};
+
+// In the file's own unit; -1 where some edge is not in two triangles, once each way round.
+double volume_of_watertight_obj(const std::string& text) {
+  std::istringstream lines(text);
+  std::vector<Vector3> points;
+  std::map<std::pair<int, int>, int> ways;
+  double volume = 0.0;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string kind;
+    words >> kind;
+    if (kind == "v") {
+      Vector3 point;
+      words >> point.x() >> point.y() >> point.z();
+      points.push_back(point);
+    } else if (kind == "f") {
+      std::array<int, 3> corners{};
+      for (int& corner : corners) words >> corner;
+      for (std::size_t k = 0; k < 3; ++k) ++ways[{corners[k], corners[(k + 1) % 3]}];
+      const auto at = [&](int corner) { return points[static_cast<std::size_t>(corner) - 1]; };
+      volume += at(corners[0]).dot(at(corners[1]).cross(at(corners[2]))) / 6.0;
+    }
+  }
+  for (const auto& [way, count] : ways) {
+    if (count != 1 || !ways.contains({way.second, way.first})) return -1.0;
+  }
+  return volume;
+}
+
+TEST_F(JoinedSolids, LeaveAsOneWatertightMesh) {
+  save("box.json", box_of_faces());
+  convert("box.json", "box.step");
+  for (const char* in : {"box.json", "box.step"}) {
+    for (const char* out : {"box.stl", "box.obj", "box.ply", "box.3mf"}) {
+      SCOPED_TRACE(std::string(in) + " to " + out);
+      const Json facts = convert(in, out);
+      EXPECT_EQ(facts["meshes"], 1);
+      EXPECT_EQ(facts["closed_meshes"], 1);
+      EXPECT_EQ(facts["triangles"], 12);
+      // Of what comes in alone.
+      EXPECT_EQ(facts["notes"].size(), std::string(in) == "box.step" ? 1u : 0u) << facts["notes"];
+    }
+    EXPECT_NEAR(volume_of_watertight_obj(content_of(place_.path("box.obj"))), 6000.0, 1e-6);
+    EXPECT_NE(content_of(place_.path("box.obj")).find("o bracket"), std::string::npos);
+  }
+}
+
+TEST_F(JoinedSolids, StandBesideOtherBodiesInTheirOrder) {
+  Document document = box_of_faces();
+  document.scene.bodies.insert(document.scene.bodies.begin() + 3, sample_document().scene.bodies[0]);
+  save("both.json", document);
+  const Json facts = convert("both.json", "both.obj");
+  EXPECT_EQ(facts["meshes"], 2);
+  EXPECT_EQ(facts["closed_meshes"], 2);
+  const std::string text = content_of(place_.path("both.obj"));
+  EXPECT_LT(text.find("o bracket"), text.find("o " + document.scene.bodies[3].name));
+}
+
+TEST_F(JoinedSolids, FacesThatDoNotCloseAreMeshesEachWithANote) {
+  Document document = box_of_faces();
+  document.scene.bodies.pop_back();
+  save("open.json", document);
+  const Json facts = convert("open.json", "open.stl");
+  EXPECT_EQ(facts["meshes"], 5);
+  EXPECT_EQ(facts["closed_meshes"], 0);
+  EXPECT_EQ(
+      facts["notes"],
+      Json::array({"5 of the 5 faces of 'bracket' enclose nothing together; each is a mesh of its own"}));
+}
+
+// Beyond what two approximated faces may miss each other by.
+TEST_F(JoinedSolids, AGapThatIsBridgedIsSaid) {
+  save("gap.json", box_of_faces(0.05));
+  for (const char* out : {"gap.step", "gap.igs", "gap.stl"}) {
+    SCOPED_TRACE(out);
+    EXPECT_EQ(
+        convert("gap.json", out)["notes"],
+        Json::array({"the faces of 'bracket' miss each other by up to 0.05 mm; they are joined over that "
+                     "as if they met"}));
+  }
+  EXPECT_EQ(convert("gap.json", "gap.step")["solids"], 1);
+  save("near.json", box_of_faces(0.015));
+  EXPECT_TRUE(convert("near.json", "near.step")["notes"].empty());
+}
+
+}  // namespace
+}  // namespace spoonbill
