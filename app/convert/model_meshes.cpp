@@ -67,6 +67,13 @@ class Mesher {
     }
     for (const CadSolid& solid : found->solids) triangles_ += solid.mesh.triangles.size();
     made_.notes = found->notes;
+    const auto loose = std::count_if(found->loose.begin(), found->loose.end(), [&](std::size_t place) {
+      return is_face_of_solid(model_.surfaces[place]);
+    });
+    if (loose > 0) {
+      made_.notes.push_back("faces that are joined to no solid: " + std::to_string(loose) +
+                            ", each a mesh of its own");
+    }
     return std::move(found).value();
   }
 

@@ -92,8 +92,8 @@ void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector
   json["centre_of_mass_m"] = numbers(centre_m);
 }
 
-void add_content(FactSheet& facts, const Body& body, const TrimmedArea& area, const SurfaceCheck& check,
-                 Json& json) {
+void add_content(FactSheet& facts, const Body& body, CheckedAs as, const TrimmedArea& area,
+                 const SurfaceCheck& check, Json& json) {
   facts.add("  Area", area_text(check.mass.area_m2), "", nullptr);
   json["area_m2"] = check.mass.area_m2;
   if (body.shell_thickness_m) {
@@ -102,7 +102,7 @@ void add_content(FactSheet& facts, const Body& body, const TrimmedArea& area, co
     json["shell_thickness_m"] = *body.shell_thickness_m;
     return add_mass(facts, body, shell.volume_m3, shell.middle_m, json);
   }
-  if (!check.encloses()) return;
+  if (!check.encloses() || as == CheckedAs::face) return;
   json["normals_outward"] = check.mass.volume_m3 > 0.0;
   add_mass(facts, body, std::abs(check.mass.volume_m3), check.mass.middle_m, json);
   add_thickness(facts, check, json);
@@ -126,9 +126,7 @@ void add_places(const SurfaceCheck& check, Json& json) {
   }
 }
 
-}  // namespace
-
-std::vector<std::string> problems_of(const Body& body, const SurfaceCheck& check) {
+std::vector<std::string> closing_problems(const Body& body, const SurfaceCheck& check) {
   std::vector<std::string> problems;
   const bool closed = check.closing.closedness == Closedness::solid;
   if (check.is_trimmed && !body.shell_thickness_m) {
@@ -138,6 +136,14 @@ std::vector<std::string> problems_of(const Body& body, const SurfaceCheck& check
                        ", and no shell with a thickness");
   }
   if (check.encloses() && !(check.mass.volume_m3 > 0.0)) problems.emplace_back("its normals point inwards");
+  return problems;
+}
+
+}  // namespace
+
+std::vector<std::string> problems_of(const Body& body, CheckedAs as, const SurfaceCheck& check) {
+  std::vector<std::string> problems =
+      as == CheckedAs::face ? std::vector<std::string>() : closing_problems(body, check);
   if (!check.self_meetings.empty()) {
     problems.push_back("passes through itself in " +
                        count_text(check.self_meetings.size(), "place", "places") + ", one at " +
@@ -159,18 +165,21 @@ std::vector<std::string> problems_of(const Body& body, const SurfaceCheck& check
   return problems;
 }
 
-Json add_check_facts(FactSheet& facts, const Body& body, const TrimmedArea& area, const SurfaceCheck& check) {
-  const std::vector<std::string> problems = problems_of(body, check);
+Json add_check_facts(FactSheet& facts, const Body& body, CheckedAs as, const TrimmedArea& area,
+                     const SurfaceCheck& check) {
+  const std::vector<std::string> problems = problems_of(body, as, check);
   Json json = {{"name", body.name}, {"sound", problems.empty()}, {"problems", problems}};
   facts.add("Body", body.name + ": " + (problems.empty() ? "sound" : "not sound"), "", nullptr);
   for (const std::string& problem : problems) facts.add("  Problem", problem, "", nullptr);
   const std::string trimmed =
       check.is_trimmed ? ", trimmed by " + count_text(body.trims.size(), "loop", "loops") : "";
   facts.add("  Surface", closing_text(check.closing) + trimmed, "", nullptr);
+  if (as == CheckedAs::face) facts.add("  Face of", body.solid, "", nullptr);
+  json["solid"] = body.solid.empty() ? Json(nullptr) : Json(body.solid);
   json["trim_loops"] = body.trims.size();
   json["closedness"] = name_of(check.closing.closedness);
   json["gap_m"] = check.closing.gap_m;
-  add_content(facts, body, area, check, json);
+  add_content(facts, body, as, area, check, json);
   json["curvature"] = curvature_facts(facts, check.curvature);
   json["smallest_convex_radius_m"] = radius_json(check.curvature.largest.curvature_per_m);
   json["smallest_concave_radius_m"] = radius_json(-check.curvature.smallest.curvature_per_m);

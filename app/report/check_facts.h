@@ -10,11 +10,15 @@
 
 namespace spoonbill {
 
+// A face of a closed solid need not close.
+enum class CheckedAs { body, face };
+
 // What keeps the body from being what it says it is, a line each: none where it is sound.
-std::vector<std::string> problems_of(const Body& body, const SurfaceCheck& check);
+std::vector<std::string> problems_of(const Body& body, CheckedAs as, const SurfaceCheck& check);
 
 // Lines go to the sheet, the body's JSON is returned.
 // `area` is what trims keep of the body's surface.
-Json add_check_facts(FactSheet& facts, const Body& body, const TrimmedArea& area, const SurfaceCheck& check);
+Json add_check_facts(FactSheet& facts, const Body& body, CheckedAs as, const TrimmedArea& area,
+                     const SurfaceCheck& check);
 
 }  // namespace spoonbill

@@ -132,9 +132,8 @@ TEST_F(JoinedSolids, FacesThatDoNotCloseAreMeshesEachWithANote) {
   const Json facts = convert("open.json", "open.stl");
   EXPECT_EQ(facts["meshes"], 5);
   EXPECT_EQ(facts["closed_meshes"], 0);
-  EXPECT_EQ(
-      facts["notes"],
-      Json::array({"5 of the 5 faces of 'bracket' enclose nothing together; each is a mesh of its own"}));
+  EXPECT_EQ(facts["notes"], Json::array({"5 of the 5 faces of 'bracket' enclose nothing together",
+                                         "faces that are joined to no solid: 5, each a mesh of its own"}));
 }
 
 // Beyond what two approximated faces may miss each other by.
@@ -150,6 +149,48 @@ TEST_F(JoinedSolids, AGapThatIsBridgedIsSaid) {
   EXPECT_EQ(convert("gap.json", "gap.step")["solids"], 1);
   save("near.json", box_of_faces(0.015));
   EXPECT_TRUE(convert("near.json", "near.step")["notes"].empty());
+}
+
+TEST_F(JoinedSolids, AreCheckedAsOne) {
+  save("box.json", box_of_faces());
+  const Json facts = facts_of({"check", place_.text("box.json")});
+  EXPECT_EQ(facts["sound"], true);
+  ASSERT_EQ(facts["solids"].size(), 1u);
+  const Json& solid = facts["solids"][0];
+  EXPECT_EQ(solid["name"], "bracket");
+  EXPECT_EQ(solid["closed"], true);
+  EXPECT_EQ(solid["bodies"].size(), 6u);
+  // Integrals of planes are exact but for rounding.
+  EXPECT_NEAR(solid["volume_m3"], 6000e-9, 1e-15);
+  EXPECT_NEAR(solid["area_m2"], 2200e-6, 1e-12);
+  const double density = box_of_faces().scene.bodies[0].material.density_kg_per_m3;
+  EXPECT_NEAR(solid["mass_kg"], density * 6000e-9, 1e-12 * density);
+  EXPECT_NEAR(solid["centre_of_mass_m"][0], 0.015, 1e-9);
+  EXPECT_EQ(facts["bodies"][0]["solid"], "bracket");
+  EXPECT_EQ(facts["bodies"][0]["problems"], Json::array());
+  const Outcome lines = run_process(SPOONBILL_PROGRAM, {"check", place_.text("box.json")});
+  EXPECT_NE(lines.out.find("bracket: closed, solid of 6 faces"), std::string::npos) << lines.out;
+}
+
+TEST_F(JoinedSolids, ThatDoNotCloseAreNotSound) {
+  Document document = box_of_faces();
+  document.scene.bodies.pop_back();
+  save("open.json", document);
+  const Json facts = facts_of({"check", place_.text("open.json")});
+  EXPECT_EQ(facts["sound"], false);
+  ASSERT_EQ(facts["solids"].size(), 1u);
+  EXPECT_EQ(facts["solids"][0]["closed"], false);
+  EXPECT_FALSE(facts["solids"][0].contains("volume_m3"));
+  EXPECT_EQ(facts["bodies"][0]["sound"], false);
+}
+
+TEST_F(JoinedSolids, OfSeveralMaterialsHaveNoMass) {
+  Document document = box_of_faces();
+  document.scene.bodies[4].material.density_kg_per_m3 *= 2.0;
+  save("mixed.json", document);
+  const Json facts = facts_of({"check", place_.text("mixed.json")});
+  EXPECT_FALSE(facts["solids"][0].contains("mass_kg"));
+  EXPECT_TRUE(facts["solids"][0].contains("volume_m3"));
 }
 
 }  // namespace

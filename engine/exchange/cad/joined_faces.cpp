@@ -229,7 +229,7 @@ std::vector<std::string> notes_of(const JoinedFaces& joined, const std::string& 
   }
   if (!joined.loose.empty()) {
     notes.push_back(std::to_string(joined.loose.size()) + " of the " + std::to_string(parts.size()) +
-                    " faces of '" + name + "' enclose nothing together; " + what_becomes_of_loose);
+                    " faces of '" + name + "' enclose nothing together" + what_becomes_of_loose);
   }
   return notes;
 }

@@ -30,7 +30,7 @@ Result<JoinedFaces> join_faces(const std::vector<const CadSurface*>& parts);
 
 // What there is to say of the joined faces of the solid of that name, a line each: gaps that were bridged and
 // are wider than two approximated faces explain, and how many faces are loose, with what becomes of those
-// ("they are written one by one").
+// ("; they are written one by one").
 std::vector<std::string> notes_of(const JoinedFaces& joined, const std::string& name,
                                   const std::vector<const CadSurface*>& parts,
                                   const std::string& what_becomes_of_loose);

@@ -18,8 +18,6 @@
 namespace spoonbill {
 namespace {
 
-const char* const meshed_alone = "each is a mesh of its own";
-
 // Of volume and area, to which OpenCASCADE integrates; without being told it misses by a hundredth.
 constexpr double measuring_share = 1e-6;
 // A body whose surface moves by no more than an error loses no more than that from each square metre, but for
@@ -70,11 +68,11 @@ class Mesher {
     }
     const auto joined = join_faces(parts);
     if (!joined) {
-      found_.notes.push_back("'" + name + "': " + joined.error().message + "; " + meshed_alone);
+      found_.notes.push_back("'" + name + "': " + joined.error().message);
       found_.loose.insert(found_.loose.end(), places.begin(), places.end());
       return {};
     }
-    for (std::string& note : notes_of(joined.value(), name, parts, meshed_alone)) {
+    for (std::string& note : notes_of(joined.value(), name, parts, "")) {
       found_.notes.push_back(std::move(note));
     }
     for (const std::size_t loose : joined->loose) found_.loose.push_back(places[loose]);
@@ -91,7 +89,7 @@ class Mesher {
     auto meshed = shape_mesh(joined.shape, left_, joined.gap_m);
     if (!meshed) return Error{"'" + name + "': " + meshed.error().message};
     if (!meshed.value() || !fits(meshed.value().value(), solid)) {
-      found_.notes.push_back("OpenCASCADE finds no watertight mesh of '" + name + "'; " + meshed_alone);
+      found_.notes.push_back("OpenCASCADE finds no watertight mesh of '" + name + "'");
       found_.loose.insert(found_.loose.end(), solid.places.begin(), solid.places.end());
       return {};
     }

@@ -59,7 +59,7 @@ class Collector {
     for (const std::size_t place : joined->loose) {
       if (Status added = add_alone(*parts[place]); !added) return added;
     }
-    const auto notes = notes_of(joined.value(), name, parts, "they are written one by one");
+    const auto notes = notes_of(joined.value(), name, parts, "; they are written one by one");
     content_.notes.insert(content_.notes.end(), notes.begin(), notes.end());
     return {};
   }

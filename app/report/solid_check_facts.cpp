@@ -1,0 +1,72 @@
+#include "app/report/solid_check_facts.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "app/report/quantity_text.h"
+#include "engine/number_text.h"
+#include "engine/place_text.h"
+
+namespace spoonbill {
+namespace {
+
+// What rounding alone leaves between faces that meet.
+constexpr double least_gap_m = 1e-8;
+
+std::string faces_text(std::size_t count) {
+  return "solid of " + count_text(count, "face", "faces");
+}
+
+// Nothing of a solid whose faces are of several materials: which is where, nobody says.
+void add_mass(FactSheet& facts, const CadSolid& solid, const std::vector<Body>& bodies, Json& json) {
+  const Material& material = bodies[solid.places.front()].material;
+  const bool is_one = std::all_of(solid.places.begin(), solid.places.end(), [&](std::size_t place) {
+    const Material& other = bodies[place].material;
+    return other.name == material.name && other.density_kg_per_m3 == material.density_kg_per_m3;
+  });
+  if (!is_one) {
+    facts.add("  Mass", "unknown: its faces are of several materials; give them one", "", nullptr);
+    return;
+  }
+  const double mass_kg = solid.volume_m3 * material.density_kg_per_m3;
+  facts.add("  Mass", grams_text(mass_kg) + " of " + material.name, "", nullptr);
+  json["mass_kg"] = mass_kg;
+  json["materials"] = {material.name};
+}
+
+}  // namespace
+
+Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const std::vector<Body>& bodies) {
+  Json json = {{"name", solid.name}, {"closed", true}, {"bodies", Json::array()}};
+  for (const std::size_t place : solid.places) json["bodies"].push_back(bodies[place].name);
+  facts.add("Solid", solid.name + ": closed, " + faces_text(solid.places.size()), "", nullptr);
+  if (solid.gap_m > least_gap_m) {
+    facts.add("  Gaps", "up to " + short_length_text(solid.gap_m) + " between faces", "", nullptr);
+  }
+  facts.add("  Area", area_text(solid.area_m2), "", nullptr);
+  facts.add("  Volume", volume_text(solid.volume_m3), "", nullptr);
+  json["gap_m"] = solid.gap_m;
+  json["area_m2"] = solid.area_m2;
+  json["volume_m3"] = solid.volume_m3;
+  add_mass(facts, solid, bodies, json);
+  facts.add("  Centre of mass", place_text(solid.middle_m), "", nullptr);
+  json["centre_of_mass_m"] = {solid.middle_m.x(), solid.middle_m.y(), solid.middle_m.z()};
+  return json;
+}
+
+Json add_open_solid_facts(FactSheet& facts, const std::vector<std::size_t>& loose,
+                          const std::vector<Body>& bodies) {
+  std::map<std::string, Json> names;
+  for (const std::size_t place : loose) {
+    if (!bodies[place].solid.empty()) names[bodies[place].solid].push_back(bodies[place].name);
+  }
+  Json all = Json::array();
+  for (const auto& [name, faces] : names) {
+    facts.add("Solid", name + ": not closed, " + faces_text(faces.size()), "", nullptr);
+    all.push_back({{"name", name}, {"closed", false}, {"bodies", faces}});
+  }
+  return all;
+}
+
+}  // namespace spoonbill
