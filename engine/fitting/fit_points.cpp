@@ -8,6 +8,7 @@
 
 #include "engine/collision/meshes/vertex_join.h"
 #include "engine/fitting/nearest_points.h"
+#include "engine/fitting/outliers.h"
 #include "engine/fitting/quantiles.h"
 #include "engine/fitting/side_cutting.h"
 #include "engine/fitting/voxels.h"
@@ -17,9 +18,6 @@ namespace {
 
 constexpr std::size_t least_points = 30;
 constexpr std::size_t neighbours_of_a_node = 9;
-constexpr std::size_t neighbours_of_a_point = 8;
-// Against noise of a scanner, which keeps within three deviations of its neighbours' distances.
-constexpr double outlier_deviations = 6.0;
 
 void join(Scan& scan) {
   const JoinedVertices joined =
@@ -80,8 +78,8 @@ std::vector<double> take_normals(Scan& scan) {
   return weights;
 }
 
-// Thinned to the limit by voxels; `weights` go with their points. Pairs of groups in one triangle remain
-// pairs.
+// Thinned to the limit by voxels; `weights` go with their points: those of a cloud count the points that each
+// stands for. Pairs of groups in one triangle remain pairs.
 void thin(Scan& scan, std::vector<double>& weights, std::vector<std::uint32_t>& stands_for) {
   if (scan.points_m.size() <= fitted_point_limit + fitted_point_limit / 4) return;
   const VoxelGroups groups = group_by_voxels(scan, voxel_side_for(scan, fitted_point_limit));
@@ -92,38 +90,9 @@ void thin(Scan& scan, std::vector<double>& weights, std::vector<std::uint32_t>& 
     for (std::uint32_t& corner : corners) corner = groups.group_of[corner];
     if (corners[0] != corners[1] || corners[1] != corners[2]) thinned.triangles.push_back(corners);
   }
-  // A voxel of a dense place counts as much as one of a thin place.
-  if (scan.triangles.empty()) std::fill(sums.begin(), sums.end(), 1.0);
   for (std::uint32_t& point : stands_for) point = groups.group_of[point];
   scan = std::move(thinned);
   weights = std::move(sums);
-}
-
-// Points whose neighbours are much farther than those of others. None of a mesh.
-std::vector<bool> lie_apart(const Scan& scan) {
-  std::vector<bool> apart(scan.points_m.size(), false);
-  if (!scan.triangles.empty()) return apart;
-  const NearestPoints nearest(scan.points_m);
-  std::vector<NearestPoints::Found> found;
-  std::vector<double> reach(apart.size());
-  for (std::size_t p = 0; p < apart.size(); ++p) {
-    nearest.nearest(scan.points_m[p], neighbours_of_a_point + 1, found);
-    double sum = 0.0;
-    for (const NearestPoints::Found& other : found) sum += other.distance;
-    reach[p] = sum / static_cast<double>(neighbours_of_a_point);
-  }
-  std::vector<double> sorted = reach;
-  const auto at = [&](double share) {
-    const auto place =
-        sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1));
-    std::nth_element(sorted.begin(), place, sorted.end());
-    return *place;
-  };
-  const double median = at(0.5), deviation = std::max((at(0.84) - median), 0.1 * median);
-  for (std::size_t p = 0; p < apart.size(); ++p) {
-    apart[p] = reach[p] > median + outlier_deviations * deviation;
-  }
-  return apart;
 }
 
 void keep_only(FitPoints& fit, const std::vector<bool>& leave_out) {
@@ -229,8 +198,11 @@ Result<FitPoints> make_fit_points(Scan scan) {
   if (lie_on_a_line(scan.points_m)) return Error{"its points all lie on one line, which is no surface"};
   thin(scan, fit.weights, fit.stands_for);
   fit.scan = std::move(scan);
-  const std::vector<bool> apart = lie_apart(fit.scan);
-  if (!is_mesh) keep_only(fit, apart);
+  if (!is_mesh) {
+    keep_only(fit, lie_apart(fit.scan.points_m, fit.weights));
+    // A voxel of a dense place counts as much as one of a thin place.
+    fit.weights.assign(fit.weights.size(), 1.0);
+  }
   make_nodes(fit);
   return fit;
 }

@@ -146,6 +146,33 @@ TEST(FitScan, NoiseIsAveragedAndOutliersLeftOut) {
   EXPECT_LT(fitted.bodies[0].errors.surface_to_data.mean_m, 1.5e-4);
 }
 
+// More points than are fitted: each outlier has a voxel of its own, those of the surface share theirs.
+TEST(FitScan, OutliersOfLargeCloudsAreLeftOut) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  Scan scan = ellipsoid_cloud(600'000, {0.03, 0.03, 0.03});
+  add_outliers(scan, 5, 0.05);
+  const ScanFit fitted = fit(scan, 12);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  // Of 30,000 in a box of 0.06 m, some 8 % lie within 0.5 mm of the sphere, a voxel's side.
+  EXPECT_GT(fitted.outliers, 25'000U);
+  EXPECT_LT(fitted.outliers, 30'000U);
+  EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.03)), 2e-4);
+}
+
+// As a depth camera sees what is far off or turned away: what is sparse is surface all the same.
+TEST(FitScan, SparsePartsOfLargeCloudsAreKept) {
+  Scan scan = random_cloud(300'000, 21, [](double s, double t) { return on_waves(s, t, 0.1, 0.006); });
+  const auto is_sparse = [](const Vector3& p) { return p.x() > 0.06; };
+  leave_out(scan, is_sparse);
+  Scan few = random_cloud(10'000, 22, [](double s, double t) { return on_waves(s, t, 0.1, 0.006); });
+  leave_out(few, [&](const Vector3& p) { return !is_sparse(p); });
+  append(scan, few, Vector3::Zero());
+  const ScanFit fitted = fit(scan, 16);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  EXPECT_LT(fitted.outliers, few.points_m.size() / 100);
+  EXPECT_NEAR(fitted.bodies[0].size_m.x(), 0.1, 1e-3);
+}
+
 // Noise and wrinkles about the poles bend a surface many times as much as its shape does.
 TEST(FitScan, NoiseDoesNotWrinkleTheSurface) {
   for (const Vector3& half_axes : {Vector3(0.03, 0.03, 0.03), Vector3(0.02, 0.025, 0.04)}) {
