@@ -8,6 +8,7 @@
 
 #include "engine/collision/meshes/vertex_join.h"
 #include "engine/fitting/nearest_points.h"
+#include "engine/fitting/normal_signs.h"
 #include "engine/fitting/outliers.h"
 #include "engine/fitting/quantiles.h"
 #include "engine/fitting/side_cutting.h"
@@ -148,19 +149,38 @@ std::vector<NodePair> pairs_of_cloud(const Scan& nodes) {
   return pairs;
 }
 
+// The nodes of a cloud are means of some points, which lie more evenly than these.
+VoxelGroups groups_for_nodes(const Scan& scan) {
+  const std::size_t count = scan.points_m.size();
+  const std::size_t target = scan.triangles.empty() ? std::min(node_target, count / 3) : 4 * node_target;
+  if (count > target) return group_by_voxels(scan, voxel_side_for(scan, std::min(target, node_target)));
+  VoxelGroups groups;
+  groups.count = count;
+  groups.group_of.resize(count);
+  std::iota(groups.group_of.begin(), groups.group_of.end(), 0U);
+  return groups;
+}
+
+// Whether any were turned.
+bool turn_normals(FitPoints& fit, const VoxelGroups& groups, const Scan& nodes) {
+  const std::vector<bool> turned = normals_to_turn(nodes);
+  for (std::size_t p = 0; p < fit.scan.normals.size(); ++p) {
+    if (turned[groups.group_of[p]]) fit.scan.normals[p] = -fit.scan.normals[p];
+  }
+  for (const std::uint32_t point : fit.stands_for) {
+    if (point != no_point && turned[groups.group_of[point]]) ++fit.turned_normals;
+  }
+  return fit.turned_normals > 0;
+}
+
 void make_nodes(FitPoints& fit) {
   const bool is_mesh = !fit.scan.triangles.empty();
-  VoxelGroups groups;
-  // The nodes of a cloud are means of some points, which lie more evenly than these.
-  const std::size_t target = is_mesh ? 4 * node_target : std::min(node_target, fit.scan.points_m.size() / 3);
-  if (fit.scan.points_m.size() > target) {
-    groups = group_by_voxels(fit.scan, voxel_side_for(fit.scan, std::min(target, node_target)));
-  } else {
-    groups.count = fit.scan.points_m.size();
-    groups.group_of.resize(groups.count);
-    std::iota(groups.group_of.begin(), groups.group_of.end(), 0U);
-  }
+  VoxelGroups groups = groups_for_nodes(fit.scan);
   Scan nodes = middles_of(fit.scan, groups);
+  if (!is_mesh && fit.scan.has_normals() && turn_normals(fit, groups, nodes)) {
+    groups = groups_for_nodes(fit.scan);
+    nodes = middles_of(fit.scan, groups);
+  }
   const auto pairs = is_mesh ? pairs_of_mesh(fit.scan, groups.group_of) : pairs_of_cloud(nodes);
   fit.node_of = std::move(groups.group_of);
   fit.node_normals = nodes.has_normals() ? std::move(nodes.normals)

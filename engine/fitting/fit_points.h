@@ -30,11 +30,12 @@ struct FitPoints {
   std::size_t spanning_nodes = 0;      // the last so many nodes have no points: they span holes and gaps
   std::size_t outliers = 0;            // points given that lie apart from all others
   std::size_t joined = 0;              // vertices of a mesh that lay where another did
+  std::size_t turned_normals = 0;      // points given whose normals faced otherwise than those beside them
 };
 
 // Joins the vertices of a mesh, refines its triangles to the nodes' spacing, gives its vertices normals;
-// thins a cloud by voxels and leaves out what lies apart. Refused: fewer than 30 points, all of them in one
-// place or on one line.
+// thins a cloud by voxels, leaves out what lies apart and turns normals that do not agree. Refused: fewer
+// than 30 points, all of them in one place or on one line.
 Result<FitPoints> make_fit_points(Scan scan);
 
 // Makes some of the points themselves the nodes, without neighbours: for clouds whose parameters are known

@@ -82,6 +82,7 @@ Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
   result.islands = islands.islands.size();
   result.joined = points->joined;
   result.outliers = points->outliers;
+  result.turned_normals = points->turned_normals;
   result.dust = islands.dust_points;
   if (islands.islands.empty()) {
     return Error{"its points hang together nowhere; they are too few or too noisy"};

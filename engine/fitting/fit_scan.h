@@ -35,6 +35,9 @@ struct ScanFit {
   std::size_t islands = 0;         // found, whatever was fitted of them
   // Points left out: where another is, apart, in specks, on other islands.
   std::size_t joined = 0, outliers = 0, dust = 0, other_islands = 0;
+  // Points of a cloud whose normals faced otherwise than those beside them and were turned, as where all face
+  // the scanner; zero where they agreed.
+  std::size_t turned_normals = 0;
 };
 
 // The scan's points must be finite. Refused, with what to try instead: too few points, a shape that cannot be

@@ -186,6 +186,65 @@ TEST(FitScan, NoiseDoesNotWrinkleTheSurface) {
   }
 }
 
+Scan egg_with_normals() {
+  const Vector3 semi_axes(0.02, 0.022, 0.03);
+  Scan scan = ellipsoid_cloud(12000, semi_axes);
+  for (Vector3& point : scan.points_m) {
+    scan.normals.push_back(point.cwiseQuotient(semi_axes.cwiseProduct(semi_axes)).normalized());
+    point += Vector3(0.3, 0.0, 0.0);
+  }
+  return scan;
+}
+
+// As scanners' programs write them: towards the scanner, or as it came.
+TEST(FitScan, NormalsThatDoNotAgreeAreMadeTo) {
+  const ScanFit true_fit = fit(egg_with_normals(), 14);
+  ASSERT_EQ(true_fit.bodies.size(), 1U);
+  EXPECT_EQ(true_fit.turned_normals, 0U);
+  Scan towards_origin = egg_with_normals(), random = egg_with_normals();
+  for (std::size_t p = 0; p < random.normals.size(); ++p) {
+    Vector3& normal = towards_origin.normals[p];
+    if (normal.dot(towards_origin.points_m[p]) > 0.0) normal = -normal;
+    if (p * 2654435761U % 1000 < 500) random.normals[p] = -random.normals[p];
+  }
+  for (const Scan* scan : {&towards_origin, &random}) {
+    const ScanFit fitted = fit(*scan, 14);
+    ASSERT_EQ(fitted.bodies.size(), 1U);
+    EXPECT_EQ(fitted.islands, 1U);
+    EXPECT_GT(fitted.turned_normals, 5000U);
+    const FittedBody& body = fitted.bodies[0];
+    EXPECT_EQ(body.points_m.size(), 12000U);
+    EXPECT_EQ(body.kind, ShapeKind::closed);
+    EXPECT_EQ(body.folds.folds, 0U);
+    EXPECT_NEAR(volume_of(body.surface), volume_of(true_fit.bodies[0].surface), 1e-8);
+    EXPECT_LT(body.errors.data_to_surface.p95_m, 1.1 * true_fit.bodies[0].errors.data_to_surface.p95_m);
+  }
+}
+
+// Half of a ball as a bowl with a wall of `wall_m`, of which the points of each face know their normals.
+Scan bowl_with_normals(double wall_m) {
+  Scan scan;
+  for (const double side : {1.0, -1.0}) {
+    const double radius = side > 0.0 ? 0.08 : 0.08 - wall_m;
+    const Scan face = random_cloud(10000, side > 0.0 ? 8 : 9, [&](double s, double t) {
+      const double height = t * radius, out = std::sqrt(radius * radius - height * height);
+      return Vector3(out * std::cos(2.0 * M_PI * s), out * std::sin(2.0 * M_PI * s), -height);
+    });
+    append(scan, face, Vector3::Zero());
+    for (const Vector3& point : face.points_m) scan.normals.push_back(side * point.normalized());
+  }
+  return scan;
+}
+
+// Nodes lie some 4 mm apart: the faces of the walls are nearer to each other than these.
+TEST(FitScan, WallsKeepTheNormalsOfTheirFaces) {
+  for (const double wall : {0.001, 0.002, 0.005}) {
+    const ScanFit fitted = fit(bowl_with_normals(wall), 20, IslandChoice::all);
+    EXPECT_EQ(fitted.turned_normals, 0U) << wall;
+    EXPECT_EQ(fitted.islands, 2U) << wall;
+  }
+}
+
 // What spans the hole faces either way: it must not tell which side is out.
 TEST(FitScan, ClosedShapesFaceOutwardsWhateverWasNotSeen) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
