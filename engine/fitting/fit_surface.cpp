@@ -11,6 +11,7 @@
 #include "engine/bspline/reparameterise.h"
 #include "engine/fitting/closest_parameters.h"
 #include "engine/fitting/nearest_points.h"
+#include "engine/fitting/outer_side.h"
 #include "engine/fitting/refine_knots.h"
 #include "engine/fitting/surface_fitter.h"
 #include "engine/study/enclosed_mass.h"
@@ -203,8 +204,8 @@ bool SurfaceFitter::grow() {
   return true;
 }
 
-// Against the normals of what was scanned (those of nodes that span holes may face either way) or, of a
-// closed shape without them, against its own inside.
+// Against the normals of what was scanned (those of nodes that span holes may face either way) or, without
+// them, against the inside of a closed shape, or the side of an open one that is taken to be out.
 bool SurfaceFitter::faces_inwards() const {
   double along = 0.0;
   for (std::size_t n = 0; n + points_->spanning_nodes < nodes_.uv.size(); ++n) {
@@ -214,7 +215,7 @@ bool SurfaceFitter::faces_inwards() const {
     if (normal.allFinite()) along += normal.dot(points_->node_normals[n]);
   }
   if (along != 0.0) return along < 0.0;
-  return closed() && enclosed_mass(surface_).volume_m3 < 0.0;
+  return closed() ? enclosed_mass(surface_).volume_m3 < 0.0 : faces_inner_side(surface_);
 }
 
 // The first rounds of a thin wall may enclose less than nothing.

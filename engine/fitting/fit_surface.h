@@ -32,7 +32,8 @@ struct FittedSurface {
 // closest points, from few control points to many, knots where errors are; outliers weigh less (Huber 1964).
 // The fairness is the most that points left out of a fit bear; where the surface folds it is raised until it
 // does not, or no further. Of several ways to hold points to their face of a thin wall the best is taken.
-// Closed shapes get outward normals.
+// Closed shapes get outward normals, open ones those of the scan; of a scan without them they face away from
+// a tube's axis and a sheet's hollow side, or towards +z.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings);
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -84,6 +85,39 @@ TEST(FitScan, OpenCylinderIsATube) {
   EXPECT_LT(farthest_off(fitted.bodies[0].surface,
                          [](const Vector3& p) { return std::abs(std::hypot(p.x(), p.y()) - 0.01); }),
             1e-4);
+}
+
+double share_facing(const Surface& surface, const std::function<Vector3(const Vector3&)>& out) {
+  int facing = 0;
+  constexpr int grid = 20;
+  for (int k = 0; k < grid * grid; ++k) {
+    const SurfacePoint at = evaluate(surface, (k / grid + 0.5) / grid, (k % grid + 0.5) / grid);
+    if (at.du.cross(at.dv).dot(out(at.position_m)) > 0.0) ++facing;
+  }
+  return facing / static_cast<double>(grid * grid);
+}
+
+// What is scanned is seen from outside, and clay lies behind its normals.
+TEST(FitScan, OpenShapesWithoutNormalsFaceOutwards) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    Scan tube = random_cloud(4000, seed, [](double s, double t) { return on_cylinder(s, t, 0.01, 0.06); });
+    Scan dome = random_cloud(4000, seed, [](double s, double t) {
+      const double x = 0.06 * (s - 0.5), y = 0.06 * (t - 0.5);
+      return Vector3(0.2 - (x * x + y * y) / 0.1, x, y - 0.1);
+    });
+    Scan flat = random_cloud(4000, seed, [](double s, double t) { return Vector3(0.1 * s, 0.1 * t, 0.3); });
+    if (seed % 2 == 0) {
+      for (Scan* scan : {&tube, &dome, &flat}) std::reverse(scan->points_m.begin(), scan->points_m.end());
+    }
+    const ScanFit tube_fit = fit(tube, 12), dome_fit = fit(dome, 12), flat_fit = fit(flat, 12);
+    ASSERT_EQ(tube_fit.bodies[0].kind, ShapeKind::tube);
+    ASSERT_EQ(dome_fit.bodies[0].kind, ShapeKind::sheet);
+    ASSERT_EQ(flat_fit.bodies[0].kind, ShapeKind::sheet);
+    const auto from_axis = [](const Vector3& p) { return Vector3(p.x(), p.y(), 0.0); };
+    EXPECT_GT(share_facing(tube_fit.bodies[0].surface, from_axis), 0.99) << seed;
+    EXPECT_GT(share_facing(dome_fit.bodies[0].surface, [](auto) { return Vector3::UnitX(); }), 0.99) << seed;
+    EXPECT_GT(share_facing(flat_fit.bodies[0].surface, [](auto) { return Vector3::UnitZ(); }), 0.99) << seed;
+  }
 }
 
 TEST(FitScan, TorusSectorIsATubeAlongItsBend) {
