@@ -223,7 +223,8 @@ Status SurfaceFitter::face_outwards() {
   if (!closed() || enclosed_mass(surface_).volume_m3 >= 0.0) return {};
   surface_ = reversed(surface_, Direction::u);
   for (Vector2& uv : all_.uv) uv.x() = 1.0 - uv.x();
-  folds_ = check_folds(surface_, {all_.uv, all_normals_});
+  for (Vector3& normal : estimated_normals_) normal = -normal;
+  folds_ = find_folds();
   return {};
 }
 

@@ -114,10 +114,10 @@ FoldCheck check_folds(const Surface& surface, const NormalsAtParameters& data) {
   check.span_folds.assign(grid.places.size() / (samples_a_span * samples_a_span), false);
   for (std::size_t i = 0; i < grid.rows; ++i) {
     for (std::size_t j = 0; j < grid.columns; ++j) {
-      const bool folds = data_normals.any() ? data_normals.points_against(grid.places[i * grid.columns + j],
-                                                                          grid.normals[i * grid.columns + j])
-                                            : turns_from_next(grid, surface.u.is_periodic(), 0.0, i, j);
-      if (!folds) continue;
+      const std::size_t k = i * grid.columns + j;
+      const bool against = data_normals.any() && data_normals.points_against(grid.places[k], grid.normals[k]);
+      const bool may_turn = data_normals.any() && !data.are_estimated;
+      if (!against && (may_turn || !turns_from_next(grid, surface.u.is_periodic(), 0.0, i, j))) continue;
       ++check.folds;
       check.span_folds[i / samples_a_span * v_spans + j / samples_a_span] = true;
     }

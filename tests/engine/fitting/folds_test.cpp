@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
+
+#include "engine/fitting/closest_parameters.h"
+#include "engine/fitting/estimated_normals.h"
+#include "tests/engine/fitting/clouds.h"
 
 namespace spoonbill {
 namespace {
@@ -68,6 +73,36 @@ TEST(Folds, WhereItGoesBackItFoldsAndHasCusps) {
     EXPECT_TRUE(check.span_folds[3 * 7 + 3]);
     EXPECT_FALSE(check.span_cusps[0]);
   }
+}
+
+// Over x forth, back below itself and forth again, so that no normal turns much from sample to sample.
+Surface doubled_back() {
+  constexpr int rows = 28;
+  ControlNet net(rows, controls);
+  for (int i = 0; i < rows; ++i) {
+    const double s = i / (rows - 1.0), back = std::clamp((s - 0.4) / 0.2, 0.0, 1.0);
+    const double x = s < 0.4 ? 1.375 * s : s < 0.6 ? 0.55 - 0.5 * (s - 0.4) : 0.45 + 1.375 * (s - 0.6);
+    const double z = 0.1 * (0.5 - back);
+    for (int j = 0; j < controls; ++j) net.set_point(i, j, {x, j / (controls - 1.0), z});
+  }
+  const KnotVector u = KnotVector::clamped_uniform(3, rows).value();
+  const KnotVector v = KnotVector::clamped_uniform(3, controls).value();
+  return make_surface(u, v, std::move(net)).value();
+}
+
+FoldCheck check_without_normals(const FitPoints& points, const Surface& surface) {
+  const ClosestParameters closest(surface);
+  std::vector<Vector2> uv;
+  for (const Vector3& point : points.scan.points_m) uv.push_back(closest.anywhere(point, 4).uv);
+  return check_folds(surface, {uv, estimated_normals(points, surface, uv), true});
+}
+
+TEST(Folds, AreFoundWithoutNormalsWhereTheSurfaceDoublesBackSlowly) {
+  const auto flat = random_cloud(20000, 4, [](double s, double t) { return Vector3(s, t, 0.0); });
+  const FitPoints points = make_fit_points(flat).value();
+  EXPECT_EQ(check_folds(doubled_back(), {}).folds, 0U);  // the surface alone does not tell
+  EXPECT_GT(check_without_normals(points, doubled_back()).folds, 28U);
+  EXPECT_EQ(check_without_normals(points, sheet()).folds, 0U);
 }
 
 TEST(Folds, FewerFoldsAreBetterAndThenFewerCusps) {
