@@ -11,7 +11,7 @@ namespace spoonbill {
 namespace {
 
 // Of the spread along the plane: more is an edge, or two faces in one.
-constexpr double flat_share = 0.3;
+constexpr double flat_share = 0.15;
 constexpr double most_against = 0.2;
 
 // Those about a node, in two steps.

@@ -10,6 +10,7 @@
 
 #include "engine/bspline/reparameterise.h"
 #include "engine/fitting/closest_parameters.h"
+#include "engine/fitting/estimated_normals.h"
 #include "engine/fitting/nearest_points.h"
 #include "engine/fitting/outer_side.h"
 #include "engine/fitting/refine_knots.h"
@@ -223,8 +224,7 @@ Status SurfaceFitter::face_outwards() {
   if (!closed() || enclosed_mass(surface_).volume_m3 >= 0.0) return {};
   surface_ = reversed(surface_, Direction::u);
   for (Vector2& uv : all_.uv) uv.x() = 1.0 - uv.x();
-  for (Vector3& normal : estimated_normals_) normal = -normal;
-  folds_ = find_folds();
+  folds_ = check_folds(surface_, {all_.uv, all_normals_});
   return {};
 }
 
@@ -288,6 +288,7 @@ Status SurfaceFitter::point_rounds() {
 }
 
 // What was held in place, or slid to a place that is nearest only about itself, is measured from anywhere.
+// Estimated normals tell of folds, but do not lead what mends them: on thin walls some are of the other face.
 FittedSurface SurfaceFitter::result() {
   const std::size_t count = points_->scan.points_m.size();
   all_.uv.resize(count);
@@ -299,6 +300,10 @@ FittedSurface SurfaceFitter::result() {
                                       closest.anywhere(all_.points_m[p], projection_steps));
     all_.uv[p] = found.uv;
     all_.distance_m[p] = found.distance_m;
+  }
+  if (all_normals_.empty()) {
+    const std::vector<Vector3> estimated = estimated_normals(*points_, surface_, all_.uv);
+    folds_ = check_folds(surface_, {all_.uv, estimated, true});
   }
   return {std::move(surface_), std::move(all_.uv), std::move(all_.distance_m), std::move(all_.trust),
           std::move(folds_)};

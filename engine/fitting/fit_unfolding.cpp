@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "engine/fitting/estimated_normals.h"
 #include "engine/fitting/refine_knots.h"
 #include "engine/fitting/surface_fitter.h"
 
@@ -26,11 +25,6 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 // Cusps wait until nothing folds: they are the smaller fault.
 const std::vector<bool>& SurfaceFitter::faulty_spans() const {
   return folds_.folds > 0 ? folds_.span_folds : folds_.span_cusps;
-}
-
-FoldCheck SurfaceFitter::find_folds() const {
-  const bool are_estimated = all_normals_.empty();
-  return check_folds(surface_, {all_.uv, are_estimated ? estimated_normals_ : all_normals_, are_estimated});
 }
 
 void SurfaceFitter::stiffen_folds() {
@@ -118,8 +112,7 @@ Status SurfaceFitter::unfold() {
   u_breaks_ = structure_.u.breakpoints();
   v_breaks_ = structure_.v.breakpoints();
   project(all_, false);
-  if (all_normals_.empty()) estimated_normals_ = estimated_normals(*points_, surface_, all_.uv);
-  folds_ = find_folds();
+  folds_ = check_folds(surface_, {all_.uv, all_normals_});
   const Folding folded{surface_, folds_, all_.uv, fairness_};
   std::optional<Folding> best;
   FitQuality best_quality{};
@@ -156,7 +149,7 @@ Status SurfaceFitter::unfold(int relaxing) {
     relax_folds(relaxing);
     if (Status solved = solve(all_); !solved) return solved;
     if (round % 2 == 1) project(all_, false);
-    folds_ = find_folds();
+    folds_ = check_folds(surface_, {all_.uv, all_normals_});
     if (folds_.better_than(least)) {
       if (folds_.folds == 0) {
         project(all_, false);

@@ -86,7 +86,6 @@ class SurfaceFitter {
   Status point_rounds();
   const std::vector<bool>& faulty_spans() const;
   void stiffen_folds();
-  FoldCheck find_folds() const;
   void relax_folds(int rounds);
   bool in_folded_span(const Vector2& uv) const;
   Vector2 kept_inside(Vector2 uv) const;
@@ -107,7 +106,6 @@ class SurfaceFitter {
   std::vector<double> fairness_;  // of each pair of spans
   std::vector<double> node_weights_, all_weights_;
   std::vector<Vector3> all_points_m_, all_normals_;
-  std::vector<Vector3> estimated_normals_;  // of all points where the scan has none, for the count of folds
   FittedData nodes_, all_;
   std::vector<std::pair<Vector3, double>> poles_;  // and their v
   Surface surface_;
