@@ -17,6 +17,7 @@
 
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/ply_check.h"
+#include "engine/exchange/text_mesh_check.h"
 
 namespace spoonbill {
 namespace {
@@ -131,12 +132,18 @@ Result<TriangleMesh> gather(const aiScene& scene) {
   return mesh;
 }
 
+// What Assimp would not miss.
+Status check_whole(const std::filesystem::path& file) {
+  const std::string format = format_of(file);
+  if (format == "ply") return check_ply(file);
+  if (format == "stl") return check_text_stl(file);
+  return format == "obj" ? check_last_obj_line(file) : Status();
+}
+
 }  // namespace
 
 Result<TriangleMesh> import_mesh(const std::filesystem::path& file) {
-  if (format_of(file) == "ply") {
-    if (Status status = check_ply(file); !status.ok()) return status.error();
-  }
+  if (Status status = check_whole(file); !status.ok()) return status.error();
   Assimp::Importer importer;
   importer.SetIOHandler(new OneFile(file.string()));  // the importer's from now on
   keep_importers_of(importer, format_of(file));

@@ -91,6 +91,42 @@ TEST_F(MeshFileTest, ACutBinaryPlyIsToldOfItsCut) {
   }
 }
 
+// Wherever a text is cut, Assimp takes the rest for the whole.
+TEST_F(MeshFileTest, ACutTextStlIsToldOfItsCut) {
+  TriangleMesh one;
+  one.vertices_m = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+  one.triangles = {{0, 1, 2}};
+  std::string text = ascii_stl(one);
+  text = text.substr(0, text.rfind("endsolid")) + "endsolid one\n \n";
+  const std::size_t told_whole = text.rfind("endsolid") + 8;
+  for (std::size_t kept = 1; kept <= text.size(); ++kept) {
+    const std::string file = write("cut.stl", text.substr(0, kept));
+    const auto read = read_mesh_file(file, by_program());
+    ASSERT_EQ(read.ok(), kept >= told_whole) << text.substr(0, kept);
+    if (read) {
+      EXPECT_EQ(read->mesh.triangles.size(), 1U) << kept;
+    } else {
+      const std::string reason = kept < 5 ? "cannot be read as STL" : "it does not end with 'endsolid'";
+      EXPECT_NE(read.error().message.find(reason), std::string::npos) << read.error().message;
+    }
+  }
+}
+
+TEST_F(MeshFileTest, ACutObjIsToldOfItsCutWhereItCanBe) {
+  const std::string start = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
+  for (const char* last : {"f", "f ", "f 1", "f 1//1 3//1", "f 1//1 3//1 ", "f 1//1 3//1 4", "f 1//1 3//1 4/",
+                           "f 1//1 3//1 4//", "f -4//1 -2//1 -", "v 0 1", "vn 1"}) {
+    expect_refusal(write("cut.obj", start + last), "it is cut or damaged");
+  }
+  for (const char* last :
+       {"f 1//1 3//1 4//1", "f 1//1 3//1 4//1\n# the last", "f 1//1 3//1 4//1\n", "g f 1"}) {
+    const auto whole = read_mesh_file(write("whole.obj", start + last), by_program());
+    ASSERT_TRUE(whole) << whole.error().message;
+    EXPECT_EQ(whole->mesh.triangles.size(), last[0] == 'g' ? 1U : 2U) << last;
+  }
+  expect_refusal(write("beyond.obj", start + "f 1//1 3//1 5//1\n"), "");
+}
+
 void expect_box(const std::string& file, const Vector3& size_m, const MeshReading& reading = by_program()) {
   SCOPED_TRACE(file);
   const auto read = read_mesh_file(file, reading);
