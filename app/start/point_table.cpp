@@ -9,6 +9,7 @@
 #include "app/files/length_unit.h"
 #include "engine/excerpt.h"
 #include "engine/exchange/file.h"
+#include "engine/exchange/points/number_lines.h"
 
 namespace spoonbill {
 namespace {
@@ -16,8 +17,6 @@ namespace {
 constexpr std::size_t bytes_limit = std::size_t{16} << 20;
 constexpr std::size_t most_rows = 100000;
 constexpr double farthest_m = 100.0;
-// Some spreadsheets begin a file of UTF-8 with it.
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 std::vector<std::string_view> parts_of(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
@@ -141,8 +140,7 @@ class TableReader {
 Result<PointTable> point_table(const std::string& text, const std::string& source,
                                const std::vector<std::string>& columns, bool with_section) {
   TableReader reader(source, columns, with_section);
-  std::string_view left = text;
-  if (left.starts_with(byte_order_mark)) left.remove_prefix(byte_order_mark.size());
+  std::string_view left = without_byte_order_mark(text);
   while (!left.empty()) {
     const std::size_t end = left.find('\n');
     if (Status taken = reader.take(left.substr(0, end)); !taken) return taken.error();

@@ -8,7 +8,8 @@
 namespace spoonbill {
 namespace {
 
-constexpr std::string_view separators = " \t\r\v\f\n,;";
+constexpr std::string_view blanks = " \t\r\v\f\n";
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 template <class Number>
 double read_as(const char* bytes, bool swapped) {
@@ -22,6 +23,11 @@ double read_as(const char* bytes, bool swapped) {
 
 }  // namespace
 
+std::string_view without_byte_order_mark(std::string_view text) {
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  return text;
+}
+
 std::string_view take_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   std::string_view line = text.substr(0, end);
@@ -30,8 +36,10 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-std::string_view take_word(std::string_view& text) {
-  const auto is_separator = [](char letter) { return separators.find(letter) != std::string_view::npos; };
+std::string_view take_word(std::string_view& text, std::string_view marks) {
+  const auto is_separator = [&](char letter) {
+    return blanks.find(letter) != std::string_view::npos || marks.find(letter) != std::string_view::npos;
+  };
   const char* begin = std::find_if_not(text.data(), text.data() + text.size(), is_separator);
   const char* end = std::find_if(begin, text.data() + text.size(), is_separator);
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));

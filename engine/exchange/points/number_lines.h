@@ -9,11 +9,14 @@
 
 namespace spoonbill {
 
+// Some spreadsheets begin a text of UTF-8 with a mark that says nothing.
+std::string_view without_byte_order_mark(std::string_view text);
+
 // The next line, without its end, taken off the front of the text.
 std::string_view take_line(std::string_view& text);
 
-// The next word between blanks, commas and semicolons, taken off the front; empty at the end.
-std::string_view take_word(std::string_view& text);
+// The next word between blanks, and any of the marks, taken off the front; empty at the end.
+std::string_view take_word(std::string_view& text, std::string_view marks = {});
 
 // "1.5", "-2e3", "nan", "inf"; nothing for a word that is no number.
 std::optional<double> number_of(std::string_view word);

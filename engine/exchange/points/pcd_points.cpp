@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 
+#include "engine/excerpt.h"
 #include "engine/exchange/points/number_lines.h"
 #include "engine/exchange/points/point_cloud.h"
 
@@ -127,6 +128,11 @@ std::array<int, 6> places_of(const std::vector<Field>& fields) {
   return places;
 }
 
+Error number_with_comma(std::uint64_t point, std::string_view word) {
+  return Error{"point " + std::to_string(point + 1) + " has '" + excerpt(word) +
+               "', a number with a comma; write decimal points"};
+}
+
 Error ends_early(std::uint64_t point, std::uint64_t points) {
   return Error{"it ends or is no number at point " + std::to_string(point + 1) + " of " +
                std::to_string(points) + "; it is cut or damaged"};
@@ -164,18 +170,21 @@ Result<PointCloud> text_body(Header header) {
   if (header.points <= point_limit && header.points > held + 1) return ends_early(held, header.points);
   std::vector<double> row(numbers);
   std::uint64_t rows_read = 0;
-  std::string_view rest = header.body;
+  std::string_view rest = header.body, word;
   const auto number = [&](std::uint64_t point, std::size_t field) -> std::optional<double> {
     for (; rows_read <= point; ++rows_read) {
       for (double& value : row) {
-        const auto read = number_of(take_word(rest));
+        word = take_word(rest);
+        const auto read = number_of(word);
         if (!read) return {};
         value = *read;
       }
     }
     return row[header.fields[field].offset];
   };
-  return gather(header, number);
+  auto cloud = gather(header, number);
+  const bool has_comma = !cloud && word.find(',') != std::string_view::npos;
+  return has_comma ? number_with_comma(rows_read, word) : std::move(cloud);
 }
 
 constexpr bool swapped = std::endian::native == std::endian::big;

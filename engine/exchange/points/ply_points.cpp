@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/excerpt.h"
 #include "engine/exchange/points/number_lines.h"
 #include "engine/exchange/points/point_cloud.h"
 
@@ -137,7 +138,8 @@ class Numbers {
 
   bool take(NumberType type, double& number) {
     if (is_text_) {
-      const auto read = number_of(take_word(rest_));
+      word_ = take_word(rest_);
+      const auto read = number_of(word_);
       number = read.value_or(0.0);
       return read.has_value();
     }
@@ -159,15 +161,21 @@ class Numbers {
   }
 
   std::size_t left() const { return rest_.size(); }
+  // The word of a text that was taken last.
+  std::string_view word() const { return word_; }
 
  private:
-  std::string_view rest_;
+  std::string_view rest_, word_;
   bool is_text_, swapped_;
 };
 
-Error ends_early(const Element& element, std::uint64_t row) {
-  return Error{"it ends or is no number within " + std::string(element.name.substr(0, 40)) + " " +
-               std::to_string(row + 1) + " of " + std::to_string(element.rows) + "; it is cut or damaged"};
+Error ends_early(const Element& element, std::uint64_t row, std::string_view word = {}) {
+  const std::string place =
+      excerpt(element.name) + " " + std::to_string(row + 1) + " of " + std::to_string(element.rows);
+  if (word.find(',') != std::string_view::npos) {
+    return Error{place + " has '" + excerpt(word) + "', a number with a comma; write decimal points"};
+  }
+  return Error{"it ends or is no number within " + place + "; it is cut or damaged"};
 }
 
 Status skip_element(Numbers& numbers, const Element& element) {
@@ -175,7 +183,7 @@ Status skip_element(Numbers& numbers, const Element& element) {
   // Rows without properties take no bytes, however many are promised.
   for (std::uint64_t row = 0; row < element.rows && !element.properties.empty(); ++row) {
     for (const Property& property : element.properties) {
-      if (!numbers.take(property, ignored)) return ends_early(element, row);
+      if (!numbers.take(property, ignored)) return ends_early(element, row, numbers.word());
     }
   }
   return {};
@@ -194,7 +202,7 @@ Result<PointCloud> read_vertices(Numbers& numbers, const Element& element) {
   std::vector<double> row(element.properties.size());
   for (std::uint64_t r = 0; r < element.rows; ++r) {
     for (std::size_t p = 0; p < row.size(); ++p) {
-      if (!numbers.take(element.properties[p], row[p])) return ends_early(element, r);
+      if (!numbers.take(element.properties[p], row[p])) return ends_early(element, r, numbers.word());
     }
     const Vector3 normal =
         with_normals ? Vector3(row[columns[3]], row[columns[4]], row[columns[5]]) : Vector3::Zero();

@@ -52,8 +52,10 @@ std::uint64_t ply_face_count(std::string_view bytes);
 Result<PointCloud> pcd_points(std::string_view bytes);
 
 // A point a line: x, y, z between blanks, commas or semicolons; then, where three further columns have the
-// length 1 throughout, a normal. Other columns are passed over, as are comments (#, //) and a first line of
-// words or of one number, the count.
+// length 1 throughout, a normal. Between semicolons "12,5" is a number with a decimal comma. Other columns
+// are passed over, as are comments (#, //), a byte order mark, and before the first point one line of words
+// or of one number, the count. Refused: commas within words between blanks, which may part numbers or be
+// decimal.
 Result<PointCloud> text_points(std::string_view bytes);
 
 // The `v` lines of an OBJ file, whose `vn` lines are normals where there are as many.

@@ -161,6 +161,48 @@ TEST(TextPoints, BlanksCommasHeadersAndNormals) {
   expect_two_points(text_points("1.5;-2.25;3;0;0;1\n2.5;-2.25;3;0;0;1"), true);
 }
 
+TEST(TextPoints, AHeadingStandsAnywhereBeforeTheFirstPoint) {
+  expect_two_points(text_points("# by a scanner\n\nx,y,z\n1.5,-2.25,3\n2.5,-2.25,3\n"), false);
+  expect_two_points(text_points("// by a scanner\n2\n1.5 -2.25 3\n2.5 -2.25 3\n"), false);
+  expect_refusal(text_points("# by a scanner\nx,y,z\n1.5 -2.25 3\nx,y,z\n2.5 -2.25 3\n"), "line 4");
+}
+
+TEST(TextPoints, AByteOrderMarkHidesNoPoint) {
+  const std::string mark = "\xEF\xBB\xBF";
+  expect_two_points(text_points(mark + "1.5 -2.25 3\n2.5 -2.25 3\n"), false);
+  expect_two_points(text_points(mark + "x y z\n1.5 -2.25 3\n2.5 -2.25 3\n"), false);
+  expect_two_points(text_points(mark + "# by a scanner\nx y z\n1.5 -2.25 3\n2.5 -2.25 3\n"), false);
+  expect_two_points(obj_points(mark + "v 1.5 -2.25 3\nv 2.5 -2.25 3\n"), false);
+}
+
+TEST(TextPoints, DecimalCommasStandBetweenSemicolons) {
+  expect_two_points(text_points("x;y;z\n1,5;-2,25;3,0\n2,5;-2,25;3\n"), false);
+  expect_two_points(text_points("1,5; -2,25; 3,0;\r\n2,5 ; -2,25 ; 3e0 ;\r\n"), false);
+  expect_two_points(text_points("1,5;-2,25;3,0;0,0;0,0;1,0\n2,5;-2,25;3,0;0;0;1\n"), true);
+}
+
+TEST(TextPoints, CommasThatPartNumbersStay) {
+  for (const char* text : {"1.5,-2.25,3\n2.5,-2.25,3\n", "1.5, -2.25, 3 \n2.5 ,-2.25 ,3\n",
+                           "1.5,-2.25,3;\n2.5,-2.25,3;\n", "1.5,\t-2.25,\t3,\n 2.5 , -2.25 , 3 , \n"}) {
+    expect_two_points(text_points(text), false);
+  }
+}
+
+// Each may be read in two ways at least.
+TEST(TextPoints, RefusesCommasThatMayPartNumbersOrNot) {
+  for (const char* line : {"12,345 67,890 1,234", "12,345\t67,890\t1,234", "12,345, 67,890, 1,234",
+                           "1,234.5;2.5;3.5", "1,2,3;4,5,6;7,8,9", "0,5;1.5;2"}) {
+    expect_refusal(text_points(std::string("1 2 3\n") + line + "\n"), "line 2 has commas");
+    expect_refusal(text_points(std::string(line) + "\n"), "line 1 has commas");
+  }
+  expect_refusal(obj_points("v 12,345 67,890 1,234\n"), "line 1 is no point");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                            "property float z\nend_header\n1,5 2,5 3,5\n"),
+                 "vertex 1 of 1 has '1,5', a number with a comma");
+  expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1,5 2,5 3,5\n"),
+                 "point 1 has '1,5', a number with a comma");
+}
+
 TEST(TextPoints, RefusesEachDamageWithItsReason) {
   expect_refusal(text_points(""), "has no points");
   expect_refusal(text_points("1 2 3\n4 5\n"), "line 2");
