@@ -80,9 +80,9 @@ int run_program(const std::vector<std::string>& arguments, Console& console) {
   root.set_version_flag("--version", std::string("spoonbill ") + version);
   root.require_subcommand(1);
   const std::vector<CommandEntry> commands = {
-      add_edit(root),    add_replay(root), add_record(root),  add_info(root),     add_sample(root),
-      add_collide(root), add_rest(root),   add_new(root),     add_fit(root),      add_merge(root),
-      add_change(root),  add_check(root),  add_convert(root), add_read_mesh(root)};
+      add_edit(root),    add_replay(root), add_record(root),  add_info(root),      add_sample(root),
+      add_collide(root), add_rest(root),   add_new(root),     add_fit(root),       add_merge(root),
+      add_change(root),  add_check(root),  add_convert(root), add_read_mesh(root), add_read_points(root)};
   hide_types_of_positionals(root);
   try {
     root.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));

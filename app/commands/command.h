@@ -31,6 +31,8 @@ CommandEntry add_change(CLI::App& root);
 CommandEntry add_new(CLI::App& root);
 CommandEntry add_fit(CLI::App& root);
 CommandEntry add_check(CLI::App& root);
-CommandEntry add_read_mesh(CLI::App& root);  // the program's own, not shown
+// The program's own, not shown.
+CommandEntry add_read_mesh(CLI::App& root);
+CommandEntry add_read_points(CLI::App& root);
 
 }  // namespace spoonbill

@@ -19,7 +19,7 @@ Result<TriangleMesh> import(const std::filesystem::path& file) {
   try {
     return import_mesh(file);
   } catch (const std::bad_alloc&) {
-    return Error{"bad allocation"};
+    return Error{bad_allocation};
   }
 }
 

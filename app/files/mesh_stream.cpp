@@ -20,6 +20,22 @@ void write_mesh(std::ostream& out, const TriangleMesh& mesh) {
   out.flush();
 }
 
+void write_cloud(std::ostream& out, const PointCloud& cloud) {
+  const MeshStreamHead head{MeshStreamHead::cloud, cloud.points.size(), cloud.normals.size()};
+  const std::uint64_t skipped = cloud.skipped;
+  write_bytes(out, &head, 1);
+  write_bytes(out, &skipped, 1);
+  write_bytes(out, cloud.points.data(), cloud.points.size());
+  write_bytes(out, cloud.normals.data(), cloud.normals.size());
+  out.flush();
+}
+
+void write_has_faces(std::ostream& out) {
+  const MeshStreamHead head{MeshStreamHead::faces, 0, 0};
+  write_bytes(out, &head, 1);
+  out.flush();
+}
+
 void write_failure(std::ostream& out, const std::string& message) {
   std::string line = message.substr(0, MeshStreamHead::longest_failure);
   std::replace_if(

@@ -1,11 +1,10 @@
 #include "app/files/scan_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
-#include "engine/exchange/file.h"
+#include "app/files/cloud_file.h"
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/points/point_cloud.h"
 #include "engine/number_text.h"
@@ -13,12 +12,6 @@
 
 namespace spoonbill {
 namespace {
-
-constexpr std::size_t header_bytes = 65536;
-
-bool ply_has_faces(const std::filesystem::path& file) {
-  return ply_face_count(first_bytes(file, header_bytes)) > 0;
-}
 
 bool is_in_metres(const std::filesystem::path& file) {
   const std::string format = format_of(file);
@@ -82,14 +75,10 @@ Result<ScanFile> read_mesh_scan(const std::filesystem::path& file, const MeshRea
   return scan;
 }
 
-Result<ScanFile> read_cloud(const std::filesystem::path& file, std::string_view bytes,
-                            const MeshReading& reading) {
-  auto cloud = points_of(bytes, file);
-  if (!cloud) return cloud.error();
-  ScanFile scan{{std::move(cloud->points), std::move(cloud->normals), {}},
-                reading.unit.value_or(is_in_metres(file) ? metre : millimetre)};
-  scan.points_skipped = cloud->skipped;
-  scan.points_read = scan.scan.points_m.size() + cloud->skipped;
+ScanFile scan_of(PointCloud cloud, LengthUnit unit) {
+  ScanFile scan{{std::move(cloud.points), std::move(cloud.normals), {}}, unit};
+  scan.points_skipped = cloud.skipped;
+  scan.points_read = scan.scan.points_m.size() + cloud.skipped;
   for (Vector3& point : scan.scan.points_m) point *= scan.unit.metres;
   for (Vector3& normal : scan.scan.normals) {
     const double length = normal.norm();
@@ -99,17 +88,16 @@ Result<ScanFile> read_cloud(const std::filesystem::path& file, std::string_view 
 }
 
 Result<ScanFile> read_any(const std::filesystem::path& file, const MeshReading& reading) {
-  const std::string format = format_of(file);
-  if (format == "stl" || (format == "ply" && ply_has_faces(file))) return read_mesh_scan(file, reading);
+  if (format_of(file) == "stl") return read_mesh_scan(file, reading);
   if (!is_point_name(file)) {
     return Error{
         file.string() +
         ": is no scan by its name; .ply, .pcd, .xyz, .txt, .csv, .asc, .pts, .obj and .stl are read"};
   }
-  const auto bytes = read_text_file(file, point_file_bytes_limit);
-  if (!bytes) return bytes.error();
-  if (format == "obj" && obj_has_faces(bytes.value())) return read_mesh_scan(file, reading);
-  return read_cloud(file, bytes.value(), reading);
+  auto cloud = read_cloud_file(file, reading);
+  if (!cloud) return cloud.error();
+  if (!cloud.value()) return read_mesh_scan(file, reading);
+  return scan_of(std::move(*cloud.value()), reading.unit.value_or(is_in_metres(file) ? metre : millimetre));
 }
 
 }  // namespace

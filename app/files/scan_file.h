@@ -20,7 +20,7 @@ struct ScanFile {
 };
 
 // By the ending of the name: PLY and PCD, in metres if `unit` says nothing; STL, OBJ, XYZ and its like, in
-// millimetres. Triangles are read by the child process that `reading` names, points alone in this one.
+// millimetres. A child process of the program that `reading` names reads them.
 // Refused, each with one line that names the file: another ending, what cannot be read, more than five
 // million points, points at infinity or farther than 100 m.
 Result<ScanFile> read_scan_file(const std::filesystem::path& file, const MeshReading& reading = {});

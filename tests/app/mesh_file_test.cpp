@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "app/files/cloud_file.h"
 #include "tests/app/mesh_texts.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
 #include "tests/engine/effort.h"
@@ -312,6 +313,38 @@ TEST_F(MeshFileTest, AReaderThatFailsIsOneLine) {
   MeshReading missing;
   missing.program = folder_.path() / "nobody";
   expect_refusal(file, "does not start", missing);
+}
+
+// Clouds are read by a child as well; whatever becomes of it, there is a line.
+TEST_F(MeshFileTest, AReaderOfPointsThatFailsIsOneLine) {
+  const std::string file = write("cloud.xyz", "1 2 3\n4 5 6\n");
+  const auto expect_no_cloud = [&](const std::string& reason, const MeshReading& reading) {
+    const auto cloud = read_cloud_file(file, reading);
+    ASSERT_FALSE(cloud) << reason;
+    const std::string& line = cloud.error().message;
+    EXPECT_TRUE(line.starts_with(file + ": ")) << line;
+    EXPECT_NE(line.find(reason), std::string::npos) << line;
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+  };
+  const auto cloud = read_cloud_file(file, by_program());
+  ASSERT_TRUE(cloud) << cloud.error().message;
+  ASSERT_TRUE(cloud.value());
+  EXPECT_EQ(cloud.value()->points, (std::vector<Vector3>{{1, 2, 3}, {4, 5, 6}}));
+  MeshReading hanging = instead("exec sleep 60");
+  hanging.patience = 200ms;
+  expect_no_cloud("took longer than", hanging);
+  expect_no_cloud("crashed on it (signal 11)", instead("kill -SEGV $$"));
+  expect_no_cloud("ended without a cloud (exit code 3)", instead("exit 3"));
+  expect_no_cloud("did not answer in its own form", instead("exec head -c 1000000 /dev/zero"));
+  expect_no_cloud("did not answer in its own form",
+                  instead("printf 'spnlclud'; head -c 16 /dev/zero | tr '\\000' '\\377'"));
+  expect_no_cloud("ended without a cloud",
+                  instead("printf 'spnlclud\\003\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0abc'"));
+  expect_no_cloud(": a b",
+                  instead("printf 'spnlfail\\003\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0a\\nb'"));
+  expect_no_cloud(
+      "more than 4 GiB; thin it out",
+      instead("printf 'spnlfail\\016\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0bad allocation'"));
 }
 
 TEST_F(MeshFileTest, TheReaderHasFourGibibytes) {

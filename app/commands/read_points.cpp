@@ -1,0 +1,73 @@
+#include <sys/prctl.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "app/commands/command.h"
+#include "app/files/mesh_stream.h"
+#include "engine/exchange/file.h"
+#include "engine/exchange/file_format.h"
+#include "engine/exchange/points/point_cloud.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr std::size_t header_bytes = 65536;
+
+// The header of a PLY file tells, which may be long after it.
+Status hand_over(const std::filesystem::path& file, Console& console) {
+  const std::string format = format_of(file);
+  if (format == "ply" && ply_face_count(first_bytes(file, header_bytes)) > 0) {
+    write_has_faces(console.out);
+    return {};
+  }
+  const auto bytes = read_text_file(file, point_file_bytes_limit);
+  if (!bytes) return bytes.error();
+  if (format == "obj" && obj_has_faces(bytes.value())) {
+    write_has_faces(console.out);
+    return {};
+  }
+  const auto cloud = points_of(bytes.value(), file);
+  if (!cloud) return cloud.error();
+  write_cloud(console.out, cloud.value());
+  return {};
+}
+
+// Whoever asked knows the file's name, which may be longer than what is handed over.
+std::string without_name(const std::string& message, const std::filesystem::path& file) {
+  const std::string name = file.string() + ": ";
+  return message.starts_with(name) ? message.substr(name.size()) : message;
+}
+
+Status read_points(const std::filesystem::path& file, Console& console) {
+  try {
+    Status done = hand_over(file, console);
+    if (!done) write_failure(console.out, without_name(done.error().message, file));
+    return done;
+  } catch (const std::bad_alloc&) {
+    write_failure(console.out, bad_allocation);
+    return Error{file.string() + ": " + bad_allocation};
+  }
+}
+
+}  // namespace
+
+CommandEntry add_read_points(CLI::App& root) {
+  auto file = std::make_shared<std::filesystem::path>();
+  CLI::App* parser = root.add_subcommand("read-points", "Hand a cloud's points to the program itself");
+  parser->group("");  // hidden
+  parser->add_option("FILE", *file, "A cloud (.ply, .pcd, .xyz, .txt, .csv, .asc, .pts or .obj)")->required();
+  return {parser, [file](Console& console) {
+            // Whoever asked may be stopped while a file keeps this one busy.
+            prctl(PR_SET_PDEATHSIG, SIGKILL);
+            return read_points(*file, console);
+          }};
+}
+
+}  // namespace spoonbill
