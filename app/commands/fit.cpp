@@ -86,16 +86,20 @@ Status fit(const FitOptions& options, Console& console) {
   FactSheet facts;
   facts.add("File", options.out.string(), "file", options.out.string());
   add_scan_facts(facts, file.value(), fitted.value());
-  add_fit_facts(facts, fitted.value());
+  const double tolerance_m = options.request.settings.tolerance_m;
+  add_fit_facts(facts, fitted.value(), tolerance_m);
   if (!options.errors.empty()) {
-    const double asked = options.request.settings.tolerance_m;
-    const double full = std::max(least_scale_m, asked > 0.0 ? asked : deviation_of_all(fitted.value()).p95_m);
+    const double full =
+        std::max(least_scale_m, tolerance_m > 0.0 ? tolerance_m : deviation_of_all(fitted.value()).p95_m);
     if (Status written = write_error_cloud(fitted.value(), full, options.errors); !written) return written;
     facts.add("Colours", options.errors.string() + ", from 0 to " + short_length_text(full), "errors_file",
               options.errors.string());
     facts.add("", "", "errors_full_m", full);
   }
   std::vector<std::string> remarks = document->remarks;
+  for (std::string& remark : shortcoming_remarks(fitted.value(), tolerance_m)) {
+    remarks.push_back(std::move(remark));
+  }
   if (const auto remark = size_remark(file.value(), fitted.value())) remarks.push_back(*remark);
   if (const auto remark = looseness_remark(fitted.value())) remarks.push_back(*remark);
   add_remarks(facts, remarks);
@@ -134,7 +138,7 @@ void add_options(CLI::App& parser, const std::shared_ptr<FitOptions>& options) {
       parser, "--tolerance", "LENGTH",
       [](const std::string& text) { return parse_length(text, tolerance_range_m); },
       [options](double length) { options->request.settings.tolerance_m = length; },
-      "No more control points once the scan lies within (outliers aside)");
+      "No more control points once the scan lies within; it is said where 95 % of it does not");
   add_parsed_option(
       parser, "--unit", "UNIT", [](const std::string& text) { return parse_unit(text); },
       [options](const LengthUnit& unit) { options->unit = unit; },
@@ -145,7 +149,8 @@ void add_options(CLI::App& parser, const std::shared_ptr<FitOptions>& options) {
   add_parsed_option(
       parser, "--islands", "CHOICE", parse_islands,
       [options](IslandChoice islands) { options->request.islands = islands; },
-      "Of a scan in several parts: largest alone (unless told), one body to bridge them, or all as bodies");
+      "Of a scan in several parts: largest alone (unless told), bridge for one closed body over the gaps, or "
+      "all, each a body");
   add_parsed_option(
       parser, "--errors", "FILE", parse_cloud_name,
       [options](const std::filesystem::path& file) { options->errors = file; },

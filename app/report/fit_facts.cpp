@@ -77,6 +77,12 @@ void add_body(FactSheet& facts, const FittedBody& body, Json& list) {
                   {"cusps", body.folds.cusps}});
 }
 
+std::string unfitted_text(const UnfittedIsland& island) {
+  const auto along = [&](int axis) { return millimetres_text(island.middle_m[axis]); };
+  return "the island of " + size_text(island.size_m) + " about " + along(0) + ", " + along(1) + ", " +
+         along(2) + " was left out, with " + count_text(island.points, "point", "points") + ": " + island.why;
+}
+
 }  // namespace
 
 Deviation deviation_of_all(const ScanFit& fit) {
@@ -140,7 +146,41 @@ std::optional<std::string> looseness_remark(const ScanFit& fit) {
          "place on one surface, so fit its parts; fine detail asks for more control points";
 }
 
-void add_fit_facts(FactSheet& facts, const ScanFit& fit) {
+std::optional<bool> is_within(const ScanFit& fit, double tolerance_m) {
+  if (tolerance_m <= 0.0) return std::nullopt;
+  return std::all_of(fit.bodies.begin(), fit.bodies.end(), [&](const FittedBody& body) {
+    return body.errors.data_to_surface.p95_m <= tolerance_m;
+  });
+}
+
+std::vector<std::string> shortcoming_remarks(const ScanFit& fit, double tolerance_m) {
+  std::vector<std::string> remarks;
+  for (std::size_t k = 0; k < fit.bodies.size(); ++k) {
+    const FittedBody& body = fit.bodies[k];
+    const std::string which =
+        fit.bodies.size() == 1 ? "the surface" : "the surface of body " + std::to_string(k + 1);
+    const double p95_m = body.errors.data_to_surface.p95_m;
+    if (tolerance_m > 0.0 && p95_m > tolerance_m) {
+      remarks.push_back(which + " is not within the tolerance: 95 % of the scan is within " +
+                        short_length_text(p95_m) + " of it, not " + short_length_text(tolerance_m) +
+                        "; --control allows it more control points, unless that is the scan's noise");
+    }
+    if (body.folds.folds > 0) {
+      remarks.push_back(which + " folds at " + std::to_string(body.folds.folds) + " of " +
+                        std::to_string(body.folds.samples) +
+                        " samples; try fewer control points or another --kind");
+    }
+  }
+  for (const UnfittedIsland& island : fit.unfitted) remarks.push_back(unfitted_text(island));
+  if (fit.open_bridged > 0) {
+    remarks.push_back(count_text(fit.open_bridged, "island was", "islands were") +
+                      " open elsewhere than at the gaps and got caps there, for what is bridged is closed; "
+                      "--islands all leaves sheets and tubes open");
+  }
+  return remarks;
+}
+
+void add_fit_facts(FactSheet& facts, const ScanFit& fit, double tolerance_m) {
   Json list = Json::array();
   std::size_t folds = 0;
   for (const FittedBody& body : fit.bodies) {
@@ -153,6 +193,8 @@ void add_fit_facts(FactSheet& facts, const ScanFit& fit) {
   facts.add("", "", "kind", std::string(name_of(first.kind)));
   facts.add("", "", "control", {first.surface.net.rows, first.surface.net.columns});
   facts.add("", "", "folds", folds);
+  const std::optional<bool> within = is_within(fit, tolerance_m);
+  facts.add("", "", "within_tolerance", within ? Json(*within) : Json(nullptr));
   facts.add("", "", "max_m", all.max_m);
   facts.add("", "", "p95_m", all.p95_m);
   facts.add("", "", "mean_m", all.mean_m);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/files/scan_file.h"
 #include "app/report/fact_sheet.h"
@@ -21,8 +22,14 @@ std::optional<std::string> size_remark(const ScanFile& file, const ScanFit& fit)
 // has more detail than control points.
 std::optional<std::string> looseness_remark(const ScanFit& fit);
 
+// Whether 95 % of each body's points but strays lie within the tolerance; nothing where none was asked for.
+std::optional<bool> is_within(const ScanFit& fit, double tolerance_m);
+
+// Of bodies that are not within the tolerance that was asked for, that fold, of islands left out or capped.
+std::vector<std::string> shortcoming_remarks(const ScanFit& fit, double tolerance_m);
+
 // The scan as it was read and what of it was used; then each body with its errors, and those of all.
 void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
-void add_fit_facts(FactSheet& facts, const ScanFit& fit);
+void add_fit_facts(FactSheet& facts, const ScanFit& fit, double tolerance_m);
 
 }  // namespace spoonbill

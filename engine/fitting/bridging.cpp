@@ -1,6 +1,7 @@
 #include "engine/fitting/bridging.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -137,7 +138,38 @@ Result<FitPoints> joined_at(const FitPoints& a, const FitPoints& b, const Neares
   return both;
 }
 
+// Whether much of a rim is farther from the other islands than where two ends of one body face each other.
+bool leads_elsewhere(const FitPoints& island, const Rim& rim, const NearestPoints& others) {
+  constexpr double most_of_diameter = 0.25, most_of_nodes = 1.0 / 3.0;
+  const double far = most_of_diameter * rim.length_m / M_PI;
+  const auto count = std::count_if(rim.nodes.begin(), rim.nodes.end(), [&](std::uint32_t node) {
+    return others.nearest(island.graph.points_m[node]).distance > far;
+  });
+  return static_cast<double>(count) > most_of_nodes * static_cast<double>(rim.nodes.size());
+}
+
+bool is_open_beside_gaps(const std::vector<FitPoints>& islands, std::size_t k) {
+  const FitPoints& island = islands[k];
+  const ShapeKind kind = kind_of_shape(island);
+  if (kind == ShapeKind::closed) return false;
+  std::vector<Vector3> nodes;
+  for (std::size_t other = 0; other < islands.size(); ++other) {
+    const std::vector<Vector3>& from = islands[other].graph.points_m;
+    if (other != k) nodes.insert(nodes.end(), from.begin(), from.end());
+  }
+  const NearestPoints others(nodes);
+  const std::ptrdiff_t ends = kind == ShapeKind::tube ? 2 : 1;
+  return std::any_of(island.rims.begin(), island.rims.begin() + ends,
+                     [&](const Rim& rim) { return leads_elsewhere(island, rim, others); });
+}
+
 }  // namespace
+
+std::size_t open_beside_gaps(const std::vector<FitPoints>& islands) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < islands.size(); ++k) count += is_open_beside_gaps(islands, k) ? 1 : 0;
+  return count;
+}
 
 Result<FitPoints> bridged(std::vector<FitPoints> islands) {
   for (FitPoints& island : islands) span_all_holes(island);

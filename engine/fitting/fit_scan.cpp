@@ -1,6 +1,7 @@
 #include "engine/fitting/fit_scan.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "engine/fitting/bridging.h"
@@ -11,13 +12,25 @@
 namespace spoonbill {
 namespace {
 
-Vector3 extent_of(const std::vector<Vector3>& points_m) {
-  Vector3 low = points_m.front(), high = low;
+// An island has 30 nodes at least, and a node of a cloud three points.
+constexpr std::size_t least_cloud_points = 90;
+
+struct Box {
+  Vector3 low, high;
+};
+
+Box box_of(const std::vector<Vector3>& points_m) {
+  Box box{points_m.front(), points_m.front()};
   for (const Vector3& point : points_m) {
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
+    box.low = box.low.cwiseMin(point);
+    box.high = box.high.cwiseMax(point);
   }
-  return high - low;
+  return box;
+}
+
+Vector3 extent_of(const std::vector<Vector3>& points_m) {
+  const Box box = box_of(points_m);
+  return box.high - box.low;
 }
 
 Result<FittedBody> fit_from(FitPoints island, const Parameterisation& start, FitSettings settings,
@@ -72,9 +85,57 @@ Result<FittedBody> fit_island(FitPoints island, const FitRequest& request, const
   return fit_from_kind(std::move(island), request, watch);
 }
 
+Status choose_islands(std::vector<FitPoints>& islands, IslandChoice choice, ScanFit& result) {
+  if (choice == IslandChoice::bridge && islands.size() > 1) {
+    result.open_bridged = open_beside_gaps(islands);
+    auto whole = bridged(std::move(islands));
+    if (!whole) return whole.error();
+    islands.clear();
+    islands.push_back(std::move(whole).value());
+  }
+  if (choice == IslandChoice::largest) {
+    for (std::size_t k = 1; k < islands.size(); ++k) result.other_islands += islands[k].given_m.size();
+    islands.resize(1);
+  }
+  return {};
+}
+
+UnfittedIsland unfitted_island(const FitPoints& island) {
+  const Box box = box_of(island.given_m);
+  return {island.given_m.size(), box.high - box.low, 0.5 * (box.low + box.high), {}};
+}
+
+Status fit_islands(std::vector<FitPoints> islands, const FitRequest& request, ScanFit& result) {
+  const auto count = static_cast<double>(islands.size());
+  bool stopped = false;
+  for (std::size_t k = 0; k < islands.size(); ++k) {
+    const auto watch = [&](double share) {
+      stopped = request.settings.watch && !request.settings.watch((static_cast<double>(k) + share) / count);
+      return !stopped;
+    };
+    UnfittedIsland unfitted = unfitted_island(islands[k]);
+    auto body = fit_island(std::move(islands[k]), request, watch);
+    if (body) {
+      result.bodies.push_back(std::move(body).value());
+      continue;
+    }
+    if (stopped || count == 1.0) return body.error();
+    unfitted.why = body.error().message;
+    result.other_islands += unfitted.points;
+    result.unfitted.push_back(std::move(unfitted));
+  }
+  if (!result.bodies.empty()) return {};
+  return Error{"none of its " + std::to_string(islands.size()) +
+               " islands can be fitted; of the largest: " + result.unfitted.front().why};
+}
+
 }  // namespace
 
 Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
+  if (scan.triangles.empty() && scan.points_m.size() < least_cloud_points) {
+    return Error{"has too few points for a fit: " + std::to_string(scan.points_m.size()) + " of at least " +
+                 std::to_string(least_cloud_points) + "; a closed shape takes some 200"};
+  }
   auto points = make_fit_points(std::move(scan));
   if (!points) return points.error();
   Islands islands = split_islands(points.value());
@@ -87,27 +148,11 @@ Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
   if (islands.islands.empty()) {
     return Error{"its points hang together nowhere; they are too few or too noisy"};
   }
-  if (request.islands == IslandChoice::bridge && islands.islands.size() > 1) {
-    auto whole = bridged(std::move(islands.islands));
-    if (!whole) return whole.error();
-    islands.islands.clear();
-    islands.islands.push_back(std::move(whole).value());
+  if (Status chosen = choose_islands(islands.islands, request.islands, result); !chosen) {
+    return chosen.error();
   }
-  if (request.islands == IslandChoice::largest) {
-    for (std::size_t k = 1; k < islands.islands.size(); ++k) {
-      result.other_islands += islands.islands[k].given_m.size();
-    }
-    islands.islands.resize(1);
-  }
-  const auto count = static_cast<double>(islands.islands.size());
-  for (FitPoints& island : islands.islands) {
-    const double done = static_cast<double>(result.bodies.size());
-    const auto watch = [&](double share) {
-      return !request.settings.watch || request.settings.watch((done + share) / count);
-    };
-    auto body = fit_island(std::move(island), request, watch);
-    if (!body) return body.error();
-    result.bodies.push_back(std::move(body).value());
+  if (Status fitted = fit_islands(std::move(islands.islands), request, result); !fitted) {
+    return fitted.error();
   }
   return result;
 }

@@ -1,6 +1,7 @@
 // Fits from the command line: from a scan's file to a document that the program opens.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "app/report/fit_facts.h"
 #include "engine/exchange/document.h"
 #include "tests/app/mesh_texts.h"
 #include "tests/app/process.h"
@@ -94,6 +96,86 @@ TEST_F(FitTest, SaysWhereTheSurfaceCannotFollow) {
   const std::string loose = "further off than a hundredth of its size";
   EXPECT_NE(json_of_fit(scan, {"--control", "4x4"}).at("remarks").dump().find(loose), std::string::npos);
   EXPECT_EQ(json_of_fit(scan, {"--control", "24x24"}).at("remarks").dump().find(loose), std::string::npos);
+}
+
+bool says(const Json& json, const std::string& words) {
+  return json.at("remarks").dump().find(words) != std::string::npos;
+}
+
+TEST_F(FitTest, SaysWhetherTheToleranceIsHeld) {
+  const Scan waves = random_cloud(4000, 5, [](double s, double t) { return on_waves(s, t, 0.1, 0.02); });
+  const std::string scan = write("waves.xyz", xyz_of(waves, 1e3));
+  const std::string missed = "is not within the tolerance";
+  const Json coarse = json_of_fit(scan, {"--control", "6x6", "--tolerance", "0.001mm"});
+  EXPECT_EQ(coarse.at("within_tolerance"), false);
+  EXPECT_TRUE(says(coarse, missed)) << coarse.at("remarks");
+  EXPECT_TRUE(says(coarse, "not 0.001 mm")) << coarse.at("remarks");
+  // A hundredth of their height is more than the fit of this many control points misses.
+  const Json held = json_of_fit(scan, {"--control", "24x24", "--tolerance", "0.2mm"});
+  EXPECT_EQ(held.at("within_tolerance"), true);
+  EXPECT_FALSE(says(held, missed)) << held.at("remarks");
+  const Json none = json_of_fit(scan, {"--control", "6x6"});
+  EXPECT_TRUE(none.at("within_tolerance").is_null());
+  EXPECT_FALSE(says(none, missed)) << none.at("remarks");
+}
+
+// A ball is no tube, the pipe beside it is one.
+TEST_F(FitTest, AnIslandThatCannotBeFittedIsLeftOutAndNamed) {
+  const std::vector<std::string> as_tubes{"--islands", "all", "--control", "8x8", "--kind", "tube"};
+  const Scan ball = ellipsoid_cloud(4000, {0.01, 0.01, 0.01});
+  Scan both = random_cloud(4000, 1, [](double s, double t) { return on_cylinder(s, t, 0.01, 0.06); });
+  append(both, ball, {0.1, 0.0, 0.0});
+  const Json json = json_of_fit(write("both.xyz", xyz_of(both, 1e3)), as_tubes);
+  EXPECT_EQ(json.at("bodies").size(), 1U);
+  EXPECT_EQ(json.at("kind"), "tube");
+  EXPECT_TRUE(says(json, "the island of 20.0 x 20.0 x 20.0 mm about 100.0 mm, ")) << json.at("remarks");
+  EXPECT_TRUE(says(json, "was left out, with 4000 points: a tube needs two open ends")) << json.at("remarks");
+  EXPECT_EQ(json.at("points_left_out").at("other_islands"), 4000);
+
+  Scan balls = ball;
+  append(balls, ball, {0.1, 0.0, 0.0});
+  const Outcome none = fit(write("balls.xyz", xyz_of(balls, 1e3)), as_tubes);
+  EXPECT_TRUE(is_clean_failure(none)) << none.err;
+  EXPECT_NE(none.err.find("none of its 2 islands can be fitted; of the largest: a tube needs"),
+            std::string::npos)
+      << none.err;
+}
+
+TEST(FitFacts, SaysOfFoldsWhichBodyHasThem) {
+  ScanFit fit;
+  fit.bodies.resize(2);
+  fit.bodies[1].folds.samples = 640;
+  EXPECT_TRUE(shortcoming_remarks(fit, 0.0).empty());
+  fit.bodies[1].folds.folds = 3;
+  const std::vector<std::string> remarks = shortcoming_remarks(fit, 0.0);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_TRUE(remarks[0].starts_with("the surface of body 2 folds at 3 of 640 samples")) << remarks[0];
+}
+
+// Two halves of a pipe are no pillow; two caps of a ball are one ball.
+TEST_F(FitTest, SaysWhichIslandsBridgingCaps) {
+  const auto bridged = [&](const Scan& scan) {
+    return json_of_fit(write("islands.xyz", xyz_of(scan, 1e3)),
+                       {"--islands", "bridge", "--control", "10x10"});
+  };
+  const std::string capped = "islands were open elsewhere than at the gaps";
+  Scan pipe = random_cloud(6000, 1, [](double s, double t) { return on_cylinder(s, t, 0.01, 0.08); });
+  leave_out(pipe, [](const Vector3& point) { return std::abs(point.z() - 0.04) < 0.003; });
+  const Json pillow = bridged(pipe);
+  EXPECT_EQ(pillow.at("kind"), "closed");
+  EXPECT_TRUE(says(pillow, "2 " + capped)) << pillow.at("remarks");
+  Scan ball = ellipsoid_cloud(6000, {0.02, 0.02, 0.02});
+  leave_out(ball, [](const Vector3& point) { return std::abs(point.z()) < 0.002; });
+  const Json whole = bridged(ball);
+  EXPECT_FALSE(says(whole, "at the gaps")) << whole.at("remarks");
+}
+
+TEST_F(FitTest, FewPointsAreToldHowManyItTakes) {
+  for (const int count : {30, 60, 85}) {
+    const Outcome outcome = fit(write("few.xyz", xyz_of(ellipsoid_cloud(count, {0.02, 0.02, 0.02}), 1e3)));
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find(std::to_string(count) + " of at least 90"), std::string::npos) << outcome.err;
+  }
 }
 
 TEST_F(FitTest, SheetBecomesAShellThatOpens) {
