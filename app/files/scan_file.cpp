@@ -58,7 +58,8 @@ Status drop_not_a_number(const std::filesystem::path& file, ScanFile& scan) {
   return {};
 }
 
-Result<ScanFile> read_mesh_scan(const std::filesystem::path& file, const MeshReading& reading) {
+Result<ScanFile> read_mesh_scan(const std::filesystem::path& file, MeshReading reading) {
+  reading.triangle_limit = scan_triangle_limit;
   auto mesh = read_mesh_file(file, reading);
   if (!mesh) return mesh.error();
   ScanFile scan{{std::move(mesh->mesh.vertices_m), {}, std::move(mesh->mesh.triangles)}, mesh->unit};

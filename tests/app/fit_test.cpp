@@ -201,6 +201,16 @@ TEST_F(FitTest, MeshIsReadByTheChildAndItsErrorsAreColoured) {
   EXPECT_EQ(first, "ply");
 }
 
+// Five million points, which have twice as many triangles.
+TEST_F(FitTest, AMeshOfFiveMillionPointsIsFitted) {
+  if (std::getenv("SPOONBILL_FULL") == nullptr) GTEST_SKIP() << "SPOONBILL_FULL asks for what takes long";
+  const TriangleMesh ball = ball_mesh(1580, 3160, 0.02);
+  ASSERT_GT(ball.triangles.size(), 9'900'000U);
+  const Json json = json_of_fit(write("ball.ply", binary_ply(ball)), {"--control", "8x8"});
+  EXPECT_EQ(json.at("kind"), "closed");
+  EXPECT_GT(json.at("points_used"), 4'900'000);
+}
+
 TEST_F(FitTest, RefusalsAreOneLineAndKeepTheOldFile) {
   write("out.json", "kept");
   const std::vector<std::pair<std::string, std::string>> bad{
