@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/bspline/blending_matrix.h"
+#include "engine/study/closing.h"
 
 namespace spoonbill {
 namespace {
@@ -77,6 +78,19 @@ Points opened_lines(const Surface& periodic, Direction direction) {
   return opened;
 }
 
+bool is_clamped(const KnotVector& knots) {
+  return !knots.is_periodic() && knots.knots().front() == knots.domain_start() &&
+         knots.knots().back() == knots.domain_end();
+}
+
+// Control points of an edge may be as much farther apart than the edge is wide.
+constexpr double points_beyond_curve = 10.0;
+constexpr int moved_samples = 64;
+
+double at_share(const KnotVector& knots, double share) {
+  return knots.domain_start() + share * (knots.domain_end() - knots.domain_start());
+}
+
 }  // namespace
 
 std::vector<double> greville_parameters(const KnotVector& knots) {
@@ -137,6 +151,28 @@ void close_poles(Surface& surface, double tolerance_m) {
         net.rows, [&](int i) { return net.point(i, j); },
         [&](int i, const Vector3& p) { net.set_point(i, j, p); });
   }
+}
+
+ClosedExactly closed_exactly(const Surface& surface) {
+  ClosedExactly closed{surface, 0.0};
+  const Closing closing = closing_of(surface);
+  if (closing.closedness != Closedness::solid) return closed;
+  if (is_clamped(surface.u) && closing.u.apart_m <= closing_tolerance_m) {
+    closed.surface = closed_where_it_meets(closed.surface, Direction::u, closing_tolerance_m);
+  }
+  if (is_clamped(surface.v) && closing.v.apart_m <= closing_tolerance_m) {
+    closed.surface = closed_where_it_meets(closed.surface, Direction::v, closing_tolerance_m);
+  }
+  close_poles(closed.surface, points_beyond_curve * closing_tolerance_m);
+  for (int i = 0; i <= moved_samples; ++i) {
+    for (int j = 0; j <= moved_samples; ++j) {
+      const double u = at_share(surface.u, static_cast<double>(i) / moved_samples);
+      const double v = at_share(surface.v, static_cast<double>(j) / moved_samples);
+      const Vector3 move = position(closed.surface, u, v) - position(surface, u, v);
+      closed.moved_m = std::max(closed.moved_m, move.norm());
+    }
+  }
+  return closed;
 }
 
 }  // namespace spoonbill

@@ -15,6 +15,15 @@ Surface closed_where_it_meets(const Surface& surface, Direction direction, doubl
 // Makes the points of an edge that is one point to `tolerance_m` exactly that, in either direction.
 void close_poles(Surface& surface, double tolerance_m);
 
+struct ClosedExactly {
+  Surface surface;
+  double moved_m = 0.0;  // the farthest of samples of it
+};
+
+// What closing_of() calls a solid with its seams periodic and its poles points; anything else, and what
+// cannot be made so within its tolerance, as it is.
+ClosedExactly closed_exactly(const Surface& surface);
+
 // The parameters at which a spline of as many control points is interpolated well: the mean of the inner
 // knots that each basis function reaches (Greville 1964), brought into the domain.
 std::vector<double> greville_parameters(const KnotVector& knots);

@@ -24,6 +24,7 @@
 #include <utility>
 
 #include "engine/exchange/cad/body_shape.h"
+#include "engine/exchange/cad/closing.h"
 #include "engine/exchange/cad/occt_surface.h"
 #include "engine/number_text.h"
 
@@ -173,7 +174,9 @@ struct AllFaces {
 Result<AllFaces> all_faces(const std::vector<const CadSurface*>& parts) {
   AllFaces all;
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    const auto of_part = faces_of(*parts[k]);
+    CadSurface part = *parts[k];
+    part.surface = closed_exactly(part.surface).surface;
+    const auto of_part = faces_of(part);
     if (!of_part) return Error{"'" + parts[k]->name + "': " + of_part.error().message};
     for (const TopoDS_Face& face : of_part->faces) {
       all.faces.push_back(face);

@@ -1,24 +1,49 @@
 #include "engine/exchange/cad/written_bodies.h"
 
+#include <TopExp_Explorer.hxx>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "engine/exchange/cad/body_shape.h"
+#include "engine/exchange/cad/closing.h"
 #include "engine/exchange/cad/joined_faces.h"
-#include "engine/exchange/cad/trimmed_face.h"
 #include "engine/exchange/cad_names.h"
+#include "engine/number_text.h"
+#include "engine/study/closing.h"
 
 namespace spoonbill {
 namespace {
 
+// What moves less is rounding.
+constexpr double least_move_m = 1e-9;
+
+int face_count(const TopoDS_Shape& shape) {
+  int count = 0;
+  for (TopExp_Explorer each(shape, TopAbs_FACE); each.More(); each.Next()) ++count;
+  return count;
+}
+
+std::string open_text(const CadSurface& surface, const BodyShape& body) {
+  if (surface.trims.empty()) {
+    return "' closes, but OpenCASCADE finds no solid in it; an open shell is written";
+  }
+  const int faces = face_count(body.shape);
+  return "' would close, but is trimmed; an open shell of what is left is written" +
+         (faces > 1 ? ", cut in " + std::to_string(faces) + " faces, which come back as a body each"
+                    : std::string());
+}
+
 // With a note where it is not what one expects of a body that closes.
-void tell_of(const CadSurface& surface, const BodyShape& body, CadFileContent& content) {
+void tell_of(const CadSurface& surface, const BodyShape& body, double moved_m, CadFileContent& content) {
   ++(body.solid ? content.solids : content.open_shells);
-  if (body.solid || !surface.solid.empty() || !has_no_edge(surface.surface)) return;
-  content.notes.push_back("'" + surface.name +
-                          (surface.trims.empty()
-                               ? "' closes, but OpenCASCADE finds no solid in it; an open shell is written"
-                               : "' would close, but is trimmed; an open shell of what is left is written"));
+  if (body.solid && moved_m > least_move_m) {
+    content.notes.push_back("'" + surface.name + "' misses closing by " + short_length_text(moved_m) +
+                            "; it is written closed");
+  }
+  if (body.solid || !surface.solid.empty()) return;
+  if (closing_of(surface.surface).closedness != Closedness::solid) return;
+  content.notes.push_back("'" + surface.name + open_text(surface, body));
 }
 
 class Collector {
@@ -40,9 +65,12 @@ class Collector {
 
  private:
   Status add_alone(const CadSurface& surface) {
-    const auto body = body_shape(surface);
+    CadSurface closed = surface;
+    auto [exact, moved_m] = closed_exactly(surface.surface);
+    closed.surface = std::move(exact);
+    const auto body = body_shape(closed);
     if (!body) return Error{"'" + surface.name + "': " + body.error().message};
-    tell_of(surface, body.value(), content_);
+    tell_of(surface, body.value(), moved_m, content_);
     bodies_.push_back({surface.name, body->shape, body->solid, &surface});
     return {};
   }

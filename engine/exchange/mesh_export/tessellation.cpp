@@ -13,6 +13,7 @@
 #include "engine/collision/levels/surface_bounds.h"
 #include "engine/exchange/mesh_export/slivers.h"
 #include "engine/number_text.h"
+#include "engine/study/closing.h"
 
 namespace spoonbill {
 namespace {
@@ -128,19 +129,18 @@ void refine(const Eigen::MatrixXd& errors, double chord_m, Cells& cells) {
   }
 }
 
-// The vertices of a sheet: those of a seam or a pole are one.
+// The vertices of a sheet: those of a seam or a pole are one, as closing_of() has it.
 class Welding {
  public:
-  explicit Welding(const Sheet& sheet)
+  Welding(const Sheet& sheet, const Surface& surface)
       : sheet_(sheet), rows_(sheet.grid.u.parameters.size()), columns_(sheet.grid.v.parameters.size()) {
-    u_closed_ = same([&](std::size_t j) { return sheet_.point(0, j); },
-                     [&](std::size_t j) { return sheet_.point(rows_ - 1, j); }, columns_);
-    v_closed_ = same([&](std::size_t i) { return sheet_.point(i, 0); },
-                     [&](std::size_t i) { return sheet_.point(i, columns_ - 1); }, rows_);
-    first_row_ = is_pole([&](std::size_t j) { return sheet_.point(0, j); }, columns_);
-    last_row_ = is_pole([&](std::size_t j) { return sheet_.point(rows_ - 1, j); }, columns_);
-    first_column_ = is_pole([&](std::size_t i) { return sheet_.point(i, 0); }, rows_);
-    last_column_ = is_pole([&](std::size_t i) { return sheet_.point(i, columns_ - 1); }, rows_);
+    const Closing closing = closing_of(surface);
+    u_closed_ = closing.u.apart_m <= closing_tolerance_m;
+    v_closed_ = closing.v.apart_m <= closing_tolerance_m;
+    first_row_ = is_pole(surface.u, closing.u.first_width_m);
+    last_row_ = is_pole(surface.u, closing.u.last_width_m);
+    first_column_ = is_pole(surface.v, closing.v.first_width_m);
+    last_column_ = is_pole(surface.v, closing.v.last_width_m);
   }
 
   bool closed() const {
@@ -156,18 +156,23 @@ class Welding {
     return i * columns_ + j;
   }
 
- private:
-  template <class First, class Second>
-  static bool same(const First& first, const Second& second, std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) {
-      if ((first(k) - second(k)).norm() > coincidence_m) return false;
+  // How far a point is from the vertex that stands for it; 0 where that is what a file rounds away.
+  double largest_move_m() const {
+    double largest_m = 0.0;
+    for (std::size_t i = 0; i < rows_; ++i) {
+      for (std::size_t j = 0; j < columns_; ++j) {
+        const std::size_t k = vertex(i, j);
+        if (k == i * columns_ + j) continue;
+        largest_m =
+            std::max(largest_m, (sheet_.point(i, j) - sheet_.point(k / columns_, k % columns_)).norm());
+      }
     }
-    return true;
+    return largest_m > coincidence_m ? largest_m : 0.0;
   }
-  template <class Point>
-  static bool is_pole(const Point& point, std::size_t count) {
-    return same(
-        point, [&](std::size_t) { return point(0); }, count);
+
+ private:
+  static bool is_pole(const KnotVector& across, double width_m) {
+    return !across.is_periodic() && width_m <= closing_tolerance_m;
   }
 
   const Sheet& sheet_;
@@ -253,10 +258,10 @@ TriangleMesh kept_mesh(const Sheet& sheet, const Welding& welding, const Trimmed
 
 Result<Tessellation> finished(const Sheet& sheet, const Surface& surface, const std::vector<TrimLoop>& trims,
                               double chord_error_m) {
-  const Welding welding(sheet);
+  const Welding welding(sheet, surface);
   TriangleMesh whole = mesh_of(sheet, {}, whole_cells(sheet, welding));
   const bool is_inside_out = welding.closed() && enclosed_volume_m3(whole) < 0.0;
-  Tessellation result{std::move(whole), welding.closed(), chord_error_m};
+  Tessellation result{std::move(whole), welding.closed(), chord_error_m + welding.largest_move_m()};
   if (!trims.empty()) {
     const auto area = TrimmedArea::make(surface.u, surface.v, trims);
     if (!area) return area.error();

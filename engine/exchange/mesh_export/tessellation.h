@@ -14,10 +14,12 @@
 namespace spoonbill {
 
 struct Tessellation {
-  // Seams and poles are welded. Normals are outward where every side of the surface is a seam or a pole.
+  // Seams and poles are welded, what closing_of() calls so. Normals are outward where every side of the
+  // surface is a seam or a pole.
   TriangleMesh mesh;
   bool closed = false;  // it is so, and whole
-  // No point of the surface is farther from the point of its triangle at the same parameters.
+  // No point of the surface is farther from the point of its triangle at the same parameters. What welding
+  // moves, at most closing_tolerance_m, comes on top of what was asked for.
   double chord_error_m = 0.0;
 };
 

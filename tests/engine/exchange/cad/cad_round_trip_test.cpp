@@ -14,6 +14,7 @@
 #include <numbers>
 
 #include "engine/bspline/grid.h"
+#include "engine/bspline/reparameterise.h"
 #include "engine/exchange/cad/body_shape.h"
 #include "engine/exchange/cad/cad_reader.h"
 #include "engine/exchange/cad/cad_writer.h"
@@ -22,6 +23,7 @@
 #include "engine/exchange/cad/session.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/cad_stream.h"
+#include "engine/study/closing.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"
 #include "tests/engine/exchange/sample_document.h"
@@ -298,6 +300,40 @@ TEST(CadNames, AreCleaned) {
   EXPECT_EQ(clean_cad_name(std::string(300, 'a'), "x").size(), 200u);
   // Not in the middle of a letter.
   EXPECT_EQ(clean_cad_name(std::string(199, 'a') + "\xc3\xb6", "x").size(), 199u);
+}
+
+// By a pole whose points are a little apart.
+TEST_F(CadRoundTrip, WhatACheckCallsClosedIsASolidAndSaysWhatItMisses) {
+  Surface pole = ellipsoid_tube(10, 10);
+  pole.net.set_point(3, 0, pole.net.point(3, 0) + Vector3(2e-8, 0, 0));
+  ASSERT_EQ(closing_of(pole).closedness, Closedness::solid);
+  CadModel model;
+  model.surfaces.push_back({"tube", pole, 0.0, {}, ""});
+  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+    const auto content = write_cad(model, {format, StepSchema::ap214, "mm"});
+    ASSERT_TRUE(content) << content.error().message;
+    EXPECT_EQ(content->solids, 1);
+    EXPECT_EQ(content->open_shells, 0);
+    ASSERT_EQ(content->notes.size(), 1u);
+    EXPECT_NE(content->notes[0].find("'tube' misses closing by "), std::string::npos) << content->notes[0];
+    EXPECT_NE(content->notes[0].find("; it is written closed"), std::string::npos) << content->notes[0];
+  }
+}
+
+// As it comes of a surface that is closed by its edges alone.
+TEST_F(CadRoundTrip, ASeamThatIsALittleApartIsClosed) {
+  const Surface closed = torus_like(0.02, 0.005);
+  Surface open = part_of(closed, Direction::u, closed.u.domain_start(), closed.u.domain_end()).value();
+  ASSERT_FALSE(open.u.is_periodic());
+  for (int j = 0; j < open.net.columns; ++j) {
+    open.net.set_point(0, j, open.net.point(0, j) + Vector3(2e-8, 0, 0));
+  }
+  ASSERT_EQ(closing_of(open).closedness, Closedness::solid);
+  CadModel model;
+  model.surfaces.push_back({"ring", open, 0.0, {}, ""});
+  const auto content = write_cad(model, {CadFormat::step, StepSchema::ap214, "mm"});
+  ASSERT_TRUE(content) << content.error().message;
+  EXPECT_EQ(content->solids, 1);
 }
 
 }  // namespace

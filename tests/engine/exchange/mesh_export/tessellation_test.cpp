@@ -10,6 +10,7 @@
 
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/study/closing.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"
@@ -103,6 +104,23 @@ TEST(Tessellation, BodiesThatCloseAreWatertightWithNormalsOutward) {
     EXPECT_NEAR(enclosed_volume_m3(found->mesh), volume, 5e-5 * area);
     EXPECT_GT(enclosed_volume_m3(found->mesh), 0.0);
   }
+}
+
+// A pole whose points are apart by less than closing_of() minds is one point in the mesh.
+TEST(Tessellation, WhatACheckCallsClosedIsWatertight) {
+  for (const double apart_m : {1e-8, 0.9 * closing_tolerance_m}) {
+    SCOPED_TRACE(apart_m);
+    Surface tube = ellipsoid_tube(10, 10);
+    tube.net.set_point(3, 0, tube.net.point(3, 0) + Vector3(apart_m, 0, 0));
+    ASSERT_EQ(closing_of(tube).closedness, Closedness::solid);
+    const auto made = tessellate(tube, {}, 1e-4);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_TRUE(made->closed);
+    EXPECT_EQ(unmatched_edges(made->mesh), 0u);
+  }
+  Surface open = ellipsoid_tube(10, 10);
+  open.net.set_point(3, 0, open.net.point(3, 0) + Vector3(10.0 * closing_tolerance_m, 0, 0));
+  EXPECT_FALSE(tessellate(open, {}, 1e-4)->closed);
 }
 
 TEST(Tessellation, AFlatSheetTakesTwoTrianglesAPiece) {
