@@ -59,6 +59,7 @@ Json check_solids(FactSheet& facts, const CadSolids& solids, const std::vector<B
   for (const CadSolid& solid : solids.solids) json.push_back(add_solid_check_facts(facts, solid, all));
   for (Json& open : add_open_solid_facts(facts, solids.loose, all)) json.push_back(std::move(open));
   for (const std::string& note : solids.notes) facts.add("Note", note, "", nullptr);
+  facts.add("", "", "notes", solids.notes);
   return json;
 }
 
@@ -98,8 +99,9 @@ Status check(const CheckOptions& options, Console& console) {
   InterruptWatch interrupt;
   auto solids = join_solids(options, all, interrupt);
   if (!solids) {
-    facts.add("Note", "faces of solids are not joined: " + solids.error().message, "", nullptr);
-    solids = CadSolids();
+    CadSolids none;
+    none.notes.push_back("the faces of solids are not joined: " + solids.error().message);
+    solids = std::move(none);
   }
   std::set<std::size_t> faces;
   for (const CadSolid& solid : solids->solids) faces.insert(solid.places.begin(), solid.places.end());

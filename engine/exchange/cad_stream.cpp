@@ -17,8 +17,8 @@ struct Head {
 };
 
 bool is_known(std::uint64_t letters) {
-  for (const CadFrameKind kind : {CadFrameKind::progress, CadFrameKind::surface, CadFrameKind::file, CadFrameKind::solid,
-                                  CadFrameKind::ending, CadFrameKind::failure}) {
+  for (const CadFrameKind kind : {CadFrameKind::progress, CadFrameKind::surface, CadFrameKind::file,
+                                  CadFrameKind::solid, CadFrameKind::ending, CadFrameKind::failure}) {
     if (letters == static_cast<std::uint64_t>(kind)) return true;
   }
   return false;

@@ -180,6 +180,7 @@ TEST_F(JoinedSolids, ThatDoNotCloseAreNotSound) {
   EXPECT_EQ(facts["sound"], false);
   ASSERT_EQ(facts["solids"].size(), 1u);
   EXPECT_EQ(facts["solids"][0]["closed"], false);
+  EXPECT_EQ(facts["notes"], Json::array({"5 of the 5 faces of 'bracket' enclose nothing together"}));
   EXPECT_FALSE(facts["solids"][0].contains("volume_m3"));
   EXPECT_EQ(facts["bodies"][0]["sound"], false);
 }
