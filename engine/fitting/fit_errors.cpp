@@ -17,28 +17,31 @@ constexpr std::size_t plane_points = 10;
 // A sample is seen within so many distances between neighbouring points, beyond a rim within one.
 constexpr double seen_spacings = 3.0;
 
+// Of a mesh the points all over its triangles, of which its vertices alone may be a few corners.
+bool measures_fitted_points(const FitPoints& points) {
+  return points.is_mesh && points.scan.points_m.size() > points.given_m.size();
+}
+
 void measure_data(const FittedSurface& fit, const FitPoints& points, FitErrors& errors) {
+  const bool are_fitted = measures_fitted_points(points);
+  errors.places_m = are_fitted ? points.scan.points_m : points.given_m;
   const ClosestParameters closest(fit.surface);
-  errors.uv.resize(points.given_m.size());
-  errors.distance_m.resize(points.given_m.size());
-  for (std::size_t g = 0; g < points.given_m.size(); ++g) {
-    const Vector3& point = points.given_m[g];
-    ClosestPoint found = closest.from(point, fit.uv[points.stands_for[g]], projection_steps);
+  std::vector<double> trusted;
+  for (std::size_t g = 0; g < errors.places_m.size(); ++g) {
+    const std::size_t fitted = are_fitted ? g : points.stands_for[g];
+    const Vector3& point = errors.places_m[g];
+    ClosestPoint found = closest.from(point, fit.uv[fitted], projection_steps);
     // One that was stuck on the other side of something gets a second chance.
-    if (found.distance_m > 1.5 * fit.distance_m[points.stands_for[g]] ||
-        fit.trust[points.stands_for[g]] < 1.0) {
+    if (found.distance_m > 1.5 * fit.distance_m[fitted] || fit.trust[fitted] < 1.0) {
       const ClosestPoint other = closest.anywhere(point, projection_steps);
       if (other.distance_m < found.distance_m) found = other;
     }
-    errors.uv[g] = found.uv;
-    errors.distance_m[g] = found.distance_m;
+    errors.uv.push_back(found.uv);
+    errors.distance_m.push_back(found.distance_m);
+    errors.is_stray.push_back(fit.trust[fitted] == 0.0);
+    if (!errors.is_stray.back()) trusted.push_back(found.distance_m);
   }
-  std::vector<double> trusted;
-  for (std::size_t g = 0; g < points.given_m.size(); ++g) {
-    errors.is_stray.push_back(fit.trust[points.stands_for[g]] == 0.0);
-    if (!errors.is_stray.back()) trusted.push_back(errors.distance_m[g]);
-  }
-  errors.strays = points.given_m.size() - trusted.size();
+  errors.strays = errors.places_m.size() - trusted.size();
   errors.data_to_surface = deviation_of(std::move(trusted));
   errors.all_to_surface = deviation_of(errors.distance_m);
 }

@@ -27,7 +27,7 @@ struct FittedBody {
   ShapeKind kind = ShapeKind::closed;
   FitErrors errors;
   FoldCheck folds;
-  std::vector<Vector3> points_m;  // those given that belong to it, in the order of the errors
+  std::vector<Vector3> points_m;  // those given that belong to it
   Vector3 size_m = Vector3::Zero();
 };
 

@@ -428,6 +428,28 @@ TEST(FitScan, TriangleSoupOfABallIsClosed) {
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.02)), 2e-4);
 }
 
+// Its eight corners are the worst places: the surface rounds them. All of it counts.
+TEST(FitScan, ErrorsOfAMeshAreThoseOfAllItsTriangles) {
+  Scan box;
+  for (int k = 0; k < 8; ++k) box.points_m.emplace_back(0.03 * (k & 1), 0.02 * (k >> 1 & 1), 0.05 * (k >> 2));
+  box.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                   {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  const ScanFit fitted = fit(box, 20);
+  ASSERT_EQ(fitted.bodies.size(), 1U);
+  const FitErrors& errors = fitted.bodies[0].errors;
+  EXPECT_EQ(fitted.bodies[0].points_m.size(), 8U);
+  EXPECT_GT(errors.places_m.size(), 2000U);
+  EXPECT_EQ(errors.distance_m.size(), errors.places_m.size());
+  EXPECT_EQ(errors.strays, 0U);
+  double at_corners = 1.0;
+  for (std::size_t p = 0; p < errors.places_m.size(); ++p) {
+    for (const Vector3& corner : box.points_m) {
+      if (errors.places_m[p] == corner) at_corners = std::min(at_corners, errors.distance_m[p]);
+    }
+  }
+  EXPECT_LT(errors.data_to_surface.p95_m, at_corners);
+}
+
 TEST(FitScan, ToleranceSavesControlPoints) {
   FitRequest request;
   request.settings.control_u = request.settings.control_v = 40;
