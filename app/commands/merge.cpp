@@ -103,8 +103,9 @@ struct Parts {
 
 struct Outcome {
   Merged merged;
-  std::vector<Joint> corners;       // of each body but the first with what those before it became
-  std::vector<std::size_t> turned;  // the bodies whose normals pointed inwards
+  std::vector<Joint> corners;              // of each body but the first with what those before it became
+  std::vector<std::string> tight_fillets;  // remarks
+  std::vector<std::size_t> turned;         // the bodies whose normals pointed inwards
 };
 
 // C1 for a fillet: an arc and what it touches cannot be C2 without making it tighter.
@@ -126,10 +127,7 @@ void add_remarks_of_merging(const MergeOptions& options, const Outcome& outcome,
     remarks.push_back("the normals of patch " + std::to_string(place + 1) +
                       " pointed inwards; it was turned around first");
   }
-  if (options.fillet_m > 0.0) {
-    add_tight_fillet(outcome.merged.surface, outcome.corners.back(), options.fillet_m, continuity_of(options),
-                     remarks);
-  }
+  remarks.insert(remarks.end(), outcome.tight_fillets.begin(), outcome.tight_fillets.end());
 }
 
 void report(const MergeOptions& options, const Parts& parts, const Outcome& outcome, Console& console) {
@@ -205,10 +203,10 @@ Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options, 
     request.join.spent_m = parts.untrimmed_m;
     auto merged = merge(patches, request);
     if (!merged) return merged.error();
-    return Outcome{std::move(merged).value(), {}, {}};
+    return Outcome{std::move(merged).value(), {}, {}, {}};
   }
   if (patches.size() < 2) return Error{"one body alone crosses none; name another one"};
-  Outcome outcome{{patches[0], 0.0, {}}, {}, {}};
+  Outcome outcome{{patches[0], 0.0, {}}, {}, {}, {}};
   Merged& merged = outcome.merged;
   request.join.tolerance_m =
       (request.join.tolerance_m - parts.untrimmed_m) / static_cast<double>(patches.size() - 1);
@@ -220,6 +218,12 @@ Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options, 
     merged.surface = std::move(next->surface);
     merged.deviation_m += next->deviation_m;
     outcome.corners.push_back(next->corner);
+    if (options.fillet_m > 0.0) {
+      // Now, as long as it lies along v.
+      const std::string which = patches.size() > 2 ? " with patch " + std::to_string(p + 1) : "";
+      add_tight_fillet(merged.surface, next->corner, which, options.fillet_m, request.join.continuity,
+                       outcome.tight_fillets);
+    }
     if (next->first_was_inward) outcome.turned.push_back(p - 1);
     if (next->second_was_inward) outcome.turned.push_back(p);
   }
@@ -273,7 +277,8 @@ CommandEntry add_merge(CLI::App& root) {
   add_parsed_option(
       *parser, "--continuity", "C0..C8", parse_continuity,
       [options](int order) { options->continuity = order; },
-      "Of the joints, C2 unless told; of a fillet C1, for an arc that is to be C2 with what it touches gets "
+      "Of the joints and a ring's seam, C2 unless told; of a fillet C1, for an arc that is to be C2 with "
+      "what it touches gets "
       "tighter than its radius");
   add_parsed_option(
       *parser, "--tolerance", "LENGTH", length_in(tolerance_range_m),
@@ -311,6 +316,15 @@ CommandEntry add_merge(CLI::App& root) {
       [options](double length_m) { options->fillet_m = length_m; },
       "Round the corner in which they cross with this radius")
       ->needs(crossing);
+  // By then all have been read, in whichever order they came.
+  parser->final_callback([options] {
+    if (options->crossing && options->fillet_m == 0.0 && options->continuity.value_or(0) > 0) {
+      throw CLI::ValidationError(
+          "--continuity",
+          "without --fillet bodies that cross meet at an edge, which is C0; give a radius "
+          "with --fillet, or leave it out");
+    }
+  });
   crossing->excludes(parser->get_option("--edges"));
   crossing->excludes(parser->get_option("--blend"));
   crossing->excludes(twist);

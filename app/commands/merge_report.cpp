@@ -115,13 +115,13 @@ void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::
   }
 }
 
-void add_tight_fillet(const Surface& merged, const Joint& corner, double fillet_m, int continuity,
-                      std::vector<std::string>& remarks) {
+void add_tight_fillet(const Surface& merged, const Joint& corner, const std::string& which, double fillet_m,
+                      int continuity, std::vector<std::string>& remarks) {
   constexpr double tight_share = 0.8;
   const double least_m = tightest_radius_m(merged, corner);
   if (!(least_m < tight_share * fillet_m)) return;
-  remarks.push_back("the fillet is as tight as about " + short_length_text(least_m) + " somewhere, where " +
-                    short_length_text(fillet_m) + " was asked for" +
+  remarks.push_back("the fillet" + which + " is as tight as about " + short_length_text(least_m) +
+                    " somewhere, where " + short_length_text(fillet_m) + " was asked for" +
                     (continuity > 1 ? ": an arc is not C2 with what it touches; C1 keeps its radius"
                                     : "; a smaller tolerance brings it nearer"));
 }

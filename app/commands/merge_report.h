@@ -19,9 +19,9 @@ void add_corners(FactSheet& facts, const std::vector<Joint>& corners);
 // Of a blend that was asked for: where it was of no use.
 void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::string>& remarks);
 
-// Of a fillet that came out tighter than asked.
-void add_tight_fillet(const Surface& merged, const Joint& corner, double fillet_m, int continuity,
-                      std::vector<std::string>& remarks);
+// Of a fillet that came out tighter than asked; `which` tells it from others, like " with patch 3".
+void add_tight_fillet(const Surface& merged, const Joint& corner, const std::string& which, double fillet_m,
+                      int continuity, std::vector<std::string>& remarks);
 
 void add_left_open(const std::vector<OpenEdges>& edges, std::vector<std::string>& remarks);
 

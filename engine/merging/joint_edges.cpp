@@ -1,8 +1,11 @@
 #include "engine/merging/joint_edges.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "engine/bspline/grid.h"
+#include "engine/bspline/reparameterise.h"
 
 namespace spoonbill {
 
@@ -21,6 +24,39 @@ double advance_m(const JointEdges& edges, std::size_t k) {
 
 double gap_m(const JointEdges& edges, std::size_t k) {
   return (edges.before[k].position_m - edges.after[k].position_m).norm();
+}
+
+// The k-th difference of a line's control points from one end of a polynomial piece inwards.
+Vector3 difference_at_end(const Surface& piece, int line, int k, bool at_end) {
+  std::vector<Vector3> points;
+  const int last = piece.net.columns - 1;
+  for (int j = 0; j <= k; ++j) points.push_back(piece.net.point(line, at_end ? last - k + j : j));
+  for (int order = k; order > 0; --order) {
+    for (int j = 0; j < order; ++j) points[j] = points[j + 1] - points[j];
+  }
+  return points[0];
+}
+
+// By the Taylor terms of the pieces beside the joint, which may differ as far as the first ones do.
+bool agree_beyond_second(const Surface& before, const Surface& after, double stretch, int continuity,
+                         double speed) {
+  const std::vector<double> of_before = before.v.breakpoints(), of_after = after.v.breakpoints();
+  const auto last = part_of(before, Direction::v, of_before[of_before.size() - 2], of_before.back());
+  const auto first = part_of(after, Direction::v, of_after[0], of_after[1]);
+  if (!last || !first) return false;
+  const double length = of_before.back() - of_before[of_before.size() - 2];
+  const double ratio = length / (stretch * (of_after[1] - of_after[0]));
+  double choices =
+      0.5 * before.v.degree() * (before.v.degree() - 1.0);  // of k control points from the degree
+  for (int k = 3; k <= std::min(continuity, before.v.degree()); ++k) {
+    choices *= (before.v.degree() - k + 1.0) / k;
+    for (int line = 0; line < last->net.rows; ++line) {
+      const Vector3 apart = difference_at_end(last.value(), line, k, true) -
+                            std::pow(ratio, k) * difference_at_end(first.value(), line, k, false);
+      if (choices * apart.norm() > 1e-6 * speed * length) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -78,7 +114,8 @@ double stretch_at_edge(const JointEdges& edges) {
   return exact > 0.5 * by_length ? exact : by_length;
 }
 
-bool is_smooth(const JointEdges& edges, double stretch, int continuity) {
+bool is_smooth(const Surface& before, const Surface& after, double stretch, int continuity) {
+  const JointEdges edges = joint_edges(before, after);
   for (std::size_t k = 0; k < edges.before.size(); ++k) {
     const SurfacePoint &a = edges.before[k], &b = edges.after[k];
     const double speed = a.dv.norm();
@@ -86,7 +123,7 @@ bool is_smooth(const JointEdges& edges, double stretch, int continuity) {
     const double bend = std::max(a.dvv.norm(), speed);
     if (continuity >= 2 && (a.dvv - b.dvv / (stretch * stretch)).norm() > 1e-6 * bend) return false;
   }
-  return true;
+  return continuity <= 2 || agree_beyond_second(before, after, stretch, continuity, mean_speed(edges.before));
 }
 
 double mean_speed(const std::vector<SurfacePoint>& points) {

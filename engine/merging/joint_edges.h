@@ -28,8 +28,9 @@ bool leads_on(const JointEdges& edges, double touching_m);
 // differ by one factor. By the lengths alone where they point elsewhere.
 double stretch_at_edge(const JointEdges& edges);
 
-// Whether derivatives up to the second agree so far that no blend is needed.
-bool is_smooth(const JointEdges& edges, double stretch, int continuity);
+// Whether derivatives up to the continuity agree so far that no blend is needed, of patches with the same
+// degrees and the same knots across.
+bool is_smooth(const Surface& before, const Surface& after, double stretch, int continuity);
 
 double mean_speed(const std::vector<SurfacePoint>& points);
 

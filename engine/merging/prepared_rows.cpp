@@ -52,7 +52,8 @@ JointState state_of_joint(const std::vector<PreparedRow>& rows, std::size_t join
     const bool touching = gap_m <= request.tolerance_m;
     state.any_touching = state.any_touching || touching;
     state.any_apart = state.any_apart || !touching;
-    state.all_smooth = state.all_smooth && is_smooth(edges, stretch_at_edge(edges), request.continuity);
+    state.all_smooth = state.all_smooth && is_smooth(row.patches[joint], row.patches[joint + 1],
+                                                     stretch_at_edge(edges), request.continuity);
     state.all_lead_on = state.all_lead_on && leads_on(edges, request.tolerance_m);
     state.apart_m = std::max(state.apart_m, gap_m);
     state.advance_m += share * mean_advance_m(edges);

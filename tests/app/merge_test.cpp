@@ -1,6 +1,7 @@
 // The commands that merge and change surfaces.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -138,6 +139,12 @@ TEST(MergeCommand, FacesOfOneSolidStayAFaceOfIt) {
   }
 }
 
+Vector3 middle_of(const std::string& ball) {
+  const Surface sphere = surface_of(ball);
+  return 0.5 *
+         (position(sphere, 0.0, sphere.v.domain_start()) + position(sphere, 0.0, sphere.v.domain_end()));
+}
+
 // rod.json of the workplace upright in the ball's middle.
 void stand_in_middle(const Workplace& place, const std::string& ball) {
   Document moved = read_document(place.path("rod.json")).value();
@@ -147,11 +154,8 @@ void stand_in_middle(const Workplace& place, const std::string& ball) {
       low = low.cwiseMin(moved.scene.bodies[0].surface.net.point(i, j));
     }
   }
-  const Surface sphere = read_document(ball).value().scene.bodies[0].surface;
-  const Vector3 middle =
-      0.5 * (position(sphere, 0.0, sphere.v.domain_start()) + position(sphere, 0.0, sphere.v.domain_end()));
   Surface& surface = moved.scene.bodies[0].surface;
-  surface = placed(surface, {Vector3(0, middle.y() - low.y(), 0), Quaternion::Identity()});
+  surface = placed(surface, {Vector3(0, middle_of(ball).y() - low.y(), 0), Quaternion::Identity()});
   place.write("rod.json", json_to_page(document_to_json(moved)));
 }
 
@@ -185,6 +189,18 @@ TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   EXPECT_NE(turned.out.find("the normals of patch 2 pointed inwards; it was turned around"),
             std::string::npos)
       << turned.out;
+  // The first fillet of three bodies is told of as well as the last.
+  Document third = read_document(rod).value();
+  third.scene.bodies[0].surface =
+      placed(third.scene.bodies[0].surface,
+             {2.0 * middle_of(ball), Quaternion(Eigen::AngleAxisd(M_PI, Vector3::UnitX()))});
+  place.write("third.json", json_to_page(document_to_json(third)));
+  const Outcome both =
+      run({"merge", rod, ball, place.text("third.json"), "--intersect", "--fillet", "3mm", "--continuity",
+           "C2", "--tolerance", "0.4mm", "--out", place.text("both.json"), "--json"});
+  ASSERT_EQ(both.code, exit_done) << both.err;
+  EXPECT_NE(both.out.find("the fillet with patch 2 is as tight"), std::string::npos) << both.out;
+  EXPECT_NE(both.out.find("the fillet with patch 3 is as tight"), std::string::npos) << both.out;
   // The hollow is as wide as asked where nothing bends more.
   const Json curved = json_of(run({"check", knob, "--json"}).out)["bodies"][0];
   EXPECT_NEAR(curved["smallest_concave_radius_m"].get<double>(), 0.003, 2e-4);
@@ -232,6 +248,9 @@ TEST(MergeCommand, RefusesInOneLine) {
       {{"merge", handle, bowl, "--edges", "1.v\nend:2.v_start", "--out", out},
        exit_wrong_use,
        "edge 'v?end' is unknown"},
+      {{"merge", handle, bowl, "--intersect", "--continuity", "C2", "--out", out},
+       exit_wrong_use,
+       "give a radius with --fillet"},
       {{"merge", handle, "--intersect", "--out", out}, exit_failed, "name another one"},
       {{"merge", place.text("none.json"), "--out", out}, exit_failed, "none.json"},
       {{"merge", "--out", out}, exit_wrong_use, "MODEL"}};

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
+#include "engine/bspline/reparameterise.h"
 #include "engine/merging/fold_search.h"
 #include "tests/engine/merging/made_patches.h"
 
@@ -91,6 +93,26 @@ TEST(Blend, TheLengthAskedHoldsForGapsToo) {
   const auto longer = merge({tube(0.0, 0.04, 0.01), tube(0.042, 0.08, 0.01)}, request);
   ASSERT_FALSE(longer.ok());
   EXPECT_NE(longer.error().message.find("more than half of a patch"), std::string::npos);
+}
+
+// A cubic sheet is C2 at its knots, and polynomial between them.
+TEST(Blend, IsMadeWhereTheThirdDerivativesDiffer) {
+  const auto sheet =
+      sheet_between([](double) { return 0.0; }, [](double x) { return 0.04 + 0.004 * std::sin(200.0 * x); });
+  const Surface bent = exchanged(sheet);
+  const std::vector<double> knots = bent.v.breakpoints();
+  for (const bool at_knot : {true, false}) {
+    const double place = at_knot ? knots[4] : 0.5 * (knots[4] + knots[5]);
+    const std::vector<Surface> parts{part_of(bent, Direction::v, 0.0, place).value(),
+                                     part_of(bent, Direction::v, place, 1.0).value()};
+    for (const int continuity : {2, 3, 4}) {
+      MergeRequest request = request_of(continuity);
+      request.join.blend_m = 0.004;
+      const auto merged = merge(parts, request);
+      ASSERT_TRUE(merged.ok()) << merged.error().message;
+      EXPECT_EQ(merged->joints[0].joint.bridged, at_knot && continuity > 2) << at_knot << continuity;
+    }
+  }
 }
 
 TEST(Blend, PatchesThatOverlapByFarAreRefused) {
