@@ -171,6 +171,10 @@ std::vector<std::string> shortcoming_remarks(const ScanFit& fit, double toleranc
                         " samples; try fewer control points or another --kind");
     }
   }
+  if (fit.turned_normals > 0) {
+    remarks.push_back("the normals of " + count_text(fit.turned_normals, "point", "points") +
+                      " faced the other way than those beside them, and were turned");
+  }
   for (const UnfittedIsland& island : fit.unfitted) remarks.push_back(unfitted_text(island));
   if (fit.open_bridged > 0) {
     remarks.push_back(count_text(fit.open_bridged, "island was", "islands were") +

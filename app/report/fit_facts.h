@@ -25,7 +25,8 @@ std::optional<std::string> looseness_remark(const ScanFit& fit);
 // Whether 95 % of each body's points but strays lie within the tolerance; nothing where none was asked for.
 std::optional<bool> is_within(const ScanFit& fit, double tolerance_m);
 
-// Of bodies that are not within the tolerance that was asked for, that fold, of islands left out or capped.
+// Of bodies that are not within the tolerance that was asked for, that fold, of normals turned, of islands
+// left out or capped.
 std::vector<std::string> shortcoming_remarks(const ScanFit& fit, double tolerance_m);
 
 // The scan as it was read and what of it was used; then each body with its errors, and those of all.
