@@ -264,8 +264,8 @@ CommandEntry add_merge(CLI::App& root) {
       "ring, the result is closed around. Closed bodies that do not touch are opened at their nearest\n"
       "ends and bridged. Where the continuity is there already the result is exact; elsewhere control\n"
       "points are added beside the joint until the tolerance holds. Trimmed bodies are resampled up to\n"
-      "their trims. Material and tool are the first model's; regions, loads and supports of the patches\n"
-      "are left out.\n"
+      "their trims, discs and rings about their middle. Material and tool are the first model's;\n"
+      "regions, loads and supports of the patches are left out.\n"
       "Example: spoonbill merge bowl.json handle.json --continuity C2 --out spoon.json");
   parser->add_option("MODEL", options->models, "Documents (.json)")->required();
   add_document_output(*parser, options->out, "The merged document (.json)")->required();

@@ -89,7 +89,7 @@ Status check_options(const ConversionRequest& request) {
   return {};
 }
 
-CadModel model_of(std::vector<Body> bodies, ConversionReport& report) {
+CadModel model_of(std::vector<Body> bodies) {
   std::vector<std::string> names;
   names.reserve(bodies.size());
   for (const Body& body : bodies) names.push_back(body.name);
@@ -98,27 +98,22 @@ CadModel model_of(std::vector<Body> bodies, ConversionReport& report) {
   model.unit = millimetre.name;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     Body& body = bodies[k];
-    if (body.shell_thickness_m) {
-      report.notes.push_back("'" + names[k] + "' is a shell of " +
-                             number_text(1e3 * *body.shell_thickness_m) +
-                             " mm; the surface that it lies behind is written, without the thickness");
-    }
     CadSurface surface;
     surface.name = std::move(names[k]);
     surface.surface = std::move(body.surface);
     surface.trims = std::move(body.trims);
+    surface.shell_thickness_m = body.shell_thickness_m.value_or(0.0);
     surface.solid = std::move(body.solid);
     model.surfaces.push_back(std::move(surface));
   }
   return model;
 }
 
-Result<CadModel> read_model(const ConversionRequest& request, const CadChild& child,
-                            ConversionReport& report) {
+Result<CadModel> read_model(const ConversionRequest& request, const CadChild& child) {
   if (kind_of(request.in) == ModelKind::document) {
     auto document = read_document(request.in);
     if (!document) return document.error();
-    return model_of(std::move(document->scene.bodies), report);
+    return model_of(std::move(document->scene.bodies));
   }
   CadReading reading;
   reading.format = cad_format_of(request.in);
@@ -152,6 +147,16 @@ Status store(const std::filesystem::path& file, const std::string& text) {
   return out->commit();
 }
 
+std::vector<std::string> notes_on_shells(const CadModel& model) {
+  std::vector<std::string> notes;
+  for (const CadSurface& part : model.surfaces) {
+    if (part.shell_thickness_m <= 0.0) continue;
+    notes.push_back("'" + part.name + "' is a shell of " + number_text(1e3 * part.shell_thickness_m) +
+                    " mm; the surface that it lies behind is written, without the thickness");
+  }
+  return notes;
+}
+
 Status write_model(const CadModel& model, const ConversionRequest& request, const CadChild& child,
                    ConversionReport& report) {
   CadWriting writing;
@@ -163,6 +168,7 @@ Status write_model(const CadModel& model, const ConversionRequest& request, cons
   report.unit_out = writing.unit;
   report.solids = content->solids;
   report.open_shells = content->open_shells;
+  for (std::string& note : notes_on_shells(model)) report.notes.push_back(std::move(note));
   report.notes.insert(report.notes.end(), content->notes.begin(), content->notes.end());
   return store(request.out, content->text);
 }
@@ -231,15 +237,15 @@ Result<ConversionReport> choose_from_document(const ConversionRequest& request) 
   if (!document) return document.error();
   if (Status chosen = choose(request, document->scene.bodies); !chosen) return chosen.error();
   if (Status written = write_document(document.value(), request.out); !written) return written.error();
-  ConversionReport report, told;
+  ConversionReport report;
   report.unit_in = report.unit_out = millimetre.name;
-  report.surfaces = model_of(std::move(document->scene.bodies), told).surfaces;
+  report.surfaces = model_of(std::move(document->scene.bodies)).surfaces;
   return report;
 }
 
-// Into a report that already tells what was read.
 Result<ConversionReport> written_report(CadModel model, const ConversionRequest& request,
-                                        const ConversionWatch& watch, ConversionReport report) {
+                                        const ConversionWatch& watch) {
+  ConversionReport report;
   report.unit_in = model.unit;
   report.unit_declared = model.unit_declared;
   report.notes.insert(report.notes.end(), model.notes.begin(), model.notes.end());
@@ -269,9 +275,7 @@ Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::file
   ConversionRequest request;
   request.out = out;
   if (!is_exported_to(out)) return about(out, "names no format that bodies are exported to");
-  ConversionReport report;
-  CadModel model = model_of(std::move(bodies), report);
-  return written_report(std::move(model), request, watch, std::move(report));
+  return written_report(model_of(std::move(bodies)), request, watch);
 }
 
 Result<ConversionReport> convert_file(const ConversionRequest& request, const ConversionWatch& watch) {
@@ -280,11 +284,10 @@ Result<ConversionReport> convert_file(const ConversionRequest& request, const Co
   if (kind_of(request.in) == ModelKind::document && kind_of(request.out) == ModelKind::document) {
     return choose_from_document(request);
   }
-  ConversionReport report;
-  auto model = read_model(request, child_of(request, watch, 0.0, share_of_reading), report);
+  auto model = read_model(request, child_of(request, watch, 0.0, share_of_reading));
   if (!model) return model.error();
   if (Status chosen = choose(request, model->surfaces); !chosen) return chosen.error();
-  return written_report(std::move(model).value(), request, watch, std::move(report));
+  return written_report(std::move(model).value(), request, watch);
 }
 
 }  // namespace spoonbill

@@ -8,6 +8,7 @@
 
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/mesh_export/tessellation.h"
+#include "engine/exchange/mesh_export/thickened.h"
 
 namespace spoonbill {
 namespace {
@@ -79,13 +80,27 @@ class Mesher {
 
   Status add_alone(const CadSurface& part) {
     const std::size_t left = exported_triangle_limit - std::min(triangles_, exported_triangle_limit);
-    auto alone = tessellate(part.surface, part.trims, meshing_.chord_m, left, meshing_.child.stop);
+    // A shell has its surface twice, and its walls.
+    const std::size_t limit = part.shell_thickness_m > 0.0 ? left / 3 : left;
+    auto alone = tessellate(part.surface, part.trims, meshing_.chord_m, limit, meshing_.child.stop);
     const std::string file = meshing_.file.string();
     if (is_stopped()) return Error{file + ": stopped"};
     if (!alone) return Error{file + ": '" + part.name + "': " + alone.error().message};
+    if (part.shell_thickness_m > 0.0) thicken(part, alone.value());
     triangles_ += alone->mesh.triangles.size();
     add({part.name, std::move(alone->mesh), alone->closed}, alone->chord_error_m);
     return {};
+  }
+
+  void thicken(const CadSurface& part, Tessellation& tessellation) {
+    auto shell = thickened(tessellation.mesh, part.shell_thickness_m);
+    if (shell) {
+      tessellation.mesh = std::move(shell).value();
+      tessellation.closed = true;
+    } else {
+      made_.notes.push_back("'" + part.name +
+                            "' is written as the surface that it lies behind: " + shell.error().message);
+    }
   }
 
   void add(NamedMesh mesh, double chord_error_m) {

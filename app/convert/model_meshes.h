@@ -28,8 +28,9 @@ struct ModelMeshes {
 };
 
 // In the order of the surfaces; a solid that several of them bound is one mesh, where the first of its faces
-// stands. Faces that the child joins to none are meshes each, and a note says why. Refused: more triangles
-// than a file is written with, loops that bound nothing; when asked to stop.
+// stands; a shell has both faces and the walls between, or a note says why it is its surface alone. Faces
+// that the child joins to none are meshes each, and a note says why. Refused: more triangles than a file is
+// written with, loops that bound nothing; when asked to stop.
 Result<ModelMeshes> mesh_model(const CadModel& model, const ModelMeshing& meshing);
 
 }  // namespace spoonbill

@@ -20,6 +20,7 @@ struct CadSurface {
   std::vector<TrimLoop> trims;  // of the part that the file shows, if that is less than the surface
   // Why there are none although the file shows less; empty otherwise.
   std::string trim_problem;
+  double shell_thickness_m = 0.0;  // of material behind it; 0: none. Meshes have its walls, CAD files do not
   std::string solid = {};  // the name of that which it is one of several faces of; empty of what stands alone
 };
 

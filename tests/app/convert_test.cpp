@@ -270,13 +270,40 @@ TEST_F(ConvertTest, WhatDoesNotGoOutIsSaid) {
   document["body"]["shell_thickness_mm"] = 0.5;
   place_.write("shell.json", json_to_page(document));
   const std::string name = document["body"]["name"].get<std::string>();
-  for (const char* out : {"a.step", "a.igs", "a.stl"}) {
+  for (const char* out : {"a.step", "a.igs"}) {
     const Json facts = convert_for_facts({place_.text("shell.json"), place_.text(out)});
     EXPECT_EQ(facts["notes"],
               Json::array({"'" + name +
                            "' is a shell of 0.5 mm; the surface that it lies behind is written, without the "
                            "thickness"}));
   }
+}
+
+// Both faces and the walls along all edges, those of holes too; too thick, the surface alone.
+TEST_F(ConvertTest, AShellGoesOutAsAMeshOfItsThickness) {
+  const std::string plate = std::string(SPOONBILL_ASSETS) + "/models/trimmed-plate.json";
+  Json document = json_of(content_of(plate));
+  const Json thick = convert_for_facts({plate, place_.text("plate.obj")});
+  EXPECT_EQ(thick["notes"], Json::array());
+  EXPECT_EQ(thick["closed_meshes"], 1);
+  document["body"].erase("shell_thickness_mm");
+  place_.write("face.json", json_to_page(document));
+  const Json face = convert_for_facts({place_.text("face.json"), place_.text("face.obj")});
+  EXPECT_EQ(face["closed_meshes"], 0);
+  EXPECT_GT(thick["triangles"].get<int>(), 2 * face["triangles"].get<int>());
+  const Json mesh = json_of(
+      run_process(SPOONBILL_PROGRAM, {"collide", handle_, place_.text("plate.obj"), "--json"}).out)["mesh"];
+  EXPECT_EQ(mesh["cleaning"]["open_edges"], 0) << mesh;
+  EXPECT_EQ(mesh["closed_parts"], 1) << mesh;
+
+  document["body"]["shell_thickness_mm"] = 100.0;
+  place_.write("thick.json", json_to_page(document));
+  const Json too_thick = convert_for_facts({place_.text("thick.json"), place_.text("thick.obj")});
+  ASSERT_EQ(too_thick["notes"].size(), 1u);
+  EXPECT_NE(too_thick["notes"][0].get<std::string>().find("a shell of 100 mm is thicker than it is curved"),
+            std::string::npos)
+      << too_thick["notes"];
+  EXPECT_EQ(too_thick["closed_meshes"], 0);
 }
 
 TEST_F(ConvertTest, ALinkIsFollowedAndPermissionsStay) {
