@@ -165,7 +165,7 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   body.trims.clear();
   const bool one_solid = std::all_of(patches.begin(), patches.end(),
                                      [&](const Body& patch) { return patch.solid == body.solid; });
-  if (!one_solid) body.solid.clear();
+  if (!one_solid || closing_of(body.surface).closedness == Closedness::solid) body.solid.clear();
   if (patches.size() > 1) {
     body.name = document.name;
     document.view = Json::object();  // so that the whole of it is framed

@@ -125,18 +125,23 @@ TEST(MergeCommand, NormalsThatPointInwardsAreToldOf) {
   }
 }
 
-TEST(MergeCommand, FacesOfOneSolidStayAFaceOfIt) {
+// What closes by itself is a face of nothing.
+TEST(MergeCommand, FacesOfOneSolidStayAFaceOfItWhileOpen) {
   const Workplace place;
-  ASSERT_EQ(run({"change", handle, "split", "v=50", "--out", place.text("halves.json")}).code, exit_done);
-  for (const std::string other : {"bracket", "lid"}) {
+  const auto solid_of_merged = [&](const std::string& whole, const std::string& other) {
+    EXPECT_EQ(run({"change", whole, "split", "v=50", "--out", place.text("halves.json")}).code, exit_done);
     Document halves = read_document(place.path("halves.json")).value();
     halves.scene.bodies[0].solid = "bracket";
     halves.scene.bodies[1].solid = other;
     place.write("faces.json", json_to_page(document_to_json(halves)));
-    ASSERT_EQ(run({"merge", place.text("faces.json"), "--out", place.text("whole.json")}).code, exit_done);
-    EXPECT_EQ(read_document(place.path("whole.json"))->scene.bodies[0].solid,
-              other == "bracket" ? "bracket" : "");
-  }
+    EXPECT_EQ(run({"merge", place.text("faces.json"), "--out", place.text("whole.json")}).code, exit_done);
+    return read_document(place.path("whole.json"))->scene.bodies[0].solid;
+  };
+  const std::string opened = place.text("opened.json");
+  ASSERT_EQ(run({"change", handle, "open", "v_end", "--out", opened}).code, exit_done);
+  EXPECT_EQ(solid_of_merged(opened, "bracket"), "bracket");
+  EXPECT_EQ(solid_of_merged(opened, "lid"), "");
+  EXPECT_EQ(solid_of_merged(handle, "bracket"), "");
 }
 
 Vector3 middle_of(const std::string& ball) {
