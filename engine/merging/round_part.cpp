@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "engine/bspline/trim_loop.h"
+
 namespace spoonbill {
 namespace {
 
@@ -15,14 +17,6 @@ constexpr double corner_cosine = 0.98;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
-}
-
-double signed_area_of(const Polygon& polygon) {
-  double twice = 0.0;
-  for (std::size_t c = 0; c < polygon.size(); ++c) {
-    twice += cross(polygon[c] - polygon[0], polygon[(c + 1) % polygon.size()] - polygon[0]);
-  }
-  return 0.5 * twice;
 }
 
 Eigen::Vector2d centroid_of(const Polygon& polygon) {
@@ -104,7 +98,7 @@ Eigen::Vector2d on_hole(const Polygon& hole, const Eigen::Vector2d& centre, cons
 std::optional<Result<FittedShape>> round_part(const Surface& surface, const std::vector<Polygon>& polygons,
                                               double tolerance_m) {
   if (polygons.empty() || polygons.size() > 2) return std::nullopt;
-  const bool first_is_outer = signed_area_of(polygons.front()) > 0.0;
+  const bool first_is_outer = signed_area(polygons.front()) > 0.0;
   const Polygon& outer = first_is_outer ? polygons.front() : polygons.back();
   const Polygon* hole = polygons.size() == 1 ? nullptr
                         : first_is_outer     ? &polygons.back()

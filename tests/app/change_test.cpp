@@ -6,17 +6,11 @@
 #include "app/program.h"
 #include "engine/bspline/change_knots.h"
 #include "engine/exchange/document.h"
+#include "tests/app/spoon_parts.h"
 #include "tests/app/workplace.h"
 
 namespace spoonbill {
 namespace {
-
-const std::string handle = SPOONBILL_ASSETS "/models/spoon-handle.json";
-const std::string bowl = SPOONBILL_ASSETS "/models/spoon-bowl.json";
-
-Surface surface_of(const std::filesystem::path& file, std::size_t body = 0) {
-  return read_document(file).value().scene.bodies[body].surface;
-}
 
 TEST(ChangeCommand, EachChangeDoesWhatItSays) {
   const Workplace place;

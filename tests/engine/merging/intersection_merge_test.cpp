@@ -18,6 +18,7 @@
 #include "engine/merging/tube_ends.h"
 #include "engine/study/curvature_range.h"
 #include "engine/study/enclosed_mass.h"
+#include "tests/engine/merging/made_patches.h"
 
 namespace spoonbill {
 namespace {
@@ -330,15 +331,7 @@ TEST(IntersectionMerge, BodiesWhoseNormalsPointInwardsAreTurnedAroundFirst) {
 }
 
 TEST(IntersectionMerge, ARingIsRefused) {
-  const auto knots = KnotVector::periodic_uniform(3, 12).value();
-  ControlNet net(12, 12);
-  for (int i = 0; i < 12; ++i) {
-    for (int j = 0; j < 12; ++j) {
-      const double turn = pi * i / 6.0, around = pi * j / 6.0, out = 0.02 + 0.008 * std::cos(around);
-      net.set_point(i, j, {out * std::cos(turn), out * std::sin(turn), 0.008 * std::sin(around)});
-    }
-  }
-  const auto merged = merge_crossing(rod(Vector3(1, 0, 0)), Surface{knots, knots, net}, {});
+  const auto merged = merge_crossing(rod(Vector3(1, 0, 0)), ring_body(), {});
   ASSERT_FALSE(merged.ok());
   EXPECT_NE(merged.error().message.find("closed around both"), std::string::npos) << merged.error().message;
 }

@@ -51,6 +51,19 @@ Surface level_sheet(double from, double to, int columns) {
   return fit_grid(u, v, points).value();
 }
 
+Surface ring_body() {
+  constexpr int count = 12;
+  const auto knots = KnotVector::periodic_uniform(3, count).value();
+  ControlNet net(count, count);
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j < count; ++j) {
+      const double turn = M_PI * i / 6.0, around = M_PI * j / 6.0, out = 0.02 + 0.008 * std::cos(around);
+      net.set_point(i, j, {out * std::cos(turn), out * std::sin(turn), 0.008 * std::sin(around)});
+    }
+  }
+  return {knots, knots, net};
+}
+
 bool is_without_folds(const Surface& surface) {
   const double start = surface.v.domain_start(), end = surface.v.domain_end();
   for (double u = 0.0; u < 1.0; u += 0.02) {

@@ -19,6 +19,9 @@ Surface sheet_between(const std::function<double(double)>& low, const std::funct
 // Over the domain [from, to] along v, of a plane sheet that is as long.
 Surface level_sheet(double from, double to, int columns = 8);
 
+// About z, closed around both ways: a tube of 8 mm about a circle of 20 mm, by its control points.
+Surface ring_body();
+
 // Whether normals turn by less than a right angle from each sample along v to the next.
 bool is_without_folds(const Surface& surface);
 

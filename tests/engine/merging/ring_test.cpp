@@ -43,18 +43,6 @@ Surface turned_body() {
   return fit_grid(u, v, points, {false, false, true, true}).value();
 }
 
-Surface ring_body() {
-  const auto knots = KnotVector::periodic_uniform(3, 12).value();
-  ControlNet net(12, 12);
-  for (int i = 0; i < 12; ++i) {
-    for (int j = 0; j < 12; ++j) {
-      const double turn = pi * i / 6.0, around = pi * j / 6.0, out = 0.02 + 0.008 * std::cos(around);
-      net.set_point(i, j, {out * std::cos(turn), out * std::sin(turn), 0.008 * std::sin(around)});
-    }
-  }
-  return {knots, knots, net};
-}
-
 // Between four points.
 Surface plate(const Vector3& a, const Vector3& b, const Vector3& height) {
   const auto knots = KnotVector::clamped_uniform(1, 2).value();

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/engine/material/block.h"
+#include "tests/engine/material/lattice/filled_volume.h"
 
 namespace spoonbill {
 namespace {
@@ -23,18 +24,6 @@ LatticeMesh bowl_in_box(const std::array<int, 3>& counts) {
     }
   }
   return box;
-}
-
-double filled_m3(const LatticeMesh& mesh) {
-  double volume = 0.0;
-  for (int k = 0; k + 1 < mesh.count[2]; ++k) {
-    for (int i = 0; i + 1 < mesh.count[0]; ++i) {
-      for (int j = 0; j + 1 < mesh.count[1]; ++j) {
-        volume += mesh.share(i, j, k) * cell_volume(mesh.cell(i, j, k));
-      }
-    }
-  }
-  return volume;
 }
 
 // The mean over the common parts of both grids, each of which lies in one cell of either.

@@ -12,6 +12,7 @@
 #include "engine/material/lattice_materials.h"
 #include "tests/engine/collision/surfaces/sheets.h"
 #include "tests/engine/material/block.h"
+#include "tests/engine/material/lattice/filled_volume.h"
 #include "tests/engine/material/lattice/revolved.h"
 
 namespace spoonbill {
@@ -34,18 +35,6 @@ Surface walled_bowl(double radius_m, double wall_m, double rim) {
     const double out = outside ? radius_m : radius_m - wall_m;
     return MeridianPoint{out * std::sin(0.5 * pi * along), -out * std::cos(0.5 * pi * along)};
   });
-}
-
-double filled_m3(const LatticeMesh& mesh) {
-  double volume = 0.0;
-  for (int k = 0; k + 1 < mesh.count[2]; ++k) {
-    for (int i = 0; i + 1 < mesh.count[0]; ++i) {
-      for (int j = 0; j + 1 < mesh.count[1]; ++j) {
-        volume += mesh.share(i, j, k) * cell_volume(mesh.cell(i, j, k));
-      }
-    }
-  }
-  return volume;
 }
 
 constexpr double ring_m = 0.04, tube_m = 0.01;
