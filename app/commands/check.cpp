@@ -17,6 +17,8 @@
 #include "app/report/check_facts.h"
 #include "app/report/progress_bar.h"
 #include "app/report/solid_check_facts.h"
+#include "app/report/surface_extent.h"
+#include "engine/study/solid_check.h"
 
 namespace spoonbill {
 namespace {
@@ -26,9 +28,20 @@ struct CheckOptions {
   bool json = false;
 };
 
-// Of the mesh that a solid is joined through; its numbers are those of its surfaces.
-constexpr double chord_m = 2e-4;
+// Of the model's size, how near to a solid the mesh is that tells its thickness and where it meets itself.
+constexpr double chord_share = 1e-3;
+constexpr Range<double> chord_range_m{1e-6, 2e-4};
 constexpr std::size_t triangle_limit = 5'000'000;
+
+double size_of(const std::vector<Body>& bodies) {
+  Box box = extent_of(bodies.front().surface, bodies.front().trims);
+  for (const Body& body : bodies) box = joined(box, extent_of(body.surface, body.trims));
+  return box.size();
+}
+
+bool all_sound(const Json& facts) {
+  return std::all_of(facts.begin(), facts.end(), [](const Json& one) { return one["sound"].get<bool>(); });
+}
 
 CadModel model_of(const std::vector<Body>& bodies) {
   CadModel model;
@@ -51,12 +64,40 @@ Result<CadSolids> join_solids(const CheckOptions& options, const std::vector<Bod
   }
   CadChild child;
   child.stop = [&] { return interrupt.requested(); };
-  return make_cad_solids(model_of(all), {chord_m, triangle_limit}, options.model, child);
+  const CadModel model = model_of(all);
+  const double chord_m = std::clamp(chord_share * size_of(all), chord_range_m.low, chord_range_m.high);
+  auto solids = make_cad_solids(model, {chord_m, triangle_limit}, options.model, child);
+  // What takes too many triangles may be told less exactly.
+  if (solids || interrupt.requested() || chord_m == chord_range_m.high) return solids;
+  return make_cad_solids(model, {chord_range_m.high, triangle_limit}, options.model, child);
 }
 
-Json check_solids(FactSheet& facts, const CadSolids& solids, const std::vector<Body>& all) {
+std::vector<const Surface*> surfaces_of(const CadSolid& solid, const std::vector<Body>& all) {
+  std::vector<const Surface*> surfaces;
+  for (const std::size_t place : solid.places) surfaces.push_back(&all[place].surface);
+  return surfaces;
+}
+
+// The solids' facts as JSON.
+Result<Json> check_solids(FactSheet& facts, const CadSolids& solids, const std::vector<Body>& all,
+                          InterruptWatch& interrupt, Console& console) {
+  constexpr double whole = 1000.0;
+  ProgressBar progress(console, "Checking solids", false);
   Json json = Json::array();
-  for (const CadSolid& solid : solids.solids) json.push_back(add_solid_check_facts(facts, solid, all));
+  for (const CadSolid& solid : solids.solids) {
+    const double done = static_cast<double>(json.size());
+    const auto watch = [&](double share) {
+      const double of_all = (done + share) / static_cast<double>(solids.solids.size());
+      progress.show(static_cast<std::uint64_t>(whole * of_all), static_cast<std::uint64_t>(whole));
+      return !interrupt.requested();
+    };
+    const auto check = check_solid(solid.mesh, surfaces_of(solid, all), solid.chord_error_m, watch);
+    if (!check) {
+      interrupt.answer();
+      return Error{"stopped"};
+    }
+    json.push_back(add_solid_check_facts(facts, solid, *check, all));
+  }
   for (Json& open : add_open_solid_facts(facts, solids.loose, all)) json.push_back(std::move(open));
   for (const std::string& note : solids.notes) facts.add("Note", note, "", nullptr);
   facts.add("", "", "notes", solids.notes);
@@ -105,13 +146,12 @@ Status check(const CheckOptions& options, Console& console) {
   }
   std::set<std::size_t> faces;
   for (const CadSolid& solid : solids->solids) faces.insert(solid.places.begin(), solid.places.end());
-  const Json solid_facts = check_solids(facts, solids.value(), all);
+  const auto solid_facts = check_solids(facts, solids.value(), all, interrupt, console);
+  if (!solid_facts) return Error{options.model.string() + ": " + solid_facts.error().message};
   const auto bodies = check_bodies(facts, all, faces, interrupt, console);
   if (!bodies) return Error{options.model.string() + ": " + bodies.error().message};
-  const bool sound =
-      std::all_of(bodies->begin(), bodies->end(), [](const Json& body) { return body["sound"].get<bool>(); });
-  facts.add("", "", "solids", solid_facts);
-  facts.add("", "", "sound", sound);
+  facts.add("", "", "solids", solid_facts.value());
+  facts.add("", "", "sound", all_sound(solid_facts.value()) && all_sound(bodies.value()));
   facts.add("", "", "bodies", bodies.value());
   facts.print(console.out, options.json);
   return {};
@@ -126,14 +166,15 @@ CommandEntry add_check(CLI::App& root) {
   parser->footer(
       "Of each body: whether its surface is closed, passes through itself, folds or loses its area; volume,\n"
       "area, mass and its centre; principal curvatures, above zero where convex; the smallest convex and\n"
-      "hollow radius; the smallest thickness, straight inwards from samples a third of a knot span apart,\n"
-      "with the places of all these; and how bent it is, the integral of both curvatures' squares, which is\n"
-      "small where a surface is fair. What trims take away does not count, and regions weigh what they are\n"
-      "made of. Bodies that are faces of one solid, as CAD parts come in, are that solid where they close: "
-      "its\n"
-      "volume, area, mass and centre are told, and they are judged as faces. Sound is a body that encloses\n"
-      "what it is made of, or is a face of a solid that does, and meets itself nowhere. The exit code is 0\n"
-      "whatever was found; \"sound\" in the JSON tells.\n"
+      "hollow radius; the smallest thickness, straight inwards from samples a third of a knot span apart to\n"
+      "where the line goes out within 50 degrees of straight, so that blunter edges are not thin; the\n"
+      "places of all these; and how bent it is, the integral of both curvatures' squares, which is small\n"
+      "where a surface is fair. What trims take away does not count, and regions weigh what they are made\n"
+      "of. Bodies that are faces of one solid, as CAD parts come in, are that solid where they close, and\n"
+      "are judged as faces: its volume, area, mass and centre, whether faces pass through each other, and\n"
+      "its smallest thickness, searched on a mesh of it, beside which no wall is thinner by more than is\n"
+      "told. Sound is a body or a solid that encloses what it is made of, and a face of such a solid, that\n"
+      "meets itself nowhere. The exit code is 0 whatever was found; \"sound\" in the JSON tells.\n"
       "Example: spoonbill check assets/models/spoon-handle.json");
   parser->add_option("MODEL", options->model, "A document (.json)")->required();
   add_json_option(*parser, options->json);

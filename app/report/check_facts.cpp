@@ -47,7 +47,12 @@ Json curvature_facts(FactSheet& facts, const CurvatureRange& range) {
 }
 
 void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
-  if (!check.thinnest) return;
+  if (!(check.mass.volume_m3 > 0.0)) return;
+  if (!check.thinnest) {
+    facts.add("  Thinnest", no_walls, "", nullptr);
+    json["smallest_thickness_m"] = nullptr;
+    return;
+  }
   const Thickness& thin = *check.thinnest;
   // Where sides meet, rounding alone is between them.
   const double thickness_m = thin.thickness_m > 1e-12 ? thin.thickness_m : 0.0;

@@ -10,6 +10,9 @@
 
 namespace spoonbill {
 
+// Of what has no thickness.
+inline constexpr const char* no_walls = "unknown: nowhere do two walls face each other";
+
 // A face of a closed solid need not close.
 enum class CheckedAs { body, face };
 

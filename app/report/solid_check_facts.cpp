@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "app/report/check_facts.h"
 #include "app/report/quantity_text.h"
 #include "engine/number_text.h"
 #include "engine/place_text.h"
@@ -35,12 +36,63 @@ void add_mass(FactSheet& facts, const CadSolid& solid, const std::vector<Body>& 
   json["materials"] = {material.name};
 }
 
+Json numbers(const Vector3& vector) {
+  return Json::array({vector.x(), vector.y(), vector.z()});
+}
+
+std::vector<std::string> problems_of(const SolidCheck& check) {
+  std::vector<std::string> problems;
+  if (!check.self_meetings.empty()) {
+    const SolidMeeting& deepest = check.self_meetings.front();
+    problems.push_back("passes through itself at " + place_text(deepest.position_m) + ", by at least " +
+                       short_length_text(deepest.depth_m));
+  }
+  if (!check.self_meetings_complete) {
+    problems.emplace_back("may pass through itself: too many places are near each other to be searched");
+  }
+  return problems;
+}
+
+void add_self_meetings(const SolidCheck& check, Json& json) {
+  json["self_intersections"] = Json::array();
+  for (const SolidMeeting& meeting : check.self_meetings) {
+    json["self_intersections"].push_back(
+        {{"depth_m", meeting.depth_m}, {"point_m", numbers(meeting.position_m)}});
+  }
+  json["self_intersections_complete"] = check.self_meetings_complete;
+}
+
+// Another wall may seem thicker than it is by what the mesh misses both of its sides by.
+void add_thickness(FactSheet& facts, const CadSolid& solid, const SolidCheck& check, Json& json) {
+  if (!check.thinnest) {
+    facts.add("  Thinnest", no_walls, "", nullptr);
+    json["smallest_thickness_m"] = nullptr;
+    return;
+  }
+  const WallThickness& thin = *check.thinnest;
+  const double error_m = 2.0 * solid.chord_error_m;
+  const std::string within =
+      error_m > least_gap_m ? ", nowhere less by more than " + short_length_text(error_m) : "";
+  facts.add("  Thinnest", short_length_text(thin.thickness_m) + " at " + place_text(thin.position_m) + within,
+            "", nullptr);
+  json["smallest_thickness_m"] = thin.thickness_m;
+  json["thickness_error_m"] = error_m;
+  json["thinnest"] = {{"point_m", numbers(thin.position_m)}, {"opposite_m", numbers(thin.opposite_m)}};
+}
+
 }  // namespace
 
-Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const std::vector<Body>& bodies) {
-  Json json = {{"name", solid.name}, {"closed", true}, {"bodies", Json::array()}};
+Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const SolidCheck& check,
+                           const std::vector<Body>& bodies) {
+  const std::vector<std::string> problems = problems_of(check);
+  Json json = {{"name", solid.name},
+               {"closed", true},
+               {"sound", problems.empty()},
+               {"problems", problems},
+               {"bodies", Json::array()}};
   for (const std::size_t place : solid.places) json["bodies"].push_back(bodies[place].name);
   facts.add("Solid", solid.name + ": closed, " + faces_text(solid.places.size()), "", nullptr);
+  for (const std::string& problem : problems) facts.add("  Problem", problem, "", nullptr);
   if (solid.gap_m > least_gap_m) {
     facts.add("  Gaps", "up to " + short_length_text(solid.gap_m) + " between faces", "", nullptr);
   }
@@ -51,7 +103,9 @@ Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const std::v
   json["volume_m3"] = solid.volume_m3;
   add_mass(facts, solid, bodies, json);
   facts.add("  Centre of mass", place_text(solid.middle_m), "", nullptr);
-  json["centre_of_mass_m"] = {solid.middle_m.x(), solid.middle_m.y(), solid.middle_m.z()};
+  json["centre_of_mass_m"] = numbers(solid.middle_m);
+  add_thickness(facts, solid, check, json);
+  add_self_meetings(check, json);
   return json;
 }
 
@@ -64,7 +118,7 @@ Json add_open_solid_facts(FactSheet& facts, const std::vector<std::size_t>& loos
   Json all = Json::array();
   for (const auto& [name, faces] : names) {
     facts.add("Solid", name + ": not closed, " + faces_text(faces.size()), "", nullptr);
-    all.push_back({{"name", name}, {"closed", false}, {"bodies", faces}});
+    all.push_back({{"name", name}, {"closed", false}, {"sound", false}, {"bodies", faces}});
   }
   return all;
 }

@@ -6,12 +6,14 @@
 #include "app/report/fact_sheet.h"
 #include "engine/exchange/cad_solid.h"
 #include "engine/simulation/scene.h"
+#include "engine/study/solid_check.h"
 
 namespace spoonbill {
 
 // Lines go to the sheet, the solid's JSON is returned. `bodies` are all of the document, among which its
 // places are.
-Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const std::vector<Body>& bodies);
+Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const SolidCheck& check,
+                           const std::vector<Body>& bodies);
 
 // Of each solid some of whose faces are joined to none.
 Json add_open_solid_facts(FactSheet& facts, const std::vector<std::size_t>& loose,

@@ -1,14 +1,13 @@
-// How thick a closed body is: from a point of its surface straight inwards to where the line comes out again.
-// Outside the tick; any thread.
+// How thick a closed body is: from a point of its surface straight inwards to where the line comes out again
+// through a wall. Outside the tick; any thread.
 #pragma once
 
-#include <cstdint>
-#include <memory>
+#include <array>
 #include <optional>
 #include <vector>
 
 #include "engine/bspline/surface.h"
-#include "engine/collision/meshes/box_tree.h"
+#include "engine/collision/meshes/line_exit.h"
 #include "engine/study/piece_sampling.h"
 
 namespace spoonbill {
@@ -20,12 +19,23 @@ struct Thickness {
   Vector3 position_m = Vector3::Zero(), opposite_m = Vector3::Zero();
 };
 
-// One owner. The surface, which is closed and whose normals point outwards, must outlive it.
+// Where a line goes out through a surface.
+struct SurfaceExit {
+  double distance_m = 0.0;
+  double u = 0.0, v = 0.0;
+};
+
+// One owner. The surface, which is closed or one of several that close together, and whose normals point
+// outwards, must outlive it.
 class ThicknessSearch {
  public:
   explicit ThicknessSearch(const Surface& surface);
 
-  // None where there is no normal, or the line meets the surface nowhere, as between samples at an edge.
+  // Along a unit direction, through a wall (leaves_a_wall()); to rounding where Newton's method finds to it.
+  std::optional<SurfaceExit> exit(const Vector3& from, const Vector3& direction) const;
+
+  // None where there is no normal, or the line meets the surface nowhere, as between samples at an edge, or
+  // beside an edge alone (leaves_a_wall()).
   std::optional<Thickness> at(double u, double v) const;
 
   // From samples, refined about the least of them. A wall thinner than a cell of samples is wide is found
@@ -33,23 +43,17 @@ class ThicknessSearch {
   std::optional<Thickness> smallest(const StudyWatch& watch = {}) const;
 
  private:
-  struct Facet {
-    Vector3 a, b, c;
-    double u[3], v[3];
+  // Of the corners of a facet.
+  struct Parameters {
+    std::array<double, 3> u, v;
   };
-  struct Hit {
-    double distance;
-    std::uint32_t facet;
-    double weight_b, weight_c;
-  };
-  void add_facets(const PieceCell& cell);
-  Thickness settled(const Hit& hit, Thickness thickness, const Vector3& inward) const;
-  std::optional<Hit> first_exit(const Vector3& from, const Vector3& direction) const;
+  std::vector<Triangle> facets();
+  SurfaceExit settled(const LineExit& exit, const Vector3& from, const Vector3& direction) const;
 
   const Surface* surface_;
   std::vector<PieceCell> cells_;
-  std::vector<Facet> facets_;
-  std::unique_ptr<BoxTree> tree_;
+  std::vector<Parameters> parameters_;
+  LineExits exits_;
 };
 
 }  // namespace spoonbill

@@ -166,10 +166,56 @@ TEST_F(JoinedSolids, AreCheckedAsOne) {
   const double density = box_of_faces().scene.bodies[0].material.density_kg_per_m3;
   EXPECT_NEAR(solid["mass_kg"], density * 6000e-9, 1e-12 * density);
   EXPECT_NEAR(solid["centre_of_mass_m"][0], 0.015, 1e-9);
+  EXPECT_EQ(solid["sound"], true);
+  EXPECT_EQ(solid["self_intersections"], Json::array());
+  EXPECT_NEAR(solid["smallest_thickness_m"], 0.010, 1e-9);
+  EXPECT_LT(solid["thickness_error_m"], 1e-9);
   EXPECT_EQ(facts["bodies"][0]["solid"], "bracket");
   EXPECT_EQ(facts["bodies"][0]["problems"], Json::array());
   const Outcome lines = run_process(SPOONBILL_PROGRAM, {"check", place_.text("box.json")});
   EXPECT_NE(lines.out.find("bracket: closed, solid of 6 faces"), std::string::npos) << lines.out;
+}
+
+// The box with a top that sags in its middle by so much, and leaves its rim level.
+Document sagging_box(double by_mm) {
+  Document document = box_of_faces();
+  ControlNet net(5, 5);
+  // Of the middle control point in the middle: (6 / 16)^2.
+  constexpr double share = 0.140625;
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) {
+      const double height = i == 2 && j == 2 ? 10.0 - by_mm / share : 10.0;
+      net.set_point(i, j, metres_per_mm * Vector3(7.5 * i, 5.0 * j, height));
+    }
+  }
+  const KnotVector knots = KnotVector::clamped_uniform(4, 5).value();
+  document.scene.bodies[0].surface = make_surface(knots, knots, std::move(net)).value();
+  return document;
+}
+
+TEST_F(JoinedSolids, AreAsThickAsBetweenTwoFaces) {
+  save("thin.json", sagging_box(9.0));
+  const Json facts = facts_of({"check", place_.text("thin.json")});
+  EXPECT_EQ(facts["sound"], true) << facts["solids"];
+  const Json& solid = facts["solids"][0];
+  // By the surfaces themselves; the mesh is coarser than that.
+  EXPECT_NEAR(solid["smallest_thickness_m"], 0.001, 1e-8);
+  EXPECT_GT(solid["thickness_error_m"], 1e-6);
+  EXPECT_NEAR(solid["thinnest"]["point_m"][0], 0.015, 5e-4);
+  EXPECT_NEAR(solid["thinnest"]["point_m"][1], 0.010, 5e-4);
+}
+
+TEST_F(JoinedSolids, WhoseFacesPassThroughEachOtherAreNotSound) {
+  save("through.json", sagging_box(12.0));
+  const Json facts = facts_of({"check", place_.text("through.json")});
+  EXPECT_EQ(facts["sound"], false);
+  const Json& solid = facts["solids"][0];
+  EXPECT_EQ(solid["closed"], true);
+  EXPECT_EQ(solid["sound"], false);
+  ASSERT_FALSE(solid["self_intersections"].empty());
+  EXPECT_NEAR(solid["self_intersections"][0]["point_m"][2], 0.0, 1e-6);
+  ASSERT_EQ(solid["problems"].size(), 1u);
+  EXPECT_NE(solid["problems"][0].get<std::string>().find("passes through itself"), std::string::npos);
 }
 
 TEST_F(JoinedSolids, ThatDoNotCloseAreNotSound) {

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double left_out = 1e-6;
 constexpr std::size_t pairs_a_triangle = 200;
+constexpr std::size_t looks_between_stops = 4096;
 
 bool overlap(const Box& a, const Box& b) {
   return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
@@ -33,24 +34,34 @@ bool have_common_corner(const TriangleCorners& a, const TriangleCorners& b) {
                      [&](std::uint32_t corner) { return std::find(b.begin(), b.end(), corner) != b.end(); });
 }
 
+double reach_through_plane(const Triangle& triangle, const Triangle& plane) {
+  const Vector3 normal = (plane[1] - plane[0]).cross(plane[2] - plane[0]).stableNormalized();
+  const auto [low, high] =
+      std::minmax({normal.dot(triangle[0] - plane[0]), normal.dot(triangle[1] - plane[0]),
+                   normal.dot(triangle[2] - plane[0])});
+  return std::max(0.0, std::min(high, -low));
+}
+
 class SelfContact {
  public:
   SelfContact(const std::vector<Vector3>& vertices, const std::vector<TriangleCorners>& triangles,
-              const BoxTree& tree)
+              const BoxTree& tree, std::size_t most)
       : vertices_(vertices),
         triangles_(triangles),
         tree_(tree),
-        pairs_left_(pairs_a_triangle * triangles.size()) {}
+        pairs_left_(pairs_a_triangle * triangles.size()),
+        most_(most) {}
 
-  bool found() {
+  MeshMeetings meetings(const std::function<bool()>& stop) {
     waiting_.assign(1, {0, 0});
-    while (!waiting_.empty()) {
+    for (std::size_t looks = 1; !waiting_.empty() && meetings_.complete; ++looks) {
+      if (stop && looks % looks_between_stops == 0 && stop()) meetings_.complete = false;
       const auto [a, b] = waiting_.back();
       waiting_.pop_back();
       const BoxTree::Node &first = tree_.nodes()[a], &second = tree_.nodes()[b];
       if (a != b && !overlap(first.box, second.box)) continue;
       if (first.is_leaf() && second.is_leaf()) {
-        if (leaves_meet(first, second)) return true;
+        meet(first, second);
       } else if (a == b) {
         waiting_.insert(waiting_.end(), {{a + 1, a + 1}, {first.first, first.first}, {a + 1, first.first}});
       } else if (second.is_leaf() || (!first.is_leaf() && first.box.size() > second.box.size())) {
@@ -59,7 +70,7 @@ class SelfContact {
         waiting_.insert(waiting_.end(), {{a, b + 1}, {a, second.first}});
       }
     }
-    return false;
+    return std::move(meetings_);
   }
 
  private:
@@ -68,34 +79,48 @@ class SelfContact {
     return {vertices_[a], vertices_[b], vertices_[c]};
   }
 
-  bool leaves_meet(const BoxTree::Node& first, const BoxTree::Node& second) {
+  void meet(const BoxTree::Node& first, const BoxTree::Node& second) {
     for (std::uint32_t s = first.first; s < first.first + first.count; ++s) {
       const Triangle a = triangle(s);
       const Box around = box_of(a);
       for (std::uint32_t t = std::max(second.first, &first == &second ? s + 1 : 0U);
            t < second.first + second.count; ++t) {
-        if (pairs_left_-- == 0) return true;
+        if (pairs_left_-- == 0) {
+          meetings_.complete = false;
+          return;
+        }
         const Triangle b = triangle(t);
         if (!overlap(around, box_of(b))) continue;
         const bool neighbours = have_common_corner(triangles_[s], triangles_[t]);
-        if (neighbours ? triangles_meet(shrunk(a), shrunk(b)) : triangles_meet(a, b)) return true;
+        if (!(neighbours ? triangles_meet(shrunk(a), shrunk(b)) : triangles_meet(a, b))) continue;
+        if (meetings_.found.size() == most_) {
+          meetings_.complete = false;
+          return;
+        }
+        meetings_.found.push_back({s, t, std::min(reach_through_plane(a, b), reach_through_plane(b, a))});
       }
     }
-    return false;
   }
 
   const std::vector<Vector3>& vertices_;
   const std::vector<TriangleCorners>& triangles_;
   const BoxTree& tree_;
-  std::size_t pairs_left_;
+  std::size_t pairs_left_, most_;
+  MeshMeetings meetings_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> waiting_;
 };
 
 }  // namespace
 
+MeshMeetings self_meetings(const std::vector<Vector3>& vertices_m,
+                           const std::vector<TriangleCorners>& triangles, const BoxTree& tree,
+                           std::size_t most, const std::function<bool()>& stop) {
+  return SelfContact(vertices_m, triangles, tree, most).meetings(stop);
+}
+
 bool meets_itself(const std::vector<Vector3>& vertices_m, const std::vector<TriangleCorners>& triangles,
                   const BoxTree& tree) {
-  return SelfContact(vertices_m, triangles, tree).found();
+  return !self_meetings(vertices_m, triangles, tree, 0).complete;
 }
 
 }  // namespace spoonbill

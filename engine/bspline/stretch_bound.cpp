@@ -1,0 +1,16 @@
+#include "engine/bspline/stretch_bound.h"
+
+#include <cmath>
+
+#include "engine/bspline/derivative_bound.h"
+
+namespace spoonbill {
+
+double longest_stretch_m(const Surface& surface) {
+  const ControlNet& net = surface.net;
+  const ControlLines<double> in_u{net.x.data(), net.y.data(), net.z.data(), net.columns, net.columns, 1};
+  const ControlLines<double> in_v{net.x.data(), net.y.data(), net.z.data(), 1, net.rows, net.columns};
+  return std::hypot(DerivativeBound(surface.u).longest(in_u), DerivativeBound(surface.v).longest(in_v));
+}
+
+}  // namespace spoonbill
