@@ -36,7 +36,7 @@ Vector3 normal_at(const PointGraph& graph, std::uint32_t node) {
     scatter += way * way.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
-  const Vector3 squares = axes.eigenvalues();
+  const Vector3& squares = axes.eigenvalues();
   const bool is_flat = squares[1] > 0.0 && squares[0] < flat_share * flat_share * squares[1];
   return is_flat ? Vector3(axes.eigenvectors().col(0)) : Vector3::Zero();
 }

@@ -7,11 +7,13 @@
 #include <utility>
 
 #include "engine/collision/meshes/vertex_join.h"
+#include "engine/fitting/gaps.h"
 #include "engine/fitting/nearest_points.h"
 #include "engine/fitting/normal_signs.h"
 #include "engine/fitting/outliers.h"
 #include "engine/fitting/quantiles.h"
 #include "engine/fitting/side_cutting.h"
+#include "engine/fitting/spikes.h"
 #include "engine/fitting/voxels.h"
 
 namespace spoonbill {
@@ -181,7 +183,8 @@ void make_nodes(FitPoints& fit) {
     groups = groups_for_nodes(fit.scan);
     nodes = middles_of(fit.scan, groups);
   }
-  const auto pairs = is_mesh ? pairs_of_mesh(fit.scan, groups.group_of) : pairs_of_cloud(nodes);
+  const auto pairs = is_mesh ? pairs_of_mesh(fit.scan, groups.group_of)
+                             : without_gaps(fit.scan.points_m, groups, nodes.points_m, pairs_of_cloud(nodes));
   fit.node_of = std::move(groups.group_of);
   fit.node_normals = nodes.has_normals() ? std::move(nodes.normals)
                                          : std::vector<Vector3>(nodes.points_m.size(), Vector3::Zero());
@@ -205,8 +208,10 @@ Result<FitPoints> make_fit_points(Scan scan) {
   fit.given_m = scan.points_m;
   fit.stands_for.resize(fit.given_m.size());
   std::iota(fit.stands_for.begin(), fit.stands_for.end(), 0U);
+  std::vector<std::uint32_t> spikes;
   if (is_mesh) {
     if (!(area_of(scan) > 0.0)) return Error{"its triangles have no area"};
+    spikes = level_spikes(scan);
     refine(scan);
     fit.weights = take_normals(scan);
   }
@@ -218,6 +223,8 @@ Result<FitPoints> make_fit_points(Scan scan) {
   if (lie_on_a_line(scan.points_m)) return Error{"its points all lie on one line, which is no surface"};
   thin(scan, fit.weights, fit.stands_for);
   fit.scan = std::move(scan);
+  fit.outliers = spikes.size();
+  for (const std::uint32_t spike : spikes) fit.stands_for[spike] = no_point;
   if (!is_mesh) {
     keep_only(fit, lie_apart(fit.scan.points_m, fit.weights));
     // A voxel of a dense place counts as much as one of a thin place.

@@ -16,7 +16,7 @@ inline constexpr std::size_t node_target = 5000;
 inline constexpr std::uint32_t no_point = 0xffffffffU;
 
 struct FitPoints {
-  bool is_mesh = false;  // has no points apart from its surface then
+  bool is_mesh = false;  // has no points apart from its surface then but spikes
   Scan scan;             // thinned, cleaned; triangles no longer
   // Of each point given (of a mesh: of each vertex left after joining) the one above that stands for it, or
   // no_point where it was left out; with where it lies.
@@ -28,14 +28,14 @@ struct FitPoints {
   std::vector<std::uint32_t> node_of;  // of each point
   std::vector<Rim> rims;               // where the surface ends, the longest first
   std::size_t spanning_nodes = 0;      // the last so many nodes have no points: they span holes and gaps
-  std::size_t outliers = 0;            // points given that lie apart from all others
+  std::size_t outliers = 0;            // points given that lie apart from all others; of a mesh its spikes
   std::size_t joined = 0;              // vertices of a mesh that lay where another did
   std::size_t turned_normals = 0;      // points given whose normals faced otherwise than those beside them
 };
 
-// Joins the vertices of a mesh, refines its triangles to the nodes' spacing, gives its vertices normals;
-// thins a cloud by voxels, leaves out what lies apart and turns normals that do not agree. Refused: fewer
-// than 30 points, all of them in one place or on one line.
+// Joins the vertices of a mesh, levels its spikes, refines its triangles to the nodes' spacing, gives its
+// vertices normals; thins a cloud by voxels, leaves out what lies apart and turns normals that do not agree.
+// Refused: fewer than 30 points, all of them in one place or on one line.
 Result<FitPoints> make_fit_points(Scan scan);
 
 // Makes some of the points themselves the nodes, without neighbours: for clouds whose parameters are known

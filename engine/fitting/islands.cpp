@@ -6,9 +6,6 @@
 namespace spoonbill {
 namespace {
 
-constexpr double dust_share = 0.02;
-constexpr std::size_t least_nodes = 30;
-
 FitPoints island_of(const FitPoints& whole, const std::vector<std::uint32_t>& part_of_node,
                     std::uint32_t part) {
   std::vector<std::uint32_t> nodes, place(whole.graph.size(), 0);
@@ -62,7 +59,7 @@ Islands split_islands(const FitPoints& points) {
   Islands result;
   for (const std::uint32_t part : order) {
     const bool is_dust =
-        weights[part] < dust_share * weights[order.front()] || parts.sizes[part] < least_nodes;
+        weights[part] < dust_share * weights[order.front()] || parts.sizes[part] < least_island_nodes;
     if (is_dust) {
       result.dust_points += counts[part];
     } else {

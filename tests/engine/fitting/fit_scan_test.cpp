@@ -143,6 +143,30 @@ TEST(FitScan, IslandsAreFittedAsAsked) {
   EXPECT_EQ(largest.other_islands, 3000U);
 }
 
+// Some 5 mm of gap, less than three nodes are apart and five times as much as points are.
+TEST(FitScan, IslandsNearEachOtherAreTwo) {
+  Scan scan = ellipsoid_cloud(10000, {0.03, 0.03, 0.03});
+  append(scan, ellipsoid_cloud(9000, {0.03, 0.03, 0.03}), {0.045, 0.045, 0.016});
+  add_outliers(scan, 7, 0.01);
+  const ScanFit all = fit(scan, 12, IslandChoice::all);
+  EXPECT_EQ(all.islands, 2U);
+  ASSERT_EQ(all.bodies.size(), 2U);
+  for (const FittedBody& body : all.bodies) {
+    EXPECT_EQ(body.kind, ShapeKind::closed);
+    EXPECT_NEAR(body.size_m.x(), 0.06, 2e-4);
+  }
+  EXPECT_LT(farthest_off(all.bodies[0].surface, from_sphere(0.03)), 3e-4);
+}
+
+// As far apart along the surface: a stripe that was not seen.
+TEST(FitScan, AStripeWithoutPointsPartsNoSheet) {
+  Scan scan = random_cloud(20000, 31, [](double s, double t) { return on_waves(s, t, 0.2, 0.01); });
+  leave_out(scan, [](const Vector3& p) { return std::abs(p.x() - 0.09) < 0.003; });
+  const ScanFit fitted = fit(scan, 16);
+  EXPECT_EQ(fitted.islands, 1U);
+  EXPECT_NEAR(fitted.bodies[0].size_m.x(), 0.2, 1e-3);
+}
+
 TEST(FitScan, IslandsAreBridgedToOneBody) {
   Scan scan = ellipsoid_cloud(5000, {0.01, 0.01, 0.02});
   append(scan, ellipsoid_cloud(5000, {0.01, 0.01, 0.02}), {0.0, 0.0, 0.05});

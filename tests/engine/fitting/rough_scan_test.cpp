@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
+#include "engine/fitting/fit_points.h"
 #include "engine/fitting/fit_scan.h"
 #include "engine/study/curvature_range.h"
 #include "tests/engine/effort.h"
@@ -13,6 +15,8 @@
 
 namespace spoonbill {
 namespace {
+
+constexpr double pi = std::numbers::pi;
 
 double share_facing(const Surface& surface, const std::function<Vector3(const Vector3&)>& out) {
   int facing = 0;
@@ -58,6 +62,78 @@ TEST(RoughScan, NoiseIsAveragedAndOutliersLeftOut) {
   // Some 150 points for each control point average their noise of 0.3 mm; the few at a pole do not.
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.03)), 4.5e-4);
   EXPECT_LT(fitted.bodies[0].errors.surface_to_data.mean_m, 1.5e-4);
+}
+
+// A mesh over a grid of (s, t), closed along s where it comes around.
+Scan mesh_over(int along_s, int along_t, const std::function<Vector3(double, double)>& place) {
+  Scan scan;
+  for (int i = 0; i <= along_s; ++i) {
+    for (int j = 0; j <= along_t; ++j) {
+      scan.points_m.push_back(place(i / static_cast<double>(along_s), j / static_cast<double>(along_t)));
+    }
+  }
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i * (along_t + 1) + j); };
+  for (int i = 0; i < along_s; ++i) {
+    for (int j = 0; j < along_t; ++j) {
+      scan.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      scan.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return scan;
+}
+
+Vector3 on_ball(double s, double t) {
+  const double a = 2.0 * pi * s, b = pi * t;
+  return 0.03 * Vector3(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), -std::cos(b));
+}
+
+// Every so many vertices one is seen far off, but for those on the seam and about the poles.
+std::size_t add_spikes(Scan& mesh, int along_s, int along_t, int every, double height_m) {
+  std::size_t count = 0;
+  for (int p = every; p < along_s * (along_t + 1); p += every) {
+    const int i = p / (along_t + 1), j = p % (along_t + 1);
+    if (i == 0 || j < 4 || j > along_t - 4) continue;
+    Vector3& point = mesh.points_m[static_cast<std::size_t>(p)];
+    point += height_m * (1.0 + 0.1 * static_cast<double>(++count % 7)) * point.normalized();
+  }
+  return count;
+}
+
+TEST(RoughScan, SpikesOfMeshesAreLeftOut) {
+  for (const double height_m : {0.008, -0.008}) {
+    SCOPED_TRACE(height_m);
+    Scan scan = mesh_over(160, 80, on_ball);
+    const std::size_t spikes = add_spikes(scan, 160, 80, 101, height_m);
+    const ScanFit fitted = fit(scan, 16);
+    ASSERT_EQ(fitted.bodies.size(), 1U);
+    EXPECT_GT(spikes, 100U);
+    EXPECT_EQ(fitted.outliers, spikes);
+    EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.03)), 3e-4);
+    EXPECT_LT(fitted.bodies[0].errors.all_to_surface.p95_m, 2e-4);
+  }
+}
+
+std::size_t spikes_in(Scan mesh) {
+  const auto points = make_fit_points(std::move(mesh));
+  EXPECT_TRUE(points) << points.error().message;
+  return points ? points->outliers : 0;
+}
+
+TEST(RoughScan, TipsOfMeshesAreNoSpikes) {
+  // A slender cone of evenly spaced rings.
+  const auto on_cone = [](double s, double t) {
+    const double r = 0.008 * (1.0 - t), a = 2.0 * pi * s;
+    return Vector3(r * std::cos(a), r * std::sin(a), 0.08 * t);
+  };
+  EXPECT_EQ(spikes_in(mesh_over(40, 64, on_cone)), 0U);
+  // A pencil as CAD systems export it: rings of 2 mm, and a tip of 50 mm on the last of them in a single fan.
+  constexpr int rings = 21;
+  const auto on_pencil = [](double s, double t) {
+    const double ring = std::round((rings + 1) * t), a = 2.0 * pi * s;
+    const double r = ring == 0.0 || ring > rings ? 0.0 : 0.008;
+    return Vector3(r * std::cos(a), r * std::sin(a), ring > rings ? 0.09 : 0.002 * std::max(ring - 1.0, 0.0));
+  };
+  EXPECT_EQ(spikes_in(mesh_over(64, rings + 1, on_pencil)), 0U);
 }
 
 // More points than are fitted: each outlier has a voxel of its own, those of the surface share theirs.
