@@ -100,15 +100,26 @@ double second_derivative_bound(const TrimLoop& loop, int span, const Eigen::Vect
   return largest;
 }
 
+// Of a piece that is cut evenly.
+struct PieceChords {
+  int count = 1;
+  double error_share = 0.0;  // no chord is farther from the curve
+};
+
+PieceChords chords_of(const TrimLoop& loop, double start, double length, const Eigen::Vector2d& lengths) {
+  const double bound = second_derivative_bound(loop, loop.knots.find_span(start), lengths);
+  const double wanted = std::ceil(length * std::sqrt(bound / (8.0 * trim_chord_share)));
+  const int count = wanted > 1.0 ? static_cast<int>(std::min(wanted, largest_piece_chord_count)) : 1;
+  return {count, bound * length * length / (8.0 * count * count)};
+}
+
 // The curve itself at the ends of chords, unclamped; none where it asks for too many.
 std::optional<std::vector<Eigen::Vector2d>> corners_of(const TrimLoop& loop, const Eigen::Vector2d& lengths) {
   std::vector<Eigen::Vector2d> corners;
   const std::vector<double> ends = loop.knots.breakpoints();
   for (std::size_t piece = 0; piece + 1 < ends.size(); ++piece) {
     const double length = ends[piece + 1] - ends[piece];
-    const double bound = second_derivative_bound(loop, loop.knots.find_span(ends[piece]), lengths);
-    const double wanted = std::ceil(length * std::sqrt(bound / (8.0 * trim_chord_share)));
-    const int chords = wanted > 1.0 ? static_cast<int>(std::min(wanted, largest_piece_chord_count)) : 1;
+    const int chords = chords_of(loop, ends[piece], length, lengths).count;
     if (corners.size() + static_cast<std::size_t>(chords) > trim_chord_count_limit) return std::nullopt;
     for (int c = 0; c < chords; ++c) corners.push_back(position(loop, ends[piece] + length * c / chords));
   }
@@ -213,6 +224,17 @@ std::vector<Eigen::Vector2d> polygon_of(const TrimLoop& loop, const KnotVector& 
   }
   if (polygon.size() > 1 && polygon.front() == polygon.back()) polygon.pop_back();
   return polygon;
+}
+
+double polygon_error_share(const TrimLoop& loop, const KnotVector& along_u, const KnotVector& along_v) {
+  const Eigen::Vector2d lengths(length_of(along_u), length_of(along_v));
+  const std::vector<double> ends = loop.knots.breakpoints();
+  double largest = 0.0;
+  for (std::size_t piece = 0; piece + 1 < ends.size(); ++piece) {
+    const PieceChords chords = chords_of(loop, ends[piece], ends[piece + 1] - ends[piece], lengths);
+    largest = std::max(largest, chords.error_share);
+  }
+  return largest;
 }
 
 double signed_area(const std::vector<Eigen::Vector2d>& polygon) {

@@ -51,6 +51,9 @@ Eigen::Vector2d position(const TrimLoop& loop, double parameter);
 std::vector<Eigen::Vector2d> polygon_of(const TrimLoop& loop, const KnotVector& along_u,
                                         const KnotVector& along_v);
 
+// In shares of the domain, how far that polygon can be from the loop: 0 for a polygon.
+double polygon_error_share(const TrimLoop& loop, const KnotVector& along_u, const KnotVector& along_v);
+
 // Positive when it runs counter-clockwise; in units of u times v.
 double signed_area(const std::vector<Eigen::Vector2d>& polygon);
 

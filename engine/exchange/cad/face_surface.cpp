@@ -180,7 +180,7 @@ Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolera
   close_poles(result.surface, coincidence_m);
   if (Status matched = match_domain(box.value(), result.surface); !matched) return matched.error();
   if (trimmed) {
-    auto trims = trims_of(face, result.surface.u, result.surface.v);
+    auto trims = trims_of(face, result.surface, tolerance_m);
     if (trims) {
       result.trims = std::move(trims).value();
     } else {

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/bspline/stretch_bound.h"
 #include "engine/bspline/trimmed_area.h"
 
 namespace spoonbill {
@@ -23,8 +24,8 @@ using Point = Eigen::Vector2d;
 // The control points of a cubic Bezier curve.
 using Piece = std::array<Point, 4>;
 
-// Shares of the domain.
-constexpr double curve_share = 1e-6;
+// Shares of the domain: how near loops are to the file's curves, at most and where the tolerance asks for it.
+constexpr double curve_share = 1e-6, nearest_curve_share = 1e-9;
 // How far edges that meet may miss each other and are moved together.
 constexpr double meeting_share = 1e-3;
 constexpr int most_halvings = 12;
@@ -39,10 +40,23 @@ Point at(const Piece& piece, double t) {
          t * t * t * piece[3];
 }
 
+// The domain of a surface, and how near curves over it must be.
+struct Nearness {
+  Point lengths;
+  double share;
+};
+
+Nearness nearness_on(const Surface& surface, double tolerance_m) {
+  const double share = tolerance_m / std::max(longest_stretch_m(surface), 1e-300);
+  return {
+      {surface.u.domain_end() - surface.u.domain_start(), surface.v.domain_end() - surface.v.domain_start()},
+      std::clamp(share, nearest_curve_share, curve_share)};
+}
+
 // The curve from one end of the adaptor to the other as cubic pieces that share its tangents (Hermite).
 class Fit {
  public:
-  Fit(const Geom2dAdaptor_Curve& curve, const Point& lengths) : curve_(curve), lengths_(lengths) {
+  Fit(const Geom2dAdaptor_Curve& curve, const Nearness& near) : curve_(curve), near_(near) {
     add(curve.FirstParameter(), curve.LastParameter(), 0);
   }
 
@@ -70,18 +84,18 @@ class Fit {
   bool misses(const Piece& piece, double from, double to) const {
     for (const double t : {0.2, 0.5, 0.8}) {
       const Point gap =
-          (at(piece, t) - point_of(curve_.Value(from + t * (to - from)))).cwiseQuotient(lengths_);
-      if (!(gap.norm() <= curve_share)) return true;
+          (at(piece, t) - point_of(curve_.Value(from + t * (to - from)))).cwiseQuotient(near_.lengths);
+      if (!(gap.norm() <= near_.share)) return true;
     }
     return false;
   }
 
   const Geom2dAdaptor_Curve& curve_;
-  Point lengths_;
+  Nearness near_;
 };
 
 // Over the smooth pieces of the edge's curve, in the direction of its wire.
-std::vector<Piece> pieces_of(const TopoDS_Edge& edge, const TopoDS_Face& face, const Point& lengths) {
+std::vector<Piece> pieces_of(const TopoDS_Edge& edge, const TopoDS_Face& face, const Nearness& near) {
   double first = 0.0, last = 0.0;
   const auto curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
   if (curve.IsNull() || !(last > first)) return {};
@@ -92,7 +106,7 @@ std::vector<Piece> pieces_of(const TopoDS_Edge& edge, const TopoDS_Face& face, c
   for (int k = ends.Lower(); k < ends.Upper(); ++k) {
     if (!(ends(k + 1) > ends(k))) continue;
     const Geom2dAdaptor_Curve part(curve, ends(k), ends(k + 1));
-    const Fit fit(part, lengths);
+    const Fit fit(part, near);
     pieces.insert(pieces.end(), fit.pieces.begin(), fit.pieces.end());
   }
   if (edge.Orientation() != TopAbs_REVERSED) return pieces;
@@ -116,20 +130,20 @@ void join(const Point& end, const Point& lengths, std::vector<Piece>& next) {
   }
 }
 
-Result<std::vector<Piece>> chain_of(const TopoDS_Wire& wire, const TopoDS_Face& face, const Point& lengths) {
+Result<std::vector<Piece>> chain_of(const TopoDS_Wire& wire, const TopoDS_Face& face, const Nearness& near) {
   int edges = 0, visited = 0;
   for (TopExp_Explorer every(wire, TopAbs_EDGE); every.More(); every.Next()) ++edges;
   std::vector<Piece> chain;
   for (BRepTools_WireExplorer explorer(wire, face); explorer.More(); explorer.Next(), ++visited) {
-    std::vector<Piece> pieces = pieces_of(explorer.Current(), face, lengths);
+    std::vector<Piece> pieces = pieces_of(explorer.Current(), face, near);
     if (pieces.empty()) return Error{"an edge has no curve over the surface's parameters"};
-    if (!chain.empty()) join(chain.back()[3], lengths, pieces);
+    if (!chain.empty()) join(chain.back()[3], near.lengths, pieces);
     chain.insert(chain.end(), pieces.begin(), pieces.end());
   }
   if (visited != edges) return Error{"its edges do not hang together"};
   if (chain.empty()) return chain;
   std::vector<Piece> start = {line(chain.front()[0], chain.front()[0])};
-  join(chain.back()[3], lengths, start);
+  join(chain.back()[3], near.lengths, start);
   if (start.size() > 1) chain.push_back(start.front());
   chain.back()[3] = chain.front()[0];
   return chain;
@@ -178,14 +192,13 @@ std::vector<TrimLoop> turned_right(std::vector<TrimLoop> loops, const KnotVector
 
 }  // namespace
 
-Result<std::vector<TrimLoop>> trims_of(const TopoDS_Face& face, const KnotVector& along_u,
-                                       const KnotVector& along_v) {
+Result<std::vector<TrimLoop>> trims_of(const TopoDS_Face& face, const Surface& surface, double tolerance_m) {
   const TopoDS_Face forward = TopoDS::Face(face.Oriented(TopAbs_FORWARD));
-  const Point lengths(along_u.domain_end() - along_u.domain_start(),
-                      along_v.domain_end() - along_v.domain_start());
+  const KnotVector &along_u = surface.u, &along_v = surface.v;
+  const Nearness near = nearness_on(surface, tolerance_m);
   std::vector<TrimLoop> loops;
   for (TopExp_Explorer wires(forward, TopAbs_WIRE); wires.More(); wires.Next()) {
-    const auto chain = chain_of(TopoDS::Wire(wires.Current()), forward, lengths);
+    const auto chain = chain_of(TopoDS::Wire(wires.Current()), forward, near);
     if (!chain) return chain.error();
     if (chain->empty()) continue;
     auto loop = loop_of(chain.value(), along_u, along_v);

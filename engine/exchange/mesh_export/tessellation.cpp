@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/bspline/evaluate.h"
+#include "engine/bspline/stretch_bound.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/bspline/trimmed_grid.h"
 #include "engine/collision/levels/surface_bounds.h"
@@ -22,6 +23,8 @@ namespace {
 constexpr double coincidence_m = 1e-9;
 // Of the chord error, for the bend along one direction; the twist takes what is left.
 constexpr double share_of_a_direction = 0.4;
+// Of the chord error, what cells have at least where the edges of loops take the rest.
+constexpr double least_share_of_cells = 0.5;
 
 // Into how many cells each polynomial piece is cut.
 using Cuts = std::vector<int>;
@@ -256,6 +259,13 @@ TriangleMesh kept_mesh(const Sheet& sheet, const Welding& welding, const Trimmed
   return mesh_of(sheet, more, triangles);
 }
 
+// How far the polygons that stand for loops can be from them.
+double trim_edge_error_m(const Surface& surface, const std::vector<TrimLoop>& trims) {
+  double share = 0.0;
+  for (const TrimLoop& loop : trims) share = std::max(share, polygon_error_share(loop, surface.u, surface.v));
+  return share * longest_stretch_m(surface);
+}
+
 Result<Tessellation> finished(const Sheet& sheet, const Surface& surface, const std::vector<TrimLoop>& trims,
                               double chord_error_m) {
   const Welding welding(sheet, surface);
@@ -279,9 +289,11 @@ Result<Tessellation> finished(const Sheet& sheet, const Surface& surface, const 
 
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
                                 std::size_t triangle_limit, const std::function<bool()>& stop) {
+  const double edges_m = trim_edge_error_m(surface, trims);
+  const double allowed_m = std::max(chord_m - edges_m, least_share_of_cells * chord_m);
   SurfaceBounds bounds(surface.u, surface.v);
   bounds.update(surface.net);
-  Cells cells = first_cells(surface, bounds, chord_m);
+  Cells cells = first_cells(surface, bounds, allowed_m);
   for (;;) {
     if (cells.triangles() > triangle_limit) {
       return Error{"a chord error of " + number_text(1e3 * chord_m) + " mm would take more than " +
@@ -291,10 +303,10 @@ Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLo
     if (!sheet) return sheet.error();
     const Eigen::MatrixXd errors = errors_of(sheet.value(), bounds, cells, stop);
     if (stop && stop()) return Error{"stopped"};
-    if (const double largest = errors.maxCoeff(); largest <= chord_m) {
-      return finished(sheet.value(), surface, trims, largest);
+    if (const double largest = errors.maxCoeff(); largest <= allowed_m) {
+      return finished(sheet.value(), surface, trims, largest + edges_m);
     }
-    refine(errors, chord_m, cells);
+    refine(errors, allowed_m, cells);
   }
 }
 

@@ -18,8 +18,9 @@ struct Tessellation {
   // surface is a seam or a pole.
   TriangleMesh mesh;
   bool closed = false;  // it is so, and whole
-  // No point of the surface is farther from the point of its triangle at the same parameters. What welding
-  // moves, at most closing_tolerance_m, comes on top of what was asked for.
+  // No point of the surface is farther from the point of its triangle at the same parameters, nor an edge
+  // that a loop makes from the loop. What welding moves, at most closing_tolerance_m, comes on top of what
+  // was asked for, and so do edges of loops of more than half of it.
   double chord_error_m = 0.0;
 };
 
@@ -29,9 +30,9 @@ inline constexpr std::size_t exported_triangle_limit = 10'000'000;
 // A grid over the polynomial pieces, finer where the surface bends. A cell of sides h_u and h_v lies within
 // (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of the bilinear patch through its corners (surface_bounds.h), and that
 // within |P00 - P10 - P01 + P11| / 4 of its triangles, those that trim loops cut too, whose corners lie on
-// the patch. An edge that a loop makes is that of its polygon, within trim_chord_share of the domain of the
-// loop. Refused: more triangles than the limit, loops that bound nothing; `stop`, asked
-// now and then, where it says so.
+// the patch. An edge that a loop makes is that of its polygon, within polygon_error_share() of the domain
+// of the loop, which the surface stretches by no more than its first derivatives. Refused: more triangles
+// than the limit, loops that bound nothing; `stop`, asked now and then, where it says so.
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
                                 std::size_t triangle_limit = exported_triangle_limit,
                                 const std::function<bool()>& stop = {});

@@ -156,6 +156,19 @@ TEST(Tessellation, ATrimmedSurfaceStaysTrimmed) {
   // The polygon of the loop is within 1e-5 of it, over a length of less than 2.
   EXPECT_NEAR(area_of(holed->mesh), 1.0 - round_loop_area(0.3, 12), 2e-5);
 
+  // A disc out of the plate is as near as is told, which is more than nothing although the plate is flat.
+  const TrimLoop round = round_loop(line, line, {0.5, 0.5}, 0.4, 12, false);
+  const auto disc = tessellate(plate, {round}, 1e-3);
+  ASSERT_TRUE(disc) << disc.error().message;
+  double farthest = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    const double share = k / 2000.0, start = round.knots.domain_start();
+    const Eigen::Vector2d at = position(round, start + share * (round.knots.domain_end() - start));
+    farthest = std::max(farthest, distance_to_mesh(position(plate, at.x(), at.y()), disc->mesh));
+  }
+  EXPECT_GT(farthest, 1e-6);
+  EXPECT_LE(farthest, disc->chord_error_m);
+
   const Surface tube = ellipsoid_tube(10, 10);
   const auto loop = round_loop(tube.u, tube.v, {0.98, 0.5}, 0.15, 12, true);
   const auto whole = tessellate(tube, {}, 2e-5), cut = tessellate(tube, {loop}, 2e-5);
