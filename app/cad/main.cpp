@@ -120,8 +120,9 @@ void answer_solids(const SolidMeshing& meshing, std::ostream& out) {
   if (!model) return write_cad_failure(out, model.error().message);
   const auto found = mesh_solids(model.value(), meshing, [&](double share) { write_progress(out, share); });
   if (!found) return write_cad_failure(out, found.error().message);
-  for (const CadSolid& solid : found->solids)
+  for (const CadSolid& solid : found->solids) {
     write_frame(out, CadFrameKind::solid, cad_solid_to_bytes(solid));
+  }
   const Json ending = {{"loose", found->loose}, {"notes", found->notes}};
   write_frame(out, CadFrameKind::ending, json_to_line(ending));
 }

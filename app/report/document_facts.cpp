@@ -172,6 +172,7 @@ void add_document_facts(FactSheet& facts, const Document& document) {
   facts.add("Name", document.name, "name", document.name);
   facts.add("Unit", "mm (of the file's lengths)", "unit", "mm");
   std::vector<Box> extents;
+  extents.reserve(bodies.size());
   for (const Body& body : bodies) extents.push_back(extent_of(body.surface, body.trims));
   Box all = extents.front();
   for (const Box& extent : extents) all = joined(all, extent);

@@ -124,8 +124,8 @@ class Nodes {
           {TopExp::FirstVertex(one.edge), one.nodes.front()},
           {TopExp::LastVertex(one.edge), one.nodes.back()}};
       for (const auto& [vertex, node] : ends) {
-        if (!vertex.IsNull())
-          unions.unite(node, at_vertex.try_emplace(vertex_index_.FindIndex(vertex), node).first->second);
+        if (vertex.IsNull()) continue;
+        unions.unite(node, at_vertex.try_emplace(vertex_index_.FindIndex(vertex), node).first->second);
       }
       // A pole is one point, along whatever stands for it in (u, v).
       if (!BRep_Tool::Degenerated(one.edge)) continue;
@@ -246,7 +246,7 @@ double error_along(const MeshedEdge& one, const std::vector<Vector3>& points, Un
   const BRepAdaptor_Curve curve(one.edge);
   double largest = 0.0;
   for (std::size_t k = 0; k + 1 < one.nodes.size(); ++k) {
-    const Vector3 a = points[unions.of(one.nodes[k])], b = points[unions.of(one.nodes[k + 1])];
+    const Vector3 &a = points[unions.of(one.nodes[k])], &b = points[unions.of(one.nodes[k + 1])];
     for (int i = 1; i < parts; ++i) {
       const double share = static_cast<double>(i) / parts;
       const Vector3 point =

@@ -27,8 +27,9 @@ class PressedSkin {
     for (std::size_t p = 0; p < points_.size(); ++p) {
       at_m_[p].setZero();
       force_n_[p].setZero();
-      for (std::size_t c = 0; c < 8; ++c)
+      for (std::size_t c = 0; c < 8; ++c) {
         at_m_[p] += points_[p].weights[c] * position_of(points_[p].nodes[c]);
+      }
     }
     press_points();
     for (std::size_t p = 0; p < points_.size(); ++p) {
