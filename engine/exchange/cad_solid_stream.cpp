@@ -48,7 +48,7 @@ bool read_mesh(std::string_view bytes, const Counts& counts, TriangleMesh& mesh)
   }
   std::memcpy(mesh.triangles.data(), bytes.data() + points, bytes.size() - points);
   for (const Vector3& vertex : mesh.vertices_m) {
-    if (!(vertex.cwiseAbs().maxCoeff() <= coordinate_range_m.high)) return false;
+    if (!vertex.allFinite() || vertex.cwiseAbs().maxCoeff() > coordinate_range_m.high) return false;
   }
   for (const TriangleCorners& corners : mesh.triangles) {
     for (const std::uint32_t corner : corners) {

@@ -1,6 +1,7 @@
 // Readers of our own JSON forms.
 #include <sstream>
 
+#include "engine/exchange/cad_solid_stream.h"
 #include "engine/exchange/cad_stream.h"
 #include "engine/exchange/document.h"
 #include "haptic/recording.h"
@@ -45,6 +46,22 @@ void take_script(std::string_view bytes) {
   must_hold(last.pose.position_m.allFinite(), "hands go to finite places");
 }
 
+namespace {
+
+void take_cad_solid(std::string_view bytes) {
+  constexpr std::size_t surfaces = 8;
+  const auto solid = cad_solid_from_bytes(bytes, surfaces, "fuzzed");
+  if (!solid) return must_be_one_line(solid.error());
+  for (const Vector3& vertex : solid->mesh.vertices_m) must_hold(vertex.allFinite(), "vertices are finite");
+  for (const std::size_t place : solid->places) must_hold(place < surfaces, "a face is one of the model's");
+  const std::string written = cad_solid_to_bytes(solid.value());
+  const auto back = cad_solid_from_bytes(written, surfaces, "written");
+  must_hold(back.ok(), "what is written can be read");
+  must_hold(cad_solid_to_bytes(back.value()) == written, "what is read is the same");
+}
+
+}  // namespace
+
 void take_cad_stream(std::string_view bytes) {
   std::size_t at = 0;
   const ReadBytes read = [&](void* to, std::size_t count) {
@@ -54,6 +71,10 @@ void take_cad_stream(std::string_view bytes) {
     return true;
   };
   while (const auto frame = read_frame(read)) {
+    if (frame->kind == CadFrameKind::solid) {
+      take_cad_solid(frame->content);
+      continue;
+    }
     const auto surface = cad_surface_from_json(frame->content, "fuzzed");
     if (!surface) must_be_one_line(surface.error());
   }

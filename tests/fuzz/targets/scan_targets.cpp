@@ -2,10 +2,13 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <filesystem>
+#include <functional>
 #include <string>
 
 #include "engine/exchange/ply_check.h"
 #include "engine/exchange/points/point_cloud.h"
+#include "engine/exchange/text_mesh_check.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/targets/targets.h"
 
@@ -18,6 +21,15 @@ void take_cloud(const Result<PointCloud>& cloud, std::size_t bytes) {
   // Compressed ones hold more than their bytes, but no more than a hundred times.
   must_hold(cloud->points.size() <= 100 * bytes, "a small file holds few points");
   for (const Vector3& point : cloud->points) must_hold(point.allFinite(), "points are finite");
+}
+
+void take_file(std::string_view bytes, const std::function<Status(const std::filesystem::path&)>& check) {
+  const int file = memfd_create("fuzzed", 0);
+  must_hold(file >= 0, "memory for a file");
+  must_hold(write(file, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()), "a written file");
+  const Status status = check("/proc/self/fd/" + std::to_string(file));
+  close(file);
+  if (!status) must_be_one_line(status.error());
 }
 
 }  // namespace
@@ -39,12 +51,16 @@ void take_points(std::string_view bytes) {
 }
 
 void take_ply(std::string_view bytes) {
-  const int file = memfd_create("fuzzed", 0);
-  must_hold(file >= 0, "memory for a file");
-  must_hold(write(file, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()), "a written file");
-  const Status status = check_ply("/proc/self/fd/" + std::to_string(file));
-  close(file);
-  if (!status) must_be_one_line(status.error());
+  take_file(bytes, [](const std::filesystem::path& file) { return check_ply(file); });
+}
+
+// The first byte chooses the form.
+void take_mesh_text(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const bool is_stl = bytes[0] % 2 == 0;
+  take_file(bytes.substr(1), [&](const std::filesystem::path& file) {
+    return is_stl ? check_text_stl(file) : check_last_obj_line(file);
+  });
 }
 
 }  // namespace spoonbill

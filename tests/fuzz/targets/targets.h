@@ -13,6 +13,7 @@ void take_recording(std::string_view bytes);
 void take_script(std::string_view bytes);
 void take_points(std::string_view bytes);
 void take_ply(std::string_view bytes);
+void take_mesh_text(std::string_view bytes);
 void take_cad_stream(std::string_view bytes);
 void take_values(std::string_view bytes);
 void take_table(std::string_view bytes);
