@@ -30,10 +30,6 @@ bool meets(const Box& box, const Vector3& from, const Vector3& direction, double
   return near <= far;
 }
 
-Box box_of(const Triangle& t) {
-  return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
-}
-
 }  // namespace
 
 LineExits::LineExits(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {

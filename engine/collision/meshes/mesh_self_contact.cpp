@@ -25,10 +25,6 @@ Triangle shrunk(const Triangle& triangle) {
   return smaller;
 }
 
-Box box_of(const Triangle& t) {
-  return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
-}
-
 bool have_common_corner(const TriangleCorners& a, const TriangleCorners& b) {
   return std::any_of(a.begin(), a.end(),
                      [&](std::uint32_t corner) { return std::find(b.begin(), b.end(), corner) != b.end(); });

@@ -4,11 +4,16 @@
 
 #include <array>
 
+#include "engine/box.h"
 #include "engine/pose.h"
 
 namespace spoonbill {
 
 using Triangle = std::array<Vector3, 3>;
+
+inline Box box_of(const Triangle& t) {
+  return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
+}
 
 // Touching counts as meeting. With a slack, in metres, also those that no plane separates by more than that:
 // every pair nearer than the slack, and some a little farther apart where two corners face each other.
