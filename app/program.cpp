@@ -7,7 +7,7 @@
 
 #include "app/commands/command.h"
 #include "app/version.h"
-#include "engine/excerpt.h"
+#include "engine/base/excerpt.h"
 
 namespace spoonbill {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/pose.h"
-#include "engine/range.h"
-#include "engine/result.h"
+#include "engine/base/pose.h"
+#include "engine/base/range.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 

@@ -14,8 +14,8 @@
 #include <memory>
 #include <string>
 
-#include "engine/range.h"
-#include "engine/result.h"
+#include "engine/base/range.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 

@@ -31,8 +31,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/exchange/document.h"
-#include "engine/result.h"
 #include "haptic/device.h"
 #include "haptic/timed_command.h"
 

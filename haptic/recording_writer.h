@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "haptic/device.h"
 #include "haptic/recording.h"
 

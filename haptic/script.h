@@ -26,8 +26,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/exchange/document.h"
-#include "engine/result.h"
 #include "haptic/timed_command.h"
 #include "haptic/virtual_device.h"
 

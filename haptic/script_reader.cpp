@@ -2,9 +2,9 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/base/number_text.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/file.h"
-#include "engine/number_text.h"
 #include "engine/simulation/simulation.h"
 #include "haptic/script.h"
 

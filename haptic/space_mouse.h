@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/pose.h"
-#include "engine/result.h"
+#include "engine/base/pose.h"
+#include "engine/base/result.h"
 #include "haptic/virtual_device.h"
 
 namespace spoonbill {

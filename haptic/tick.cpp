@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/denormals.h"
+#include "engine/base/denormals.h"
 
 namespace spoonbill {
 namespace {

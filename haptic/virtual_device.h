@@ -3,8 +3,8 @@
 // is recorded.
 #pragma once
 
-#include "engine/range.h"
-#include "engine/result.h"
+#include "engine/base/range.h"
+#include "engine/base/result.h"
 #include "haptic/device.h"
 
 namespace spoonbill {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "engine/pose.h"
+#include "engine/base/pose.h"
 
 namespace spoonbill {
 

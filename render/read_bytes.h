@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 

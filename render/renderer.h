@@ -15,7 +15,7 @@
 
 #include <memory>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "engine/simulation/snapshot.h"
 #include "render/gl/context.h"
 #include "render/image/image.h"

@@ -4,8 +4,8 @@
 
 #include <memory>
 
+#include "engine/base/pose.h"
 #include "engine/collision/stages/contact_stages.h"
-#include "engine/pose.h"
 #include "render/camera.h"
 
 namespace spoonbill {

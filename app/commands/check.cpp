@@ -18,7 +18,7 @@
 #include "app/report/progress_bar.h"
 #include "app/report/solid_check_facts.h"
 #include "app/report/surface_extent.h"
-#include "engine/study/solid_check.h"
+#include "engine/inspection/solid_check.h"
 
 namespace spoonbill {
 namespace {

@@ -16,9 +16,9 @@
 #include "app/report/contact_facts.h"
 #include "app/report/mesh_facts.h"
 #include "engine/collision/meshes/mesh_distance.h"
+#include "engine/collision/surfaces/closed_surface.h"
 #include "engine/collision/surfaces/surface_pair_collider.h"
 #include "engine/exchange/document.h"
-#include "engine/material/lattice/closed_surface.h"
 
 namespace spoonbill {
 namespace {

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "app/console.h"
-#include "engine/result.h"
+#include "engine/base/result.h"
 
 namespace CLI {
 class App;

@@ -5,7 +5,7 @@
 #include <CLI/Formatter.hpp>
 #include <string>
 
-#include "engine/excerpt.h"
+#include "engine/base/excerpt.h"
 #include "engine/exchange/file_format.h"
 
 namespace spoonbill {

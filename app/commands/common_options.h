@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "engine/instruction_set.h"
+#include "engine/base/instruction_set.h"
 
 namespace CLI {
 class App;

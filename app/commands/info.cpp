@@ -18,7 +18,8 @@
 #include "app/report/map_progress.h"
 #include "app/report/progress_bar.h"
 #include "app/session/session.h"
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
+#include "engine/material/lattice/lattice_of.h"
 #include "haptic/recording.h"
 #include "haptic/script.h"
 

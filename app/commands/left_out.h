@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/simulation/scene.h"
-#include "engine/study/closing.h"
+#include "engine/inspection/closing.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 

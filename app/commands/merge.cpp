@@ -21,12 +21,12 @@
 #include "app/interrupt.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
-#include "engine/excerpt.h"
+#include "engine/base/excerpt.h"
+#include "engine/base/number_text.h"
+#include "engine/inspection/closing.h"
+#include "engine/inspection/enclosed_mass.h"
 #include "engine/merging/intersection_merge.h"
 #include "engine/merging/trimmed_patch.h"
-#include "engine/number_text.h"
-#include "engine/study/closing.h"
-#include "engine/study/enclosed_mass.h"
 
 namespace spoonbill {
 namespace {

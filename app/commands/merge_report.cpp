@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "engine/number_text.h"
-#include "engine/study/curvature_range.h"
+#include "engine/base/number_text.h"
+#include "engine/inspection/curvature_range.h"
 
 namespace spoonbill {
 

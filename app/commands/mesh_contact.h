@@ -2,10 +2,10 @@
 #pragma once
 
 #include "app/report/contact_facts.h"
+#include "engine/base/pose.h"
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/solids/signed_distance.h"
-#include "engine/pose.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -20,12 +20,12 @@
 #include "app/report/surface_extent.h"
 #include "app/start/shipped_materials.h"
 #include "app/start/starting_document.h"
+#include "engine/base/number_text.h"
+#include "engine/base/place_text.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
-#include "engine/number_text.h"
-#include "engine/place_text.h"
+#include "engine/inspection/enclosed_mass.h"
 #include "engine/shapes/fit_shape.h"
 #include "engine/shapes/lump.h"
-#include "engine/study/enclosed_mass.h"
 
 namespace spoonbill {
 namespace {

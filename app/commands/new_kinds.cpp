@@ -6,6 +6,7 @@
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
 #include "engine/material/lattice/shell_lattice.h"
+#include "engine/scene/scene.h"
 #include "engine/shapes/lump.h"
 #include "engine/shapes/shape_sizes.h"
 

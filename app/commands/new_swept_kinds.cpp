@@ -9,6 +9,7 @@
 #include "app/commands/option_values.h"
 #include "app/start/point_table.h"
 #include "engine/material/lattice/shell_lattice.h"
+#include "engine/scene/scene.h"
 #include "engine/shapes/lathe.h"
 #include "engine/shapes/loft.h"
 #include "engine/shapes/shape_sizes.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include "engine/number_text.h"
-#include "engine/simulation/scene.h"
+#include "engine/base/number_text.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 namespace {

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "app/files/length_unit.h"
-#include "engine/excerpt.h"
+#include "engine/base/excerpt.h"
+#include "engine/base/pose.h"
+#include "engine/base/range.h"
+#include "engine/base/result.h"
 #include "engine/merging/patch_edge.h"
-#include "engine/pose.h"
-#include "engine/range.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

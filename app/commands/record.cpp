@@ -18,7 +18,7 @@
 #include "app/report/progress_bar.h"
 #include "app/session/lockstep.h"
 #include "app/session/scripted_device.h"
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
 #include "haptic/playback_device.h"
 
 namespace spoonbill {

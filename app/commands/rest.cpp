@@ -12,8 +12,8 @@
 #include "app/report/fact_sheet.h"
 #include "app/report/progress_bar.h"
 #include "app/report/quantity_text.h"
-#include "engine/number_text.h"
-#include "engine/place_text.h"
+#include "engine/base/number_text.h"
+#include "engine/base/place_text.h"
 #include "engine/simulation/rest_shape.h"
 
 namespace spoonbill {

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "app/commands/option_values.h"
+#include "engine/base/excerpt.h"
+#include "engine/base/number_text.h"
 #include "engine/bspline/knot_removal.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/excerpt.h"
 #include "engine/merging/seam.h"
 #include "engine/merging/tube_ends.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

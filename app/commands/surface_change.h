@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/result.h"
+#include "engine/base/work_watch.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
 #include "engine/merging/patch_edge.h"
-#include "engine/result.h"
-#include "engine/work_watch.h"
 
 namespace spoonbill {
 

@@ -9,8 +9,8 @@
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/report/progress_bar.h"
-#include "engine/result.h"
-#include "engine/work_watch.h"
+#include "engine/base/result.h"
+#include "engine/base/work_watch.h"
 
 namespace spoonbill {
 

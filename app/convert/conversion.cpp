@@ -9,11 +9,11 @@
 #include "app/convert/model_meshes.h"
 #include "app/files/output_file.h"
 #include "app/report/quantity_text.h"
+#include "engine/base/number_text.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/mesh_export/mesh_writer.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "app/files/cad_file.h"
 #include "app/files/length_unit.h"
+#include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
-#include "engine/result.h"
-#include "engine/simulation/scene.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "app/files/cad_file.h"
+#include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
 #include "engine/exchange/mesh_export/mesh_writer.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "render/camera.h"
 
 namespace spoonbill {

@@ -15,12 +15,12 @@
 
 #include "app/files/foreign_file.h"
 #include "app/process/child_output.h"
+#include "engine/base/number_text.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/cad_solid_stream.h"
 #include "engine/exchange/cad_stream.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/file_format.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

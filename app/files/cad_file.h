@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <functional>
 
+#include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
 #include "engine/exchange/cad_solid.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

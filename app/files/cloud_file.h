@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "app/files/mesh_file.h"
+#include "engine/base/result.h"
 #include "engine/exchange/points/point_cloud.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

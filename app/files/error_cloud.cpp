@@ -6,7 +6,7 @@
 
 #include "app/files/output_file.h"
 #include "app/report/colour_scale.h"
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
 
 namespace spoonbill {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
+#include "engine/base/result.h"
 #include "engine/fitting/fit_scan.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

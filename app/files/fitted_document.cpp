@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/start/starting_document.h"
+#include "engine/material/lattice/lattice_of.h"
 #include "engine/material/lattice/tube_lattice.h"
 
 namespace spoonbill {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/exchange/document.h"
 #include "engine/fitting/fit_scan.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "app/process/child_output.h"
-#include "engine/result.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 

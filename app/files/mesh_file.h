@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "app/files/length_unit.h"
+#include "engine/base/result.h"
 #include "engine/collision/meshes/triangle_mesh.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "app/files/cloud_file.h"
+#include "engine/base/number_text.h"
+#include "engine/base/pose.h"
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/points/point_cloud.h"
-#include "engine/number_text.h"
-#include "engine/simulation/checks.h"
 
 namespace spoonbill {
 namespace {

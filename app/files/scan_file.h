@@ -7,8 +7,8 @@
 
 #include "app/files/length_unit.h"
 #include "app/files/mesh_file.h"
+#include "engine/base/result.h"
 #include "engine/fitting/scan.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

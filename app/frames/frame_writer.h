@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "render/image/image.h"
 
 namespace spoonbill {

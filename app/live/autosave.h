@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "app/files/file_lock.h"
+#include "engine/base/result.h"
 #include "engine/exchange/document.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/live/notices.h"
-#include "engine/simulation/scene.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 

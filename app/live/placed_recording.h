@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "app/files/recording_place.h"
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "haptic/recording_writer.h"
 
 namespace spoonbill {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "app/panel/theme.h"
-#include "engine/result.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/simulation/scene.h"
+#include "engine/scene/scene.h"
 #include "engine/simulation/snapshot.h"
 #include "render/view_settings.h"
 

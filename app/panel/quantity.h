@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "engine/range.h"
-#include "engine/result.h"
+#include "engine/base/range.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 

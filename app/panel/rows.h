@@ -9,7 +9,7 @@
 
 #include "app/panel/quantity.h"
 #include "app/panel/theme.h"
-#include "engine/range.h"
+#include "engine/base/range.h"
 
 namespace spoonbill {
 

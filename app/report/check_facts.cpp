@@ -7,10 +7,10 @@
 
 #include "app/report/closing_text.h"
 #include "app/report/quantity_text.h"
-#include "engine/number_text.h"
-#include "engine/place_text.h"
-#include "engine/study/material_mix.h"
-#include "engine/study/shell_mass.h"
+#include "engine/base/number_text.h"
+#include "engine/base/place_text.h"
+#include "engine/inspection/material_mix.h"
+#include "engine/inspection/shell_mass.h"
 
 namespace spoonbill {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "app/report/fact_sheet.h"
-#include "engine/simulation/scene.h"
-#include "engine/study/surface_check.h"
+#include "engine/inspection/surface_check.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/study/closing.h"
+#include "engine/inspection/closing.h"
 
 namespace spoonbill {
 

@@ -8,10 +8,10 @@
 #include "app/report/quantity_text.h"
 #include "app/report/region_text.h"
 #include "app/report/surface_extent.h"
+#include "engine/base/number_text.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_grid.h"
 #include "engine/exchange/region_json.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

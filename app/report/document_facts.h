@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "app/report/fact_sheet.h"
-#include "engine/box.h"
+#include "engine/base/box.h"
 #include "engine/exchange/document.h"
+#include "engine/material/lattice/feature_map.h"
 #include "engine/simulation/simulation.h"
 #include "engine/simulation/snapshot.h"
 

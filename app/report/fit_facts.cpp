@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "app/report/quantity_text.h"
-#include "engine/number_text.h"
-#include "engine/range.h"
+#include "engine/base/number_text.h"
+#include "engine/base/range.h"
 
 namespace spoonbill {
 namespace {

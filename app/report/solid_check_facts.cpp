@@ -6,8 +6,8 @@
 
 #include "app/report/check_facts.h"
 #include "app/report/quantity_text.h"
-#include "engine/number_text.h"
-#include "engine/place_text.h"
+#include "engine/base/number_text.h"
+#include "engine/base/place_text.h"
 
 namespace spoonbill {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "app/report/fact_sheet.h"
 #include "engine/exchange/cad_solid.h"
-#include "engine/simulation/scene.h"
-#include "engine/study/solid_check.h"
+#include "engine/inspection/solid_check.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 

@@ -11,9 +11,9 @@
 #include <string>
 #include <variant>
 
+#include "engine/base/result.h"
 #include "engine/exchange/json.h"
-#include "engine/result.h"
-#include "engine/simulation/command.h"
+#include "engine/scene/command.h"
 #include "haptic/timed_command.h"
 
 namespace spoonbill {

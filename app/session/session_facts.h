@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/session/session.h"
-#include "engine/simulation/scene.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "app/files/length_unit.h"
-#include "engine/excerpt.h"
+#include "engine/base/excerpt.h"
 #include "engine/exchange/file.h"
 #include "engine/exchange/points/number_lines.h"
 

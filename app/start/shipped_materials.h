@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/material/material.h"
-#include "engine/result.h"
+#include "engine/base/result.h"
+#include "engine/scene/material.h"
 
 namespace spoonbill {
 

@@ -13,8 +13,8 @@
 #include <optional>
 #include <string>
 
+#include "engine/base/result.h"
 #include "engine/exchange/json.h"
-#include "engine/result.h"
 #include "render/view_settings.h"
 
 namespace spoonbill {

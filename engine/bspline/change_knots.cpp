@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/number_text.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/blossom.h"
 #include "engine/bspline/constrained_inverse.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 

@@ -5,11 +5,11 @@
 
 #include <Eigen/Core>
 
+#include "engine/base/result.h"
+#include "engine/base/work_watch.h"
 #include "engine/bspline/knot_insertion.h"
 #include "engine/bspline/knot_vectors.h"
 #include "engine/bspline/surface.h"
-#include "engine/result.h"
-#include "engine/work_watch.h"
 
 namespace spoonbill {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/bspline/knot_vector.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

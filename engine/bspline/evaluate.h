@@ -5,13 +5,13 @@
 #include <cstddef>
 #include <vector>
 
-#include "engine/aligned_vector.h"
+#include "engine/base/aligned_vector.h"
+#include "engine/base/instruction_set.h"
 #include "engine/bspline/derivative_bound.h"
 #include "engine/bspline/evaluate_kernels.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/unit_normal.h"
-#include "engine/instruction_set.h"
 
 namespace spoonbill {
 

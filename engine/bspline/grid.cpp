@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
 
 namespace spoonbill {
 

@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/knot_vector.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -5,9 +5,9 @@
 
 #include <vector>
 
+#include "engine/base/pose.h"
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
-#include "engine/pose.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

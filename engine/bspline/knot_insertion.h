@@ -1,8 +1,8 @@
 // Exact knot insertion: more control points, the same surface (Boehm 1980).
 #pragma once
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
 
 namespace spoonbill {
 

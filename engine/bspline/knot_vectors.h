@@ -2,8 +2,8 @@
 // Pure functions; any thread.
 #pragma once
 
+#include "engine/base/result.h"
 #include "engine/bspline/knot_vector.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

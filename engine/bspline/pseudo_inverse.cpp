@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/number_text.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/least_squares.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 

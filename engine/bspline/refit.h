@@ -5,11 +5,11 @@
 
 #include <vector>
 
-#include "engine/aligned_vector.h"
+#include "engine/base/aligned_vector.h"
+#include "engine/base/instruction_set.h"
+#include "engine/base/result.h"
 #include "engine/bspline/constrained_inverse.h"
 #include "engine/bspline/grid.h"
-#include "engine/instruction_set.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

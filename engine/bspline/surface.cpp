@@ -4,9 +4,9 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/number_text.h"
 #include "engine/bspline/basis.h"
 #include "engine/bspline/unit_normal.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 

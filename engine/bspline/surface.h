@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "engine/base/pose.h"
+#include "engine/base/result.h"
 #include "engine/bspline/knot_vector.h"
-#include "engine/pose.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/number_text.h"
 #include "engine/bspline/basis.h"
 #include "engine/bspline/knot_vectors.h"
 #include "engine/bspline/polygon_crossing.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 

@@ -6,10 +6,10 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "engine/base/range.h"
+#include "engine/base/result.h"
 #include "engine/bspline/knot_insertion.h"
 #include "engine/bspline/knot_vector.h"
-#include "engine/range.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

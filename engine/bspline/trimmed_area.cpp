@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/number_text.h"
 #include "engine/bspline/polygon_crossing.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 

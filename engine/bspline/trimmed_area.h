@@ -5,10 +5,10 @@
 #include <map>
 #include <vector>
 
+#include "engine/base/range.h"
+#include "engine/base/result.h"
 #include "engine/bspline/knot_vector.h"
 #include "engine/bspline/trim_loop.h"
-#include "engine/range.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -2,8 +2,8 @@
 // precision. Computes in double and allocates nothing.
 #pragma once
 
+#include "engine/base/pose.h"
 #include "engine/bspline/knot_vector.h"
-#include "engine/pose.h"
 
 namespace spoonbill {
 

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/exchange/cad_solid.h"
 #include "engine/exchange/field_reader.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

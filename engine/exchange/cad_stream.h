@@ -10,9 +10,9 @@
 #include <string>
 #include <string_view>
 
+#include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
 #include "engine/exchange/json.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

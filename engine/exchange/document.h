@@ -65,10 +65,10 @@
 #include <filesystem>
 #include <string>
 
+#include "engine/base/result.h"
 #include "engine/exchange/json.h"
-#include "engine/result.h"
-#include "engine/simulation/command.h"
-#include "engine/simulation/scene.h"
+#include "engine/scene/command.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 

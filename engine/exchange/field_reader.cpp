@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/number_text.h"
 #include "engine/exchange/length.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 

@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/pose.h"
+#include "engine/base/range.h"
+#include "engine/base/result.h"
 #include "engine/exchange/json.h"
-#include "engine/pose.h"
-#include "engine/range.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

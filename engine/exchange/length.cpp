@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
 
 namespace spoonbill {
 

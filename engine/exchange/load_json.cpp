@@ -1,7 +1,7 @@
 // Regions, loads, supports and the ground as JSON fields.
+#include "engine/base/number_text.h"
 #include "engine/exchange/length.h"
 #include "engine/exchange/scene_json.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

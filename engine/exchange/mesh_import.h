@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
+#include "engine/base/result.h"
 #include "engine/collision/meshes/triangle_mesh.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

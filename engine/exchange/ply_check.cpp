@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/excerpt.h"
+#include "engine/base/excerpt.h"
 
 namespace spoonbill {
 namespace {

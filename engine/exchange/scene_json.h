@@ -8,7 +8,7 @@
 
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/json.h"
-#include "engine/simulation/scene.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 

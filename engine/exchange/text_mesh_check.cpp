@@ -11,7 +11,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "engine/excerpt.h"
+#include "engine/base/excerpt.h"
 
 namespace spoonbill {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/fitting/fit_points.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -3,11 +3,11 @@
 
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/fitting/parameterisation.h"
 #include "engine/fitting/point_graph.h"
 #include "engine/fitting/rims.h"
 #include "engine/fitting/scan.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/fitting/fit_errors.h"
 #include "engine/fitting/fit_surface.h"
 #include "engine/fitting/parameterisation.h"
 #include "engine/fitting/scan.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

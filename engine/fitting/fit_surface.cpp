@@ -15,7 +15,7 @@
 #include "engine/fitting/outer_side.h"
 #include "engine/fitting/refine_knots.h"
 #include "engine/fitting/surface_fitter.h"
-#include "engine/study/enclosed_mass.h"
+#include "engine/inspection/enclosed_mass.h"
 
 namespace spoonbill {
 namespace {

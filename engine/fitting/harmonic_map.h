@@ -7,9 +7,9 @@
 #include <array>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/fitting/parameterisation.h"
 #include "engine/fitting/point_graph.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/pose.h"
+#include "engine/base/pose.h"
 
 namespace spoonbill {
 

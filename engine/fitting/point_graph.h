@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/pose.h"
+#include "engine/base/pose.h"
 
 namespace spoonbill {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "engine/base/pose.h"
 #include "engine/collision/meshes/triangle_mesh.h"
-#include "engine/pose.h"
 
 namespace spoonbill {
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/fitting/parameterisation.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -3,9 +3,9 @@
 
 #include <optional>
 
+#include "engine/base/result.h"
 #include "engine/fitting/fit_points.h"
 #include "engine/fitting/parameterisation.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
 
 namespace spoonbill {
 namespace {
@@ -45,17 +45,6 @@ Status take_friction(const MaterialRegion& region, const std::vector<BodyPlace>&
 }
 
 }  // namespace
-
-Status check_material_region(const MaterialRegion& region) {
-  if (Status status = check_region(region.region); !status.ok()) return status;
-  if (!region.material && !region.friction) return Error{"material or friction must be given"};
-  if (region.friction) {
-    if (Status status = check_range("friction", *region.friction, friction_range); !status.ok()) {
-      return status;
-    }
-  }
-  return region.material ? check_material(*region.material) : Status();
-}
 
 Result<LatticeMaterials> lattice_materials(const LatticeMesh& mesh, const Material& own,
                                            std::span<const MaterialRegion> regions) {

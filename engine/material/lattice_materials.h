@@ -6,23 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "engine/material/lattice/body_region.h"
-#include "engine/material/material.h"
-#include "engine/result.h"
+#include "engine/base/result.h"
+#include "engine/material/lattice/body_place.h"
+#include "engine/scene/material.h"
+#include "engine/scene/material_region.h"
 
 namespace spoonbill {
-
-// A part of a body that is made of something else, or is rougher or smoother, than the rest. Plain data.
-struct MaterialRegion {
-  BodyRegion region;
-  std::optional<Material> material = {};  // without: what is there stays
-  std::optional<double> friction = {};    // without: the material's, or what is there where that stays too
-};
-
-inline constexpr Range<int> material_region_count_range{0, 16};
-
-// The message names the field.
-Status check_material_region(const MaterialRegion& region);
 
 // By cell and by node, so that a body keeps it while its shape changes. Plain data; a value.
 struct LatticeMaterials {

@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/number_text.h"
 #include "engine/bspline/basis.h"
 #include "engine/bspline/blossom.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/fold_search.h"
 #include "engine/merging/ring_bend.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 

@@ -2,8 +2,8 @@
 // continuity that is asked. Pure functions, outside the tick; any thread.
 #pragma once
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -5,13 +5,13 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/number_text.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/constrained_inverse.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/edge_match.h"
 #include "engine/merging/nearly_same_knots.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/place_text.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/lines_from_loop.h"
 #include "engine/merging/tube_ends.h"
-#include "engine/place_text.h"
 
 namespace spoonbill {
 

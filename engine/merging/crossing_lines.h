@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/merging/line_crossing.h"
 #include "engine/merging/rolling_ball.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

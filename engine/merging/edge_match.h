@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/merging/patch_edge.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

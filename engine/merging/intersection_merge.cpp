@@ -8,16 +8,16 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/number_text.h"
+#include "engine/base/place_text.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/inspection/enclosed_mass.h"
 #include "engine/merging/crossing_lines.h"
 #include "engine/merging/fold_search.h"
 #include "engine/merging/joint_edges.h"
 #include "engine/merging/lines_from_loop.h"
 #include "engine/merging/tube_ends.h"
-#include "engine/number_text.h"
-#include "engine/place_text.h"
 #include "engine/shapes/fit_shape.h"
-#include "engine/study/enclosed_mass.h"
 
 namespace spoonbill {
 

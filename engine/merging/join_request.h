@@ -1,7 +1,7 @@
 // How patches are to be joined. A value.
 #pragma once
 
-#include "engine/work_watch.h"
+#include "engine/base/work_watch.h"
 
 namespace spoonbill {
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/place_text.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
 #include "engine/bspline/peak_search.h"
@@ -13,7 +14,6 @@
 #include "engine/merging/bridge.h"
 #include "engine/merging/fold_search.h"
 #include "engine/merging/joint_edges.h"
-#include "engine/place_text.h"
 
 namespace spoonbill {
 

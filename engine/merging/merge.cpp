@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/number_text.h"
+#include "engine/base/place_text.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/fold_search.h"
 #include "engine/merging/seam.h"
 #include "engine/merging/tube_ends.h"
-#include "engine/number_text.h"
-#include "engine/place_text.h"
 
 namespace spoonbill {
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/number_text.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/bridge.h"
 #include "engine/merging/compatible.h"
 #include "engine/merging/joint_edges.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 

@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/merging/join_request.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
-#include "engine/result.h"
 #include "engine/shapes/fit_shape.h"
 
 namespace spoonbill {

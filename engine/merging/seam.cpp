@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/number_text.h"
 #include "engine/merging/edge_match.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 

@@ -1,9 +1,9 @@
 // Closes a patch around whose first and last edge meet. Pure function, outside the tick; any thread.
 #pragma once
 
+#include "engine/base/result.h"
 #include "engine/bspline/change_knots.h"
 #include "engine/bspline/surface.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
-#include "engine/result.h"
 #include "engine/shapes/fit_shape.h"
 
 namespace spoonbill {

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/place_text.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/place_text.h"
 
 namespace spoonbill {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
 #include "engine/shapes/shape_sizes.h"
 
 namespace spoonbill {

@@ -2,7 +2,7 @@
 // The origin is their middle.
 #pragma once
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "engine/shapes/exact_shape.h"
 
 namespace spoonbill {

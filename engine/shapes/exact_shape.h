@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/pose.h"
+#include "engine/base/pose.h"
 
 namespace spoonbill {
 

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/number_text.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/grid_fit.h"
 #include "engine/bspline/peak_search.h"
-#include "engine/number_text.h"
 #include "engine/shapes/shape_knots.h"
 #include "engine/shapes/shape_samples.h"
 

@@ -8,8 +8,8 @@
 #include <functional>
 #include <optional>
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
-#include "engine/result.h"
 #include "engine/shapes/exact_shape.h"
 
 namespace spoonbill {

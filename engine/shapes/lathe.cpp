@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
 #include "engine/shapes/shape_sizes.h"
 #include "engine/shapes/smooth_curve.h"
 

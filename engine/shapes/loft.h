@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "engine/pose.h"
-#include "engine/result.h"
+#include "engine/base/pose.h"
+#include "engine/base/result.h"
 #include "engine/shapes/exact_shape.h"
 
 namespace spoonbill {

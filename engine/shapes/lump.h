@@ -3,7 +3,7 @@
 
 #include <variant>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "engine/shapes/box_shapes.h"
 #include "engine/shapes/exact_shape.h"
 #include "engine/shapes/round_shapes.h"

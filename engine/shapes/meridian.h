@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "engine/shapes/exact_shape.h"
 
 namespace spoonbill {

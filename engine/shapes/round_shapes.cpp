@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <numbers>
 
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
 #include "engine/shapes/meridian.h"
 #include "engine/shapes/shape_sizes.h"
 

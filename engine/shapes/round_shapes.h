@@ -1,7 +1,7 @@
 // Starting shapes that are turned about the y axis, and the torus. The origin is their middle.
 #pragma once
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "engine/shapes/exact_shape.h"
 
 namespace spoonbill {

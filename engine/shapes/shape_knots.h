@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/bspline/knot_vector.h"
-#include "engine/result.h"
 #include "engine/shapes/exact_shape.h"
 
 namespace spoonbill {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
 
 namespace spoonbill {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "engine/number_text.h"
-#include "engine/place_text.h"
+#include "engine/base/number_text.h"
+#include "engine/base/place_text.h"
 #include "engine/shapes/shape_sizes.h"
 
 namespace spoonbill {

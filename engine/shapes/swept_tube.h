@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "engine/shapes/exact_shape.h"
 #include "engine/shapes/smooth_curve.h"
 

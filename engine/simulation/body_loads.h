@@ -8,7 +8,7 @@
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "engine/material/statics/static_body.h"
-#include "engine/simulation/loads.h"
+#include "engine/scene/loads.h"
 
 namespace spoonbill {
 

@@ -5,16 +5,16 @@
 #include <memory>
 #include <vector>
 
-#include "engine/aligned_vector.h"
+#include "engine/base/aligned_vector.h"
+#include "engine/base/instruction_set.h"
+#include "engine/base/result.h"
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/refit.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/solids/surface_collider.h"
-#include "engine/instruction_set.h"
 #include "engine/material/contact/contact_constraints.h"
 #include "engine/material/springs/spring_lattice.h"
-#include "engine/result.h"
-#include "engine/simulation/scene.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/number_text.h"
+#include "engine/material/lattice/lattice_of.h"
 #include "engine/material/lattice_solver.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

@@ -9,16 +9,17 @@
 #include <variant>
 #include <vector>
 
+#include "engine/base/instruction_set.h"
+#include "engine/base/result.h"
 #include "engine/bspline/trimmed_area.h"
-#include "engine/instruction_set.h"
 #include "engine/material/implicit/implicit_core.h"
+#include "engine/material/lattice/feature_map.h"
 #include "engine/material/springs/spring_lattice.h"
-#include "engine/result.h"
+#include "engine/scene/scene.h"
 #include "engine/simulation/body_loads.h"
 #include "engine/simulation/body_mapping.h"
 #include "engine/simulation/body_supports.h"
 #include "engine/simulation/mesh_mapping.h"
-#include "engine/simulation/scene.h"
 #include "engine/simulation/smoothing.h"
 
 namespace spoonbill {

@@ -7,7 +7,7 @@
 
 #include "engine/material/springs/spring_lattice.h"
 #include "engine/material/supports/supported_nodes.h"
-#include "engine/simulation/loads.h"
+#include "engine/scene/loads.h"
 
 namespace spoonbill {
 

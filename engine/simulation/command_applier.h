@@ -1,7 +1,7 @@
 // Carries out commands on the state of a simulation.
 #pragma once
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "engine/simulation/simulation_state.h"
 
 namespace spoonbill {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "engine/material/contact/ground_contacts.h"
+#include "engine/scene/loads.h"
 #include "engine/simulation/body_state.h"
-#include "engine/simulation/loads.h"
 #include "engine/simulation/skin_heights.h"
 
 namespace spoonbill {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/material/statics/static_solver.h"
-#include "engine/simulation/scene.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/denormals.h"
+#include "engine/base/denormals.h"
 #include "engine/simulation/command_applier.h"
 #include "engine/simulation/contact_snapshots.h"
 #include "engine/simulation/hand.h"

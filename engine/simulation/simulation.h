@@ -7,12 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/instruction_set.h"
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
-#include "engine/instruction_set.h"
+#include "engine/material/lattice/feature_map.h"
 #include "engine/material/springs/spring_lattice.h"
-#include "engine/result.h"
-#include "engine/simulation/command.h"
-#include "engine/simulation/scene.h"
+#include "engine/scene/command.h"
+#include "engine/scene/scene.h"
 #include "engine/simulation/snapshot.h"
 
 namespace spoonbill {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/levels/surface_levels.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

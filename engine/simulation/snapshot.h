@@ -8,25 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/pose.h"
 #include "engine/bspline/knot_vector.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/material/lattice/embedded_point.h"
-#include "engine/pose.h"
+#include "engine/scene/tool.h"
 
 namespace spoonbill {
-
-struct ToolBody;
-
-enum class ToolKind { point, sphere, solid };
-enum class ToolAction { push, pull, smooth };
-
-// As files and labels call them.
-constexpr const char* name_of(ToolKind kind) {
-  return kind == ToolKind::point ? "point" : kind == ToolKind::sphere ? "sphere" : "solid";
-}
-constexpr const char* name_of(ToolAction action) {
-  return action == ToolAction::push ? "push" : action == ToolAction::pull ? "pull" : "smooth";
-}
 
 struct SurfaceSnapshot {
   KnotVector u, v;

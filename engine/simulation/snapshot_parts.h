@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/scene/scene.h"
 #include "engine/simulation/body_state.h"
-#include "engine/simulation/scene.h"
 #include "engine/simulation/snapshot.h"
 
 namespace spoonbill {

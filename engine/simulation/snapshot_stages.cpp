@@ -4,7 +4,7 @@
 #include <variant>
 
 #include "engine/collision/meshes/mesh_distance.h"
-#include "engine/simulation/tool_body.h"
+#include "engine/scene/tool.h"
 
 namespace spoonbill {
 namespace {

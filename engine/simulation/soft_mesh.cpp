@@ -6,6 +6,7 @@
 #include "engine/collision/meshes/mesh_refinement.h"
 #include "engine/collision/meshes/shell_distance.h"
 #include "engine/material/lattice/box_lattice.h"
+#include "engine/material/lattice/lattice_counts.h"
 
 namespace spoonbill {
 namespace {

@@ -1,10 +1,10 @@
 // A tessellated tool that gives way, as a body.
 #pragma once
 
-#include "engine/instruction_set.h"
-#include "engine/result.h"
+#include "engine/base/instruction_set.h"
+#include "engine/base/result.h"
+#include "engine/scene/tool.h"
 #include "engine/simulation/body_state.h"
-#include "engine/simulation/tool_body.h"
 
 namespace spoonbill {
 

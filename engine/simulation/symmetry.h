@@ -1,8 +1,8 @@
 // The mirrored side of a symmetric stroke.
 #pragma once
 
-#include "engine/pose.h"
-#include "engine/simulation/scene.h"
+#include "engine/base/pose.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 

@@ -9,8 +9,8 @@
 #include "engine/collision/proximity/surface_proximity.h"
 #include "engine/collision/solids/surface_collider.h"
 #include "engine/material/contact/contact_constraints.h"
+#include "engine/scene/scene.h"
 #include "engine/simulation/body_state.h"
-#include "engine/simulation/scene.h"
 #include "engine/simulation/tool_model.h"
 
 namespace spoonbill {

@@ -4,11 +4,11 @@
 #include <memory>
 #include <optional>
 
+#include "engine/base/instruction_set.h"
 #include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/solids/signed_distance.h"
-#include "engine/instruction_set.h"
+#include "engine/scene/scene.h"
 #include "engine/simulation/body_state.h"
-#include "engine/simulation/scene.h"
 
 namespace spoonbill {
 

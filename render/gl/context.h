@@ -2,7 +2,7 @@
 // made it current; the renderer draws on that thread alone.
 #pragma once
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 

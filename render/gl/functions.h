@@ -4,7 +4,7 @@
 
 #include <GL/glcorearb.h>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "render/gl/context.h"
 
 namespace spoonbill {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "render/gl/functions.h"
 #include "render/gl/handle.h"
 

@@ -2,7 +2,7 @@
 // large background.
 #pragma once
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "render/image/image.h"
 
 namespace spoonbill {

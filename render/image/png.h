@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "render/image/image.h"
 
 namespace spoonbill {

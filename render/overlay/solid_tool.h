@@ -1,8 +1,8 @@
 // Where a rigid solid tool is and how much room it takes. No GL.
 #pragma once
 
+#include "engine/scene/tool.h"
 #include "engine/simulation/snapshot.h"
-#include "engine/simulation/tool_body.h"
 #include "render/camera.h"
 
 namespace spoonbill {

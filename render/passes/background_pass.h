@@ -2,7 +2,7 @@
 // frame, which costs a tenth of drawing it.
 #pragma once
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "render/gl/functions.h"
 #include "render/gl/handle.h"
 #include "render/gl/render_target.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "engine/simulation/snapshot.h"
 #include "render/passes/surface_buffers.h"
 #include "render/tessellation/tessellated_surface.h"

@@ -2,7 +2,7 @@
 // it has no edge.
 #pragma once
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "render/gl/functions.h"
 #include "render/gl/handle.h"
 #include "render/gl/program.h"

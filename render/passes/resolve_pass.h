@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "render/gl/functions.h"
 #include "render/gl/handle.h"
 #include "render/gl/program.h"

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "engine/simulation/snapshot.h"
 #include "render/passes/background_pass.h"
 #include "render/passes/body_meshes.h"

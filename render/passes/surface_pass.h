@@ -1,7 +1,7 @@
 // Draws a body's surface in the studio's light.
 #pragma once
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "render/gl/functions.h"
 #include "render/gl/program.h"
 #include "render/passes/frame_view.h"

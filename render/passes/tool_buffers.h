@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "engine/simulation/snapshot.h"
 #include "render/gl/functions.h"
 #include "render/gl/handle.h"

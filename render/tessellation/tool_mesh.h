@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/result.h"
-#include "engine/simulation/tool_body.h"
+#include "engine/base/result.h"
+#include "engine/scene/tool.h"
 
 namespace spoonbill {
 

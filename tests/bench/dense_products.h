@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "engine/instruction_set.h"
+#include "engine/base/instruction_set.h"
 
 namespace spoonbill {
 

@@ -1,4 +1,4 @@
-#include "engine/instruction_set.h"
+#include "engine/base/instruction_set.h"
 
 #include <gtest/gtest.h>
 

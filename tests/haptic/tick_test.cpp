@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/denormals.h"
+#include "engine/base/denormals.h"
 #include "haptic/virtual_device.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/simulation/handle.h"

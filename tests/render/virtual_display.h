@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "render/image/image.h"
 
 namespace spoonbill {

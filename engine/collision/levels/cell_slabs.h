@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/aligned_vector.h"
+#include "engine/base/aligned_vector.h"
 #include "engine/collision/levels/surface_levels.h"
 
 namespace spoonbill {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/box.h"
+#include "engine/base/box.h"
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {

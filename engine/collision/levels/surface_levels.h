@@ -6,14 +6,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/aligned_vector.h"
+#include "engine/base/aligned_vector.h"
+#include "engine/base/instruction_set.h"
+#include "engine/base/result.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/piece_basis.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/levels/patch_kernels.h"
 #include "engine/collision/levels/surface_bounds.h"
-#include "engine/instruction_set.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

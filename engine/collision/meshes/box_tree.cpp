@@ -11,7 +11,7 @@ struct Item {
 };
 
 // Which items a node shall have, and who its parent is if it is a right child.
-struct Range {
+struct NodeItems {
   std::uint32_t begin, end;
   std::uint32_t right_of;
 };
@@ -27,7 +27,7 @@ std::vector<Item> items_of(const std::vector<Box>& boxes) {
   return items;
 }
 
-int longest_axis(const std::vector<Item>& items, const Range& range) {
+int longest_axis(const std::vector<Item>& items, const NodeItems& range) {
   std::array<float, 3> low = items[range.begin].middle, high = low;
   for (std::uint32_t k = range.begin; k < range.end; ++k) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -42,7 +42,7 @@ int longest_axis(const std::vector<Item>& items, const Range& range) {
   return longest;
 }
 
-void halve(std::vector<Item>& items, const Range& range, std::uint32_t middle) {
+void halve(std::vector<Item>& items, const NodeItems& range, std::uint32_t middle) {
   const int axis = longest_axis(items, range);
   std::nth_element(items.begin() + range.begin, items.begin() + middle, items.begin() + range.end,
                    [axis](const Item& a, const Item& b) {
@@ -55,9 +55,9 @@ void halve(std::vector<Item>& items, const Range& range, std::uint32_t middle) {
 
 BoxTree::BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size) {
   std::vector<Item> items = items_of(boxes);
-  std::vector<Range> waiting = {{0, static_cast<std::uint32_t>(items.size()), none}};
+  std::vector<NodeItems> waiting = {{0, static_cast<std::uint32_t>(items.size()), none}};
   while (!waiting.empty()) {
-    const Range range = waiting.back();
+    const NodeItems range = waiting.back();
     waiting.pop_back();
     const auto index = static_cast<std::uint32_t>(nodes_.size());
     if (range.right_of != none) nodes_[range.right_of].first = index;

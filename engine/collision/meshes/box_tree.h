@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/box.h"
+#include "engine/base/box.h"
 
 namespace spoonbill {
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "engine/pose.h"
+#include "engine/base/pose.h"
 
 namespace spoonbill {
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/box.h"
+#include "engine/base/box.h"
 #include "engine/collision/meshes/mesh_edges.h"
 #include "engine/collision/meshes/solid_angle.h"
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <utility>
 
+#include "engine/base/number_text.h"
 #include "engine/collision/meshes/mesh_edges.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "engine/pose.h"
+#include "engine/base/pose.h"
 
 namespace spoonbill {
 

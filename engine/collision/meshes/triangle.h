@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "engine/box.h"
-#include "engine/pose.h"
+#include "engine/base/box.h"
+#include "engine/base/pose.h"
 
 namespace spoonbill {
 

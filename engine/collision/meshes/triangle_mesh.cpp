@@ -6,12 +6,11 @@
 #include <cstdint>
 #include <utility>
 
-#include "engine/box.h"
+#include "engine/base/box.h"
 #include "engine/collision/meshes/hole_filling.h"
 #include "engine/collision/meshes/mesh_edges.h"
 #include "engine/collision/meshes/mesh_parts.h"
 #include "engine/collision/meshes/vertex_join.h"
-#include "engine/simulation/scene.h"
 
 namespace spoonbill {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/pose.h"
-#include "engine/result.h"
+#include "engine/base/pose.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 

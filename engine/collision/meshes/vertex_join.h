@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/pose.h"
+#include "engine/base/pose.h"
 
 namespace spoonbill {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/box.h"
+#include "engine/base/box.h"
 #include "engine/collision/proximity/near_points.h"
 #include "engine/collision/proximity/rest_pairs.h"
 #include "engine/collision/proximity/ring_separation.h"

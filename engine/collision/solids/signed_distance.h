@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "engine/box.h"
+#include "engine/base/box.h"
 
 namespace spoonbill {
 

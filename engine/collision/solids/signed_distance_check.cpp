@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
 
 namespace spoonbill {
 namespace {

@@ -2,8 +2,8 @@
 // that a program of its own brings.
 #pragma once
 
+#include "engine/base/result.h"
 #include "engine/collision/solids/signed_distance.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "engine/base/pose.h"
 #include "engine/collision/solids/signed_distance.h"
-#include "engine/pose.h"
 
 namespace spoonbill {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "engine/pose.h"
+#include "engine/base/pose.h"
 
 namespace spoonbill {
 

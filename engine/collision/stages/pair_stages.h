@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/collision/proximity/surface_proximity.h"
 #include "engine/collision/stages/contact_stages.h"
 #include "engine/collision/surfaces/surface_pair_collider.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -3,9 +3,9 @@
 
 #include <memory>
 
+#include "engine/base/result.h"
 #include "engine/collision/solids/surface_collider.h"
 #include "engine/collision/stages/contact_stages.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

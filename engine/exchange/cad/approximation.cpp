@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/number_text.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/exchange/cad/closing.h"
-#include "engine/number_text.h"
-#include "engine/simulation/scene.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 namespace {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -7,8 +7,8 @@
 #include <TopoDS_Shell.hxx>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/number_text.h"
+#include "engine/base/pose.h"
 #include "engine/exchange/cad/external_files.h"
 #include "engine/exchange/cad/face_surface.h"
 #include "engine/exchange/cad/file_unit.h"
@@ -22,8 +24,6 @@
 #include "engine/exchange/cad/lost_faces.h"
 #include "engine/exchange/cad/named_faces.h"
 #include "engine/exchange/cad/placements.h"
-#include "engine/number_text.h"
-#include "engine/simulation/checks.h"
 
 namespace spoonbill {
 namespace {

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <functional>
 
+#include "engine/base/result.h"
 #include "engine/exchange/cad/cad_writer.h"
 #include "engine/exchange/cad_model.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -3,8 +3,8 @@
 
 #include <functional>
 
+#include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/bspline/blending_matrix.h"
-#include "engine/study/closing.h"
+#include "engine/inspection/closing.h"
 
 namespace spoonbill {
 namespace {

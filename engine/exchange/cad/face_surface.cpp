@@ -25,7 +25,7 @@
 #include "engine/exchange/cad/occt_surface.h"
 #include "engine/exchange/cad/smooth_patch.h"
 #include "engine/exchange/cad/trim_reader.h"
-#include "engine/simulation/scene.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 namespace {

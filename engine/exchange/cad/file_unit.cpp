@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/number_text.h"
 #include "engine/exchange/cad/iges_globals.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

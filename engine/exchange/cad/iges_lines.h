@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 

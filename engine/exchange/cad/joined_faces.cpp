@@ -23,10 +23,10 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/number_text.h"
 #include "engine/exchange/cad/body_shape.h"
 #include "engine/exchange/cad/closing.h"
 #include "engine/exchange/cad/occt_surface.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

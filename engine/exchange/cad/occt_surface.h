@@ -3,8 +3,8 @@
 
 #include <Geom_BSplineSurface.hxx>
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -4,8 +4,8 @@
 
 #include <string_view>
 
+#include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

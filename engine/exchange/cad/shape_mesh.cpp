@@ -22,9 +22,9 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/number_text.h"
 #include "engine/collision/meshes/nearest_on_triangle.h"
 #include "engine/exchange/cad/occt_surface.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

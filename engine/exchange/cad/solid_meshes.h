@@ -1,10 +1,10 @@
 // The solids that are joined of a model's faces, as watertight meshes.
 #pragma once
 
+#include "engine/base/result.h"
 #include "engine/exchange/cad/cad_writer.h"
 #include "engine/exchange/cad_model.h"
 #include "engine/exchange/cad_solid.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

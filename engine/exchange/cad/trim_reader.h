@@ -4,9 +4,9 @@
 #include <TopoDS_Face.hxx>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

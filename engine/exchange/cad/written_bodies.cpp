@@ -5,12 +5,12 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/number_text.h"
 #include "engine/exchange/cad/body_shape.h"
 #include "engine/exchange/cad/closing.h"
 #include "engine/exchange/cad/joined_faces.h"
 #include "engine/exchange/cad_names.h"
-#include "engine/number_text.h"
-#include "engine/study/closing.h"
+#include "engine/inspection/closing.h"
 
 namespace spoonbill {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "engine/base/number_text.h"
 #include "engine/exchange/mesh_export/three_mf.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/collision/meshes/triangle_mesh.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/number_text.h"
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/stretch_bound.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/bspline/trimmed_grid.h"
 #include "engine/collision/levels/surface_bounds.h"
 #include "engine/exchange/mesh_export/slivers.h"
-#include "engine/number_text.h"
-#include "engine/study/closing.h"
+#include "engine/inspection/closing.h"
 
 namespace spoonbill {
 namespace {

@@ -5,11 +5,11 @@
 #include <functional>
 #include <vector>
 
+#include "engine/base/range.h"
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
 #include "engine/collision/meshes/triangle_mesh.h"
-#include "engine/range.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -3,8 +3,8 @@
 #include <set>
 #include <utility>
 
-#include "engine/number_text.h"
-#include "engine/place_text.h"
+#include "engine/base/number_text.h"
+#include "engine/base/place_text.h"
 
 namespace spoonbill {
 namespace {

@@ -1,8 +1,8 @@
 // The triangles of a shell: its outer face, the face behind it, and walls between the edges of both.
 #pragma once
 
+#include "engine/base/result.h"
 #include "engine/collision/meshes/triangle_mesh.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <optional>
 
-#include "engine/excerpt.h"
+#include "engine/base/excerpt.h"
 #include "engine/exchange/points/number_lines.h"
 #include "engine/exchange/points/point_cloud.h"
 

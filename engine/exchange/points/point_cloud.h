@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/pose.h"
-#include "engine/result.h"
+#include "engine/base/pose.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "engine/pose.h"
+#include "engine/base/pose.h"
 
 namespace spoonbill {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/pose.h"
+#include "engine/base/pose.h"
 
 namespace spoonbill {
 

@@ -7,14 +7,14 @@
 #include <span>
 #include <vector>
 
-#include "engine/aligned_vector.h"
-#include "engine/instruction_set.h"
+#include "engine/base/aligned_vector.h"
+#include "engine/base/instruction_set.h"
+#include "engine/base/result.h"
 #include "engine/material/implicit/block_materials.h"
 #include "engine/material/implicit/rolling_factor.h"
 #include "engine/material/lattice/lattice_mesh.h"
 #include "engine/material/lattice_report.h"
-#include "engine/material/material.h"
-#include "engine/result.h"
+#include "engine/scene/material.h"
 
 namespace spoonbill {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/material/implicit/grid_stretches.h"
-#include "engine/material/lattice/lattice_request.h"
+#include "engine/material/lattice/lattice_counts.h"
 
 namespace spoonbill {
 namespace {

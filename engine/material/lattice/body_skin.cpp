@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/collision/surfaces/closed_surface.h"
 #include "engine/material/lattice/box_lattice.h"
-#include "engine/material/lattice/closed_surface.h"
 
 namespace spoonbill {
 namespace {

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "engine/box.h"
+#include "engine/base/box.h"
+#include "engine/base/result.h"
 #include "engine/collision/meshes/shell_distance.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/material/lattice/lattice_mesh.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -168,26 +168,6 @@ double between(double first, double last, double way) {
 
 }  // namespace
 
-Status check_feature_map(const FeatureMapSettings& settings) {
-  if (Status status =
-          check_range("feature_map: draws_per_node", settings.draws_per_node, draws_per_node_range);
-      !status.ok()) {
-    return status;
-  }
-  const struct {
-    const char* field;
-    double value;
-    Range<double> range;
-  } checks[] = {{"feature_map: first_rate", settings.first_rate, map_rate_range},
-                {"feature_map: last_rate", settings.last_rate, map_rate_range},
-                {"feature_map: first_neighbourhood", settings.first_neighbourhood, map_neighbourhood_range},
-                {"feature_map: last_neighbourhood", settings.last_neighbourhood, map_neighbourhood_range}};
-  for (const auto& check : checks) {
-    if (Status status = check_range(check.field, check.value, check.range); !status.ok()) return status;
-  }
-  return {};
-}
-
 CellQuality quality_of(const LatticeMesh& mesh) {
   CellQuality quality{1.0, 0.0};
   std::vector<double> volumes;

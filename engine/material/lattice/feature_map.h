@@ -6,28 +6,9 @@
 #include <functional>
 
 #include "engine/material/lattice/lattice_mesh.h"
-#include "engine/range.h"
+#include "engine/scene/lattice_request.h"
 
 namespace spoonbill {
-
-// Points of the body are drawn at random; the node nearest to one, and its neighbours in the grid less and
-// less, move towards it: w += rate * exp(-d^2 / 2 s^2) (x - w), d in steps of the grid. Rate and s shrink
-// geometrically from their first to their last value (Kohonen 1990). Below about one step, neighbours no
-// longer follow, and the map can get stuck folded (Erwin et al. 1992).
-struct FeatureMapSettings {
-  int draws_per_node = 500;  // of the nodes inside
-  double first_rate = 0.1, last_rate = 0.01;
-  double first_neighbourhood = 2.0, last_neighbourhood = 1.0;  // s, in steps of the grid
-  std::uint32_t seed = 1;
-  friend bool operator==(const FeatureMapSettings&, const FeatureMapSettings&) = default;
-};
-
-inline constexpr Range<int> draws_per_node_range{1, 10000};
-inline constexpr Range<int> map_seed_range{0, 1000000000};
-inline constexpr Range<double> map_rate_range{1e-6, 1.0};
-inline constexpr Range<double> map_neighbourhood_range{0.5, 64.0};
-
-Status check_feature_map(const FeatureMapSettings& settings);
 
 // How good cells are, each 1 for a box: the smallest Jacobian over the volume, and how even volumes are.
 struct CellQuality {

@@ -5,19 +5,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/pose.h"
-#include "engine/result.h"
+#include "engine/base/pose.h"
+#include "engine/base/result.h"
+#include "engine/scene/body_region.h"
 
 namespace spoonbill {
 
 enum class NodePlace : std::uint8_t { beside_body, in_body, on_shell };
-
-// Where a point of a body is, in the body's own coordinates; not a number of a node beside the body.
-struct BodyPlace {
-  double along = 0.0;   // of the body's length, 0 to 1; of a ring, of its turn
-  double around = 0.0;  // of a turn, 0 to 1; 0 on the axis, which has none
-  double depth_m = 0.0;
-};
 
 // A point that follows a cell: weights that sum to 1, none negative.
 struct CellPoint {

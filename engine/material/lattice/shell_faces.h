@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "engine/material/lattice/body_region.h"
+#include "engine/material/lattice/body_place.h"
 #include "engine/material/lattice/lattice_mesh.h"
 
 namespace spoonbill {

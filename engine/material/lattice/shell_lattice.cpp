@@ -7,9 +7,11 @@
 #include <string>
 #include <utility>
 
-#include "engine/material/lattice/share_table.h"
+#include "engine/base/number_text.h"
+#include "engine/bspline/share_table.h"
+#include "engine/material/lattice/lattice_counts.h"
 #include "engine/material/lattice/shell_surface.h"
-#include "engine/number_text.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 namespace {

@@ -1,15 +1,13 @@
 // Fills a thin shell with lattice nodes: layers between a surface and its offset by the thickness.
 #pragma once
 
+#include "engine/base/range.h"
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/material/lattice/lattice_mesh.h"
-#include "engine/material/lattice/lattice_request.h"
-#include "engine/range.h"
-#include "engine/result.h"
+#include "engine/scene/lattice_request.h"
 
 namespace spoonbill {
-
-inline constexpr Range<double> shell_thickness_range_m{1e-5, 0.1};
 
 // The surface is one face of the shell, that which its normals (along du x dv) point out of: what a designer
 // shapes is then what the tool touches, what is drawn and what is exported. The material lies behind it, to

@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

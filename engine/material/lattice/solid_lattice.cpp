@@ -1,6 +1,6 @@
 #include "engine/material/lattice/solid_lattice.h"
 
-#include "engine/material/lattice/closed_surface.h"
+#include "engine/collision/surfaces/closed_surface.h"
 #include "engine/material/lattice/surface_in_box.h"
 #include "engine/material/lattice/tube_lattice.h"
 

@@ -1,10 +1,11 @@
 // The lattice of a closed body: one block of cells bent into it, or a box of cells about it.
 #pragma once
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
+#include "engine/material/lattice/feature_map.h"
 #include "engine/material/lattice/lattice_mesh.h"
-#include "engine/material/lattice/lattice_request.h"
-#include "engine/result.h"
+#include "engine/scene/lattice_request.h"
 
 namespace spoonbill {
 

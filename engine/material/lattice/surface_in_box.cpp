@@ -8,15 +8,16 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/base/number_text.h"
+#include "engine/bspline/share_table.h"
+#include "engine/bspline/tube_rings.h"
 #include "engine/bspline/unit_normal.h"
 #include "engine/collision/meshes/mesh_parts.h"
 #include "engine/collision/meshes/shell_distance.h"
+#include "engine/collision/surfaces/closed_surface.h"
 #include "engine/material/lattice/body_skin.h"
 #include "engine/material/lattice/box_lattice.h"
-#include "engine/material/lattice/closed_surface.h"
-#include "engine/material/lattice/share_table.h"
-#include "engine/material/lattice/tube_rings.h"
-#include "engine/number_text.h"
+#include "engine/material/lattice/lattice_counts.h"
 
 namespace spoonbill {
 namespace {

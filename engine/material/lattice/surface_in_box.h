@@ -1,10 +1,10 @@
 // A box of lattice cells about a closed surface that no block of cells can be bent into: bowls, rings.
 #pragma once
 
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/material/lattice/lattice_mesh.h"
-#include "engine/material/lattice/lattice_request.h"
-#include "engine/result.h"
+#include "engine/scene/lattice_request.h"
 
 namespace spoonbill {
 

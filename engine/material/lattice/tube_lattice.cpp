@@ -7,11 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "engine/material/lattice/closed_surface.h"
-#include "engine/material/lattice/share_table.h"
-#include "engine/material/lattice/tube_rings.h"
+#include "engine/base/number_text.h"
+#include "engine/bspline/share_table.h"
+#include "engine/bspline/tube_rings.h"
+#include "engine/collision/surfaces/closed_surface.h"
+#include "engine/material/lattice/lattice_counts.h"
 #include "engine/material/lattice/unfolding.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

@@ -1,8 +1,8 @@
 // Nodes that something else than their lattice moves, within a substep.
 #pragma once
 
+#include "engine/base/pose.h"
 #include "engine/material/springs/lattice_kernels.h"
-#include "engine/pose.h"
 
 namespace spoonbill {
 

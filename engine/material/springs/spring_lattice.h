@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "engine/aligned_vector.h"
-#include "engine/instruction_set.h"
+#include "engine/base/aligned_vector.h"
+#include "engine/base/instruction_set.h"
+#include "engine/base/result.h"
 #include "engine/material/lattice/lattice_mesh.h"
 #include "engine/material/lattice_materials.h"
 #include "engine/material/lattice_report.h"
 #include "engine/material/springs/lattice_kernels.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

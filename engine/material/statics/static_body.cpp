@@ -1,6 +1,6 @@
 #include "engine/material/statics/static_body.h"
 
-#include "engine/number_text.h"
+#include "engine/base/number_text.h"
 
 namespace spoonbill {
 namespace {

@@ -7,11 +7,11 @@
 #include <variant>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/material/cells/corotated_cell.h"
 #include "engine/material/cells/spring_cell.h"
 #include "engine/material/lattice_materials.h"
 #include "engine/material/statics/pressed_skin.h"
-#include "engine/result.h"
 
 namespace spoonbill {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/pose.h"
+#include "engine/base/pose.h"
 
 namespace spoonbill {
 

@@ -1,8 +1,8 @@
 // What the program ships can be read and used.
 #include <gtest/gtest.h>
 
+#include "engine/base/instruction_set.h"
 #include "engine/exchange/document.h"
-#include "engine/instruction_set.h"
 #include "engine/simulation/simulation.h"
 
 namespace spoonbill {

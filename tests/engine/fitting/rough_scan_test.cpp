@@ -8,7 +8,7 @@
 
 #include "engine/fitting/fit_points.h"
 #include "engine/fitting/fit_scan.h"
-#include "engine/study/curvature_range.h"
+#include "engine/inspection/curvature_range.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/fitting/clouds.h"
 #include "tests/engine/fitting/known_shapes.h"

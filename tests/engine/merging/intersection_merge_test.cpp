@@ -14,10 +14,10 @@
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/inspection/curvature_range.h"
+#include "engine/inspection/enclosed_mass.h"
 #include "engine/merging/fold_search.h"
 #include "engine/merging/tube_ends.h"
-#include "engine/study/curvature_range.h"
-#include "engine/study/enclosed_mass.h"
 #include "tests/engine/merging/made_patches.h"
 
 namespace spoonbill {

@@ -11,9 +11,9 @@
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/inspection/enclosed_mass.h"
 #include "engine/merging/seam.h"
 #include "engine/merging/tube_ends.h"
-#include "engine/study/enclosed_mass.h"
 #include "tests/engine/merging/made_patches.h"
 
 namespace spoonbill {

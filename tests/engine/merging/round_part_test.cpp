@@ -8,10 +8,10 @@
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
+#include "engine/inspection/enclosed_mass.h"
+#include "engine/inspection/surface_check.h"
 #include "engine/merging/merge.h"
 #include "engine/merging/trimmed_patch.h"
-#include "engine/study/enclosed_mass.h"
-#include "engine/study/surface_check.h"
 
 namespace spoonbill {
 namespace {

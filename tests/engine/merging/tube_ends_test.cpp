@@ -10,8 +10,8 @@
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/inspection/enclosed_mass.h"
 #include "engine/merging/merge.h"
-#include "engine/study/enclosed_mass.h"
 
 namespace spoonbill {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/material/lattice/closed_surface.h"
+#include "engine/collision/surfaces/closed_surface.h"
 #include "engine/shapes/lump.h"
 #include "tests/engine/shapes/body_measures.h"
 

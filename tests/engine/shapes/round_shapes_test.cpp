@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/material/lattice/closed_surface.h"
+#include "engine/collision/surfaces/closed_surface.h"
 #include "tests/engine/shapes/body_measures.h"
 
 namespace spoonbill {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/material/lattice/closed_surface.h"
+#include "engine/collision/surfaces/closed_surface.h"
 #include "engine/shapes/lathe.h"
 #include "engine/shapes/loft.h"
 #include "engine/shapes/swept_tube.h"

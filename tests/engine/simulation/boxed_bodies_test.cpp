@@ -9,7 +9,7 @@
 
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/knot_vector.h"
-#include "engine/material/lattice/tube_rings.h"
+#include "engine/bspline/tube_rings.h"
 #include "engine/simulation/on_ground.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/effort.h"

@@ -2,7 +2,7 @@
 // quick.
 #pragma once
 
-#include "engine/simulation/scene.h"
+#include "engine/scene/scene.h"
 #include "engine/simulation/simulation.h"
 
 namespace spoonbill {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/denormals.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
-#include "engine/denormals.h"
 #include "engine/material/lattice_solver.h"
 #include "engine/simulation/body_self_contact.h"
 #include "tests/engine/allocations.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/simulation/tool_body.h"
+#include "engine/scene/tool.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/simulation/handle.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/bspline/surface.h"
-#include "engine/material/material.h"
+#include "engine/scene/material.h"
 
 namespace spoonbill {
 

@@ -2,10 +2,10 @@
 
 #include <string>
 
+#include "engine/base/number_text.h"
 #include "engine/collision/solids/implicit/ellipsoid_distance.h"
 #include "engine/collision/solids/implicit/plain_distances.h"
 #include "engine/collision/solids/implicit/superquadric_distance.h"
-#include "engine/number_text.h"
 
 namespace spoonbill {
 namespace {

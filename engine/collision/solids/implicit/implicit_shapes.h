@@ -5,8 +5,8 @@
 #include <memory>
 #include <variant>
 
+#include "engine/base/range.h"
 #include "engine/collision/solids/signed_distance.h"
-#include "engine/range.h"
 
 namespace spoonbill {
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "engine/box.h"
+#include "engine/base/box.h"
 #include "engine/collision/meshes/triangle.h"
 
 namespace spoonbill {

@@ -23,7 +23,7 @@
 #include "engine/exchange/cad/session.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/cad_stream.h"
-#include "engine/study/closing.h"
+#include "engine/inspection/closing.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"
 #include "tests/engine/exchange/sample_document.h"

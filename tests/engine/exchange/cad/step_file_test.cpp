@@ -5,10 +5,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "engine/base/number_text.h"
 #include "engine/bspline/evaluate.h"
 #include "engine/exchange/cad/cad_writer.h"
 #include "engine/exchange/cad/session.h"
-#include "engine/number_text.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"
 #include "tests/engine/exchange/sample_document.h"
 

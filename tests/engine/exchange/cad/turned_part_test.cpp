@@ -12,10 +12,10 @@
 
 #include "engine/exchange/cad/cad_reader.h"
 #include "engine/exchange/cad/session.h"
+#include "engine/inspection/closing.h"
+#include "engine/inspection/enclosed_mass.h"
 #include "engine/merging/merge.h"
 #include "engine/merging/trimmed_patch.h"
-#include "engine/study/closing.h"
-#include "engine/study/enclosed_mass.h"
 #include "tests/engine/exchange/sample_document.h"
 
 namespace spoonbill {

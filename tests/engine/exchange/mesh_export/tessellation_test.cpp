@@ -10,7 +10,7 @@
 
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/study/closing.h"
+#include "engine/inspection/closing.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"

@@ -1,11 +1,10 @@
 // Where nodes and cells lie in a body's own coordinates, against closed forms.
-#include "engine/material/lattice/body_region.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "engine/material/lattice/body_place.h"
 #include "engine/material/lattice/shell_faces.h"
 #include "engine/material/lattice/shell_lattice.h"
 #include "engine/material/lattice/tube_lattice.h"

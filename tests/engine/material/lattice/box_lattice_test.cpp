@@ -5,7 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/material/lattice/lattice_request.h"
+#include "engine/material/lattice/lattice_counts.h"
+#include "engine/material/lattice/lattice_of.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
 #include "tests/engine/material/block.h"

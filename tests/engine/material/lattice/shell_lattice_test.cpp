@@ -11,6 +11,7 @@
 
 #include "engine/material/implicit/implicit_body.h"
 #include "engine/material/lattice/feature_map.h"
+#include "engine/material/lattice/lattice_of.h"
 #include "engine/material/statics/static_solver.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/material/block.h"

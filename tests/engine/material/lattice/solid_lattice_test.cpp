@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/material/lattice/body_region.h"
-#include "engine/material/lattice/closed_surface.h"
+#include "engine/collision/surfaces/closed_surface.h"
+#include "engine/material/lattice/body_place.h"
 #include "engine/material/lattice/tube_lattice.h"
 #include "engine/material/lattice_materials.h"
 #include "tests/engine/collision/surfaces/sheets.h"

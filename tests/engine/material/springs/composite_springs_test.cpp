@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "engine/denormals.h"
+#include "engine/base/denormals.h"
+#include "engine/material/lattice/lattice_of.h"
 #include "engine/material/lattice_solver.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/random_surface.h"

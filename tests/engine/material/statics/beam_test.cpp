@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/material/lattice/lattice_request.h"
+#include "engine/material/lattice/lattice_counts.h"
 #include "tests/engine/material/block.h"
 #include "tests/engine/material/statics/static_cases.h"
 

@@ -1,0 +1,18 @@
+// Planes that hold what is behind them.
+#pragma once
+
+#include "engine/base/pose.h"
+#include "engine/base/result.h"
+
+namespace spoonbill {
+
+// Every node on its far side (opposite to the normal) is held.
+struct FixingPlane {
+  Vector3 point_m = Vector3::Zero();
+  Vector3 normal = Vector3::UnitX();  // unit
+};
+
+// Names the field, the value and the range of the first thing that is not within it.
+Status check_fixing_plane(const FixingPlane& plane);
+
+}  // namespace spoonbill

@@ -1,0 +1,95 @@
+#include "engine/scene/loads.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/number_text.h"
+#include "engine/base/pose.h"
+
+namespace spoonbill {
+namespace {
+
+double smooth_step(double t) {
+  const double s = std::clamp(t, 0.0, 1.0);
+  return s * s * s * (10.0 + s * (6.0 * s - 15.0));
+}
+
+// Taylor's series over a quarter turn: the C library's sine differs with the processor, and motions enter the
+// state. The first term left out is below 1e-14.
+double sine_of_turns(double turns) {
+  double t = turns - std::floor(turns);
+  if (t > 0.5) return -sine_of_turns(t - 0.5);
+  if (t > 0.25) t = 0.5 - t;
+  const double x = 2.0 * std::numbers::pi * t, square = x * x;
+  double term = x, sum = x;
+  for (int k = 1; k <= 10; ++k) {
+    term *= -square / (2.0 * k * (2.0 * k + 1.0));
+    sum += term;
+  }
+  return sum;
+}
+
+Status check_length(const char* field, const Vector3& vector, double limit) {
+  return check_range(field, vector.norm(), Range<double>{0.0, limit});
+}
+
+struct CheckOf {
+  Status operator()(const PressureLoad& load) const {
+    if (Status status = check_region(load.region); !status.ok()) return status;
+    return check_range("pressure_pa", load.pressure_pa, pressure_range_pa);
+  }
+  Status operator()(const ForceLoad& load) const {
+    if (Status status = check_region(load.region); !status.ok()) return status;
+    return check_length("length of force_n", load.force_n, force_limit_n);
+  }
+  Status operator()(const PointLoad& load) const {
+    return check_length("length of force_n", load.force_n, force_limit_n);
+  }
+};
+
+Status check_motion(const SupportMotion& motion) {
+  if (Status status = check_length("length of way_m", motion.way_m, way_limit_m); !status.ok()) return status;
+  const bool ramp = motion.kind == MotionKind::ramp;
+  if (Status status = ramp ? check_range("duration_s", motion.duration_s, motion_duration_range_s)
+                           : check_range("frequency_hz", motion.frequency_hz, motion_frequency_range_hz);
+      !status.ok()) {
+    return status;
+  }
+  const double speed = top_speed_m_per_s(motion);
+  if (speed <= motion_speed_limit_m_per_s) return {};
+  return Error{"motion reaches " + number_text(speed) + " m/s, must stay below " +
+               number_text(motion_speed_limit_m_per_s) + "; take a shorter way or more time"};
+}
+
+}  // namespace
+
+Vector3 way_at(const SupportMotion& motion, double time_s) {
+  if (motion.kind == MotionKind::ramp) return smooth_step(time_s / motion.duration_s) * motion.way_m;
+  const double turns = time_s * motion.frequency_hz;
+  return smooth_step(turns) * sine_of_turns(turns) * motion.way_m;
+}
+
+// Of the ramp in its middle, 15/8 of the mean; a sine that grows is never faster than when it has grown.
+double top_speed_m_per_s(const SupportMotion& motion) {
+  const double way = motion.way_m.norm();
+  if (motion.kind == MotionKind::ramp) return 1.875 * way / motion.duration_s;
+  return 2.0 * std::numbers::pi * motion.frequency_hz * way;
+}
+
+Status check_load(const Load& load) {
+  return std::visit(CheckOf{}, load);
+}
+
+Status check_support(const Support& support) {
+  if (Status status = check_region(support.region); !status.ok()) return status;
+  return support.motion ? check_motion(*support.motion) : Status();
+}
+
+Status check_ground(const Ground& ground) {
+  if (Status status = check_position("ground: point_m", ground.point_m); !status.ok()) return status;
+  if (Status status = check_unit("ground: normal", ground.normal); !status.ok()) return status;
+  return check_range("ground: friction", ground.friction, ground_friction_range);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,74 @@
+#include "engine/scene/tool.h"
+
+#include <algorithm>
+#include <climits>
+#include <string>
+
+#include "engine/collision/surfaces/closed_surface.h"
+
+namespace spoonbill {
+namespace {
+
+Status check_solid(const ImplicitShape& shape) {
+  return check_implicit_shape(shape);
+}
+
+Status check_solid(const MeshSolid& solid) {
+  return check_range("mesh: triangles",
+                     static_cast<int>(std::min<std::size_t>(solid.mesh.mesh.triangles.size(), INT_MAX)),
+                     Range<int>{1, tool_triangle_limit});
+}
+
+Status check_solid(const SurfaceSolid& solid) {
+  return check_closed_tube(solid.surface);
+}
+
+Status check_soft(const ImplicitShape&) {
+  return Error{"only a mesh or a B-spline surface can be soft; leave soft out"};
+}
+
+Status check_soft(const MeshSolid& solid) {
+  const std::size_t triangles = solid.mesh.mesh.triangles.size();
+  if (triangles > soft_mesh_triangle_limit) {
+    return Error{"mesh: has " + std::to_string(triangles) + " triangles, a soft one at most " +
+                 std::to_string(soft_mesh_triangle_limit) + "; reduce it, or leave soft out"};
+  }
+  const bool closed = std::all_of(solid.mesh.parts.begin(), solid.mesh.parts.end(),
+                                  [](const MeshPart& part) { return part.closed; });
+  if (!closed) return Error{"mesh: is not closed, as a soft one must be; close its holes, or leave soft out"};
+  return {};
+}
+
+Status check_soft(const SurfaceSolid&) {
+  return {};
+}
+
+}  // namespace
+
+Status check_tool_body(const ToolBody& body) {
+  Status solid = std::visit([](const auto& of) { return check_solid(of); }, body.solid);
+  if (!solid.ok()) return solid;
+  if (!body.soft) return {};
+  Status soft = std::visit([](const auto& of) { return check_soft(of); }, body.solid);
+  if (!soft.ok()) return soft;
+  for (const Status& status : {check_material(body.soft->material), check_lattice_request(body.soft->lattice),
+                               check_fixing_plane(body.soft->grip)}) {
+    if (!status.ok()) return status;
+  }
+  return {};
+}
+
+Status check_tool(const Tool& tool) {
+  if (Status status = check_range("tool: radius_m", tool.radius_m, tool_radius_range_m); !status.ok()) {
+    return status;
+  }
+  if (Status status = check_range("tool: iterations", tool.iterations, tool_iterations_range); !status.ok()) {
+    return status;
+  }
+  if (tool.kind != ToolKind::solid) return {};
+  if (!tool.body) return Error{"tool: a solid must have a body"};
+  const Status status = check_tool_body(*tool.body);
+  return status.ok() ? status : Error{"tool: " + status.error().message};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,128 @@
+#include "engine/inspection/curvature_range.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/shapes/round_shapes.h"
+#include "tests/engine/shapes/body_measures.h"
+#include "tests/engine/trims/loops.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// x = u, y = v, z = a u^2 + b v^2 over -1 to 1, exactly: the coefficients of t^2 over Bezier's square are
+// 1, -1, 1.
+Surface paraboloid(double a, double b) {
+  const KnotVector knots = KnotVector::open(2, {-1, -1, -1, 1, 1, 1}).value();
+  ControlNet net(3, 3);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const auto square = [](int k) { return k == 1 ? -1.0 : 1.0; };
+      net.set_point(i, j, Vector3(i - 1.0, j - 1.0, a * square(i) + b * square(j)));
+    }
+  }
+  return make_surface(knots, knots, net).value();
+}
+
+TEST(PrincipalCurvatures, AreThoseOfAParaboloid) {
+  // At the vertex 2 a and 2 b, hollow seen from above where its normals point.
+  const auto vertex = principal_curvatures(evaluate(paraboloid(0.7, -0.2), 0.0, 0.0));
+  ASSERT_TRUE(vertex);
+  EXPECT_NEAR(vertex->smallest, -1.4, 1e-14);
+  EXPECT_NEAR(vertex->largest, 0.4, 1e-14);
+  // Elsewhere on u: along it 2 a / (1 + 4 a^2 u^2)^(3/2), across it 2 b over the root.
+  const auto beside = principal_curvatures(evaluate(paraboloid(0.7, 0.2), 0.5, 0.0));
+  const double root = std::sqrt(1.0 + 4.0 * 0.49 * 0.25);
+  EXPECT_NEAR(beside->smallest, -1.4 / (root * root * root), 1e-14);
+  EXPECT_NEAR(beside->largest, -0.4 / root, 1e-14);
+}
+
+TEST(PrincipalCurvatures, DoNotHangOnHowTheParametersRun) {
+  const Surface straight = paraboloid(0.7, 0.2);
+  // The same points by sheared parameters: u = s + 100 t as a linear map of the second derivatives.
+  const SurfacePoint point = evaluate(straight, 0.3, -0.2);
+  const auto plain = principal_curvatures(point);
+  SurfacePoint sheared = point;
+  sheared.dv = 100.0 * point.du + point.dv;
+  sheared.duv = 100.0 * point.duu + point.duv;
+  sheared.dvv = 1e4 * point.duu + 200.0 * point.duv + point.dvv;
+  const auto slanted = principal_curvatures(sheared);
+  ASSERT_TRUE(plain && slanted);
+  EXPECT_NEAR(plain->smallest, slanted->smallest, 1e-10);
+  EXPECT_NEAR(plain->largest, slanted->largest, 1e-10);
+}
+
+TEST(CurvatureRange, FindsAPeakBetweenSamples) {
+  const CurvatureRange range = curvature_range(paraboloid(0.7, -0.2));
+  EXPECT_NEAR(range.smallest.curvature_per_m, -1.4, 1e-6);
+  EXPECT_NEAR(range.smallest.u, 0.0, 1e-3);
+  EXPECT_NEAR(range.largest.curvature_per_m, 0.4, 1e-6);
+  EXPECT_NEAR(range.largest.v, 0.0, 1e-3);
+}
+
+// The vertex, which is sharpest, is trimmed away: what is left is sharpest beside the cut.
+TEST(CurvatureRange, OfWhatTrimsKeep) {
+  const Surface whole = paraboloid(0.7, 0.0);
+  const auto loop = polygon_loop(whole.u, whole.v, rectangle(0.5, -1.0, 1.0, 1.0));
+  const CurvatureRange range = curvature_range(whole, TrimmedArea::make(whole.u, whole.v, {loop}).value());
+  const double root = std::sqrt(1.0 + 4.0 * 0.49 * 0.25);
+  EXPECT_NEAR(range.smallest.curvature_per_m, -1.4 / (root * root * root), 1e-3);
+  EXPECT_GE(range.smallest.u, 0.5);
+}
+
+// Second derivatives of a cubic spline of n spans around are short by (2 pi / n)^2 / 12 of themselves, here
+// below a thousandth.
+TEST(CurvatureRange, OfATorus) {
+  ShapeFit fit;
+  fit.control_counts = {{64, 64}};
+  const Surface torus = fitted(torus_shape({0.04, 0.01}), fit).surface;
+  const CurvatureRange range = curvature_range(torus);
+  EXPECT_NEAR(range.largest.curvature_per_m, 100.0, 0.1);
+  EXPECT_NEAR(range.smallest.curvature_per_m, -1.0 / 0.03, 0.05);
+  const Vector3 inner = range.smallest.position_m;
+  EXPECT_NEAR(std::hypot(inner.x(), inner.z()), 0.03, 1e-4);
+}
+
+TEST(CurvatureRange, OfASphereIsOneOverItsRadiusUpToThePoles) {
+  ShapeFit fit;
+  fit.control_counts = {{48, 64}};
+  const Surface sphere = fitted(sphere_shape(0.04), fit).surface;
+  const CurvatureRange range = curvature_range(sphere);
+  EXPECT_NEAR(range.smallest.curvature_per_m, 25.0, 0.5);
+  EXPECT_NEAR(range.largest.curvature_per_m, 25.0, 0.5);
+  EXPECT_NEAR(bending_measure(sphere), 8.0 * pi, 0.01 * 8.0 * pi);
+}
+
+TEST(CurvatureRange, OfAnEllipsoid) {
+  constexpr double a = 0.03, b = 0.02, c = 0.05;  // c along the poles
+  ExactShape shape;
+  shape.u.periodic = true;
+  shape.pole_at_start = shape.pole_at_end = true;
+  shape.at = [](double u, double v) {
+    const double ring = v <= 0.0 || v >= 1.0 ? 0.0 : std::sin(pi * v);
+    return Vector3(a * ring * std::cos(2.0 * pi * u), -c * std::cos(pi * v),
+                   -b * ring * std::sin(2.0 * pi * u));
+  };
+  ShapeFit fit;
+  fit.control_counts = {{96, 96}};
+  const Surface ellipsoid = fitted(Result<ExactShape>(shape), fit).surface;
+  const CurvatureRange range = curvature_range(ellipsoid);
+  // The ends of the longest axis are sharpest, c / b^2; the flattest are those of the shortest, b / c^2.
+  EXPECT_NEAR(range.largest.curvature_per_m, c / (b * b), 0.01 * c / (b * b));
+  EXPECT_NEAR(range.smallest.curvature_per_m, b / (c * c), 0.01 * b / (c * c));
+  EXPECT_NEAR(std::abs(range.smallest.position_m.z()), b, 1e-4);
+}
+
+TEST(CurvatureRange, OfAFlatSheetIsNone) {
+  const CurvatureRange range = curvature_range(paraboloid(0.0, 0.0));
+  EXPECT_EQ(range.smallest.curvature_per_m, 0.0);
+  EXPECT_EQ(range.largest.curvature_per_m, 0.0);
+  EXPECT_EQ(bending_measure(paraboloid(0.0, 0.0)), 0.0);
+}
+
+}  // namespace
+}  // namespace spoonbill
