@@ -7,12 +7,16 @@
 #include <vector>
 
 #include "app/program.h"
+#include "engine/base/assert.h"
 
 int main(int argc, char** argv) {
   // A reader of our output or an encoder that goes away is an error to report, not the end of the process.
   std::signal(SIGPIPE, SIG_IGN);
   // So is a file that grows beyond what the user may write.
   std::signal(SIGXFSZ, SIG_IGN);
+  // A broken promise within the program gives up the work at hand, not the process: a tick, a save, this
+  // command.
+  spoonbill::set_assertion_handler(spoonbill::throw_failed_assertion);
   try {
     const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
     spoonbill::Console console{std::cout, std::cerr, isatty(STDERR_FILENO) != 0};

@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/exchange/cad/cad_reader.h"
 #include "engine/exchange/cad/cad_writer.h"
 #include "engine/exchange/cad/session.h"
@@ -141,6 +142,7 @@ int serve(const std::vector<std::string>& arguments) {
   }
   Answers answers;
   std::ostream out(&answers);
+  set_assertion_handler(throw_failed_assertion);
   try {
     prepare_occt();
     if (reads) answer_read(arguments, reading, out);
