@@ -20,8 +20,8 @@
 #include "app/session/session.h"
 #include "engine/base/number_text.h"
 #include "engine/material/lattice/lattice_of.h"
-#include "haptic/recording.h"
-#include "haptic/script.h"
+#include "haptic/recording/recording.h"
+#include "haptic/recording/script.h"
 
 namespace spoonbill {
 namespace {

@@ -17,9 +17,9 @@
 #include "app/report/map_progress.h"
 #include "app/report/progress_bar.h"
 #include "app/session/lockstep.h"
-#include "app/session/scripted_device.h"
 #include "engine/base/number_text.h"
-#include "haptic/playback_device.h"
+#include "haptic/devices/playback_device.h"
+#include "haptic/devices/scripted_device.h"
 
 namespace spoonbill {
 namespace {

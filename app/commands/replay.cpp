@@ -20,7 +20,7 @@
 #include "app/report/map_progress.h"
 #include "app/report/progress_bar.h"
 #include "app/session/lockstep.h"
-#include "haptic/playback_device.h"
+#include "haptic/devices/playback_device.h"
 #include "render/gl/allocator_thresholds.h"
 
 namespace spoonbill {

@@ -19,7 +19,7 @@
 #include "app/edit/prompts.h"
 #include "app/view/shown_stages.h"
 #include "app/view/view_choice.h"
-#include "haptic/space_mouse.h"
+#include "haptic/devices/space_mouse.h"
 #include "render/frame_budget.h"
 
 namespace spoonbill {

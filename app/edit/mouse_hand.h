@@ -8,7 +8,7 @@
 
 #include "app/edit/navigation.h"
 #include "app/edit/surface_pick.h"
-#include "haptic/virtual_device.h"
+#include "haptic/devices/virtual_device.h"
 
 namespace spoonbill {
 

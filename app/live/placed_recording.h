@@ -6,7 +6,7 @@
 
 #include "app/files/recording_place.h"
 #include "engine/base/result.h"
-#include "haptic/recording_writer.h"
+#include "haptic/recording/recording_writer.h"
 
 namespace spoonbill {
 

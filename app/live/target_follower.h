@@ -2,7 +2,7 @@
 // owner: the haptic thread.
 #pragma once
 
-#include "haptic/virtual_device.h"
+#include "haptic/devices/virtual_device.h"
 
 namespace spoonbill {
 

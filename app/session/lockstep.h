@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/session/session.h"
-#include "haptic/recording.h"
-#include "haptic/recording_writer.h"
+#include "haptic/recording/recording.h"
+#include "haptic/recording/recording_writer.h"
 #include "haptic/safety.h"
 
 namespace spoonbill {

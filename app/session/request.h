@@ -14,7 +14,7 @@
 #include "engine/base/result.h"
 #include "engine/exchange/json.h"
 #include "engine/scene/command.h"
-#include "haptic/timed_command.h"
+#include "haptic/recording/timed_command.h"
 
 namespace spoonbill {
 

@@ -11,8 +11,8 @@
 #include "app/view/view_choice.h"
 #include "engine/exchange/document.h"
 #include "haptic/device.h"
+#include "haptic/recording/timed_command.h"
 #include "haptic/tick.h"
-#include "haptic/timed_command.h"
 
 namespace spoonbill {
 

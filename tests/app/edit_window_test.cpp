@@ -13,7 +13,7 @@
 #include "app/live/autosave.h"
 #include "app/program.h"
 #include "engine/exchange/document.h"
-#include "haptic/recording.h"
+#include "haptic/recording/recording.h"
 #include "render/image/png.h"
 #include "tests/app/process.h"
 #include "tests/app/workplace.h"

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "app/program.h"
-#include "haptic/recording.h"
+#include "haptic/recording/recording.h"
 #include "haptic/safety.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/app/workplace.h"

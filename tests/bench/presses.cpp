@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "haptic/recording.h"
+#include "haptic/recording/recording.h"
 
 namespace spoonbill {
 namespace {

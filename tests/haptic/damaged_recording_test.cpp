@@ -4,7 +4,7 @@
 #include <random>
 #include <sstream>
 
-#include "haptic/recording.h"
+#include "haptic/recording/recording.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/exchange/damage.h"
 #include "tests/engine/exchange/sample_document.h"

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "haptic/playback_device.h"
+#include "haptic/devices/playback_device.h"
 #include "tests/haptic/sample_recording.h"
 
 namespace spoonbill {

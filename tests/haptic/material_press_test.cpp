@@ -7,7 +7,7 @@
 #include <string>
 
 #include "engine/exchange/document.h"
-#include "haptic/script.h"
+#include "haptic/recording/script.h"
 #include "haptic/tick.h"
 #include "tests/engine/effort.h"
 

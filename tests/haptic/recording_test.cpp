@@ -1,4 +1,4 @@
-#include "haptic/recording.h"
+#include "haptic/recording/recording.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -9,7 +9,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "haptic/recording_writer.h"
+#include "haptic/recording/recording_writer.h"
 #include "tests/engine/exchange/sample_document.h"
 #include "tests/haptic/sample_recording.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "engine/simulation/simulation.h"
-#include "haptic/virtual_device.h"
+#include "haptic/devices/virtual_device.h"
 #include "tests/engine/allocations.h"
 
 namespace spoonbill {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "haptic/recording.h"
-#include "haptic/recording_writer.h"
+#include "haptic/recording/recording.h"
+#include "haptic/recording/recording_writer.h"
 
 namespace spoonbill {
 

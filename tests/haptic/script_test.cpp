@@ -1,4 +1,4 @@
-#include "haptic/script.h"
+#include "haptic/recording/script.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "engine/exchange/document.h"
 #include "engine/simulation/body_pair_contact.h"
-#include "haptic/script.h"
+#include "haptic/recording/script.h"
 #include "haptic/tick.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/simulation/soft_bodies.h"

@@ -1,6 +1,6 @@
 // The SpaceMouse against a daemon that the test plays, on a socket of its own, and its steering as
 // arithmetic.
-#include "haptic/space_mouse.h"
+#include "haptic/devices/space_mouse.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

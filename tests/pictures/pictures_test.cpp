@@ -17,8 +17,8 @@
 #include "app/session/lockstep.h"
 #include "engine/exchange/document.h"
 #include "engine/merging/merge.h"
-#include "haptic/playback_device.h"
-#include "haptic/virtual_device.h"
+#include "haptic/devices/playback_device.h"
+#include "haptic/devices/virtual_device.h"
 #include "render/image/compare.h"
 #include "render/image/png.h"
 

@@ -1,4 +1,4 @@
-#include "app/session/scripted_device.h"
+#include "haptic/devices/scripted_device.h"
 
 #include <utility>
 

@@ -34,7 +34,7 @@
 #include "engine/base/result.h"
 #include "engine/exchange/document.h"
 #include "haptic/device.h"
-#include "haptic/timed_command.h"
+#include "haptic/recording/timed_command.h"
 
 namespace spoonbill {
 

@@ -28,8 +28,8 @@
 
 #include "engine/base/result.h"
 #include "engine/exchange/document.h"
-#include "haptic/timed_command.h"
-#include "haptic/virtual_device.h"
+#include "haptic/devices/virtual_device.h"
+#include "haptic/recording/timed_command.h"
 
 namespace spoonbill {
 

@@ -1,4 +1,4 @@
-#include "haptic/recording_lines.h"
+#include "haptic/recording/recording_lines.h"
 
 #include <algorithm>
 #include <cmath>

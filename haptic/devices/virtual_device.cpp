@@ -1,4 +1,4 @@
-#include "haptic/virtual_device.h"
+#include "haptic/devices/virtual_device.h"
 
 #include <cmath>
 #include <utility>

@@ -7,7 +7,7 @@
 
 #include "engine/base/pose.h"
 #include "engine/base/result.h"
-#include "haptic/virtual_device.h"
+#include "haptic/devices/virtual_device.h"
 
 namespace spoonbill {
 

@@ -8,7 +8,7 @@
 
 #include "engine/base/result.h"
 #include "haptic/device.h"
-#include "haptic/recording.h"
+#include "haptic/recording/recording.h"
 
 namespace spoonbill {
 

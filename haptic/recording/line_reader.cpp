@@ -1,4 +1,4 @@
-#include "haptic/line_reader.h"
+#include "haptic/recording/line_reader.h"
 
 #include <istream>
 #include <utility>

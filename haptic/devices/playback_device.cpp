@@ -1,4 +1,4 @@
-#include "haptic/playback_device.h"
+#include "haptic/devices/playback_device.h"
 
 #include <utility>
 

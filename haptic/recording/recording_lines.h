@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/exchange/field_reader.h"
-#include "haptic/recording.h"
+#include "haptic/recording/recording.h"
 
 namespace spoonbill {
 

@@ -1,4 +1,4 @@
-#include "haptic/space_mouse.h"
+#include "haptic/devices/space_mouse.h"
 
 #include <spnav.h>
 #include <sys/socket.h>

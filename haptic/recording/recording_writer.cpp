@@ -1,4 +1,4 @@
-#include "haptic/recording_writer.h"
+#include "haptic/recording/recording_writer.h"
 
 #include <optional>
 #include <string>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/exchange/sequential_file.h"
-#include "haptic/recording_lines.h"
+#include "haptic/recording/recording_lines.h"
 
 namespace spoonbill {
 

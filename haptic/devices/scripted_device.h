@@ -1,8 +1,8 @@
 // A virtual device whose hand follows a script, tick by tick from 0 on.
 #pragma once
 
-#include "haptic/script.h"
-#include "haptic/virtual_device.h"
+#include "haptic/devices/virtual_device.h"
+#include "haptic/recording/script.h"
 
 namespace spoonbill {
 

@@ -3,9 +3,9 @@
 #include <string_view>
 #include <utility>
 
-#include "haptic/line_reader.h"
-#include "haptic/recording.h"
-#include "haptic/recording_lines.h"
+#include "haptic/recording/line_reader.h"
+#include "haptic/recording/recording.h"
+#include "haptic/recording/recording_lines.h"
 
 namespace spoonbill {
 
