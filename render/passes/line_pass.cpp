@@ -61,20 +61,6 @@ void main() {
 }
 )";
 
-void set_attributes(const GlFunctions& gl) {
-  constexpr GLsizei stride = sizeof(OverlayLine);
-  const auto at = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
-  gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, stride, at(offsetof(OverlayLine, start_m)));
-  gl.VertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, stride, at(offsetof(OverlayLine, end_m)));
-  gl.VertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, at(offsetof(OverlayLine, start_colour)));
-  gl.VertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, at(offsetof(OverlayLine, end_colour)));
-  gl.VertexAttribPointer(4, 1, GL_FLOAT, GL_FALSE, stride, at(offsetof(OverlayLine, width_px)));
-  for (GLuint i = 0; i < 5; ++i) {
-    gl.EnableVertexAttribArray(i);
-    gl.VertexAttribDivisor(i, 1);
-  }
-}
-
 }  // namespace
 
 Result<LinePass> LinePass::make(const GlFunctions& gl) {
@@ -86,12 +72,12 @@ Result<LinePass> LinePass::make(const GlFunctions& gl) {
 LinePass::LinePass(const GlFunctions& gl, Program program)
     : gl_(&gl),
       program_(std::move(program)),
-      vertex_array_(make_vertex_array(gl)),
-      instances_(make_buffer(gl)) {
-  gl.BindVertexArray(vertex_array_.id());
-  gl.BindBuffer(GL_ARRAY_BUFFER, instances_.id());
-  set_attributes(gl);
-}
+      quads_(gl, sizeof(OverlayLine),
+             {{3, GL_FLOAT, offsetof(OverlayLine, start_m)},
+              {3, GL_FLOAT, offsetof(OverlayLine, end_m)},
+              {4, GL_UNSIGNED_BYTE, offsetof(OverlayLine, start_colour)},
+              {4, GL_UNSIGNED_BYTE, offsetof(OverlayLine, end_colour)},
+              {1, GL_FLOAT, offsetof(OverlayLine, width_px)}}) {}
 
 void LinePass::draw(const FrameView& view, const std::vector<OverlayLine>& lines, float lift_m) const {
   if (lines.empty()) return;
@@ -103,11 +89,7 @@ void LinePass::draw(const FrameView& view, const std::vector<OverlayLine>& lines
   program_.set("lift", lift_m);
   program_.set("width_scale", view.interface_scale);
   program_.set("nearest_depth", view.nearest_depth_m);
-  gl_->BindVertexArray(vertex_array_.id());
-  gl_->BindBuffer(GL_ARRAY_BUFFER, instances_.id());
-  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(lines.size() * sizeof(OverlayLine)), lines.data(),
-                  GL_STREAM_DRAW);
-  gl_->DrawArraysInstanced(GL_TRIANGLES, 0, 6, static_cast<GLsizei>(lines.size()));
+  quads_.draw(lines);
 }
 
 }  // namespace spoonbill

@@ -5,7 +5,7 @@
 
 #include "engine/base/result.h"
 #include "render/gl/functions.h"
-#include "render/gl/handle.h"
+#include "render/gl/instanced_quads.h"
 #include "render/gl/program.h"
 #include "render/overlay/line.h"
 #include "render/passes/frame_view.h"
@@ -24,8 +24,7 @@ class LinePass {
 
   const GlFunctions* gl_;
   Program program_;
-  GlHandle vertex_array_;
-  GlHandle instances_;
+  InstancedQuads quads_;
 };
 
 }  // namespace spoonbill

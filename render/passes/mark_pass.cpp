@@ -64,20 +64,6 @@ void main() {
 }
 )";
 
-void set_attributes(const GlFunctions& gl) {
-  constexpr GLsizei stride = sizeof(OverlayMark);
-  const auto at = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
-  gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, stride, at(offsetof(OverlayMark, position_m)));
-  gl.VertexAttribPointer(1, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, at(offsetof(OverlayMark, colour)));
-  gl.VertexAttribPointer(2, 1, GL_FLOAT, GL_FALSE, stride, at(offsetof(OverlayMark, radius_m)));
-  gl.VertexAttribPointer(3, 1, GL_FLOAT, GL_FALSE, stride, at(offsetof(OverlayMark, least_px)));
-  gl.VertexAttribPointer(4, 1, GL_FLOAT, GL_FALSE, stride, at(offsetof(OverlayMark, shape)));
-  for (GLuint i = 0; i < 5; ++i) {
-    gl.EnableVertexAttribArray(i);
-    gl.VertexAttribDivisor(i, 1);
-  }
-}
-
 }  // namespace
 
 Result<MarkPass> MarkPass::make(const GlFunctions& gl) {
@@ -89,12 +75,12 @@ Result<MarkPass> MarkPass::make(const GlFunctions& gl) {
 MarkPass::MarkPass(const GlFunctions& gl, Program program)
     : gl_(&gl),
       program_(std::move(program)),
-      vertex_array_(make_vertex_array(gl)),
-      instances_(make_buffer(gl)) {
-  gl.BindVertexArray(vertex_array_.id());
-  gl.BindBuffer(GL_ARRAY_BUFFER, instances_.id());
-  set_attributes(gl);
-}
+      quads_(gl, sizeof(OverlayMark),
+             {{3, GL_FLOAT, offsetof(OverlayMark, position_m)},
+              {4, GL_UNSIGNED_BYTE, offsetof(OverlayMark, colour)},
+              {1, GL_FLOAT, offsetof(OverlayMark, radius_m)},
+              {1, GL_FLOAT, offsetof(OverlayMark, least_px)},
+              {1, GL_FLOAT, offsetof(OverlayMark, shape)}}) {}
 
 void MarkPass::draw(const FrameView& view, const std::vector<OverlayMark>& marks, float lift_m) const {
   if (marks.empty()) return;
@@ -106,11 +92,7 @@ void MarkPass::draw(const FrameView& view, const std::vector<OverlayMark>& marks
   program_.set("lift", lift_m);
   program_.set("scale", view.interface_scale);
   program_.set("pixel_depth_ratio", view.pixel_depth_ratio);
-  gl_->BindVertexArray(vertex_array_.id());
-  gl_->BindBuffer(GL_ARRAY_BUFFER, instances_.id());
-  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(marks.size() * sizeof(OverlayMark)), marks.data(),
-                  GL_STREAM_DRAW);
-  gl_->DrawArraysInstanced(GL_TRIANGLES, 0, 6, static_cast<GLsizei>(marks.size()));
+  quads_.draw(marks);
 }
 
 }  // namespace spoonbill

@@ -5,7 +5,7 @@
 
 #include "engine/base/result.h"
 #include "render/gl/functions.h"
-#include "render/gl/handle.h"
+#include "render/gl/instanced_quads.h"
 #include "render/gl/program.h"
 #include "render/overlay/mark.h"
 #include "render/passes/frame_view.h"
@@ -26,8 +26,7 @@ class MarkPass {
 
   const GlFunctions* gl_;
   Program program_;
-  GlHandle vertex_array_;
-  GlHandle instances_;
+  InstancedQuads quads_;
 };
 
 }  // namespace spoonbill

@@ -75,18 +75,6 @@ void main() {
 }
 )";
 
-void set_attributes(const GlFunctions& gl) {
-  constexpr GLsizei stride = sizeof(OverlayShell);
-  const auto at = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
-  gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, stride, at(offsetof(OverlayShell, centre_m)));
-  gl.VertexAttribPointer(1, 1, GL_FLOAT, GL_FALSE, stride, at(offsetof(OverlayShell, radius_m)));
-  gl.VertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, at(offsetof(OverlayShell, colour)));
-  for (GLuint i = 0; i < 3; ++i) {
-    gl.EnableVertexAttribArray(i);
-    gl.VertexAttribDivisor(i, 1);
-  }
-}
-
 }  // namespace
 
 Result<ShellPass> ShellPass::make(const GlFunctions& gl) {
@@ -98,12 +86,10 @@ Result<ShellPass> ShellPass::make(const GlFunctions& gl) {
 ShellPass::ShellPass(const GlFunctions& gl, Program program)
     : gl_(&gl),
       program_(std::move(program)),
-      vertex_array_(make_vertex_array(gl)),
-      instances_(make_buffer(gl)) {
-  gl.BindVertexArray(vertex_array_.id());
-  gl.BindBuffer(GL_ARRAY_BUFFER, instances_.id());
-  set_attributes(gl);
-}
+      quads_(gl, sizeof(OverlayShell),
+             {{3, GL_FLOAT, offsetof(OverlayShell, centre_m)},
+              {1, GL_FLOAT, offsetof(OverlayShell, radius_m)},
+              {4, GL_UNSIGNED_BYTE, offsetof(OverlayShell, colour)}}) {}
 
 void ShellPass::draw(const FrameView& view, std::vector<OverlayShell>& shells) const {
   if (shells.empty()) return;
@@ -116,11 +102,7 @@ void ShellPass::draw(const FrameView& view, std::vector<OverlayShell>& shells) c
   program_.set("eye_up", view.eye_up);
   program_.set("pixel_depth_ratio", view.pixel_depth_ratio);
   program_.set("width_scale", view.interface_scale);
-  gl_->BindVertexArray(vertex_array_.id());
-  gl_->BindBuffer(GL_ARRAY_BUFFER, instances_.id());
-  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(shells.size() * sizeof(OverlayShell)),
-                  shells.data(), GL_STREAM_DRAW);
-  gl_->DrawArraysInstanced(GL_TRIANGLES, 0, 6, static_cast<GLsizei>(shells.size()));
+  quads_.draw(shells);
 }
 
 }  // namespace spoonbill

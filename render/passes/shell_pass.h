@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/gl/functions.h"
-#include "render/gl/handle.h"
+#include "render/gl/instanced_quads.h"
 #include "render/gl/program.h"
 #include "render/overlay/contact_stage.h"
 #include "render/passes/frame_view.h"
@@ -23,8 +23,7 @@ class ShellPass {
 
   const GlFunctions* gl_;
   Program program_;
-  GlHandle vertex_array_;
-  GlHandle instances_;
+  InstancedQuads quads_;
 };
 
 }  // namespace spoonbill
