@@ -6,8 +6,9 @@ bottom to the rim. A plane holds the rim.
 
 Usage: bowl.py > bowl.json
 """
-import json
 import math
+
+from documents import material, tube, write
 
 COUNT_U, COUNT_V, DEGREE = 16, 9, 3
 HALF_LENGTH, HALF_WIDTH, DEPTH = 30.0, 21.0, 12.0
@@ -28,15 +29,7 @@ def surface():
             row.append([round(v, 6) for v in (HALF_LENGTH * out * math.cos(angle), DEPTH * rise,
                                               HALF_WIDTH * out * math.sin(angle))])
         points.append(row)
-    return {
-        "u": {"degree": DEGREE, "periodic": True, "knots": [k / COUNT_U for k in range(COUNT_U + 1)]},
-        "v": {"degree": DEGREE, "periodic": False, "knots": knots},
-        "control_points_mm": points,
-    }
-
-
-def material(name):
-    return json.load(open(__file__.rsplit("/", 1)[0] + "/../materials/" + name + ".json"))
+    return tube(DEGREE, knots, points)
 
 
 def main():
@@ -55,7 +48,7 @@ def main():
         "sculpting": {"damping_per_s": 4.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
         "view": {"camera": {"yaw_deg": 30, "pitch_deg": 32}},
     }
-    print(json.dumps(document, separators=(",", ":")))
+    write(document)
 
 
 main()

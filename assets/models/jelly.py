@@ -7,7 +7,7 @@ at either end, where the first and last rings lie in the pole's own plane.
 
 Usage: jelly.py > jelly.json
 """
-import json
+from documents import material, tube, write
 
 COUNT, DEGREE = 8, 3
 LENGTH, HALF_HEIGHT, HALF_WIDTH = 32.0, 9.0, 13.0
@@ -26,15 +26,7 @@ def surface():
             x = -0.5 * LENGTH if j <= 1 else 0.5 * LENGTH if j >= COUNT - 2 else LENGTH * (share - 0.5) * 1.25
             row.append([round(v, 6) for v in (x, HALF_HEIGHT * SCALE[j] * y, HALF_WIDTH * SCALE[j] * z)])
         points.append(row)
-    return {
-        "u": {"degree": DEGREE, "periodic": True, "knots": [k / COUNT for k in range(COUNT + 1)]},
-        "v": {"degree": DEGREE, "periodic": False, "knots": knots},
-        "control_points_mm": points,
-    }
-
-
-def material(name):
-    return json.load(open(__file__.rsplit("/", 1)[0] + "/../materials/" + name + ".json"))
+    return tube(DEGREE, knots, points)
 
 
 def main():
@@ -54,7 +46,7 @@ def main():
             "overlays": {"cells": True, "tool": False},
         },
     }
-    print(json.dumps(document, separators=(",", ":")))
+    write(document)
 
 
 main()

@@ -3,23 +3,21 @@
 
 Usage: loaded_handle.py > loaded-handle.json
 """
-import json
-
-FOLDER = __file__.rsplit("/", 1)[0]
+from documents import material, model, write
 
 
 def main():
-    document = json.load(open(FOLDER + "/spoon-handle.json"))
+    document = model("spoon-handle")
     document["name"] = "loaded-handle"
     body = document["body"]
-    body["material"] = json.load(open(FOLDER + "/../materials/polypropylene.json"))
+    body["material"] = material("polypropylene")
     body["supports"] = [{"region": {"along": [0, 0.2]}}]
     body["loads"] = [
         {"kind": "force", "region": {"along": [0.95, 1]}, "force_n": [0, -2, 0], "shared_by": "surface"},
         {"kind": "pressure", "region": {"along": [0.3, 0.5]}, "pressure_pa": 2000},
     ]
     document["sculpting"]["gravity_m_per_s2"] = [0, -9.81, 0]
-    print(json.dumps(document, separators=(",", ":")))
+    write(document)
 
 
 main()

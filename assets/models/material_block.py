@@ -11,6 +11,8 @@ import json
 import math
 import sys
 
+from documents import tube, write
+
 COUNT_U = 32
 DEGREE = 3
 LENGTH, HEIGHT, WIDTH = 44.0, 20.0, 40.0
@@ -52,11 +54,7 @@ def block():
         scale = {0: 0.0, 1: 0.5, 2: 0.9, 3: 0.97}.get(end, 1.0)
         for i, (y, z) in enumerate(ring()):
             points[i].append([round(x, 4), round(-scale * y, 4), round(scale * z, 4)])
-    return {
-        "u": {"degree": DEGREE, "periodic": True, "knots": [k / COUNT_U for k in range(COUNT_U + 1)]},
-        "v": {"degree": DEGREE, "periodic": False, "knots": [round(k, 6) for k in knots]},
-        "control_points_mm": points,
-    }
+    return tube(DEGREE, [round(k, 6) for k in knots], points)
 
 
 def main():
@@ -79,7 +77,7 @@ def main():
             "ground_mm": -11,
         },
     }
-    print(json.dumps(document, separators=(",", ":")))
+    write(document)
 
 
 main()

@@ -7,9 +7,10 @@ read from beside this one.
 
 Usage: soft_egg.py > soft-egg.json
 """
-import json
 import os
 import struct
+
+from documents import model, write
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
@@ -26,8 +27,7 @@ def egg():
 
 
 def main():
-    with open(os.path.join(HERE, "soft-press.json")) as file:
-        document = json.load(file)
+    document = model("soft-press")
     document["name"] = "soft-egg"
     document["tool"]["solid"] = egg()
     body, soft = document["body"], document["tool"]["soft"]
@@ -36,7 +36,7 @@ def main():
     soft["lattice"] = {"node_budget": 2500}
     soft["grip"] = {"point_mm": [0, 10, 0], "normal": [0, -1, 0]}
     document["view"]["camera"].update({"target_mm": [0, 20, 0], "distance_mm": 280})
-    print(json.dumps(document, separators=(",", ":")))
+    write(document)
 
 
 main()

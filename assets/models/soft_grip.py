@@ -6,21 +6,15 @@ Friction against skin: about 0.35 of dry wood, about 0.9 of silicone rubber.
 
 Usage: soft_grip.py > soft-grip.json
 """
-import json
 import os
 
-FOLDER = os.path.dirname(os.path.abspath(__file__))
+from documents import material, model, write
+
 WIDER, THICKER = 1.5, 2.4
 
 
-def material(name):
-    with open(os.path.join(FOLDER, "..", "materials", name + ".json"), encoding="utf-8") as file:
-        return json.load(file)
-
-
 def main():
-    with open(os.path.join(FOLDER, "spoon-handle.json"), encoding="utf-8") as file:
-        document = json.load(file)
+    document = model("spoon-handle")
     document["name"] = "soft-grip"
     body = document["body"]
     for line in body["surface"]["control_points_mm"]:
@@ -40,7 +34,7 @@ def main():
     document["tool"]["radius_mm"] = 6.0
     document["sculpting"] = {"damping_per_s": 20.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 1.0}
     document["view"]["camera"] = {"yaw_deg": 22, "pitch_deg": 16, "target_mm": [50, -4, 0], "distance_mm": 260}
-    print(json.dumps(document, separators=(",", ":")))
+    write(document)
 
 
 main()

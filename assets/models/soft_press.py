@@ -7,14 +7,15 @@ side held by the board; the fingertip lies along x too and is held by its upper 
 
 Usage: soft_press.py > soft-press.json
 """
-import json
 import math
+
+from documents import material, tube, write
 
 COUNT_U = 16
 DEGREE = 3
 
 
-def tube(length, half_height, half_width, exponent, spans):
+def pillow(length, half_height, half_width, exponent, spans):
     """A surface about the origin, rounded at its ends like a pillow."""
     breaks = [length * (k / spans - 0.5) for k in range(spans + 1)]
     knots = [breaks[0]] * DEGREE + breaks + [breaks[-1]] * DEGREE
@@ -33,15 +34,7 @@ def tube(length, half_height, half_width, exponent, spans):
             radius = (abs(c) ** exponent + abs(s) ** exponent) ** (-1 / exponent)
             point = [x, -scale * half_height * radius * s, scale * half_width * radius * c]
             points[i].append([round(value, 6) for value in point])
-    return {
-        "u": {"degree": DEGREE, "periodic": True, "knots": [k / COUNT_U for k in range(COUNT_U + 1)]},
-        "v": {"degree": DEGREE, "periodic": False, "knots": [round(k, 6) for k in knots]},
-        "control_points_mm": points,
-    }
-
-
-def material(name):
-    return json.load(open(__file__.rsplit("/", 1)[0] + "/../materials/" + name + ".json"))
+    return tube(DEGREE, [round(k, 6) for k in knots], points)
 
 
 def main():
@@ -50,7 +43,7 @@ def main():
         "name": "soft-press",
         "body": {
             "name": "cushion",
-            "surface": tube(70, 12, 24, 3, 14),
+            "surface": pillow(70, 12, 24, 3, 14),
             "material": material("gelatin-10-1"),
             "lattice": {"node_budget": 2500},
         },
@@ -60,7 +53,7 @@ def main():
             "action": "push",
             "radius_mm": 8,
             "iterations": 4,
-            "solid": {"shape": "surface", **tube(26, 9, 9, 2, 8)},
+            "solid": {"shape": "surface", **pillow(26, 9, 9, 2, 8)},
             "soft": {
                 "material": material("silicone-soft"),
                 "lattice": {"node_budget": 700},
@@ -73,7 +66,7 @@ def main():
             "ground_mm": -13,
         },
     }
-    print(json.dumps(document, separators=(",", ":")))
+    write(document)
 
 
 main()

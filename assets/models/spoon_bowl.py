@@ -8,8 +8,9 @@ section is a lens bent down in the middle. v is about the distance along the bow
 
 Usage: spoon_bowl.py > spoon-bowl.json
 """
-import json
 import math
+
+from documents import material, tube, write
 
 COLUMNS_U = 20
 DEGREE = 3
@@ -75,12 +76,8 @@ def main():
         "name": "spoon-bowl",
         "body": {
             "name": "bowl",
-            "surface": {
-                "u": {"degree": DEGREE, "periodic": True, "knots": [k / COLUMNS_U for k in range(COLUMNS_U + 1)]},
-                "v": {"degree": DEGREE, "periodic": False, "knots": [round(k, 6) for k in knots]},
-                "control_points_mm": points,
-            },
-            "material": json.load(open(__file__.rsplit("/", 1)[0] + "/../materials/modelling-clay.json")),
+            "surface": tube(DEGREE, [round(k, 6) for k in knots], points),
+            "material": material("modelling-clay"),
             "lattice": {"node_budget": 2000},
         },
         "fixing_planes": [],
@@ -91,7 +88,7 @@ def main():
             "ground_mm": -46,
         },
     }
-    print(json.dumps(document, separators=(",", ":")))
+    write(document)
 
 
 main()

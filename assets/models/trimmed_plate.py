@@ -4,8 +4,9 @@ hole and a slot. The surface itself is whole: trim loops keep a part of it. A pl
 
 Usage: trimmed_plate.py > trimmed-plate.json
 """
-import json
 import math
+
+from documents import material, write
 
 LENGTH, WIDTH, RISE = 120.0, 70.0, 8.0
 COUNT_U, COUNT_V, DEGREE = 9, 13, 3
@@ -68,10 +69,6 @@ def slot():
     return {"degree": 1, "periodic": False, "knots": [0, 0, 1, 2, 3, 4, 4], "control_points_uv": corners}
 
 
-def material(name):
-    return json.load(open(__file__.rsplit("/", 1)[0] + "/../materials/" + name + ".json"))
-
-
 def main():
     document = {
         "spoonbill_document": 2,
@@ -88,7 +85,7 @@ def main():
         "sculpting": {"damping_per_s": 4.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
         "view": {"camera": {"yaw_deg": 30, "pitch_deg": 40}},
     }
-    print(json.dumps(document, separators=(",", ":")))
+    write(document)
 
 
 main()
