@@ -18,7 +18,6 @@ class Question {
     asking_ = appearing_ = true;
   }
   bool asking() const { return asking_; }
-  void withdraw() { asking_ = false; }
 
   // Between begin_frame() and end_frame(). The number of the answer, 0 to 2, once.
   std::optional<int> draw();

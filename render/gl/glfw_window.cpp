@@ -145,10 +145,6 @@ void GlfwWindow::poll_events() {
   glfwPollEvents();
 }
 
-void GlfwWindow::wait_events(double at_most_s) {
-  glfwWaitEventsTimeout(at_most_s);
-}
-
 bool GlfwWindow::should_close() const {
   return glfwWindowShouldClose(window_) == GLFW_TRUE;
 }

@@ -57,9 +57,8 @@ class GlfwWindow final : public GlContext {
   void hide();
   bool is_minimised() const;  // nothing need be drawn
 
-  // Handles what has happened; `wait_events` sleeps until something does, at most that long.
+  // Handles what has happened.
   void poll_events();
-  void wait_events(double at_most_s);
 
   // Whether somebody asked the window to close. The owner decides, and may put the wish aside.
   bool should_close() const;

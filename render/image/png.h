@@ -40,7 +40,4 @@ Status write_png(const std::filesystem::path& path, const Image& image, PngEncod
 // As above, for a single picture.
 Status write_png(const std::filesystem::path& path, const Image& image);
 
-// Refused, with the path: a missing file, a broken one, a side above 16384 pixels.
-Result<Image> read_png(const std::filesystem::path& path);
-
 }  // namespace spoonbill

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "app/panel/session_panel.h"
-#include "render/image/compare.h"
 #include "tests/engine/simulation/handle.h"
+#include "tests/render/compare.h"
 
 namespace spoonbill {
 namespace {

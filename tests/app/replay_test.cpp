@@ -4,8 +4,8 @@
 
 #include "app/program.h"
 #include "app/session/lockstep.h"
-#include "render/image/png.h"
 #include "tests/app/workplace.h"
+#include "tests/render/read_png.h"
 
 namespace spoonbill {
 namespace {

@@ -7,6 +7,7 @@
 #include <stb/stb_image_write.h>
 
 #include "render/image/png.h"
+#include "tests/render/read_png.h"
 
 namespace spoonbill {
 namespace {

@@ -19,8 +19,9 @@
 #include "engine/merging/merge.h"
 #include "haptic/devices/playback_device.h"
 #include "haptic/devices/virtual_device.h"
-#include "render/image/compare.h"
 #include "render/image/png.h"
+#include "tests/render/compare.h"
+#include "tests/render/read_png.h"
 
 namespace spoonbill {
 namespace {

@@ -6,9 +6,10 @@
 #include <random>
 #include <string>
 
-#include "render/image/compare.h"
 #include "render/image/contact_sheet.h"
 #include "render/image/png.h"
+#include "tests/render/compare.h"
+#include "tests/render/read_png.h"
 
 namespace spoonbill {
 namespace {

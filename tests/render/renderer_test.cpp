@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "render/gl/osmesa_context.h"
-#include "render/image/compare.h"
 #include "render/image/png.h"
 #include "render/interface_fonts.h"
 #include "render/overlay/ground_grid.h"
 #include "render/tessellation/tessellated_surface.h"
+#include "tests/render/compare.h"
 #include "tests/render/sample_scene.h"
 
 namespace spoonbill {

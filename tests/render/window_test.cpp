@@ -3,13 +3,14 @@
 #include <chrono>
 #include <cstdlib>
 #include <memory>
+#include <thread>
 #include <utility>
 
 #include "render/gl/glfw_window.h"
 #include "render/gl/osmesa_context.h"
-#include "render/image/compare.h"
 #include "render/renderer.h"
 #include "render/tessellation/tessellated_surface.h"
+#include "tests/render/compare.h"
 #include "tests/render/sample_scene.h"
 #include "tests/render/virtual_display.h"
 
@@ -50,7 +51,10 @@ Image drawn_offscreen(const Snapshot& snapshot) {
 template <class Condition>
 bool comes_true(GlfwWindow& window, const Condition& condition) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-  while (!condition() && std::chrono::steady_clock::now() < end) window.wait_events(0.05);
+  while (!condition() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    window.poll_events();
+  }
   return condition();
 }
 

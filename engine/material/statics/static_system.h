@@ -19,7 +19,6 @@ class StaticSystem {
   using Stiffness = Eigen::SparseMatrix<double>;
 
   const StaticBody& body() const { return *body_; }
-  Eigen::Index free_count() const { return free_count_; }
 
   Coordinates rest() const { return Coordinates::Zero(static_cast<Eigen::Index>(free_.size())); }
   // With the held coordinates at this share of their displacement.

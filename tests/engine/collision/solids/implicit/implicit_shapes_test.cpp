@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <limits>
 
-#include "engine/collision/solids/signed_distance_check.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/collision/solids/implicit/support_function.h"
+#include "tests/engine/collision/solids/signed_distance_check.h"
 #include "tests/engine/effort.h"
 
 namespace spoonbill {

@@ -1,4 +1,4 @@
-#include "render/image/compare.h"
+#include "tests/render/compare.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "engine/collision/solids/signed_distance_check.h"
+#include "tests/engine/collision/solids/signed_distance_check.h"
 
 #include <cmath>
 #include <string>

@@ -1,5 +1,4 @@
-// Whether a signed distance keeps what signed_distance.h promises, as far as samples can tell: for solids
-// that a program of its own brings.
+// Whether a signed distance keeps what signed_distance.h promises, as far as samples can tell.
 #pragma once
 
 #include "engine/base/result.h"
