@@ -7,6 +7,8 @@
 #include <utility>
 #include <variant>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 // One line for the person at the program, without a trailing full stop or newline.
@@ -24,14 +26,23 @@ class [[nodiscard]] Result {
   explicit operator bool() const { return ok(); }
 
   // Valid only when ok().
-  T& value() & { return std::get<0>(content_); }
-  const T& value() const& { return std::get<0>(content_); }
-  T&& value() && { return std::get<0>(std::move(content_)); }
+  T& value() & {
+    SPOONBILL_ASSERT(ok());
+    return *std::get_if<0>(&content_);
+  }
+  const T& value() const& {
+    SPOONBILL_ASSERT(ok());
+    return *std::get_if<0>(&content_);
+  }
+  T&& value() && { return std::move(value()); }
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
 
   // Valid only when not ok().
-  const Error& error() const { return std::get<1>(content_); }
+  const Error& error() const {
+    SPOONBILL_ASSERT(!ok());
+    return *std::get_if<1>(&content_);
+  }
 
  private:
   std::variant<T, Error> content_;
@@ -45,7 +56,11 @@ class [[nodiscard]] Status {
 
   bool ok() const { return !error_; }
   explicit operator bool() const { return ok(); }
-  const Error& error() const { return *error_; }
+  // Valid only when not ok().
+  const Error& error() const {
+    SPOONBILL_ASSERT(!ok());
+    return *error_;
+  }
 
  private:
   std::optional<Error> error_;

@@ -19,8 +19,9 @@ class WorkWatch {
 
   bool goes_on(double share) const { return !told_ || told_(start_ + (end_ - start_) * share); }
 
-  // Of work that is done in parts: the one from one share to another.
+  // Of work that is done in parts: the one from one share to another, which is not below it.
   WorkWatch part(double from, double to) const {
+    SPOONBILL_ASSERT(0.0 <= from && from <= to);
     WorkWatch watch = *this;
     watch.start_ = start_ + (end_ - start_) * from;
     watch.end_ = start_ + (end_ - start_) * to;
@@ -37,7 +38,10 @@ class WorkWatch {
 // Of rounds whose number shows at the last: each takes its part of what is left.
 class RoundsDone {
  public:
-  explicit RoundsDone(double part_of_rest) : part_of_rest_(part_of_rest) {}
+  // Above 0 and below 1.
+  explicit RoundsDone(double part_of_rest) : part_of_rest_(part_of_rest) {
+    SPOONBILL_ASSERT(0.0 < part_of_rest && part_of_rest < 1.0);
+  }
 
   double share() const { return share_; }
   void step() { share_ += part_of_rest_ * (1.0 - share_); }

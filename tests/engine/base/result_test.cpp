@@ -1,0 +1,28 @@
+#include "engine/base/result.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/base/work_watch.h"
+#include "tests/engine/throwing_asserts.h"
+
+namespace spoonbill {
+namespace {
+
+TEST(Result, AssertsThatItHoldsWhatIsTaken) {
+  const ThrowingAsserts throwing;
+  const Result<int> three = 3, refused = Error{"too many"};
+  EXPECT_EQ(three.value(), 3);
+  EXPECT_EQ(refused.error().message, "too many");
+  EXPECT_THROW(refused.value(), FailedAssertion);
+  EXPECT_THROW(three.error(), FailedAssertion);
+  EXPECT_THROW(Status().error(), FailedAssertion);
+}
+
+TEST(WorkWatch, AssertsThatPartsRunForwards) {
+  const ThrowingAsserts throwing;
+  EXPECT_THROW(WorkWatch().part(0.5, 0.2), FailedAssertion);
+  EXPECT_THROW(RoundsDone(1.0), FailedAssertion);
+}
+
+}  // namespace
+}  // namespace spoonbill
