@@ -2,12 +2,13 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "app/commands/body_collision.h"
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/mesh_contact.h"
@@ -16,7 +17,10 @@
 #include "app/report/contact_facts.h"
 #include "app/report/mesh_facts.h"
 #include "engine/collision/meshes/mesh_distance.h"
+#include "engine/collision/rigid/body_tree.h"
+#include "engine/collision/rigid/mesh_pair.h"
 #include "engine/collision/surfaces/closed_surface.h"
+#include "engine/collision/surfaces/net_box.h"
 #include "engine/collision/surfaces/surface_pair_collider.h"
 #include "engine/exchange/document.h"
 
@@ -34,21 +38,60 @@ struct CollideOptions {
 // Cells a quarter of an element wide: regions are told that closely.
 constexpr int levels = 2;
 
-Result<Surface> read_body(const std::filesystem::path& file) {
+// What a file holds for collide: the bodies of a document, or a mesh.
+struct Model {
+  std::vector<Surface> bodies;
+  std::vector<std::string> names;  // of the bodies; empty where there is one
+  std::optional<CleanMesh> mesh;
+};
+
+// A surface that collide takes: solid, whole and closed. `whose` begins an Error's message.
+Result<Surface> closed_surface_of(Body& body, const std::string& whose) {
+  if (body.shell_thickness_m) {
+    return Error{whose + "its body is a shell, and collide takes solid ones; give it a mesh of both faces"};
+  }
+  if (!body.trims.empty()) {
+    return Error{whose + "its body is trimmed, and collide takes closed ones; leave its trims out"};
+  }
+  if (Status closed = check_closed_tube(body.surface); !closed) return Error{whose + closed.error().message};
+  return std::move(body.surface);
+}
+
+Result<Model> read_bodies(const std::filesystem::path& file) {
   auto document = read_document(file);
   if (!document) return document.error();
-  if (document->scene.bodies[0].shell_thickness_m) {
-    return Error{file.string() +
-                 ": its body is a shell, and collide takes solid ones; give it a mesh of both faces"};
+  std::vector<Body>& bodies = document->scene.bodies;
+  Model model;
+  for (Body& body : bodies) {
+    const bool alone = bodies.size() == 1;
+    auto surface =
+        closed_surface_of(body, file.string() + ": " + (alone ? "" : "body \"" + body.name + "\": "));
+    if (!surface) return surface.error();
+    model.bodies.push_back(std::move(surface).value());
+    if (!alone) model.names.push_back(body.name);
   }
-  if (!document->scene.bodies[0].trims.empty()) {
-    return Error{file.string() + ": its body is trimmed, and collide takes closed ones; leave its trims out"};
-  }
-  Surface surface = std::move(document->scene.bodies[0].surface);
-  if (Status closed = check_closed_tube(surface); !closed) {
-    return Error{file.string() + ": " + closed.error().message};
-  }
-  return surface;
+  return model;
+}
+
+// How the facts name a mesh.
+struct MeshLabel {
+  const char* field;
+  const char* whose;
+};
+
+// What the mesh is goes to the facts.
+Result<Model> read_mesh(const std::filesystem::path& file, const std::optional<LengthUnit>& unit,
+                        const MeshLabel& label, FactSheet& facts) {
+  MeshReading reading;
+  reading.unit = unit;
+  auto read = read_mesh_file(file, reading);
+  if (!read) return read.error();
+  auto clean = clean_mesh(std::move(read->mesh), file.string());
+  if (!clean) return clean.error();
+  add_mesh_facts(facts, read->unit, clean.value(), sheet_thickness_m, label.field, label.whose);
+  Model model;
+  model.mesh = std::move(clean).value();
+  return model;
 }
 
 FactSheet facts_of(const CollideOptions& options) {
@@ -58,13 +101,8 @@ FactSheet facts_of(const CollideOptions& options) {
   return facts;
 }
 
-Result<CollisionAnswer> collide_surfaces(const CollideOptions& options) {
-  const auto first = read_body(options.first);
-  if (!first) return first.error();
-  const auto second = read_body(options.second);
-  if (!second) return second.error();
-  const Surface& a = first.value();
-  const Surface b = placed(second.value(), options.pose);
+Result<CollisionAnswer> collide_surfaces(const Surface& a, const Surface& b, double reach_m,
+                                         const std::string& files) {
   const auto grid_a = make_nested_grid(a.u, a.v, levels), grid_b = make_nested_grid(b.u, b.v, levels);
   if (!grid_a) return grid_a.error();
   if (!grid_b) return grid_b.error();
@@ -72,63 +110,105 @@ Result<CollisionAnswer> collide_surfaces(const CollideOptions& options) {
   SurfacePairCollider collider(grid_a.value(), grid_b.value());
   PairQuery query;
   query.first_closed = query.second_closed = true;
-  query.reach_m = std::numeric_limits<double>::infinity();
+  query.reach_m = reach_m;
   const PairResult result = collider.collide(a, b, query);
   if (result.overflow && !result.touching) {
-    return Error{
-        "these surfaces come near each other in more places than can be searched: " + options.first.string() +
-        " and " + options.second.string() + "; give them fewer control points or another --pose"};
+    return Error{"these surfaces come near each other in more places than can be searched: " + files +
+                 "; give them fewer control points or another --pose"};
   }
   return answer_of(result, collider.contacts());
 }
 
-Result<CollisionAnswer> collide_with_itself(const CollideOptions& options) {
-  const auto body = read_body(options.first);
-  if (!body) return body.error();
-  const auto grid = make_nested_grid(body->u, body->v, levels);
+Result<CollisionAnswer> collide_with_itself(const Surface& body) {
+  const auto grid = make_nested_grid(body.u, body.v, levels);
   if (!grid) return grid.error();
   SurfaceSelfCollider collider(grid.value());
   SelfQuery query;
   query.closed = true;
-  const SelfResult result = collider.collide(body.value(), query);
+  const SelfResult result = collider.collide(body, query);
   return answer_of(result, collider.contacts());
 }
 
-// What the mesh is goes to the facts.
-Result<CollisionAnswer> collide_with_mesh(const CollideOptions& options, bool mesh_is_a, FactSheet& facts) {
-  const auto body = read_body(mesh_is_a ? options.second : options.first);
-  if (!body) return body.error();
-  const std::filesystem::path& file = mesh_is_a ? options.first : options.second;
-  MeshReading reading;
-  reading.unit = options.unit;
-  auto read = read_mesh_file(file, reading);
-  if (!read) return read.error();
-  const auto clean = clean_mesh(std::move(read->mesh), file.string());
-  if (!clean) return clean.error();
-  add_mesh_facts(facts, read->unit, clean.value(), sheet_thickness_m);
-  const MeshDistance mesh(clean.value());
-  return mesh_is_a ? collide_mesh(mesh, Pose(), placed(body.value(), options.pose), true)
-                   : collide_mesh(mesh, options.pose, body.value(), false);
+std::vector<Box> boxes_of(const std::vector<Surface>& bodies) {
+  std::vector<Box> boxes;
+  boxes.reserve(bodies.size());
+  for (const Surface& body : bodies) boxes.push_back(box_of(body.net));
+  return boxes;
+}
+
+// Each body with itself, and with the others.
+Result<CollisionAnswer> collide_alone(const Model& model, const std::string& file) {
+  BodiesAnswer together(model.names, model.names);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    auto answer = collide_with_itself(model.bodies[b]);
+    if (!answer) return answer.error();
+    together.add(b, b, std::move(answer).value());
+  }
+  for (const auto& [a, b] : BodyTree(boxes_of(model.bodies)).near_pairs()) {
+    auto answer = collide_surfaces(model.bodies[a], model.bodies[b], 0.0, file);
+    if (!answer) return answer.error();
+    if (answer->touching) together.add(a, b, std::move(answer).value());
+  }
+  return together.answer();
+}
+
+Result<CollisionAnswer> collide_documents(const Model& a, const Model& b, const CollideOptions& options) {
+  std::vector<Surface> placed_b;
+  for (const Surface& body : b.bodies) placed_b.push_back(placed(body, options.pose));
+  const std::string files = options.first.string() + " and " + options.second.string();
+  return collide_bodies({boxes_of(a.bodies), a.names}, {boxes_of(placed_b), b.names},
+                        [&](std::size_t i, std::size_t j, double reach_m) {
+                          return collide_surfaces(a.bodies[i], placed_b[j], reach_m, files);
+                        });
+}
+
+// Either may be the mesh; the pose moves B.
+Result<CollisionAnswer> collide_with_mesh(const Model& a, const Model& b, const Pose& pose) {
+  const bool mesh_is_a = a.mesh.has_value();
+  const MeshDistance mesh(mesh_is_a ? *a.mesh : *b.mesh);
+  const Pose mesh_pose = mesh_is_a ? Pose() : pose;
+  std::vector<Surface> bodies = mesh_is_a ? b.bodies : a.bodies;
+  for (Surface& body : bodies) {
+    if (mesh_is_a) body = placed(std::move(body), pose);
+  }
+  const BodyBoxes of_mesh{{box_about(mesh.bounds(), mesh_pose)}, {}};
+  const BodyBoxes of_bodies{boxes_of(bodies), mesh_is_a ? b.names : a.names};
+  return collide_bodies(mesh_is_a ? of_mesh : of_bodies, mesh_is_a ? of_bodies : of_mesh,
+                        [&](std::size_t i, std::size_t j, double) {
+                          return collide_mesh(mesh, mesh_pose, bodies[mesh_is_a ? j : i], mesh_is_a);
+                        });
+}
+
+Status check_use(const CollideOptions& options, bool mesh_is_a, bool mesh_is_b) {
+  if (options.unit && !mesh_is_a && !mesh_is_b) {
+    return Error{options.first.string() + ": a document has its unit; leave --unit out"};
+  }
+  if (!options.second.empty()) return {};
+  if (mesh_is_a) {
+    return Error{options.first.string() + " is a mesh; name a document or a mesh that it is to touch"};
+  }
+  if (options.posed) return Error{"--pose is where B is; name B, or leave it out"};
+  return {};
 }
 
 Status collide(const CollideOptions& options, Console& console) {
   const bool mesh_is_a = is_mesh_file(options.first), mesh_is_b = is_mesh_file(options.second);
-  if (mesh_is_a && mesh_is_b) {
-    return Error{options.first.string() + " and " + options.second.string() +
-                 " are both meshes; one of them must be a document (.json)"};
-  }
-  if (options.unit && !mesh_is_a && !mesh_is_b) {
-    return Error{options.first.string() + ": a document has its unit; leave --unit out"};
-  }
-  const bool alone = options.second.empty();
-  if (alone && mesh_is_a) {
-    return Error{options.first.string() + " is a mesh; name a document (.json) that it is to touch"};
-  }
-  if (alone && options.posed) return Error{"--pose is where B is; name B, or leave it out"};
+  if (Status use = check_use(options, mesh_is_a, mesh_is_b); !use) return use.error();
+  const bool both = mesh_is_a && mesh_is_b;
   FactSheet facts = facts_of(options);
-  const auto answer = alone                    ? collide_with_itself(options)
-                      : mesh_is_a || mesh_is_b ? collide_with_mesh(options, mesh_is_a, facts)
-                                               : collide_surfaces(options);
+  const auto read = [&](const std::filesystem::path& file, bool is_mesh, const MeshLabel& label) {
+    return is_mesh ? read_mesh(file, options.unit, both ? label : MeshLabel{"mesh", ""}, facts)
+                   : read_bodies(file);
+  };
+  const auto a = read(options.first, mesh_is_a, {"mesh_a", " of A"});
+  if (!a) return a.error();
+  const bool alone = options.second.empty();
+  const auto b = alone ? Result<Model>(Model()) : read(options.second, mesh_is_b, {"mesh_b", " of B"});
+  if (!b) return b.error();
+  const auto answer = alone  ? collide_alone(a.value(), options.first.string())
+                      : both ? Result(answer_of(collide_meshes(*a->mesh, *b->mesh, options.pose)))
+                      : mesh_is_a || mesh_is_b ? collide_with_mesh(a.value(), b.value(), options.pose)
+                                               : collide_documents(a.value(), b.value(), options);
   if (!answer) return answer.error();
   add_contact_facts(facts, answer.value());
   facts.print(console.out, options.json);
@@ -144,12 +224,14 @@ CommandEntry add_collide(CLI::App& root) {
   parser->footer(
       "Found on the B-spline surfaces themselves, to a micrometre: where they touch, how deep, which way A\n"
       "gets out, and the parameters on both; where they do not, the distance and the nearest points.\n"
-      "One may be a mesh: cleaned first, its closed parts solid, its open ones plates 1 mm thick.\n"
+      "A mesh is cleaned first, its closed parts solid, its open ones plates 1 mm thick. Two meshes are as "
+      "deep\n"
+      "as the deepest of their corners and edges. Of a document all bodies count, also with each other.\n"
       "Example: spoonbill collide assets/models/spoon-handle.json assets/models/spoon-handle.json "
       "--pose 0,5mm,0,1,0,0,0");
   parser->add_option("A", options->first, "A document (.json) or a mesh (.obj, .stl, .ply)")->required();
   parser->add_option("B", options->second,
-                     "Another, or the same; at least one is a document. Without it, A with itself");
+                     "Another, or the same. Without it, A with itself, which must be a document");
   parser
       ->add_option_function<std::string>(
           "--pose",
@@ -170,7 +252,7 @@ CommandEntry add_collide(CLI::App& root) {
             if (!unit) throw CLI::ValidationError("--unit", unit.error().message);
             options->unit = unit.value();
           },
-          "Of a mesh's numbers: mm, cm, m or in; mm for .obj and .stl and m for .ply unless told")
+          "Of the numbers of meshes: mm, cm, m or in; mm for .obj and .stl and m for .ply unless told")
       ->type_name("UNIT");
   add_json_option(*parser, options->json);
   return {parser, [options](Console& console) { return collide(*options, console); }};

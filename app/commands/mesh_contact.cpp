@@ -12,11 +12,11 @@ constexpr int levels = 2;
 
 ContactSide on_mesh(const ToolShape& tool, const Vector3& from) {
   const DistanceSample sample = tool.at(from);
-  return {from - sample.distance_m * sample.gradient, {}};
+  return {from - sample.distance_m * sample.gradient, {}, {}};
 }
 
 ContactSide on_surface(const SurfaceContact& contact) {
-  return {contact.point_m, SurfacePlace{contact.u, contact.v, {}}};
+  return {contact.point_m, SurfacePlace{contact.u, contact.v, {}}, {}};
 }
 
 // The mesh leaves the body along the surface's normal.

@@ -34,6 +34,7 @@ std::string point_text(const Vector3& point_m) {
 
 Json side_json(const ContactSide& side) {
   Json json = {{"point_m", vector_json(side.point_m)}};
+  if (!side.body.empty()) json["body"] = side.body;
   if (!side.place) return json;
   json["u"] = side.place->u;
   json["v"] = side.place->v;
@@ -54,6 +55,14 @@ Json contact_json(const ContactOfTwo& contact) {
           {"b", side_json(contact.b)}};
 }
 
+// Whose contact it is, where there are several bodies.
+std::string bodies_text(const ContactOfTwo& contact) {
+  const std::string &a = contact.a.body, &b = contact.b.body;
+  if (a.empty() && b.empty()) return "";
+  if (a.empty() || b.empty()) return ", of " + a + b;
+  return a == b ? ", of " + a + " with itself" : ", of " + a + " and " + b;
+}
+
 void add_contacts(FactSheet& facts, const std::vector<ContactOfTwo>& contacts, Json& list) {
   double deepest = 0.0;
   for (const ContactOfTwo& contact : contacts) deepest = std::max(deepest, contact.depth_m);
@@ -61,7 +70,7 @@ void add_contacts(FactSheet& facts, const std::vector<ContactOfTwo>& contacts, J
   for (const ContactOfTwo& contact : contacts) {
     facts.add("Contact",
               millimetres_text(contact.depth_m) + " deep at " + point_text(contact.a.point_m) + ", way out " +
-                  vector_text(contact.normal, 3),
+                  vector_text(contact.normal, 3) + bodies_text(contact),
               "", {});
     list.push_back(contact_json(contact));
   }
@@ -71,8 +80,8 @@ std::vector<ContactOfTwo> contacts_of(const std::vector<PairContact>& found) {
   std::vector<ContactOfTwo> contacts;
   for (const PairContact& contact : found) {
     const PairParameters& at = contact.pair.at;
-    contacts.push_back({{contact.pair.first_m, SurfacePlace{at.u, at.v, contact.first}},
-                        {contact.pair.second_m, SurfacePlace{at.s, at.t, contact.second}},
+    contacts.push_back({{contact.pair.first_m, SurfacePlace{at.u, at.v, contact.first}, {}},
+                        {contact.pair.second_m, SurfacePlace{at.s, at.t, contact.second}, {}},
                         contact.normal,
                         contact.depth_m,
                         contact.tangent_u,
@@ -99,9 +108,29 @@ CollisionAnswer answer_of(const PairResult& result, const std::vector<PairContac
   answer.complete = !result.overflow;
   answer.distance_m = result.distance_m;
   const PairParameters& nearest = result.nearest.at;
-  answer.nearest_a = {result.nearest.first_m, SurfacePlace{nearest.u, nearest.v, {}}};
-  answer.nearest_b = {result.nearest.second_m, SurfacePlace{nearest.s, nearest.t, {}}};
+  answer.nearest_a = {result.nearest.first_m, SurfacePlace{nearest.u, nearest.v, {}}, {}};
+  answer.nearest_b = {result.nearest.second_m, SurfacePlace{nearest.s, nearest.t, {}}, {}};
   if (result.touching) answer.contacts = contacts_of(contacts);
+  return answer;
+}
+
+CollisionAnswer answer_of(const MeshPairResult& result) {
+  CollisionAnswer answer;
+  answer.touching = result.touching;
+  answer.contained = result.contained;
+  answer.complete = result.complete;
+  answer.distance_m = result.distance_m;
+  answer.nearest_a = {result.nearest_first_m, {}, {}};
+  answer.nearest_b = {result.nearest_second_m, {}, {}};
+  for (const MeshPairContact& contact : result.contacts) {
+    const Vector3 tangent = contact.normal.unitOrthogonal();
+    answer.contacts.push_back({{contact.first_m, {}, {}},
+                               {contact.second_m, {}, {}},
+                               contact.normal,
+                               contact.depth_m,
+                               tangent,
+                               contact.normal.cross(tangent)});
+  }
   return answer;
 }
 

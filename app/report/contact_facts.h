@@ -2,10 +2,12 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "app/report/fact_sheet.h"
 #include "engine/collision/levels/parameter_range.h"
+#include "engine/collision/rigid/mesh_pair.h"
 #include "engine/collision/surfaces/surface_pair_collider.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 
@@ -20,6 +22,7 @@ struct SurfacePlace {
 struct ContactSide {
   Vector3 point_m = Vector3::Zero();
   std::optional<SurfacePlace> place;  // a mesh has none
+  std::string body;                   // whose it is, where a document has several; else empty
 };
 
 struct ContactOfTwo {
@@ -40,6 +43,7 @@ struct CollisionAnswer {
 };
 
 CollisionAnswer answer_of(const PairResult& result, const std::vector<PairContact>& contacts);
+CollisionAnswer answer_of(const MeshPairResult& result);
 // Of one with itself, A and B its parts.
 CollisionAnswer answer_of(const SelfResult& result, const std::vector<PairContact>& contacts);
 

@@ -47,8 +47,8 @@ std::string parts_text(const MeshReport& report, double sheet_thickness_m) {
 
 }  // namespace
 
-void add_mesh_facts(FactSheet& facts, const LengthUnit& unit, const CleanMesh& mesh,
-                    double sheet_thickness_m) {
+void add_mesh_facts(FactSheet& facts, const LengthUnit& unit, const CleanMesh& mesh, double sheet_thickness_m,
+                    const std::string& field, const std::string& whose) {
   const MeshReport& report = mesh.report;
   Json json = {{"unit", unit.name},
                {"size_mm", {1e3 * report.size_m.x(), 1e3 * report.size_m.y(), 1e3 * report.size_m.z()}},
@@ -65,15 +65,15 @@ void add_mesh_facts(FactSheet& facts, const LengthUnit& unit, const CleanMesh& m
     json["cleaning"][count.field] = count.number;
     if (count.number > 0) append(cleaning, std::string(count.words) + ": " + std::to_string(count.number));
   }
-  facts.add("Unit", std::string(unit.name) + " (of the mesh's numbers; --unit names another)", "mesh",
+  facts.add("Unit" + whose, std::string(unit.name) + " (of the mesh's numbers; --unit names another)", field,
             std::move(json));
-  facts.add("Size", size_text(report.size_m), "", {});
+  facts.add("Size" + whose, size_text(report.size_m), "", {});
   facts.add(
-      "Triangles",
+      "Triangles" + whose,
       std::to_string(mesh.mesh.triangles.size()) + " of " + std::to_string(report.triangles_read) + " read",
       "", {});
-  facts.add("Cleaning", cleaning.empty() ? "nothing to do" : cleaning, "", {});
-  facts.add("Parts", parts_text(report, sheet_thickness_m), "", {});
+  facts.add("Cleaning" + whose, cleaning.empty() ? "nothing to do" : cleaning, "", {});
+  facts.add("Parts" + whose, parts_text(report, sheet_thickness_m), "", {});
 }
 
 }  // namespace spoonbill

@@ -2,18 +2,12 @@
 
 #include <cmath>
 
+#include "engine/collision/surfaces/net_box.h"
+
 namespace spoonbill {
 namespace {
 
 constexpr double rounding_m = 1e-8;
-
-Box box_of(const ControlNet& net) {
-  Box box{net.point(0, 0), net.point(0, 0)};
-  for (int i = 0; i < net.rows; ++i) {
-    for (int j = 0; j < net.columns; ++j) box = joined(box, Box{net.point(i, j), net.point(i, j)});
-  }
-  return box;
-}
 
 }  // namespace
 

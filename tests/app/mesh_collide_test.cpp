@@ -1,4 +1,5 @@
-// `spoonbill collide` of a document and a mesh. By the built program: reading starts it a second time.
+// `spoonbill collide` of a document and a mesh, and of two meshes. By the built program: reading starts it a
+// second time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -118,6 +119,91 @@ TEST(MeshCollide, OneInsideTheOther) {
   EXPECT_GT(around["depth_m"], 0.9);
 }
 
+TEST(MeshCollide, TwoMeshesAreAsFarApartAsTheyAre) {
+  const Workplace place;
+  const std::string box =
+      place.write("box.stl", binary_stl(box_of_triangles({-10, -10, -10}, {10, 10, 10}))).string();
+  const std::string cube =
+      place.write("cube.obj", obj_text(box_of_triangles({-5, -5, -5}, {5, 5, 5}))).string();
+  const Json apart = facts_of({box, cube, "--pose", "18mm,2mm,0,1,0,0,0"});
+  EXPECT_EQ(apart["touching"], false);
+  EXPECT_EQ(apart["complete"], true);
+  EXPECT_TRUE(apart["contacts"].empty());
+  EXPECT_NEAR(apart["distance_m"], 3e-3, 1e-9);
+  EXPECT_NEAR(apart["nearest"]["a"]["point_m"][0], 0.010, 1e-9);
+  EXPECT_NEAR(apart["nearest"]["b"]["point_m"][0], 0.013, 1e-9);
+  EXPECT_FALSE(apart["nearest"]["a"].contains("u"));
+  EXPECT_FALSE(apart.contains("mesh"));
+  EXPECT_NEAR(apart["mesh_a"]["size_mm"][1], 20.0, 1e-5);
+  EXPECT_NEAR(apart["mesh_b"]["size_mm"][1], 10.0, 1e-5);
+  EXPECT_EQ(apart["mesh_a"]["cleaning"]["vertices_joined"], 28);
+  EXPECT_EQ(apart["mesh_b"]["cleaning"]["vertices_joined"], 28);
+
+  // In centimetres, ten times as large and as far inside.
+  const Json deep = facts_of({box, cube, "--unit", "cm", "--pose", "14cm,20mm,0,1,0,0,0"});
+  EXPECT_EQ(deep["touching"], true);
+  EXPECT_EQ(deep["contained"], false);
+  EXPECT_EQ(deep["mesh_a"]["unit"], "cm");
+  EXPECT_NEAR(deep["depth_m"], 0.010, 1e-7);
+  ASSERT_EQ(deep["contacts"].size(), 1U);
+  const Json& contact = deep["contacts"][0];
+  EXPECT_NEAR(contact["normal"][0], -1.0, 1e-6);
+  EXPECT_EQ(contact["point_m"], contact["a"]["point_m"]);
+  EXPECT_FALSE(contact["a"].contains("u"));
+  EXPECT_FALSE(contact["b"].contains("u"));
+
+  const Json inside = facts_of({box, cube, "--pose", "2mm,0,0,1,0,0,0"});
+  EXPECT_EQ(inside["touching"], true);
+  EXPECT_EQ(inside["contained"], true);
+  EXPECT_NEAR(inside["depth_m"], 3e-3 + 10e-3, 1e-9);
+  const std::string text = collide({box, cube, "--pose", "2mm,0,0,1,0,0,0"}).out;
+  for (const char* words : {"Size of A", "20.0 x 20.0 x 20.0 mm", "Size of B", "10.0 x 10.0 x 10.0 mm",
+                            "yes, one inside the other", "13.0 mm"}) {
+    EXPECT_NE(text.find(words), std::string::npos) << words << " in\n" << text;
+  }
+}
+
+// A document of two bodies, the second the first's copy 20 mm above it.
+std::string two_bodies(const Workplace& place) {
+  place.text("model.json");
+  auto document = read_document(place.path("model.json"));
+  EXPECT_TRUE(document);
+  Scene& scene = document->scene;
+  scene.bodies.push_back(scene.bodies[0]);
+  scene.bodies[0].name = "lower";
+  scene.bodies[1].name = "upper";
+  Pose above;
+  above.position_m = {0.0, 0.02, 0.0};
+  scene.bodies[1].surface = placed(scene.bodies[1].surface, above);
+  EXPECT_TRUE(write_document(document.value(), place.path("two.json")));
+  return place.text("two.json");
+}
+
+TEST(MeshCollide, AllBodiesOfADocumentCount) {
+  const Workplace place;
+  const std::string model = place.text("model.json"), two = two_bodies(place);
+  const std::string mesh = place.write("ball.stl", binary_stl(ball)).string();
+  // Over the upper one, which stands 20 mm higher than the only one of the model.
+  const Json one = facts_of({model, mesh, "--pose", above(25)}),
+             upper = facts_of({two, mesh, "--pose", above(45)});
+  EXPECT_EQ(upper["touching"], false);
+  EXPECT_NEAR(upper["distance_m"], one["distance_m"], 1e-6);
+  EXPECT_EQ(upper["nearest"]["a"]["body"], "upper");
+  EXPECT_FALSE(upper["nearest"]["b"].contains("body"));
+  EXPECT_FALSE(one["nearest"]["a"].contains("body"));
+
+  // A copy of the model between both, 1 mm below the upper one and so deep in it.
+  const Json alone = facts_of({model, model, "--pose", "0,-1mm,0,1,0,0,0"});
+  const Json between = facts_of({two, model, "--pose", "0,19mm,0,1,0,0,0"});
+  EXPECT_EQ(between["touching"], true);
+  ASSERT_FALSE(between["contacts"].empty());
+  EXPECT_EQ(between["contacts"][0]["a"]["body"], "upper");
+  EXPECT_FALSE(between["contacts"][0]["b"].contains("body"));
+  EXPECT_NEAR(between["depth_m"], alone["depth_m"], 1e-4);
+
+  EXPECT_EQ(facts_of({two})["touching"], false);  // neither itself nor the other
+}
+
 TEST(MeshCollide, TellsAPersonWhatTheMeshIs) {
   const Workplace place;
   TriangleMesh mesh = turned(ball_mesh(20, 40, 0.8));
@@ -149,7 +235,8 @@ TEST(MeshCollide, WhatCannotBeIsOneLine) {
                     good = place.write("ball.stl", binary_stl(ball)).string();
   const std::string text = binary_stl(ball);
   const std::vector<std::pair<std::vector<std::string>, std::string>> uses = {
-      {{good, good}, "one of them must be a document"},
+      {{good}, "name a document or a mesh"},
+      {{good, place.text("missing.stl")}, "missing.stl: no such file"},
       {{model, model, "--unit", "mm"}, "leave --unit out"},
       {{model, place.text("missing.stl")}, "missing.stl: no such file"},
       {{place.write("empty.ply", "").string(), model}, "empty.ply: is empty"},

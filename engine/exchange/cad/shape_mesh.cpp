@@ -18,10 +18,10 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <vector>
 
+#include "engine/base/disjoint_sets.h"
 #include "engine/base/number_text.h"
 #include "engine/collision/meshes/nearest_on_triangle.h"
 #include "engine/exchange/cad/occt_surface.h"
@@ -55,25 +55,6 @@ struct MeshedEdge {
   TopoDS_Edge edge;
   std::vector<std::size_t> nodes;
   std::vector<double> parameters;
-};
-
-// Nodes of which several are one point.
-class Unions {
- public:
-  explicit Unions(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t of(std::size_t node) {
-    while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
-    return node;
-  }
-  void unite(std::size_t a, std::size_t b) {
-    const std::size_t first = of(a), second = of(b);
-    parent_[std::max(first, second)] = std::min(first, second);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
 };
 
 MeshedEdge edge_of(const MeshedFace& meshed, const TopoDS_Edge& edge, const Chain& chain) {
@@ -113,23 +94,23 @@ class Nodes {
   }
 
   // Where an edge has as many points in each of its faces.
-  bool join(Unions& unions) const {
+  bool join(DisjointSets& unions) const {
     std::map<int, std::size_t> at_vertex;
     std::map<int, const MeshedEdge*> known;
     for (const MeshedEdge& one : edges_) {
       const auto [other, is_new] = known.try_emplace(edge_index_.FindIndex(one.edge), &one);
       if (other->second->nodes.size() != one.nodes.size()) return false;
-      for (std::size_t k = 0; k < one.nodes.size(); ++k) unions.unite(one.nodes[k], other->second->nodes[k]);
+      for (std::size_t k = 0; k < one.nodes.size(); ++k) unions.join(one.nodes[k], other->second->nodes[k]);
       const std::pair<TopoDS_Vertex, std::size_t> ends[] = {
           {TopExp::FirstVertex(one.edge), one.nodes.front()},
           {TopExp::LastVertex(one.edge), one.nodes.back()}};
       for (const auto& [vertex, node] : ends) {
         if (vertex.IsNull()) continue;
-        unions.unite(node, at_vertex.try_emplace(vertex_index_.FindIndex(vertex), node).first->second);
+        unions.join(node, at_vertex.try_emplace(vertex_index_.FindIndex(vertex), node).first->second);
       }
       // A pole is one point, along whatever stands for it in (u, v).
       if (!BRep_Tool::Degenerated(one.edge)) continue;
-      for (const std::size_t node : one.nodes) unions.unite(node, one.nodes.front());
+      for (const std::size_t node : one.nodes) unions.join(node, one.nodes.front());
     }
     return true;
   }
@@ -172,20 +153,20 @@ std::array<int, 3> corners_of(const Triangulation& triangulation, int k) {
 }
 
 template <class Visit>
-void visit_triangles(const Nodes& nodes, Unions& unions, const Visit& visit) {
+void visit_triangles(const Nodes& nodes, DisjointSets& unions, const Visit& visit) {
   for (const MeshedFace& meshed : nodes.faces()) {
     for (int k = 1; k <= meshed.triangulation->NbTriangles(); ++k) {
       const std::array<int, 3> local = corners_of(meshed.triangulation, k);
       Corners joined{};
       for (std::size_t c = 0; c < 3; ++c) {
-        joined[c] = unions.of(meshed.first + static_cast<std::size_t>(local[c]) - 1);
+        joined[c] = unions.find(meshed.first + static_cast<std::size_t>(local[c]) - 1);
       }
       visit(meshed, local, joined);
     }
   }
 }
 
-TriangleMesh joined_mesh(const Nodes& nodes, Unions& unions) {
+TriangleMesh joined_mesh(const Nodes& nodes, DisjointSets& unions) {
   TriangleMesh mesh;
   std::map<std::size_t, std::uint32_t> index;
   visit_triangles(nodes, unions, [&](const MeshedFace& meshed, const std::array<int, 3>&, Corners corners) {
@@ -241,12 +222,12 @@ double distance_to_line_m(const Vector3& point, const Vector3& a, const Vector3&
   return (a + share * along - point).norm();
 }
 
-double error_along(const MeshedEdge& one, const std::vector<Vector3>& points, Unions& unions) {
+double error_along(const MeshedEdge& one, const std::vector<Vector3>& points, DisjointSets& unions) {
   if (BRep_Tool::Degenerated(one.edge) || one.parameters.size() != one.nodes.size()) return 0.0;
   const BRepAdaptor_Curve curve(one.edge);
   double largest = 0.0;
   for (std::size_t k = 0; k + 1 < one.nodes.size(); ++k) {
-    const Vector3 &a = points[unions.of(one.nodes[k])], &b = points[unions.of(one.nodes[k + 1])];
+    const Vector3 &a = points[unions.find(one.nodes[k])], &b = points[unions.find(one.nodes[k + 1])];
     for (int i = 1; i < parts; ++i) {
       const double share = static_cast<double>(i) / parts;
       const Vector3 point =
@@ -257,7 +238,7 @@ double error_along(const MeshedEdge& one, const std::vector<Vector3>& points, Un
   return largest;
 }
 
-double error_of(const Nodes& nodes, Unions& unions) {
+double error_of(const Nodes& nodes, DisjointSets& unions) {
   double largest = 0.0;
   visit_triangles(
       nodes, unions, [&](const MeshedFace& meshed, const std::array<int, 3>& local, const Corners& joined) {
@@ -281,7 +262,7 @@ Result<std::optional<ShapeMesh>> mesh_at(const TopoDS_Shape& shape, double defle
     return Error{"its mesh would take more than " + std::to_string(triangle_limit) +
                  " triangles; choose a larger --chord"};
   }
-  Unions unions(nodes.points().size());
+  DisjointSets unions(nodes.points().size());
   if (!nodes.join(unions)) return std::optional<ShapeMesh>();
   ShapeMesh found{joined_mesh(nodes, unions), 0.0};
   if (!is_watertight(found.mesh)) return std::optional<ShapeMesh>();
