@@ -13,6 +13,9 @@ constexpr double billion = 1e9;
 // A sum of the four squares below this means that there is no orientation to speak of.
 constexpr double smallest_square = 1e-12;
 
+// Rounding to billionths leaves the square of the length within 4e-9 of 1.
+constexpr double unit_square_tolerance = 1e-6;
+
 std::int64_t whole_nanometres(double metres) {
   if (!std::isfinite(metres)) return 0;
   const double limit = static_cast<double>(reading_limit_nm);
@@ -44,6 +47,25 @@ Status check_specification(const DeviceSpecification& specification) {
     }
   }
   return {};
+}
+
+bool DeviceReading::is_valid() const {
+  for (const std::int64_t coordinate : position_nm) {
+    if (coordinate > reading_limit_nm || coordinate < -reading_limit_nm) return false;
+  }
+  for (const std::int64_t part : orientation_e9) {
+    if (part > 1'000'000'000 || part < -1'000'000'000) return false;
+  }
+  return has_unit_orientation();
+}
+
+bool DeviceReading::has_unit_orientation() const {
+  double square = 0.0;
+  for (const std::int64_t part : orientation_e9) {
+    const double q = static_cast<double>(part) / billion;
+    square += q * q;
+  }
+  return std::abs(square - 1.0) <= unit_square_tolerance;
 }
 
 Pose DeviceReading::pose() const {

@@ -1,8 +1,9 @@
-// The device interface: where the hand is, and the force it is given. One owner: the haptic thread (or the
-// lock-step loop). Frame: x right, y up, z toward the person, metres, newtons.
+// The device interface: where the hand is, and the force it is given. One owner: the live session's haptic
+// side, or whoever runs the lock-step loop. Frame: x right, y up, z toward the person, metres, newtons.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "engine/base/pose.h"
@@ -21,6 +22,10 @@ struct DeviceSpecification {
   double position_resolution_m = 1e-9;
   bool senses_orientation = true;
   bool actuates_torque = false;
+
+  // No hardware bounds the workspace: a live session centres it on the model and makes it reach as far. Not
+  // recorded, as what it led to is.
+  bool workspace_follows_model = false;
 
   // What the safety chain (haptic/safety.h) keeps to.
   double quiet_force_n = 0.2;  // forces begin when what is wanted has stayed below this
@@ -60,6 +65,11 @@ struct DeviceReading {
   std::int64_t orientation_e9[4] = {0, 0, 0, 1'000'000'000};  // x, y, z, w
   std::uint32_t buttons = 0;
 
+  // Whether it may reach the simulation and a recording: within 10 m of the origin on each axis, the
+  // orientation a unit quaternion.
+  bool is_valid() const;
+  bool has_unit_orientation() const;
+
   // With the orientation brought back to unit length, or none where all four are zero.
   Pose pose() const;
 
@@ -70,14 +80,25 @@ struct DeviceReading {
   friend bool operator==(const DeviceReading&, const DeviceReading&) = default;
 };
 
+// A haptic device, or what takes the place of one.
+//
+// A factory of each class opens it, on a thread that may wait, and returns an Error that says what is
+// missing; the destructor closes it. read() and set_force() are called by the thread that ticks, or before
+// that thread starts and after it has ended by its owner: they neither allocate, lock, wait nor throw. A
+// driver that calls back on a thread of its own, or answers through a socket, hands readings and forces over
+// through a TripleBuffer, and lets a force lapse that is not repeated within 50 ms.
+//
+// Only SafeDevice (haptic/safe_device.h) calls set_force().
 class Device {
  public:
   virtual ~Device() = default;
 
+  // Constant while the device lives; passes check_specification().
   virtual const DeviceSpecification& specification() const = 0;
 
-  // The reading for this tick; called once a tick.
-  virtual DeviceReading read() = 0;
+  // The reading for this tick; called once a tick. Nothing where there is none that is current: the device is
+  // disconnected, has stopped itself or answers too late. It may come back.
+  virtual std::optional<DeviceReading> read() = 0;
 
   // The force on the hand until the next tick. Never above the specification's maximum.
   virtual void set_force(const Vector3& force_n) = 0;

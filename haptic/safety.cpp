@@ -44,6 +44,7 @@ std::uint32_t faults_of(const DeviceSpecification& specification, const SafetyIn
   if (input.dropped_ticks >= stall_ticks) faults |= safety_flag_stalled;
   const std::uint32_t held = input.buttons & specification.dead_man_buttons;
   if (held != specification.dead_man_buttons) faults |= safety_flag_dead_man;
+  if (input.no_device) faults |= safety_flag_no_device;
   return faults;
 }
 
@@ -122,6 +123,7 @@ struct FlagText {
 };
 
 constexpr FlagText flag_texts[] = {
+    {safety_flag_no_device, "Force cut: the device does not answer"},
     {safety_flag_not_finite, "Force cut: a number was not finite"},
     {safety_flag_stale, "Force cut: the simulation did not keep up"},
     {safety_flag_stalled, "Force cut: the program was held up"},

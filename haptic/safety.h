@@ -2,7 +2,7 @@
 //
 // In this order, every tick:
 //   1. A fault gives zero force within that tick: a value that is not finite, a stale simulation, a stall, a
-//      dead-man button let go.
+//      dead-man button let go, a device that does not answer.
 //   2. The force is off until what is wanted has stayed small for some ticks, so that a hand that is inside
 //      the material at the start is not thrown out; then it ramps in.
 //   3. Its norm is limited to the device's maximum.
@@ -40,6 +40,8 @@ enum SafetyFlag : std::uint32_t {
   safety_flag_fast = 1u << 9,
   safety_flag_outside = 1u << 10,
   safety_flag_change_limited = 1u << 11,
+  // A fault, as those above.
+  safety_flag_no_device = 1u << 12,
 };
 
 struct SafetyInput {
@@ -48,6 +50,7 @@ struct SafetyInput {
   std::uint32_t buttons = 0;
   std::uint64_t dropped_ticks = 0;  // whole ticks that passed since the last call without one
   bool stale = false;               // wanted_n is not of this tick
+  bool no_device = false;           // position and buttons are not of this tick: the device does not answer
 };
 
 struct SafeForce {
@@ -71,7 +74,7 @@ struct SafetyState {
 };
 
 // A pure function: allocates nothing, locks nothing, reads no clock, never throws. The specification has
-// passed check_specification().
+// passed check_specification(). Called by SafeDevice (haptic/safe_device.h) alone.
 SafeForce make_safe(SafetyState& state, const DeviceSpecification& specification, const SafetyInput& input);
 
 // One line for each flag that says something to the person, the gravest first, with newlines between; empty

@@ -20,6 +20,7 @@
 #include "app/session/session.h"
 #include "engine/base/number_text.h"
 #include "engine/material/lattice/lattice_of.h"
+#include "haptic/devices/virtual_device.h"
 #include "haptic/recording/recording.h"
 #include "haptic/recording/script.h"
 

@@ -107,8 +107,6 @@ Status record_live(const RecordOptions& options, const Script& script, const Doc
   if (Status checked = check_commands(script.commands); !checked) return checked;
   PerformanceSettings settings;
   settings.live.instruction_set = options.instruction_set;
-  settings.live.hand = script.hand;
-  settings.live.start = script.start;
   settings.draw = options.draw;
   settings.recording = options.out;
   InterruptWatch interrupt;

@@ -64,27 +64,34 @@ Result<std::unique_ptr<Editor>> Editor::make(const EditSettings& settings) {
   LiveSettings live_settings;
   live_settings.instruction_set = settings.instruction_set;
   live_settings.real_time = settings.real_time;
-  live_settings.start.pose.position_m = resting_place(document->scene.bodies[0].surface);
-  auto live = LiveSession::start(document.value(), model.string(), live_settings);
+  HandTarget start;
+  start.pose.position_m = resting_place(document->scene.bodies[0].surface);
+  auto device = SteeredDevice::make(Hand{}, start);
+  if (!device) return device.error();
+  const std::shared_ptr<TargetMailbox> mailbox = device.value()->mailbox();
+  auto live = LiveSession::start(document.value(), model.string(), live_settings, std::move(device).value());
   if (!live) return live.error();
   auto state = state_folder();
   std::optional<std::filesystem::path> folder;
   if (state) folder = state.value();
   std::unique_ptr<Editor> editor(new Editor(settings, std::move(window).value(), std::move(live).value(),
-                                            view.value(), EditedDocument(folder, settings.model)));
+                                            mailbox, start, view.value(),
+                                            EditedDocument(folder, settings.model)));
   if (!state) editor->messages_.add_problem(state.error().message);
   return editor;
 }
 
 Editor::Editor(const EditSettings& settings, EditWindow window, std::unique_ptr<LiveSession> live,
-               ViewChoice view, EditedDocument document)
+               std::shared_ptr<TargetMailbox> mailbox, const HandTarget& start, ViewChoice view,
+               EditedDocument document)
     : settings_(settings),
       window_(std::move(window)),
       live_(std::move(live)),
       view_(std::move(view)),
       document_(std::move(document)),
       presets_(read_presets()),
-      hand_(Vector3::Zero()) {}
+      hand_(Vector3::Zero()),
+      inputs_(std::move(mailbox), start, hand_) {}
 
 Status Editor::run() {
   keep_drawing_memory();
@@ -108,7 +115,6 @@ void Editor::start() {
   const LiveFrame& frame = live_->frame();
   body_ = drawn_bounds(frame.snapshot);
   hand_ = MouseHand(0.5 * (body_.low_m + body_.high_m));
-  target_.pose.position_m = frame.snapshot.tool.device.position_m;
   shown_ = view_settings(0.0);
   if (auto cap = SpaceMouse::open()) space_mouse_.emplace(std::move(cap).value());
   if (frame.snapshot.planes.empty()) {
@@ -127,8 +133,8 @@ Status Editor::frame(double seconds) {
   take_news(frame, seconds);
   take_keys(frame);
   if (Status laid = lay_out(frame, seconds); !laid) return laid;
-  take_pointer(frame);
-  follow_space_mouse(seconds);
+  take_pointer(frame, seconds);
+  if (space_mouse_) inputs_.update(*space_mouse_, seconds);
   budget_.apply(shown_);
   if (Status drawn = window_.end_frame(frame.snapshot, shown_); !drawn) return drawn;
   if (screenshot_due_) write_screenshot();

@@ -19,6 +19,7 @@
 #include "app/edit/prompts.h"
 #include "app/view/shown_stages.h"
 #include "app/view/view_choice.h"
+#include "haptic/devices/hand_inputs.h"
 #include "haptic/devices/space_mouse.h"
 #include "render/frame_budget.h"
 
@@ -56,7 +57,8 @@ class Editor {
     bool recovered = false;
   };
 
-  Editor(const EditSettings& settings, EditWindow window, std::unique_ptr<LiveSession> live, ViewChoice view,
+  Editor(const EditSettings& settings, EditWindow window, std::unique_ptr<LiveSession> live,
+         std::shared_ptr<TargetMailbox> mailbox, const HandTarget& start, ViewChoice view,
          EditedDocument document);
 
   Status frame(double seconds);
@@ -71,11 +73,10 @@ class Editor {
   // editor_input.cpp
   Pointer read_pointer() const;
   void take_keys(const LiveFrame& frame);
-  void take_pointer(const LiveFrame& frame);
+  void take_pointer(const LiveFrame& frame, double seconds);
   void drag_setting(const Pointer& pointer, const LiveFrame& frame);
   void move_camera(const Pointer& pointer, CameraMotion motion, const Viewport& viewport);
-  void stroke(const Pointer& pointer, const LiveFrame& frame, const Viewport& viewport);
-  void follow_space_mouse(double seconds);
+  void stroke(const Pointer& pointer, const LiveFrame& frame, const Viewport& viewport, double seconds);
   void act(EditAction action, const LiveFrame& frame);
   void act_on_view(EditAction action);
   void set_tool(const LiveFrame& frame, ToolKind kind, ToolAction tool_action);
@@ -107,7 +108,6 @@ class Editor {
   ViewChoice view_;
   EditedDocument document_;
   std::vector<Material> presets_;
-  std::optional<SpaceMouse> space_mouse_;
 
   BoundingBox body_;
   std::uint64_t session_ = 0;
@@ -115,11 +115,11 @@ class Editor {
   ShownStages stages_;
   SurfacePick pick_;
   MouseHand hand_;
+  std::optional<SpaceMouse> space_mouse_;
+  HandInputs inputs_;  // hand_ and space_mouse_
   double strength_m_ = 0.004;
   std::optional<Tool> before_stroke_;  // while Ctrl inverts push and pull, or Shift smooths
   bool stroke_began_here_ = false;     // the press began on the picture, not on the panel
-  HandTarget target_;
-  bool space_mouse_leads_ = false;  // until the mouse moves again
   FrameBudget budget_;
   LivePlots plots_;
   MessageLine messages_;

@@ -58,7 +58,7 @@ void Editor::take_keys(const LiveFrame& frame) {
   }
 }
 
-void Editor::take_pointer(const LiveFrame& frame) {
+void Editor::take_pointer(const LiveFrame& frame, double seconds) {
   const ImGuiIO& io = ImGui::GetIO();
   const Pointer pointer = read_pointer();
   const Viewport viewport = make_viewport(window_.width_px(), window_.height_px(), shown_.panel_px);
@@ -75,7 +75,7 @@ void Editor::take_pointer(const LiveFrame& frame) {
   }
   if (pointer.left && ImGui::IsMouseClicked(0)) stroke_began_here_ = over_picture;
   if (!pointer.left) stroke_began_here_ = false;
-  if (over_picture || hand_.pressing()) stroke(pointer, frame, viewport);
+  if (over_picture || hand_.pressing()) stroke(pointer, frame, viewport, seconds);
 }
 
 void Editor::drag_setting(const Pointer& pointer, const LiveFrame& frame) {
@@ -102,7 +102,8 @@ void Editor::show_camera() {
   ask(ChangeView{camera_command(view_)});
 }
 
-void Editor::stroke(const Pointer& pointer, const LiveFrame& frame, const Viewport& viewport) {
+void Editor::stroke(const Pointer& pointer, const LiveFrame& frame, const Viewport& viewport,
+                    double seconds) {
   const bool held = pointer.left && stroke_began_here_;
   Tool tool = frame.facts.tool;
   const ToolAction wanted = action_for_stroke(tool.action, pointer);
@@ -117,25 +118,13 @@ void Editor::stroke(const Pointer& pointer, const LiveFrame& frame, const Viewpo
   }
   if (!hand_.pressing()) pick_.update(frame.snapshot);
   const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
-  if (held || !pointer.moved_px.isZero()) space_mouse_leads_ = false;
-  if (space_mouse_leads_) return;
-  target_ = hand_.follow(pointer, held, shown_.camera, viewport, pick_,
-                         {radius, strength_m_, tool.action == ToolAction::pull});
-  live_->aim(target_);
-}
-
-void Editor::follow_space_mouse(double seconds) {
-  if (!space_mouse_) return;
-  const auto motion = space_mouse_->poll();
-  if (!motion) return space_mouse_.reset();
-  HandTarget steered = steer(target_, *motion, seconds);
-  steered.buttons &= button_main;
-  const bool moved_it =
-      steered.pose.position_m != target_.pose.position_m || steered.buttons != target_.buttons;
-  space_mouse_leads_ = space_mouse_leads_ || moved_it;
-  if (!space_mouse_leads_) return;
-  target_ = steered;
-  live_->aim(target_);
+  hand_.set_frame({pointer,
+                   held,
+                   shown_.camera,
+                   viewport,
+                   &pick_,
+                   {radius, strength_m_, tool.action == ToolAction::pull}});
+  inputs_.update(hand_, seconds);
 }
 
 void Editor::act(EditAction action, const LiveFrame& frame) {

@@ -26,8 +26,8 @@ Vector3 on_screen_plane(const Ray& ray, const Camera& camera, const Vector3& poi
 
 }  // namespace
 
-HandTarget MouseHand::follow(const Pointer& pointer, bool held, const Camera& camera,
-                             const Viewport& viewport, const SurfacePick& pick, const MouseStroke& stroke) {
+HandTarget MouseHand::next_target(const HandTarget&, double) {
+  const auto& [pointer, held, camera, viewport, pick, stroke] = frame_;
   const Ray ray = ray_through(camera, viewport, pointer.position_px);
   if (!held) must_release_ = false;
   const bool pressed = held && !must_release_;
@@ -36,7 +36,7 @@ HandTarget MouseHand::follow(const Pointer& pointer, bool held, const Camera& ca
   if (press_) {
     press(ray, pointer, camera, stroke);
   } else {
-    hover(ray, camera, pick, stroke);
+    hover(ray, camera, *pick, stroke);
   }
   const std::uint32_t gripping = stroke.grips ? button_main : 0U;
   return {{target_m_, Quaternion::Identity()}, press_ ? gripping : button_hover};

@@ -8,7 +8,7 @@
 
 #include "app/edit/navigation.h"
 #include "app/edit/surface_pick.h"
-#include "haptic/devices/virtual_device.h"
+#include "haptic/devices/hand_inputs.h"
 
 namespace spoonbill {
 
@@ -18,15 +18,27 @@ struct MouseStroke {
   bool grips = false;       // holds what it touches: a pull
 };
 
-class MouseHand {
+// What the mouse does in one frame, and what it does it to.
+struct MouseFrame {
+  Pointer pointer;
+  bool held = false;  // the button that strokes is down, and the press began on the picture
+  Camera camera;
+  Viewport viewport;
+  const SurfacePick* pick = nullptr;  // must outlive the frame
+  MouseStroke stroke;
+};
+
+class MouseHand : public InputSource {
  public:
   // At rest at `start_m`, which also gives the first plane to hover on.
   explicit MouseHand(const Vector3& start_m)
       : depth_point_m_(start_m), hover_m_(start_m), target_m_(start_m) {}
 
-  // Once a frame. `held`: whether the button that strokes is down; the press must have begun on the picture.
-  HandTarget follow(const Pointer& pointer, bool held, const Camera& camera, const Viewport& viewport,
-                    const SurfacePick& pick, const MouseStroke& stroke);
+  // What is_used() and next_target() go by. The pick must not be null.
+  void set_frame(const MouseFrame& frame) { frame_ = frame; }
+
+  bool is_used() override { return frame_.held || !frame_.pointer.moved_px.isZero(); }
+  HandTarget next_target(const HandTarget& current, double elapsed_s) override;
 
   // Ends the press as if the button had been let go, until it is pressed again.
   void let_go();
@@ -45,6 +57,7 @@ class MouseHand {
   void hover(const Ray& ray, const Camera& camera, const SurfacePick& pick, const MouseStroke& stroke);
   void press(const Ray& ray, const Pointer& pointer, const Camera& camera, const MouseStroke& stroke);
 
+  MouseFrame frame_;
   Vector3 depth_point_m_;
   Vector3 hover_m_;
   Vector3 inward_ = Vector3::Zero();

@@ -21,39 +21,34 @@ bool concerns_the_main_thread_alone(const Request& request) {
 
 }  // namespace
 
-HapticSide::HapticSide(std::unique_ptr<Session> session, VirtualDevice device,
-                       const Vector3& workspace_centre_m, LiveExchange& exchange, Journal& journal,
-                       SessionWorker& worker)
+HapticSide::HapticSide(std::unique_ptr<Session> session, std::unique_ptr<Device> device,
+                       LiveExchange& exchange, Journal& journal, SessionWorker& worker)
     : device_(std::move(device)),
-      specification_(session->device),
-      follower_({{device_.position_m(), Quaternion::Identity()}, 0}),
-      workspace_centre_m_(workspace_centre_m),
+      safe_device_(*device_, session->reading),
       exchange_(&exchange),
       journal_(&journal),
       worker_(&worker) {
+  safe_device_.set_workspace_centre(session->reading.pose().position_m);
+  safe_device_.set_workspace_radius(session->device.workspace_radius_m);
   lent_.session = std::move(session);
   ticks_since_change_ = settling_ticks;
 }
 
 void HapticSide::tick(const LoopTick& tick) noexcept {
   if (journal_->take_gave_up()) recording_ = false;
-  if (exchange_->target.take()) follower_.aim(exchange_->target.reading());
-  device_.set_target(follower_.step());
-  const DeviceReading reading = device_.read();
+  const DeviceReading reading = safe_device_.read();
   if (lent_.session == nullptr) take_back_if_done();
   if (lent_.session != nullptr) {
     record_state_when_due();
     do_commands();
   }
-  if (lent_.session == nullptr) {
-    device_.set_force(make_force_safe(Vector3::Zero(), reading, tick.dropped, true).force_n);
-    return;
-  }
+  if (lent_.session == nullptr) return safe_device_.give_none(tick.dropped);
   advance_session(reading, tick.dropped);
   publish(tick.index);
 }
 
 void HapticSide::close() {
+  safe_device_.give_none(0);
   if (recording_ && lent_.session != nullptr) end_recording();
 }
 
@@ -97,14 +92,16 @@ void HapticSide::take_back_if_done() {
   if (!worker_->take_back(lent_, command_, done)) return;
   if (lent_.begun_anew) {
     ++session_count_;
-    specification_ = lent_.session->device;
+    safe_device_.set_workspace_radius(lent_.session->device.workspace_radius_m);
     lent_.begun_anew = false;
   }
   if (lent_.other_document) {
     ++document_count_;
     // A virtual handle's workspace moves along to the body that is shaped now.
-    const BoundingBox box = control_net_box(lent_.session->simulation.surface());
-    workspace_centre_m_ = 0.5 * (box.low_m + box.high_m);
+    if (lent_.session->device.workspace_follows_model) {
+      const BoundingBox box = control_net_box(lent_.session->simulation.surface());
+      safe_device_.set_workspace_centre(0.5 * (box.low_m + box.high_m));
+    }
     lent_.other_document = false;
   }
   if (lent_.recording != nullptr) begin_recording(std::move(lent_.recording));
@@ -113,7 +110,7 @@ void HapticSide::take_back_if_done() {
     note_change();
   }
   if (std::holds_alternative<AskedWork>(command_)) answer_work(done);
-  proxy_is_stale_ = true;
+  safe_device_.request_proxy_reset();
 }
 
 void HapticSide::answer_work(bool done) {
@@ -136,7 +133,6 @@ void HapticSide::record(Json&& command) {
 }
 
 void HapticSide::reset_proxy() {
-  proxy_is_stale_ = false;
   if (!lent_.session->simulation.apply(ResetProxy{})) return;
   if (recording_) push(RecordedReset{});
 }
@@ -169,31 +165,16 @@ void HapticSide::push(JournalEntry&& entry) {
 }
 
 void HapticSide::advance_session(const DeviceReading& reading, std::uint64_t dropped) {
-  if (proxy_is_stale_) reset_proxy();
+  if (safe_device_.take_proxy_reset()) reset_proxy();
   if (recording_) {
     push(RecordedReading{reading});
     ++recorded_ticks_;
     state_recorded_ = false;
   }
   const TickResult result = advance(*lent_.session, reading);
-  const SafeForce safe = make_force_safe(result.force_n, reading, dropped, false);
-  device_.set_force(safe.force_n);
-  proxy_is_stale_ = safe.reset_proxy;
-  exchange_->forces.push(ForceSample{static_cast<float>(safe.force_n.norm())});
+  const Vector3 force_n = safe_device_.give(result.force_n, dropped);
+  exchange_->forces.push(ForceSample{static_cast<float>(force_n.norm())});
   if (result.touching) note_change();
-}
-
-SafeForce HapticSide::make_force_safe(const Vector3& wanted_n, const DeviceReading& reading,
-                                      std::uint64_t dropped, bool stale) {
-  SafetyInput input;
-  input.wanted_n = wanted_n;
-  input.position_m = reading.pose().position_m - workspace_centre_m_;
-  input.buttons = reading.buttons;
-  input.dropped_ticks = dropped;
-  input.stale = stale;
-  SafeForce safe = make_safe(safety_, specification_, input);
-  safety_flags_ = safe.flags;
-  return safe;
 }
 
 void HapticSide::note_change() {
@@ -212,7 +193,7 @@ void HapticSide::publish(std::uint64_t index) {
   write_snapshot(*lent_.session, frame.snapshot);
   lent_.session->flags = tick_flag_none;
   write_facts(*lent_.session, frame.facts);
-  frame.safety_flags = safety_flags_;
+  frame.safety_flags = safe_device_.flags();
   frame.recording = recording_;
   frame.session = session_count_;
   frame.deed = deed_;

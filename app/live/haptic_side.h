@@ -1,7 +1,7 @@
-// Everything that the haptic thread owns while a live session runs, and what it does each tick: follow the
-// hand, do what was asked, advance the session, make the force safe, hand over what others need.
+// Everything that the haptic thread owns while a live session runs, and what it does each tick: read the
+// device, do what was asked, advance the session, give the device its force, hand over what others need.
 //
-//   main thread --commands, target--> [ haptic thread ] --frames, forces--> main thread
+//   main thread --commands--> [ haptic thread, device ] --frames, forces--> main thread
 //                                        |        ^
 //                        entries, scenes v        | a session on loan, and back
 //                                     journal   worker
@@ -17,10 +17,9 @@
 #include "app/live/live_command.h"
 #include "app/live/live_frame.h"
 #include "app/live/session_worker.h"
-#include "app/live/target_follower.h"
 #include "haptic/bounded_queue.h"
 #include "haptic/haptic_loop.h"
-#include "haptic/safety.h"
+#include "haptic/safe_device.h"
 #include "haptic/triple_buffer.h"
 
 namespace spoonbill {
@@ -30,10 +29,9 @@ struct LiveExchange {
   static constexpr std::size_t command_capacity = 256;
   static constexpr std::size_t force_capacity = 4096;
 
-  LiveExchange(const HandTarget& start, const LiveFrame& first)
-      : target(start), commands(command_capacity), frames(first), forces(force_capacity) {}
+  explicit LiveExchange(const LiveFrame& first)
+      : commands(command_capacity), frames(first), forces(force_capacity) {}
 
-  TripleBuffer<HandTarget> target;                // main -> haptic
   BoundedQueue<LiveCommand> commands;             // main -> haptic
   TripleBuffer<LiveFrame> frames;                 // haptic -> main
   BoundedQueue<ForceSample> forces;               // haptic -> main; those that find no room are not plotted
@@ -42,15 +40,15 @@ struct LiveExchange {
 
 class HapticSide {
  public:
-  // Exchange, journal and worker must outlive it. The workspace of the session's device lies about the
-  // centre.
-  HapticSide(std::unique_ptr<Session> session, VirtualDevice device, const Vector3& workspace_centre_m,
-             LiveExchange& exchange, Journal& journal, SessionWorker& worker);
+  // Exchange, journal and worker must outlive it. The device's workspace is centred on the session's reading.
+  HapticSide(std::unique_ptr<Session> session, std::unique_ptr<Device> device, LiveExchange& exchange,
+             Journal& journal, SessionWorker& worker);
 
   // By the haptic thread alone, once a period.
   void tick(const LoopTick& tick) noexcept;
 
-  // When the thread has stopped: ends a recording as stop_recording does.
+  // When the thread has stopped: leaves the device without force, and ends a recording as stop_recording
+  // does.
   void close();
 
   const Session* session() const { return lent_.session.get(); }
@@ -69,20 +67,13 @@ class HapticSide {
   void record_state_when_due();
   void push(JournalEntry&& entry);
   void advance_session(const DeviceReading& reading, std::uint64_t dropped);
-  SafeForce make_force_safe(const Vector3& wanted_n, const DeviceReading& reading, std::uint64_t dropped,
-                            bool stale);
   void note_change();
   void publish(std::uint64_t index);
   void publish_scene();
 
   LentSession lent_;  // its session is null while the worker has it
-  VirtualDevice device_;
-  DeviceSpecification specification_;  // the session's, also while that is on loan
-  TargetFollower follower_;
-  Vector3 workspace_centre_m_;
-  SafetyState safety_;
-  std::uint32_t safety_flags_ = 0;
-  bool proxy_is_stale_ = false;
+  std::unique_ptr<Device> device_;
+  SafeDevice safe_device_;  // the device, for all that reads it or gives it a force
 
   LiveExchange* exchange_;
   Journal* journal_;

@@ -4,13 +4,14 @@
 #include <utility>
 
 #include "app/session/control_net_box.h"
+#include "engine/base/assert.h"
 
 namespace spoonbill {
 namespace {
 
 // A virtual handle reaches as far as the body needs.
-DeviceSpecification device_for(const Surface& surface) {
-  DeviceSpecification device = VirtualDevice::default_specification();
+DeviceSpecification fitted(DeviceSpecification device, const Surface& surface) {
+  if (!device.workspace_follows_model) return device;
   const BoundingBox box = control_net_box(surface);
   const double reach = (box.high_m - box.low_m).norm();
   device.workspace_radius_m = std::clamp(reach, device.workspace_radius_m, device_workspace_range_m.high);
@@ -18,15 +19,15 @@ DeviceSpecification device_for(const Surface& surface) {
 }
 
 Result<std::unique_ptr<Session>> make_session(const Document& document, const std::string& source,
-                                              InstructionSet set) {
-  auto session = Session::make(document, source, device_for(document.scene.bodies[0].surface), set);
+                                              const DeviceSpecification& device, InstructionSet set) {
+  auto session = Session::make(document, source, fitted(device, document.scene.bodies[0].surface), set);
   if (!session) return session.error();
   return std::make_unique<Session>(std::move(session).value());
 }
 
 // The session anew, from the shape it has.
-Status begin_anew(LentSession& lent, InstructionSet set) {
-  auto session = make_session(document_of(*lent.session), "the present shape", set);
+Status begin_anew(LentSession& lent, const DeviceSpecification& device, InstructionSet set) {
+  auto session = make_session(document_of(*lent.session), "the present shape", device, set);
   if (!session) return session.error();
   session.value()->reading = lent.session->reading;
   lent.session = std::move(session).value();
@@ -35,12 +36,12 @@ Status begin_anew(LentSession& lent, InstructionSet set) {
 }
 
 Status begin_recording(LentSession& lent, const std::filesystem::path& file, const ViewChoice& view,
-                       InstructionSet set) {
+                       const DeviceSpecification& device, InstructionSet set) {
   lent.session->view = view;
   const RecordingHeader header{lent.session->device, document_of(*lent.session)};
   auto recording = PlacedRecording::begin(file, header);
   if (!recording) return recording.error();
-  if (Status anew = begin_anew(lent, set); !anew) return anew;
+  if (Status anew = begin_anew(lent, device, set); !anew) return anew;
   lent.recording = std::move(recording).value();
   return {};
 }
@@ -48,20 +49,24 @@ Status begin_recording(LentSession& lent, const std::filesystem::path& file, con
 }  // namespace
 
 Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document, const std::string& source,
-                                                        const LiveSettings& settings) {
-  auto session = make_session(document, source, settings.instruction_set);
+                                                        const LiveSettings& settings,
+                                                        std::unique_ptr<Device> device) {
+  SPOONBILL_ASSERT(device != nullptr);
+  const DeviceSpecification& specification = device->specification();
+  if (Status checked = check_specification(specification); !checked) return checked.error();
+  const std::optional<DeviceReading> reading = device->read();
+  if (!reading || !reading->is_valid()) return Error{"device " + specification.name + ": does not answer"};
+  auto session = make_session(document, source, specification, settings.instruction_set);
   if (!session) return session.error();
-  auto device = VirtualDevice::make(settings.hand, settings.start);
-  if (!device) return device.error();
   Session& made = *session.value();
-  made.reading = DeviceReading::from(settings.start.pose, settings.start.buttons);
+  made.reading = *reading;
   LiveFrame first;
   write_snapshot(made, first.snapshot);
   write_facts(made, first.facts);
   const std::vector<std::string> remarks = made.simulation.remarks();
   const LiveScene first_scene{made.title, document_of(made).scene};
   std::unique_ptr<LiveSession> live(
-      new LiveSession(std::move(session).value(), std::move(device).value(), settings, first, first_scene));
+      new LiveSession(std::move(session).value(), std::move(device), settings, first, first_scene));
   LoopSettings loop_settings;
   loop_settings.real_time = settings.real_time;
   auto loop =
@@ -75,14 +80,14 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
   return live;
 }
 
-LiveSession::LiveSession(std::unique_ptr<Session> session, VirtualDevice device, const LiveSettings& settings,
-                         const LiveFrame& first, const LiveScene& first_scene)
+LiveSession::LiveSession(std::unique_ptr<Session> session, std::unique_ptr<Device> device,
+                         const LiveSettings& settings, const LiveFrame& first, const LiveScene& first_scene)
     : settings_(settings),
+      device_(device->specification()),
       journal_(notices_, first_scene),
       worker_(notices_),
-      exchange_(settings.start, first),
-      haptic_(std::move(session), std::move(device), settings.start.pose.position_m, exchange_, journal_,
-              worker_) {}
+      exchange_(first),
+      haptic_(std::move(session), std::move(device), exchange_, journal_, worker_) {}
 
 LiveSession::~LiveSession() {
   stop();
@@ -99,11 +104,6 @@ void LiveSession::set_autosave(std::optional<Autosave> autosave) {
   journal_.set_autosave(std::move(autosave));
 }
 
-void LiveSession::aim(const HandTarget& target) {
-  exchange_.target.writing() = target;
-  exchange_.target.publish();
-}
-
 bool LiveSession::send(LiveCommand command) {
   return exchange_.commands.push(std::move(command));
 }
@@ -115,21 +115,22 @@ bool LiveSession::ask(Request request) {
 
 bool LiveSession::open(Document document, std::string source) {
   const InstructionSet set = settings_.instruction_set;
-  return send(AskedWork{[document = std::move(document), source = std::move(source), set](LentSession& lent) {
-                          auto session = make_session(document, source, set);
-                          if (!session) return Status(session.error());
-                          lent.session = std::move(session).value();
-                          lent.begun_anew = true;
-                          lent.other_document = true;
-                          return Status();
-                        },
-                        true});
+  return send(AskedWork{
+      [document = std::move(document), source = std::move(source), device = device_, set](LentSession& lent) {
+        auto session = make_session(document, source, device, set);
+        if (!session) return Status(session.error());
+        lent.session = std::move(session).value();
+        lent.begun_anew = true;
+        lent.other_document = true;
+        return Status();
+      },
+      true});
 }
 
 bool LiveSession::start_recording(std::filesystem::path file, const ViewChoice& view) {
   const InstructionSet set = settings_.instruction_set;
-  return send(AskedWork{[file = std::move(file), view, set](LentSession& lent) {
-                          return begin_recording(lent, file, view, set);
+  return send(AskedWork{[file = std::move(file), view, device = device_, set](LentSession& lent) {
+                          return begin_recording(lent, file, view, device, set);
                         },
                         true});
 }

@@ -14,20 +14,18 @@ namespace spoonbill {
 struct LiveSettings {
   InstructionSet instruction_set = best_instruction_set();
   bool real_time = true;
-  Hand hand;
-  HandTarget start;
 };
 
 // One owner, the program's main thread, which makes every call; none of them waits for the haptic thread.
 class LiveSession {
  public:
-  // `source` names the document's file in messages. Refused: a scene that cannot be simulated, no threads.
+  // `source` names the document's file in messages. The device must not be null; it is closed with the
+  // session. Refused: a scene that cannot be simulated, a device that does not answer or whose specification
+  // is out of range, no threads.
   static Result<std::unique_ptr<LiveSession>> start(const Document& document, const std::string& source,
-                                                    const LiveSettings& settings);
+                                                    const LiveSettings& settings,
+                                                    std::unique_ptr<Device> device);
   ~LiveSession();  // stops the threads; what was handed over is written
-
-  // Where the hand wants the tool from now on.
-  void aim(const HandTarget& target);
 
   // Done before the next tick, in the order asked. False when the haptic thread is so far behind that nothing
   // more can be asked.
@@ -67,11 +65,12 @@ class LiveSession {
   bool last_recording_is_whole() const { return journal_.last_recording_is_whole(); }
 
  private:
-  LiveSession(std::unique_ptr<Session> session, VirtualDevice device, const LiveSettings& settings,
+  LiveSession(std::unique_ptr<Session> session, std::unique_ptr<Device> device, const LiveSettings& settings,
               const LiveFrame& first, const LiveScene& first_scene);
   bool send(LiveCommand command);
 
   LiveSettings settings_;
+  DeviceSpecification device_;
   Notices notices_;
   Journal journal_;
   SessionWorker worker_;

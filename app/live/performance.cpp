@@ -6,6 +6,7 @@
 
 #include "app/frames/frame_painter.h"
 #include "app/panel/session_panel.h"
+#include "haptic/devices/steered_device.h"
 #include "render/gl/allocator_thresholds.h"
 
 namespace spoonbill {
@@ -62,8 +63,8 @@ Status ask_due(const Script& script, std::uint64_t tick, std::size_t& next, Live
   return {};
 }
 
-Status play(const Script& script, LiveSession& live, Painting* painting, const ViewChoice& view,
-            const std::function<bool()>& interrupted, std::uint64_t& frames) {
+Status play(const Script& script, LiveSession& live, TargetMailbox& mailbox, Painting* painting,
+            const ViewChoice& view, const std::function<bool()>& interrupted, std::uint64_t& frames) {
   const auto begin = Clock::now();
   std::size_t next = 0;
   for (auto at = begin; !interrupted(); at = std::max(at + frame_time, Clock::now())) {
@@ -72,7 +73,7 @@ Status play(const Script& script, LiveSession& live, Painting* painting, const V
     const auto tick = static_cast<std::uint64_t>(passed);
     if (Status asked = ask_due(script, tick, next, live); !asked) return asked;
     if (tick >= script.tick_count()) break;
-    live.aim(script.target_at(tick));
+    mailbox.aim(script.target_at(tick));
     const LiveFrame& frame = live.frame();
     if (painting == nullptr) continue;
     if (Status painted = painting->paint(frame, view); !painted) return painted;
@@ -88,7 +89,10 @@ Result<PerformanceReport> perform(const Script& script, const Document& document
                                   const std::function<bool()>& interrupted) {
   const auto view = view_from_json(document.view, source);
   if (!view) return view.error();
-  auto live = LiveSession::start(document, source, settings.live);
+  auto device = SteeredDevice::make(script.hand, script.start);
+  if (!device) return device.error();
+  const std::shared_ptr<TargetMailbox> mailbox = device.value()->mailbox();
+  auto live = LiveSession::start(document, source, settings.live, std::move(device).value());
   if (!live) return live.error();
   LiveSession& session = *live.value();
   std::vector<Notice> notices = session.take_notices();
@@ -103,8 +107,8 @@ Result<PerformanceReport> perform(const Script& script, const Document& document
     painting.emplace(std::move(made).value());
   }
   PerformanceReport report;
-  Status played =
-      play(script, session, painting ? &*painting : nullptr, view.value(), interrupted, report.frames);
+  Status played = play(script, session, *mailbox, painting ? &*painting : nullptr, view.value(), interrupted,
+                       report.frames);
   if (!played) return played.error();
   session.stop_recording();
   const auto stopped = [](const LiveFrame& frame) { return !frame.recording; };

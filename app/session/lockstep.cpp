@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "app/report/hash_text.h"
+#include "engine/base/assert.h"
 
 namespace spoonbill {
 
@@ -12,8 +13,17 @@ std::uint64_t frame_count(std::uint64_t tick_count) {
   return count;
 }
 
+namespace {
+
+Device& checked(Device* device) {
+  SPOONBILL_ASSERT(device != nullptr);
+  return *device;
+}
+
+}  // namespace
+
 Lockstep::Lockstep(Session& session, LockstepInput input, RecordingWriter* writer)
-    : session_(&session), input_(std::move(input)), writer_(writer) {}
+    : session_(&session), input_(std::move(input)), writer_(writer), device_(checked(input_.device)) {}
 
 Status Lockstep::run_to(std::uint64_t tick) {
   while (true) {
@@ -69,23 +79,23 @@ Status Lockstep::apply_due_commands() {
   return {};
 }
 
-Vector3 Lockstep::safe_force(const TickResult& result, const DeviceReading& reading) {
-  SafetyInput input;
-  input.wanted_n = result.force_n;
-  const Vector3 position_m = reading.pose().position_m;
-  if (!workspace_centre_m_) workspace_centre_m_ = position_m;
-  input.position_m = position_m - *workspace_centre_m_;
-  input.buttons = reading.buttons;
-  return make_safe(safety_, session_->device, input).force_n;
+// Recorded, so that the recording replays without the device.
+Status Lockstep::reset_proxy() {
+  const Command command = ResetProxy{};
+  if (Status applied = session_->simulation.apply(command); !applied) return applied;
+  return writer_ != nullptr ? writer_->command(command_to_json(command)) : Status();
 }
 
 Status Lockstep::run_tick() {
-  const DeviceReading reading = input_.device->read();
+  const DeviceReading reading = device_.read();
+  if (device_.take_proxy_reset()) {
+    if (Status reset = reset_proxy(); !reset) return reset;
+  }
   if (writer_ != nullptr) {
     if (Status written = writer_->reading(reading); !written) return written;
   }
   const TickResult result = advance(*session_, reading);
-  input_.device->set_force(safe_force(result, reading));
+  device_.give(result.force_n, 0);
   ++tick_;
   stands_ = false;
   return {};

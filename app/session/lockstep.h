@@ -9,7 +9,7 @@
 #include "app/session/session.h"
 #include "haptic/recording/recording.h"
 #include "haptic/recording/recording_writer.h"
-#include "haptic/safety.h"
+#include "haptic/safe_device.h"
 
 namespace spoonbill {
 
@@ -24,7 +24,7 @@ constexpr std::uint64_t tick_of_frame(std::uint64_t frame) {
 std::uint64_t frame_count(std::uint64_t tick_count);
 
 struct LockstepInput {
-  Device* device = nullptr;  // read once a tick
+  Device* device = nullptr;  // read once a tick; must not be null
   std::uint64_t tick_count = 0;
   std::vector<TimedCommand> commands;  // in order
   std::vector<Checkpoint>
@@ -55,13 +55,12 @@ class Lockstep {
   bool has_checkpoint_here() const;
   Status apply_due_commands();
   Status run_tick();
-  Vector3 safe_force(const TickResult& result, const DeviceReading& reading);
+  Status reset_proxy();
 
   Session* session_;
   LockstepInput input_;
   RecordingWriter* writer_;
-  SafetyState safety_;                         // between the force and the hand, as live
-  std::optional<Vector3> workspace_centre_m_;  // where the hand begins
+  SafeDevice device_;  // the input's
   std::uint64_t tick_ = 0;
   std::size_t next_command_ = 0;
   std::size_t next_expected_ = 0;

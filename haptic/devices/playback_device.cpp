@@ -7,8 +7,8 @@ namespace spoonbill {
 PlaybackDevice::PlaybackDevice(DeviceSpecification specification, std::span<const DeviceReading> readings)
     : specification_(std::move(specification)), readings_(readings) {}
 
-DeviceReading PlaybackDevice::read() {
-  if (readings_.empty()) return {};
+std::optional<DeviceReading> PlaybackDevice::read() {
+  if (readings_.empty()) return DeviceReading{};
   if (finished()) return readings_.back();
   return readings_[next_++];
 }

@@ -16,7 +16,7 @@ class PlaybackDevice : public Device {
   const DeviceSpecification& specification() const override { return specification_; }
 
   // After the last reading: that one again (the default reading where there was none).
-  DeviceReading read() override;
+  std::optional<DeviceReading> read() override;
   void set_force(const Vector3& force_n) override;
 
   bool finished() const { return next_ >= readings_.size(); }

@@ -10,7 +10,7 @@ Result<ScriptedDevice> ScriptedDevice::make(const Script& script) {
   return ScriptedDevice(script, std::move(handle).value());
 }
 
-DeviceReading ScriptedDevice::read() {
+std::optional<DeviceReading> ScriptedDevice::read() {
   handle_.set_target(script_->target_at(tick_++));
   return handle_.read();
 }

@@ -12,7 +12,7 @@ class ScriptedDevice : public Device {
   static Result<ScriptedDevice> make(const Script& script);
 
   const DeviceSpecification& specification() const override { return handle_.specification(); }
-  DeviceReading read() override;
+  std::optional<DeviceReading> read() override;
   void set_force(const Vector3& force_n) override { handle_.set_force(force_n); }
 
  private:

@@ -104,6 +104,24 @@ std::optional<SpaceMouseMotion> SpaceMouse::poll() {
   return motion_;
 }
 
+bool SpaceMouse::is_used() {
+  const std::uint32_t before = main_button();
+  if (!poll()) {
+    motion_ = {};
+    return false;
+  }
+  const double dead_zone = Steering().dead_zone;
+  const double farthest =
+      std::max(motion_.translation.cwiseAbs().maxCoeff(), motion_.rotation.cwiseAbs().maxCoeff());
+  return farthest > dead_zone || main_button() != before;
+}
+
+HandTarget SpaceMouse::next_target(const HandTarget& current, double elapsed_s) {
+  SpaceMouseMotion motion = motion_;
+  motion.buttons = main_button();
+  return steer(current, motion, elapsed_s);
+}
+
 HandTarget steer(const HandTarget& target, const SpaceMouseMotion& motion, double elapsed_s,
                  const Steering& steering) {
   const double step_s = std::isfinite(elapsed_s) ? std::clamp(elapsed_s, 0.0, longest_step_s) : 0.0;

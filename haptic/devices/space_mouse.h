@@ -7,7 +7,8 @@
 
 #include "engine/base/pose.h"
 #include "engine/base/result.h"
-#include "haptic/devices/virtual_device.h"
+#include "haptic/devices/hand_inputs.h"
+#include "haptic/hand.h"
 
 namespace spoonbill {
 
@@ -24,21 +25,29 @@ SpaceMouseMotion motion_from_counts(const int (&counts)[6], std::uint32_t button
 
 // The connection to the daemon, of which libspnav keeps one for the process. One owner: the thread that
 // draws, never the haptic one, as it allocates and asks the system.
-class SpaceMouse {
+class SpaceMouse : public InputSource {
  public:
   // Refused: no daemon, or a SpaceMouse that is open already. Waits up to 0.3 s for an old daemon's answer.
   static Result<SpaceMouse> open();
 
   SpaceMouse(SpaceMouse&& other) noexcept;
   SpaceMouse& operator=(SpaceMouse&& other) noexcept;
-  ~SpaceMouse();
+  ~SpaceMouse() override;
 
   // Where the cap is now; nothing, for good, once the daemon has gone.
   std::optional<SpaceMouseMotion> poll();
 
+  // Polls. Used is a cap that is pushed or turned beyond the dead zone of Steering, or a main button that is
+  // pressed or let go.
+  bool is_used() override;
+
+  // Steers by what is_used() polled, with the main button alone.
+  HandTarget next_target(const HandTarget& current, double elapsed_s) override;
+
  private:
   SpaceMouse() = default;
   void close();
+  std::uint32_t main_button() const { return motion_.buttons & button_main; }
 
   bool is_open_ = true;
   SpaceMouseMotion motion_;

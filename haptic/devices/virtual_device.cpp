@@ -7,20 +7,9 @@
 
 namespace spoonbill {
 
-Status check_hand(const Hand& hand) {
-  if (Status status = check_range("mass_kg", hand.mass_kg, hand_mass_range_kg); !status.ok()) return status;
-  if (Status status = check_range("stiffness_n_per_m", hand.stiffness_n_per_m, hand_stiffness_range_n_per_m);
-      !status.ok()) {
-    return status;
-  }
-  return check_range("damping_n_s_per_m", hand.damping_n_s_per_m, hand_damping_range_n_s_per_m);
-}
-
 Result<VirtualDevice> VirtualDevice::make(const Hand& hand, const HandTarget& start) {
   if (Status status = check_hand(hand); !status.ok()) return Error{"hand: " + status.error().message};
-  if (!start.pose.position_m.allFinite() || !start.pose.orientation.coeffs().allFinite()) {
-    return Error{"hand: the start is not finite"};
-  }
+  if (!is_finite(start)) return Error{"hand: the start is not finite"};
   return VirtualDevice(hand, start);
 }
 
@@ -34,18 +23,15 @@ VirtualDevice::VirtualDevice(const Hand& hand, const HandTarget& start)
 DeviceSpecification VirtualDevice::default_specification() {
   DeviceSpecification specification;
   specification.name = "virtual";
+  specification.workspace_follows_model = true;
   return specification;
-}
-
-const DeviceSpecification& VirtualDevice::specification() const {
-  return specification_;
 }
 
 void VirtualDevice::set_target(const HandTarget& target) {
   target_ = target;
 }
 
-DeviceReading VirtualDevice::read() {
+std::optional<DeviceReading> VirtualDevice::read() {
   const Vector3& target_m = target_.pose.position_m;
   const Vector3 target_velocity = (target_m - previous_target_m_) / tick_s;
   previous_target_m_ = target_m;

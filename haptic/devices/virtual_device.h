@@ -3,32 +3,11 @@
 // is recorded.
 #pragma once
 
-#include "engine/base/range.h"
 #include "engine/base/result.h"
 #include "haptic/device.h"
+#include "haptic/hand.h"
 
 namespace spoonbill {
-
-// A relaxed hand on a stylus. The damping is critical for mass and stiffness, so that the handle neither
-// rings nor lags.
-struct Hand {
-  double mass_kg = 0.1;  // of the handle and what of the hand moves with it
-  double stiffness_n_per_m = 300.0;
-  double damping_n_s_per_m = 10.954;  // against the target's motion
-};
-
-// Within these a step is stable: tick^2 * stiffness / mass stays at most 1.
-inline constexpr Range<double> hand_mass_range_kg{0.01, 10.0};
-inline constexpr Range<double> hand_stiffness_range_n_per_m{1.0, 10'000.0};
-inline constexpr Range<double> hand_damping_range_n_s_per_m{0.0, 1000.0};
-
-Status check_hand(const Hand& hand);
-
-// Where the hand wants the handle, and what its fingers press.
-struct HandTarget {
-  Pose pose;
-  std::uint32_t buttons = 0;
-};
 
 // Pure arithmetic without the mathematics library's functions, so that the same targets and forces give the
 // same bits on every machine. Orientation follows the target at once: forces turn nothing.
@@ -42,10 +21,10 @@ class VirtualDevice : public Device {
   // For the next read().
   void set_target(const HandTarget& target);
 
-  const DeviceSpecification& specification() const override;
+  const DeviceSpecification& specification() const override { return specification_; }
 
   // Moves the handle by one tick (semi-implicit Euler, the damper implicit) and reads it.
-  DeviceReading read() override;
+  std::optional<DeviceReading> read() override;
 
   // Shortened to the specification's maximum; a force that is not finite counts as none.
   void set_force(const Vector3& force_n) override;

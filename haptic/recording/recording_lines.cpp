@@ -11,9 +11,6 @@ namespace spoonbill {
 
 namespace {
 
-constexpr double billion = 1e9;
-// Rounding to billionths leaves the square of the length within 4e-9 of 1.
-constexpr double unit_square_tolerance = 1e-6;
 // Between any two positions, and far beyond any two orientations.
 constexpr std::int64_t delta_limit = 2 * reading_limit_nm;
 
@@ -76,18 +73,9 @@ void read_positions(FieldReader& reader, const DeviceReading& before, std::span<
   }
 }
 
-bool has_unit_orientation(const DeviceReading& reading) {
-  double square = 0.0;
-  for (const std::int64_t part : reading.orientation_e9) {
-    const double q = static_cast<double>(part) / billion;
-    square += q * q;
-  }
-  return std::abs(square - 1.0) <= unit_square_tolerance;
-}
-
 void check_orientations(FieldReader& reader, std::span<const DeviceReading> readings) {
   for (std::size_t i = 0; i < readings.size(); ++i) {
-    if (has_unit_orientation(readings[i])) continue;
+    if (readings[i].has_unit_orientation()) continue;
     reader.refuse(
         "dq_e9", "leads to an orientation that is not a unit quaternion at its reading " + std::to_string(i));
     return;
@@ -246,16 +234,6 @@ void read_motion(FieldReader& reader, std::vector<DeviceReading>& readings) {
   read_positions(reader, before, added);
   read_orientations(reader, before, added);
   read_buttons(reader, before, added);
-}
-
-bool is_recordable(const DeviceReading& reading) {
-  for (const std::int64_t coordinate : reading.position_nm) {
-    if (coordinate > reading_limit_nm || coordinate < -reading_limit_nm) return false;
-  }
-  for (const std::int64_t part : reading.orientation_e9) {
-    if (part > 1'000'000'000 || part < -1'000'000'000) return false;
-  }
-  return has_unit_orientation(reading);
 }
 
 Status check_command(const Json& command, const std::string& source) {

@@ -24,9 +24,6 @@ Json motion_to_json(std::uint64_t tick, const DeviceReading& before, std::span<c
 // Takes a motion line's fields; appends to `readings`. After a problem what was appended means nothing.
 void read_motion(FieldReader& reader, std::vector<DeviceReading>& readings);
 
-// Within 10 m of the origin on each axis, the orientation a unit quaternion.
-bool is_recordable(const DeviceReading& reading);
-
 // An object with a text "command"; complete and within its ranges where the simulation knows it.
 Status check_command(const Json& command, const std::string& source);
 

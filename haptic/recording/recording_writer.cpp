@@ -123,7 +123,7 @@ Status RecordingWriter::reading(const DeviceReading& reading) {
   if (state.ticks >= recording_tick_limit) {
     return state.fail("holds " + std::to_string(recording_tick_limit) + " ticks, begin another recording");
   }
-  if (!is_recordable(reading)) {
+  if (!reading.is_valid()) {
     return state.fail("the reading of tick " + std::to_string(state.ticks) +
                       " is beyond 10 m or has no orientation");
   }

@@ -28,7 +28,7 @@
 
 #include "engine/base/result.h"
 #include "engine/exchange/document.h"
-#include "haptic/devices/virtual_device.h"
+#include "haptic/hand.h"
 #include "haptic/recording/timed_command.h"
 
 namespace spoonbill {

@@ -6,6 +6,7 @@
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/file.h"
 #include "engine/simulation/simulation.h"
+#include "haptic/device.h"
 #include "haptic/recording/script.h"
 
 namespace spoonbill {

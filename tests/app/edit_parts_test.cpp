@@ -91,24 +91,26 @@ TEST(MouseHand, HoversPressesAndLetsGo) {
   const MouseStroke stroke{0.006, 0.004, false};
   MouseHand hand(Vector3(0.03, 0, 0));
   Pointer pointer;
+  const auto follow = [&](bool held) {
+    hand.set_frame({pointer, held, camera, viewport, &pick, stroke});
+    return hand.next_target({}, 0.0);
+  };
   pointer.position_px = *project(camera, viewport, Vector3(0.03, 0.0025, 0));
-  const HandTarget hover = hand.follow(pointer, false, camera, viewport, pick, stroke);
+  const HandTarget hover = follow(false);
   EXPECT_TRUE(hand.on_model());
   EXPECT_GT(hover.pose.position_m.y(), 0.0025 + 0.006);  // touches nothing
   HandTarget pressed;
-  for (int frame = 0; frame < 30; ++frame)
-    pressed = hand.follow(pointer, true, camera, viewport, pick, stroke);
+  for (int frame = 0; frame < 30; ++frame) pressed = follow(true);
   EXPECT_NEAR((hover.pose.position_m - pressed.pose.position_m).norm(), 0.005, 1e-4);  // gap and strength
   pointer.wheel = 2.0;
-  const HandTarget deeper = hand.follow(pointer, true, camera, viewport, pick, stroke);
+  const HandTarget deeper = follow(true);
   EXPECT_NEAR((deeper.pose.position_m - pressed.pose.position_m).norm(), 0.002, 1e-9);
   pointer.wheel = 0.0;
   hand.let_go();
-  EXPECT_EQ(hand.follow(pointer, true, camera, viewport, pick, stroke).pose.position_m,
-            hover.pose.position_m);
+  EXPECT_EQ(follow(true).pose.position_m, hover.pose.position_m);
   EXPECT_FALSE(hand.pressing());
-  hand.follow(pointer, false, camera, viewport, pick, stroke);
-  hand.follow(pointer, true, camera, viewport, pick, stroke);
+  follow(false);
+  follow(true);
   EXPECT_TRUE(hand.pressing());
 }
 

@@ -4,6 +4,7 @@
 
 #include <thread>
 
+#include "haptic/devices/steered_device.h"
 #include "tests/app/workplace.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/simulation/handle.h"
@@ -35,15 +36,13 @@ class Side {
     const LiveScene scene{made->title, document_of(*made).scene};
     journal_.emplace(notices_, scene);
     worker_.emplace(notices_);
-    exchange_.emplace(at(0.03), first);
-    side_.emplace(std::move(made), VirtualDevice::make(Hand{}, at(0.03)).value(), Vector3(0.05, 0, 0),
-                  *exchange_, *journal_, *worker_);
+    exchange_.emplace(first);
+    auto device = SteeredDevice::make(Hand{}, at(0.03)).value();
+    mailbox_ = device->mailbox();
+    side_.emplace(std::move(made), std::move(device), *exchange_, *journal_, *worker_);
   }
 
-  void aim(const HandTarget& target) {
-    exchange_->target.writing() = target;
-    exchange_->target.publish();
-  }
+  void aim(const HandTarget& target) { mailbox_->aim(target); }
   void ask(Request request) {
     Json json = request_to_json(request);
     ASSERT_TRUE(exchange_->commands.push(AskedRequest{std::move(request), std::move(json)}));
@@ -80,6 +79,7 @@ class Side {
   std::optional<Journal> journal_;
   std::optional<SessionWorker> worker_;
   std::optional<LiveExchange> exchange_;
+  std::shared_ptr<TargetMailbox> mailbox_;
   std::optional<HapticSide> side_;
   std::uint64_t index_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "app/program.h"
+#include "haptic/devices/steered_device.h"
 #include "haptic/recording/recording.h"
 #include "haptic/safety.h"
 #include "render/tessellation/tessellated_surface.h"
@@ -31,14 +32,27 @@ HandTarget at(double x_m, double y_m) {
   return {{Vector3(x_m, y_m, 0.0), Quaternion::Identity()}, 0};
 }
 
-std::unique_ptr<LiveSession> start_live(const Document& document) {
-  LiveSettings settings;
-  settings.real_time = false;
-  settings.start = at(0.05, 0.03);
-  auto live = LiveSession::start(document, "test", settings);
-  EXPECT_TRUE(live) << live.error().message;
-  return std::move(live).value();
-}
+// A live session with the virtual device.
+class Live {
+ public:
+  explicit Live(const Document& document) {
+    auto device = SteeredDevice::make(Hand{}, at(0.05, 0.03)).value();
+    mailbox_ = device->mailbox();
+    LiveSettings settings;
+    settings.real_time = false;
+    auto session = LiveSession::start(document, "test", settings, std::move(device));
+    EXPECT_TRUE(session) << session.error().message;
+    session_ = std::move(session).value();
+  }
+
+  void aim(const HandTarget& target) { mailbox_->aim(target); }
+  LiveSession& operator*() { return *session_; }
+  LiveSession* operator->() { return session_.get(); }
+
+ private:
+  std::shared_ptr<TargetMailbox> mailbox_;
+  std::unique_ptr<LiveSession> session_;
+};
 
 template <class Condition>
 bool wait_for(LiveSession& live, Condition condition) {
@@ -56,12 +70,12 @@ void wait_ticks(LiveSession& live, std::uint64_t ticks) {
 }
 
 // Presses the handle's end down and lets go.
-void stroke(LiveSession& live) {
+void stroke(Live& live) {
   live.aim(at(0.05, 0.0));
-  ASSERT_TRUE(wait_for(live, [](const LiveFrame& frame) { return frame.facts.in_stroke; }));
-  wait_ticks(live, 60);
+  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.in_stroke; }));
+  wait_ticks(*live, 60);
   live.aim(at(0.05, 0.03));
-  ASSERT_TRUE(wait_for(live, [](const LiveFrame& frame) { return !frame.facts.in_stroke; }));
+  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return !frame.facts.in_stroke; }));
 }
 
 double tip_height_m(const LiveFrame& frame) {
@@ -72,9 +86,9 @@ double tip_height_m(const LiveFrame& frame) {
 }
 
 TEST(LiveSession, AStrokeIsUndoneAndRedone) {
-  auto live = start_live(held_handle());
+  Live live(held_handle());
   const double before = tip_height_m(live->frame());
-  stroke(*live);
+  stroke(live);
   wait_ticks(*live, 300);
   const double after = tip_height_m(live->frame());
   EXPECT_LT(after, before - 1e-4);
@@ -91,9 +105,9 @@ TEST(LiveSession, ACancelledStrokeLeavesNothingAndTheToolActsAgainOnceItHasLeft)
   // Of rubber: clay gives way to the first blow and no longer touches, which ends the stroke.
   Document rubber = held_handle();
   rubber.scene.bodies[0].material.plastic = false;
-  auto live = start_live(rubber);
+  Live live(rubber);
   const double before = tip_height_m(live->frame());
-  live->aim(at(0.05, 0.0));
+  live.aim(at(0.05, 0.0));
   ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.in_stroke; }));
   wait_ticks(*live, 60);
   ASSERT_TRUE(live->ask(CancelStroke{}));
@@ -101,13 +115,13 @@ TEST(LiveSession, ACancelledStrokeLeavesNothingAndTheToolActsAgainOnceItHasLeft)
       wait_for(*live, [&](const LiveFrame& frame) { return std::abs(tip_height_m(frame) - before) < 1e-6; }));
   wait_ticks(*live, 50);
   EXPECT_NEAR(tip_height_m(live->frame()), before, 1e-6);
-  live->aim(at(0.05, 0.03));
+  live.aim(at(0.05, 0.03));
   wait_ticks(*live, 200);
-  stroke(*live);
+  stroke(live);
 }
 
 TEST(LiveSession, WhatRebuildsIsDoneWhileTheLoopGoesOn) {
-  auto live = start_live({"small handle", small_handle(), Json::object()});
+  Live live(Document{"small handle", small_handle(), Json::object()});
   ASSERT_TRUE(live->ask(Command(PlacePlane{{Vector3(0.02, 0, 0), Vector3::UnitX()}})));
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.snapshot.planes.size() == 1; }));
   Material stiffer = small_handle().bodies[0].material;
@@ -118,7 +132,7 @@ TEST(LiveSession, WhatRebuildsIsDoneWhileTheLoopGoesOn) {
 }
 
 TEST(LiveSession, ARefusedRequestIsSaidAndChangesNothing) {
-  auto live = start_live(held_handle());
+  Live live(held_handle());
   Material wrong = small_handle().bodies[0].material;
   wrong.poissons_ratio = 0.7;
   ASSERT_TRUE(live->ask(Command(SetMaterial{wrong})));
@@ -137,8 +151,8 @@ TEST(LiveSession, ARefusedRequestIsSaidAndChangesNothing) {
 
 TEST(LiveSession, SavesWhatTheShapeIsNow) {
   const Workplace place;
-  auto live = start_live(held_handle());
-  stroke(*live);
+  Live live(held_handle());
+  stroke(live);
   ASSERT_TRUE(live->save(place.path("bent.json")));
   EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return live->take_saved().has_value(); }));
   const auto saved = read_document(place.path("bent.json"));
@@ -165,8 +179,8 @@ std::string next_notice(LiveSession& live, Notice::Kind kind) {
 TEST(LiveSession, ExportsAMeshWhichSavesNothing) {
   const Workplace place;
   setenv("XDG_STATE_HOME", place.text("state").c_str(), 1);
-  auto live = start_live(held_handle());
-  stroke(*live);
+  Live live(held_handle());
+  stroke(live);
   ASSERT_TRUE(live->save(place.path("bent.stl")));
   EXPECT_EQ(next_notice(*live, Notice::Kind::information), "exported bent.stl, in mm");
   EXPECT_FALSE(live->take_saved().has_value());
@@ -185,7 +199,7 @@ TEST(LiveSession, ExportsAMeshWhichSavesNothing) {
 // Otherwise one document would be written into another's file.
 TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
   const Workplace place;
-  auto live = start_live(held_handle());
+  Live live(held_handle());
   Document other = held_handle();
   other.name = "another";
   ASSERT_TRUE(live->open(other, "other"));
@@ -199,11 +213,11 @@ TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
 TEST(LiveSession, AutosavesUnsavedWorkUntilItIsSaved) {
   const Workplace place;
   const Autosave autosave(place.path("."), place.path("model.json"));
-  auto live = start_live(held_handle());
+  Live live(held_handle());
   live->set_autosave(autosave);
   wait_ticks(*live, 600);
   EXPECT_FALSE(std::filesystem::exists(autosave.file()));  // nothing has changed
-  stroke(*live);
+  stroke(live);
   EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return std::filesystem::exists(autosave.file()); }));
   const auto found = autosave.left_over();
   ASSERT_TRUE(found) << found.error().message;
@@ -217,7 +231,7 @@ TEST(LiveSession, AutosavesUnsavedWorkUntilItIsSaved) {
 
 TEST(LiveSession, ARecordingThatCannotBeWrittenIsSaid) {
   const Workplace place;
-  auto live = start_live(held_handle());
+  Live live(held_handle());
   ASSERT_TRUE(live->start_recording(place.path("no such folder/x.recording.jsonl"), ViewChoice()));
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.works == 1; }));
   EXPECT_EQ(live->frame().failed_works, 1U);
@@ -228,7 +242,7 @@ TEST(LiveSession, ARecordingThatCannotBeWrittenIsSaid) {
 TEST(LiveSession, AnOlderRecordingStaysUntilTheNewOneIsWhole) {
   const Workplace place;
   const auto file = place.write("x.recording.jsonl", "an older one");
-  auto live = start_live(held_handle());
+  Live live(held_handle());
   ASSERT_TRUE(live->start_recording(file, ViewChoice()));
   ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.recording; }));
   wait_ticks(*live, 50);
@@ -242,7 +256,7 @@ TEST(LiveSession, AnOlderRecordingStaysUntilTheNewOneIsWhole) {
 }
 
 TEST(LiveSession, OpensAnotherDocument) {
-  auto live = start_live(held_handle());
+  Live live(held_handle());
   Document other = held_handle();
   other.name = "another";
   other.scene.planes.clear();
@@ -258,13 +272,13 @@ TEST(LiveSession, OpensAnotherDocument) {
 }
 
 TEST(LiveSession, TheWorkspaceFollowsTheModelThatIsOpened) {
-  auto live = start_live(held_handle());
+  Live live(held_handle());
   Document far = held_handle();
   far.scene.planes.clear();
   for (double& x : far.scene.bodies[0].surface.net.x) x += 2.0;
   ASSERT_TRUE(live->open(far, "far"));
   ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.works == 1; }));
-  live->aim(at(2.05, 0.03));
+  live.aim(at(2.05, 0.03));
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) {
     return frame.snapshot.tool.device.position_m.x() > 2.04 &&
            (frame.safety_flags & safety_flag_outside) == 0;
@@ -272,7 +286,7 @@ TEST(LiveSession, TheWorkspaceFollowsTheModelThatIsOpened) {
 }
 
 TEST(LiveSession, CancellingWithoutAStrokeChangesNothing) {
-  auto live = start_live(held_handle());
+  Live live(held_handle());
   const std::uint64_t deed = live->frame().deed;
   ASSERT_TRUE(live->ask(CancelStroke{}));
   wait_ticks(*live, 50);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/exchange/document.h"
+#include "haptic/devices/virtual_device.h"
 #include "haptic/recording/script.h"
 #include "haptic/tick.h"
 #include "tests/engine/effort.h"
@@ -45,7 +46,7 @@ class Press {
   void run_to(double time_s) {
     for (; static_cast<double>(ticks_) * tick_s < time_s - 0.5 * tick_s; ++ticks_) {
       device_.set_target(script_.target_at(ticks_));
-      const TickResult result = tick(simulation_, coupling_, device_.specification(), device_.read());
+      const TickResult result = tick(simulation_, coupling_, device_.specification(), *device_.read());
       device_.set_force(result.force_n);
       force_n_ = result.force_n.norm();
       deepest_m_ = std::max(deepest_m_, ticks_ % 50 == 0 ? dent_m() : 0.0);

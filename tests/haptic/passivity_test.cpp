@@ -71,7 +71,7 @@ Energy press_wall(const Press& press, const Vector3& surface_m, Wall wall) {
     const double way = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * press.frequency_hz * k * tick_s);
     target.pose.position_m.y() = surface_m.y() + clearance_m - way * (clearance_m + press.depth_m);
     device.set_target(target);
-    const DeviceReading reading = device.read();
+    const DeviceReading reading = *device.read();
     const double work_j = force_n.dot(device.position_m() - before_m);
     before_m = device.position_m();
     sum_j += work_j;

@@ -212,7 +212,7 @@ Watched sculpt(Random& random, int ticks) {
     target.pose.position_m = from + (to - from) * ((k % stroke + 1.0) / stroke);
     device.set_target(target);
     SafetyInput input;
-    input.wanted_n = tick(simulation, coupling, device.specification(), device.read()).force_n;
+    input.wanted_n = tick(simulation, coupling, device.specification(), *device.read()).force_n;
     input.position_m = device.position_m();
     input.stale = random.once_in(1000);
     if (random.once_in(300)) input.dropped_ticks = random.bits() % 60;

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "haptic/device.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/exchange/damage.h"
 #include "tests/engine/exchange/sample_document.h"

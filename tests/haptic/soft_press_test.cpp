@@ -6,6 +6,7 @@
 
 #include "engine/exchange/document.h"
 #include "engine/simulation/body_pair_contact.h"
+#include "haptic/devices/virtual_device.h"
 #include "haptic/recording/script.h"
 #include "haptic/tick.h"
 #include "tests/engine/effort.h"
@@ -39,7 +40,7 @@ TEST(SoftPress, BothGiveWayStayApartAndComeBack) {
   double deepest = 0.0, strongest = 0.0, lowest_top = highest(cushion);
   for (std::uint64_t t = 0; t < script.tick_count(); ++t) {
     device.set_target(script.target_at(t));
-    const TickResult result = tick(simulation, coupling, device.specification(), device.read());
+    const TickResult result = tick(simulation, coupling, device.specification(), *device.read());
     device.set_force(result.force_n);
     strongest = std::max(strongest, result.force_n.norm());
     lowest_top = std::min(lowest_top, evaluate(simulation.surface(0), 0.75, 0.0).position_m.y());
@@ -75,7 +76,7 @@ TEST(SoftPress, AMeshGivesWayTooAndComesBack) {
   double strongest = 0.0, shortest = 1.0, last = 0.0, lowest_top = first_top;
   for (std::uint64_t t = 0; t < script.tick_count(); ++t) {
     device.set_target(script.target_at(t));
-    const DeviceReading reading = device.read();
+    const DeviceReading reading = *device.read();
     const TickResult result = tick(simulation, coupling, device.specification(), reading);
     device.set_force(result.force_n);
     strongest = std::max(strongest, result.force_n.norm());

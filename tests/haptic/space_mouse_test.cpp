@@ -92,6 +92,35 @@ TEST(SpaceMouse, FollowsTheDaemonsEventsUntilItLeaves) {
   EXPECT_FALSE(mouse->poll().has_value());
 }
 
+// Or it would take the buttons of the mouse beside it.
+TEST(SpaceMouse, IsUsedWhileItsCapIsAwayFromRestOrItsMainButtonChanges) {
+  Daemon daemon;
+  auto mouse = SpaceMouse::open();
+  ASSERT_TRUE(mouse.ok()) << mouse.error().message;
+  daemon.accept_client();
+  EXPECT_FALSE(mouse->is_used());
+  daemon.move({20, -20, 20, 20, 20, -20});  // a hand that rests on the cap
+  EXPECT_FALSE(mouse->is_used());
+  daemon.move({0, 0, 0, 0, 100, 0});
+  EXPECT_TRUE(mouse->is_used());
+  EXPECT_TRUE(mouse->is_used());
+  daemon.move({0, 0, 0, 0, 0, 0});
+  EXPECT_FALSE(mouse->is_used());
+  daemon.press(1);
+  EXPECT_FALSE(mouse->is_used());
+  daemon.press(0);
+  EXPECT_TRUE(mouse->is_used());
+  EXPECT_FALSE(mouse->is_used());
+  daemon.move({350, 0, 0, 0, 0, 0});
+  EXPECT_TRUE(mouse->is_used());
+  const HandTarget moved = mouse->next_target({}, 0.02);
+  EXPECT_NEAR(moved.pose.position_m.x(), 0.02 * Steering().speed_m_per_s, 1e-12);
+  EXPECT_EQ(moved.buttons, 1u);
+  daemon.leave();
+  EXPECT_FALSE(mouse->is_used());
+  EXPECT_EQ(mouse->next_target(moved, 0.02).pose.position_m, moved.pose.position_m);
+}
+
 TEST(SpaceMouse, MovesAndOpensAgain) {
   for (int round = 0; round < 2; ++round) {
     Daemon daemon;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "engine/exchange/document.h"
+#include "haptic/devices/virtual_device.h"
 #include "haptic/recording/script.h"
 #include "haptic/tick.h"
 #include "tests/engine/effort.h"
@@ -52,7 +53,7 @@ Bend play() {
       before = simulation.surface();
     }
     device.set_target(script.target_at(t));
-    const TickResult result = tick(simulation, coupling, device.specification(), device.read());
+    const TickResult result = tick(simulation, coupling, device.specification(), *device.read());
     device.set_force(result.force_n);
     if (script.target_at(t).pose.position_m.y() < -0.0205) pushed = simulation.surface();
   }

@@ -128,7 +128,7 @@ TEST(VirtualDevice, PassesOnOrientationAndButtons) {
   target.pose.orientation = Quaternion(0.0, 1.0, 0.0, 0.0);
   target.buttons = button_main;
   device.set_target(target);
-  const DeviceReading reading = device.read();
+  const DeviceReading reading = *device.read();
   EXPECT_EQ(reading.orientation_e9[0], 1'000'000'000);
   EXPECT_EQ(reading.buttons, button_main);
 }

@@ -1,0 +1,209 @@
+// A device that only this file knows, in a live session and in lock-step: it presses by itself, stops
+// answering and answers with garbage.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <thread>
+
+#include "app/live/live_session.h"
+#include "app/program.h"
+#include "app/session/lockstep.h"
+#include "tests/app/workplace.h"
+#include "tests/engine/simulation/handle.h"
+
+namespace spoonbill {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A machine under load or a sanitizer may take its time; nothing here is judged by it.
+constexpr std::chrono::seconds patience{300};
+
+constexpr double plugged_limit_n = 0.8;  // a press wants more
+constexpr double felt_n = 0.3;           // a force that is worth the name
+
+enum class Fault { none, silent, garbage };
+
+// What the test sees of the device, which the live session owns.
+struct Hardware {
+  std::atomic<Fault> fault{Fault::none};
+  std::atomic<double> force_n{0.0};
+  std::atomic<double> largest_n{0.0};
+  std::atomic<std::uint64_t> felt{0};           // ticks with a force that is worth the name
+  std::atomic<std::uint64_t> faulty_ticks{0};   // ticks without a reading of any use
+  std::atomic<std::uint64_t> faulty_forces{0};  // of them, with a force
+  std::atomic<bool> is_open{true};
+};
+
+DeviceSpecification plugged_specification() {
+  DeviceSpecification specification;
+  specification.name = "plugged";
+  specification.maximum_force_n = plugged_limit_n;
+  specification.maximum_stiffness_n_per_m = 500.0;
+  specification.workspace_radius_m = 0.1;
+  specification.ramp_time_s = 0.02;
+  return specification;
+}
+
+// Goes down on the handle and up again once a second, whatever the force.
+class PluggedDevice : public Device {
+ public:
+  explicit PluggedDevice(std::shared_ptr<Hardware> hardware,
+                         DeviceSpecification specification = plugged_specification())
+      : hardware_(std::move(hardware)), specification_(std::move(specification)) {}
+  ~PluggedDevice() override { hardware_->is_open = false; }
+
+  const DeviceSpecification& specification() const override { return specification_; }
+
+  std::optional<DeviceReading> read() override {
+    const double phase = 2.0 * std::numbers::pi * static_cast<double>(tick_++ % 1000) / 1000.0;
+    const Vector3 position_m(0.05, 0.012 + 0.01 * std::cos(phase), 0.0);
+    DeviceReading reading = DeviceReading::from({position_m, Quaternion::Identity()}, button_main);
+    faulty_ = hardware_->fault != Fault::none;
+    if (faulty_) ++hardware_->faulty_ticks;
+    if (hardware_->fault == Fault::silent) return {};
+    if (hardware_->fault == Fault::garbage) {
+      reading.position_nm[1] = tick_ % 2 == 0 ? std::int64_t{-1} << 60 : reading.position_nm[1];
+      reading.orientation_e9[3] = 0;
+    }
+    return reading;
+  }
+
+  void set_force(const Vector3& force_n) override {
+    const double size_n = force_n.norm();
+    hardware_->force_n = size_n;
+    if (!(size_n <= hardware_->largest_n)) hardware_->largest_n = size_n;
+    if (size_n > felt_n) ++hardware_->felt;
+    if (faulty_ && size_n != 0.0) ++hardware_->faulty_forces;
+  }
+
+ private:
+  std::shared_ptr<Hardware> hardware_;
+  DeviceSpecification specification_;
+  std::uint64_t tick_ = 0;
+  bool faulty_ = false;
+};
+
+// Of rubber, so that each press meets the same resistance; its force is scaled beyond the device's limit.
+Document rubber_handle() {
+  Document document{"small handle", small_handle(), Json::object()};
+  document.scene.bodies[0].material.plastic = false;
+  document.scene.bodies[0].material.youngs_modulus_pa = 3e5;
+  document.scene.sculpting.force_scale = 20.0;
+  document.scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+  return document;
+}
+
+Result<std::unique_ptr<LiveSession>> start_live(std::unique_ptr<Device> device) {
+  LiveSettings settings;
+  settings.real_time = false;
+  return LiveSession::start(rubber_handle(), "test", settings, std::move(device));
+}
+
+template <class Condition>
+bool wait_for(LiveSession& live, Condition condition) {
+  const auto give_up = Clock::now() + patience;
+  while (Clock::now() < give_up) {
+    if (condition(live.frame())) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return false;
+}
+
+bool wait_until_felt(LiveSession& live, const Hardware& hardware) {
+  const std::uint64_t before = hardware.felt;
+  return wait_for(live, [&](const LiveFrame&) { return hardware.felt > before + 20; });
+}
+
+void expect_harmless(const Hardware& hardware) {
+  EXPECT_LE(hardware.largest_n, plugged_limit_n * (1.0 + 1e-12));
+  EXPECT_EQ(hardware.faulty_forces, 0U);
+}
+
+void replay_to_the_same_states(const Workplace& place, const char* recording) {
+  const Outcome replayed = run({"replay", place.text(recording), "--no-frames", "--json"});
+  ASSERT_EQ(replayed.code, exit_done) << replayed.err;
+  EXPECT_TRUE(json_of(replayed.out)["complete"].get<bool>());
+}
+
+TEST(PluggedDevice, DrivesALiveSessionAndIsUnharmedByItsFaults) {
+  const Workplace place;
+  const auto hardware = std::make_shared<Hardware>();
+  auto started = start_live(std::make_unique<PluggedDevice>(hardware));
+  ASSERT_TRUE(started) << started.error().message;
+  auto live = std::move(started).value();
+  EXPECT_EQ(live->frame().snapshot.device.name, "plugged");
+  ASSERT_TRUE(live->start_recording(place.path("plugged.jsonl"), ViewChoice()));
+  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.recording; }));
+  ASSERT_TRUE(wait_until_felt(*live, *hardware));
+  for (const Fault fault : {Fault::silent, Fault::garbage}) {
+    const std::uint64_t before = hardware->faulty_ticks;
+    hardware->fault = fault;
+    EXPECT_TRUE(wait_for(*live, [&](const LiveFrame& frame) {
+      return hardware->faulty_ticks > before + 200 && (frame.safety_flags & safety_flag_no_device) != 0 &&
+             !frame.facts.in_stroke;
+    }));
+    EXPECT_EQ(hardware->force_n, 0.0);
+    hardware->fault = Fault::none;
+    EXPECT_TRUE(wait_until_felt(*live, *hardware));
+  }
+  live->stop();
+  EXPECT_EQ(hardware->force_n, 0.0);
+  expect_harmless(*hardware);
+  EXPECT_TRUE(hardware->is_open);
+  EXPECT_TRUE(live->last_recording_is_whole());
+  live.reset();
+  EXPECT_FALSE(hardware->is_open);
+  replay_to_the_same_states(place, "plugged.jsonl");
+}
+
+TEST(PluggedDevice, IsRefusedWhereItDoesNotAnswerOrPromisesWhatNoDeviceDoes) {
+  const auto hardware = std::make_shared<Hardware>();
+  hardware->fault = Fault::silent;
+  const auto silent = start_live(std::make_unique<PluggedDevice>(hardware));
+  ASSERT_FALSE(silent);
+  EXPECT_EQ(silent.error().message, "device plugged: does not answer");
+  hardware->fault = Fault::none;
+  DeviceSpecification boundless = plugged_specification();
+  boundless.maximum_force_n = std::nan("");
+  const auto refused = start_live(std::make_unique<PluggedDevice>(hardware, boundless));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("maximum_force_n"), std::string::npos) << refused.error().message;
+  EXPECT_FALSE(hardware->is_open);
+}
+
+TEST(PluggedDevice, DrivesTheLockStepLoopThroughTheSameChain) {
+  const Workplace place;
+  const auto hardware = std::make_shared<Hardware>();
+  PluggedDevice device(hardware);
+  const Document document = rubber_handle();
+  auto session = Session::make(document, "test", device.specification(), InstructionSet::baseline);
+  ASSERT_TRUE(session) << session.error().message;
+  auto writer = RecordingWriter::create(place.path("plugged.jsonl"), {device.specification(), document});
+  ASSERT_TRUE(writer) << writer.error().message;
+  Lockstep lockstep(session.value(), {&device, 4000, {}, {}, {}, "test"}, &writer.value());
+  ASSERT_TRUE(lockstep.run_to(400));
+  EXPECT_GT(hardware->felt, 20U);
+  std::uint64_t tick = lockstep.tick();
+  for (const Fault fault : {Fault::silent, Fault::garbage}) {
+    hardware->fault = fault;
+    ASSERT_TRUE(lockstep.run_to(tick += 100));
+    EXPECT_EQ(hardware->force_n, 0.0);
+    EXPECT_FALSE(session->history.in_stroke());
+    hardware->fault = Fault::none;
+    const std::uint64_t before = hardware->felt;
+    ASSERT_TRUE(lockstep.run_to(tick += 1400));
+    EXPECT_GT(hardware->felt, before + 20);
+  }
+  ASSERT_TRUE(lockstep.finish());
+  EXPECT_EQ(hardware->faulty_ticks, 200U);
+  EXPECT_NEAR(hardware->largest_n, plugged_limit_n, 1e-3);
+  expect_harmless(*hardware);
+  replay_to_the_same_states(place, "plugged.jsonl");
+}
+
+}  // namespace
+}  // namespace spoonbill
