@@ -2,6 +2,7 @@
 #pragma once
 
 #include <ostream>
+#include <string>
 
 namespace spoonbill {
 
@@ -10,5 +11,9 @@ struct Console {
   std::ostream& err;
   bool person_watches = false;  // err is a terminal
 };
+
+// The text's first line, without what a terminal would obey: messages quote files, whose content may be
+// anything.
+std::string one_line(const std::string& text);
 
 }  // namespace spoonbill

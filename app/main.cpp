@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/program.h"
+#include "app/version.h"
 #include "engine/base/assert.h"
 
 int main(int argc, char** argv) {
@@ -20,7 +21,7 @@ int main(int argc, char** argv) {
   try {
     const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
     spoonbill::Console console{std::cout, std::cerr, isatty(STDERR_FILENO) != 0};
-    return spoonbill::run_program(arguments, console);
+    return spoonbill::run_program(arguments, console, spoonbill::version_with_commit());
   } catch (const std::exception& exception) {
     std::cerr << "spoonbill: " << exception.what() << '\n';
     return spoonbill::exit_failed;

@@ -8,6 +8,7 @@
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/left_out.h"
+#include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
 #include "app/commands/surface_change.h"
@@ -105,45 +106,47 @@ Status change(const ChangeOptions& options, Console& console) {
 
 }  // namespace
 
-CommandEntry add_change(CLI::App& root) {
+CommandEntry add_change(OptionSet root) {
   auto options = std::make_shared<ChangeOptions>();
-  CLI::App* parser = root.add_subcommand("change", "Split, close, reverse or refine a body's surface");
-  parser->footer(
+  const OptionSet parser = root.add_command("change", "Split, close, reverse or refine a body's surface");
+  parser.set_footer(
       "Changes:\n" + changes_text() +
       "Places are parameters in the knots' domain, as `spoonbill info` tells it. Regions, loads and\n"
       "supports stay where the change keeps the parameters, and are left out where it does not.\n"
       "Example: spoonbill change assets/models/spoon-handle.json split v=50 --out halves.json");
-  parser->add_option("MODEL", options->model, "A document (.json)")->required();
+  parser.add_option("MODEL", options->model, "A document (.json)").require();
   parser
-      ->add_option_function<std::vector<std::string>>(
+      .add_parsed_list(
           "CHANGE",
-          [options](const std::vector<std::string>& words) {
+          [options](const std::vector<std::string>& words) -> Status {
             const auto change = parse_change(words);
-            if (!change) throw CLI::ValidationError("CHANGE", change.error().message);
+            if (!change) return change.error();
             options->change = change.value();
+            return {};
           },
           "What to do, as below")
-      ->required();
-  add_document_output(*parser, options->out, "The changed document (.json)")->required();
-  parser->add_option("--body", options->body, "Which body, counted from 1; the first unless told")
-      ->check(CLI::Range(body_count_range.low, body_count_range.high).description(""))
-      ->type_name("NUMBER");
+      .require();
+  add_document_output(parser, options->out, "The changed document (.json)").require();
+  parser.add_option("--body", options->body, "Which body, counted from 1; the first unless told")
+      .limit(body_count_range)
+      .show_as("NUMBER");
   add_parsed_option(
-      *parser, "--tolerance", "LENGTH",
+      parser, "--tolerance", "LENGTH",
       [](const std::string& text) { return parse_length(text, tolerance_range_m); },
       [options](double length_m) { options->tolerance_m = length_m; },
       "For changes that are not exact, " + short_length_text(options->tolerance_m) + " unless told");
   add_parsed_option(
-      *parser, "--continuity", "C0..C8", parse_continuity,
+      parser, "--continuity", "C0..C8", parse_continuity,
       [options](int order) { options->continuity = order; },
       "Of the seam that close makes, C2 unless told; C0 keeps an edge");
   // By then both have been read, in whichever order they came.
-  parser->final_callback([options] {
+  parser.set_final_check([options]() -> Status {
     if (options->continuity && options->change.kind != ChangeKind::close) {
-      throw CLI::ValidationError("--continuity", "is of the seam that 'close' makes; leave it out");
+      return Error{"--continuity: is of the seam that 'close' makes; leave it out"};
     }
+    return {};
   });
-  add_json_option(*parser, options->json);
+  add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return change(*options, console); }};
 }
 

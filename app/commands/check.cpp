@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +8,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
+#include "app/commands/option_set.h"
 #include "app/files/cad_file.h"
 #include "app/files/document_file.h"
 #include "app/interrupt.h"
@@ -159,11 +157,11 @@ Status check(const CheckOptions& options, Console& console) {
 
 }  // namespace
 
-CommandEntry add_check(CLI::App& root) {
+CommandEntry add_check(OptionSet root) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* parser =
-      root.add_subcommand("check", "Tell whether a model's bodies are sound, and how thick and curved");
-  parser->footer(
+  const OptionSet parser =
+      root.add_command("check", "Tell whether a model's bodies are sound, and how thick and curved");
+  parser.set_footer(
       "Of each body: whether its surface is closed, passes through itself, folds or loses its area; volume,\n"
       "area, mass and its centre; principal curvatures, above zero where convex; the smallest convex and\n"
       "hollow radius; the smallest thickness, straight inwards from samples a third of a knot span apart to\n"
@@ -176,8 +174,8 @@ CommandEntry add_check(CLI::App& root) {
       "told. Sound is a body or a solid that encloses what it is made of, and a face of such a solid, that\n"
       "meets itself nowhere. The exit code is 0 whatever was found; \"sound\" in the JSON tells.\n"
       "Example: spoonbill check assets/models/spoon-handle.json");
-  parser->add_option("MODEL", options->model, "A document (.json)")->required();
-  add_json_option(*parser, options->json);
+  parser.add_option("MODEL", options->model, "A document (.json)").require();
+  add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return check(*options, console); }};
 }
 

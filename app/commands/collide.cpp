@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -12,6 +9,7 @@
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/mesh_contact.h"
+#include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/files/mesh_file.h"
 #include "app/report/contact_facts.h"
@@ -217,11 +215,11 @@ Status collide(const CollideOptions& options, Console& console) {
 
 }  // namespace
 
-CommandEntry add_collide(CLI::App& root) {
+CommandEntry add_collide(OptionSet root) {
   auto options = std::make_shared<CollideOptions>();
-  CLI::App* parser =
-      root.add_subcommand("collide", "Tell whether and how deep two models touch, or one touches itself");
-  parser->footer(
+  const OptionSet parser =
+      root.add_command("collide", "Tell whether and how deep two models touch, or one touches itself");
+  parser.set_footer(
       "Found on the B-spline surfaces themselves, to a micrometre: where they touch, how deep, which way A\n"
       "gets out, and the parameters on both; where they do not, the distance and the nearest points.\n"
       "A mesh is cleaned first, its closed parts solid, its open ones plates 1 mm thick. Two meshes are as "
@@ -229,32 +227,34 @@ CommandEntry add_collide(CLI::App& root) {
       "as the deepest of their corners and edges. Of a document all bodies count, also with each other.\n"
       "Example: spoonbill collide assets/models/spoon-handle.json assets/models/spoon-handle.json "
       "--pose 0,5mm,0,1,0,0,0");
-  parser->add_option("A", options->first, "A document (.json) or a mesh (.obj, .stl, .ply)")->required();
-  parser->add_option("B", options->second,
-                     "Another, or the same. Without it, A with itself, which must be a document");
+  parser.add_option("A", options->first, "A document (.json) or a mesh (.obj, .stl, .ply)").require();
+  parser.add_option("B", options->second,
+                    "Another, or the same. Without it, A with itself, which must be a document");
   parser
-      ->add_option_function<std::string>(
+      .add_parsed(
           "--pose",
-          [options](const std::string& text) {
+          [options](const std::string& text) -> Status {
             const auto pose = parse_pose(text);
-            if (!pose) throw CLI::ValidationError("--pose", pose.error().message);
+            if (!pose) return pose.error();
             options->pose = pose.value();
             options->posed = true;
+            return {};
           },
           "Where B is: x,y,z, each with its unit (mm, cm, m or in) unless 0, and a turn as a quaternion "
           "w,x,y,z")
-      ->type_name("X,Y,Z,QW,QX,QY,QZ");
+      .show_as("X,Y,Z,QW,QX,QY,QZ");
   parser
-      ->add_option_function<std::string>(
+      .add_parsed(
           "--unit",
-          [options](const std::string& text) {
+          [options](const std::string& text) -> Status {
             const auto unit = parse_unit(text);
-            if (!unit) throw CLI::ValidationError("--unit", unit.error().message);
+            if (!unit) return unit.error();
             options->unit = unit.value();
+            return {};
           },
           "Of the numbers of meshes: mm, cm, m or in; mm for .obj and .stl and m for .ply unless told")
-      ->type_name("UNIT");
-  add_json_option(*parser, options->json);
+      .show_as("UNIT");
+  add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return collide(*options, console); }};
 }
 

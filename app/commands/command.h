@@ -4,35 +4,32 @@
 
 #include <functional>
 
+#include "app/commands/option_set.h"
 #include "app/console.h"
 #include "engine/base/result.h"
-
-namespace CLI {
-class App;
-}
 
 namespace spoonbill {
 
 struct CommandEntry {
-  CLI::App* parser;  // owned by the root parser
+  OptionSet parser;
   std::function<Status(Console&)> act;
 };
 
-CommandEntry add_replay(CLI::App& root);
-CommandEntry add_record(CLI::App& root);
-CommandEntry add_edit(CLI::App& root);
-CommandEntry add_info(CLI::App& root);
-CommandEntry add_sample(CLI::App& root);
-CommandEntry add_collide(CLI::App& root);
-CommandEntry add_convert(CLI::App& root);
-CommandEntry add_rest(CLI::App& root);
-CommandEntry add_merge(CLI::App& root);
-CommandEntry add_change(CLI::App& root);
-CommandEntry add_new(CLI::App& root);
-CommandEntry add_fit(CLI::App& root);
-CommandEntry add_check(CLI::App& root);
+CommandEntry add_replay(OptionSet root);
+CommandEntry add_record(OptionSet root);
+CommandEntry add_edit(OptionSet root);
+CommandEntry add_info(OptionSet root);
+CommandEntry add_sample(OptionSet root);
+CommandEntry add_collide(OptionSet root);
+CommandEntry add_convert(OptionSet root);
+CommandEntry add_rest(OptionSet root);
+CommandEntry add_merge(OptionSet root);
+CommandEntry add_change(OptionSet root);
+CommandEntry add_new(OptionSet root);
+CommandEntry add_fit(OptionSet root);
+CommandEntry add_check(OptionSet root);
 // The program's own, not shown.
-CommandEntry add_read_mesh(CLI::App& root);
-CommandEntry add_read_points(CLI::App& root);
+CommandEntry add_read_mesh(OptionSet root);
+CommandEntry add_read_points(OptionSet root);
 
 }  // namespace spoonbill

@@ -1,49 +1,46 @@
 #include "app/commands/common_options.h"
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <string>
 
+#include "app/commands/option_set.h"
 #include "engine/base/excerpt.h"
 #include "engine/exchange/file_format.h"
 
 namespace spoonbill {
 
-void add_json_option(CLI::App& parser, bool& json) {
+void add_json_option(OptionSet parser, bool& json) {
   parser.add_flag("--json", json, "Print one JSON object instead of lines for people");
 }
 
-CLI::Option* add_document_output(CLI::App& parser, std::filesystem::path& out, const std::string& help) {
-  const auto take = [&out](const std::string& text) {
+CommandOption add_document_output(OptionSet parser, std::filesystem::path& out, const std::string& help) {
+  const auto take = [&out](const std::string& text) -> Status {
     out = text;
-    if (format_of(out) == "json") return;
-    throw CLI::ValidationError("--out", "'" + excerpt(text) +
-                                            "' does not end in .json, as documents do; `spoonbill convert` "
-                                            "makes CAD files and meshes of them");
+    if (format_of(out) == "json") return {};
+    return Error{"'" + excerpt(text) +
+                 "' does not end in .json, as documents do; `spoonbill convert` "
+                 "makes CAD files and meshes of them"};
   };
-  return parser.add_option_function<std::string>("--out", take, help)->type_name("FILE");
+  return parser.add_parsed("--out", take, help).show_as("FILE");
 }
 
-void add_instruction_set_option(CLI::App& parser, InstructionSet& set) {
+void add_instruction_set_option(OptionSet parser, InstructionSet& set) {
   std::string names;
   for (const InstructionSet available : available_instruction_sets()) {
     names += (names.empty() ? "" : ", ") + std::string(name_of(available));
   }
-  const auto choose = [&set, names](const std::string& name) {
+  const auto choose = [&set, names](const std::string& name) -> Status {
     for (const InstructionSet available : available_instruction_sets()) {
       if (name_of(available) != name) continue;
       set = available;
-      return;
+      return {};
     }
-    throw CLI::ValidationError("--instruction-set",
-                               "'" + name + "' is not one that this processor has: " + names);
+    return Error{"'" + name + "' is not one that this processor has: " + names};
   };
   parser
-      .add_option_function<std::string>("--instruction-set", choose,
-                                        "Vector instructions to compute with (" + names +
-                                            "); the widest unless told. The result is the same")
-      ->type_name("NAME");
+      .add_parsed("--instruction-set", choose,
+                  "Vector instructions to compute with (" + names +
+                      "); the widest unless told. The result is the same")
+      .show_as("NAME");
 }
 
 }  // namespace spoonbill

@@ -4,6 +4,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
+#include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
 #include "app/convert/conversion.h"
@@ -54,10 +55,11 @@ Result<StepSchema> parse_schema(const std::string& text) {
 
 }  // namespace
 
-CommandEntry add_convert(CLI::App& root) {
+CommandEntry add_convert(OptionSet root) {
   auto options = std::make_shared<ConvertOptions>();
-  CLI::App* parser = root.add_subcommand("convert", "Bring a model in from CAD, or out to CAD or as a mesh");
-  parser->footer(
+  const OptionSet parser =
+      root.add_command("convert", "Bring a model in from CAD, or out to CAD or as a mesh");
+  parser.set_footer(
       "Read: documents (.json), STEP (.step, .stp) and IGES (.iges, .igs). Written: those, and meshes "
       "(.stl,\n"
       ".obj, .ply, .3mf). Bodies that close become solids in STEP and IGES, and watertight meshes; each "
@@ -65,33 +67,33 @@ CommandEntry add_convert(CLI::App& root) {
       "of a CAD file becomes a body, those of one solid too, which leave as that solid again where they\n"
       "close, in a mesh as well; gaps of theirs that are bridged are said. OUT appears whole or not at all.\n"
       "Example: spoonbill convert assets/models/spoon-handle.json handle.step --schema ap242");
-  parser->add_option("IN", options->request.in, "A document or a CAD file")->required();
-  parser->add_option("OUT", options->request.out, "The file to write; its ending is its format")->required();
+  parser.add_option("IN", options->request.in, "A document or a CAD file").require();
+  parser.add_option("OUT", options->request.out, "The file to write; its ending is its format").require();
   ConversionRequest& request = options->request;
   const auto length_in = [](Range<double> range) {
     return [range](const std::string& text) { return parse_length(text, range); };
   };
   add_parsed_option(
-      *parser, "--unit", "UNIT", parse_unit, [&request](const LengthUnit& unit) { request.unit = unit; },
+      parser, "--unit", "UNIT", parse_unit, [&request](const LengthUnit& unit) { request.unit = unit; },
       "Of the other file's numbers: mm, cm, m or in. Going out, mm unless told (m for .ply); coming in,\n"
       "what the file declares unless told, or mm where it declares none");
   add_parsed_option(
-      *parser, "--chord", "LENGTH", length_in(chord_range_m),
+      parser, "--chord", "LENGTH", length_in(chord_range_m),
       [&request](double chord_m) { request.chord_m = chord_m; },
       "How far a mesh's triangles may be from the surface; 0.05mm unless told");
   add_parsed_option(
-      *parser, "--tolerance", "LENGTH", length_in(tolerance_range_m),
+      parser, "--tolerance", "LENGTH", length_in(tolerance_range_m),
       [&request](double tolerance_m) { request.tolerance_m = tolerance_m; },
       "How far what no B-spline is, such as a cylinder, may come to be from itself; 0.01mm unless told");
   add_parsed_option(
-      *parser, "--schema", "SCHEMA", parse_schema, [&request](StepSchema schema) { request.schema = schema; },
+      parser, "--schema", "SCHEMA", parse_schema, [&request](StepSchema schema) { request.schema = schema; },
       "Of a STEP file: ap214, unless told, or ap242");
   add_parsed_option(
-      *parser, "--bodies", "LIST", parse_places,
+      parser, "--bodies", "LIST", parse_places,
       [&request](const std::vector<int>& places) { request.bodies = places; },
       "Which of IN's, as `spoonbill info` counts them: 1,3-5; all unless told");
-  parser->add_flag("--progress", options->progress, "Show progress even where nobody watches");
-  add_json_option(*parser, options->json);
+  parser.add_flag("--progress", options->progress, "Show progress even where nobody watches");
+  add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return convert(*options, console); }};
 }
 

@@ -1,6 +1,4 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -8,6 +6,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
+#include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/edit/editor.h"
 
@@ -30,40 +29,44 @@ Status edit(const EditSettings& settings, Console& console) {
 
 }  // namespace
 
-CommandEntry add_edit(CLI::App& root) {
+CommandEntry add_edit(OptionSet root) {
   auto settings = std::make_shared<EditSettings>();
-  CLI::App* parser = root.add_subcommand("edit", "Shape a model by touch, in a window");
-  parser->footer(
+  // For tests that work the window from outside.
+  if (const char* log = std::getenv("SPOONBILL_FRAME_LOG")) settings->log = log;
+  const OptionSet parser = root.add_command("edit", "Shape a model by touch, in a window");
+  parser.set_footer(
       "The mouse holds the tool: press to push in, drag to bend, F1 shows the keys. A SpaceMouse steers it\n"
       "when spacenavd runs. Without a model the bundled spoon handle opens. Work is autosaved every second\n"
       "and offered again after a crash.\n"
       "Example: spoonbill edit assets/models/spoon-handle.json");
-  parser->add_option("MODEL", settings->model, "A document (.json)");
+  parser.add_option("MODEL", settings->model, "A document (.json)");
   parser
-      ->add_option_function<std::string>(
+      .add_parsed(
           "--size",
-          [settings](const std::string& text) {
+          [settings](const std::string& text) -> Status {
             const auto size = parse_extent(text, window_side_range, "1280x720");
-            if (!size) throw CLI::ValidationError("--size", size.error().message);
+            if (!size) return size.error();
             settings->width = size->width;
             settings->height = size->height;
+            return {};
           },
           "The window's size; 1280x720 unless told")
-      ->type_name("WxH");
-  parser->add_option("--scale", settings->scale, "The interface's scale, where the display does not tell it")
-      ->check(CLI::Range(1.0, 4.0).description(""));
+      .show_as("WxH");
+  parser.add_option("--scale", settings->scale, "The interface's scale, where the display does not tell it")
+      .limit(Range<double>{1.0, 4.0});
   parser
-      ->add_option_function<std::string>(
+      .add_parsed(
           "--navigation",
-          [settings](const std::string& text) {
+          [settings](const std::string& text) -> Status {
             const auto preset = navigation_named(text);
-            if (!preset) throw CLI::ValidationError("--navigation", preset.error().message);
+            if (!preset) return preset.error();
             settings->navigation = preset.value();
+            return {};
           },
           "How the mouse moves the camera: rhino (default), blender or sculptgl")
-      ->type_name("NAME");
-  parser->add_option("--record", settings->recording, "Record the session from its start")->type_name("FILE");
-  add_instruction_set_option(*parser, settings->instruction_set);
+      .show_as("NAME");
+  parser.add_option("--record", settings->recording, "Record the session from its start").show_as("FILE");
+  add_instruction_set_option(parser, settings->instruction_set);
   return {parser, [settings](Console& console) { return edit(*settings, console); }};
 }
 

@@ -10,6 +10,7 @@
 #include "app/assets_folder.h"
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
+#include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
 #include "app/files/error_cloud.h"
@@ -123,12 +124,12 @@ Result<std::filesystem::path> parse_cloud_name(const std::string& text) {
   return Error{"'" + excerpt(text) + "' does not end in .ply, as a cloud with colours does"};
 }
 
-void add_options(CLI::App& parser, const std::shared_ptr<FitOptions>& options) {
+void add_options(OptionSet parser, const std::shared_ptr<FitOptions>& options) {
   parser
       .add_option("SCAN", options->scan,
                   "Points (.ply, .pcd, .xyz, .txt, .csv, .asc, .pts, .obj) or triangles (.ply, .obj, .stl)")
-      ->required();
-  add_document_output(parser, options->out)->required();
+      .require();
+  add_document_output(parser, options->out).require();
   add_parsed_option(
       parser, "--control", "UxV",
       [](const std::string& text) { return parse_extent(text, control_range, "24x24"); },
@@ -160,17 +161,17 @@ void add_options(CLI::App& parser, const std::shared_ptr<FitOptions>& options) {
 
 }  // namespace
 
-CommandEntry add_fit(CLI::App& root) {
+CommandEntry add_fit(OptionSet root) {
   auto options = std::make_shared<FitOptions>();
-  CLI::App* parser = root.add_subcommand("fit", "Fit B-spline surfaces to a scan");
-  parser->footer(
+  const OptionSet parser = root.add_command("fit", "Fit B-spline surfaces to a scan");
+  parser.set_footer(
       "Outliers and specks are left out, and the kind of shape is found: a sheet (open both ways), a tube\n"
       "(closes in u), or a closed shape (closes in u, with a pole at both ends of v). Knots go where errors\n"
       "are. The report tells how far scan and surface are from each other, both ways, and whether the "
       "surface\n"
       "folds. Closed shapes become solids of clay, others shells.\n"
       "Example: spoonbill fit pear.ply --out pear.json --control 24x24 --errors pear-errors.ply");
-  add_options(*parser, options);
+  add_options(parser, options);
   return {parser, [options](Console& console) { return fit(*options, console); }};
 }
 

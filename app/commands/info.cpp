@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -9,6 +6,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
+#include "app/commands/option_set.h"
 #include "app/files/cad_file.h"
 #include "app/files/file_kind.h"
 #include "app/interrupt.h"
@@ -47,26 +45,35 @@ bool holds_lattices(const Scene& scene) {
                      [](const Body& body) { return lattice_of(body).ok(); });
 }
 
+// As a session would make it, without the memory that undo takes beforehand.
+Result<Simulation> simulation_of(const Document& document, const std::string& source,
+                                 const FeatureMapWatch& watch) {
+  const auto view = view_from_json(document.view, source);
+  if (!view) return view.error();
+  auto simulation = Simulation::make(document.scene, best_instruction_set(), watch);
+  if (!simulation) return Error{source + ": " + simulation.error().message};
+  return simulation;
+}
+
 // What holds no lattice, or more bodies than are sculpted together, may still be looked at, merged and
 // exported; what is refused for another reason is an error here too.
 Status add_simulated(FactSheet& facts, const Document& document, const std::string& source,
                      Console& console) {
   add_document_facts(facts, document);
   MapProgress maps(console);
-  auto session = Session::make(document, source, VirtualDevice::default_specification(),
-                               best_instruction_set(), maps.watch());
-  if (!session) {
-    if (holds_lattices(document.scene)) return session.error();
-    facts.add("Lattice", "none: " + session.error().message, "lattice", nullptr);
-    facts.add("", "", "no_lattice_because", session.error().message);
+  const auto simulation = simulation_of(document, source, maps.watch());
+  if (!simulation) {
+    if (holds_lattices(document.scene)) return simulation.error();
+    facts.add("Lattice", "none: " + simulation.error().message, "lattice", nullptr);
+    facts.add("", "", "no_lattice_because", simulation.error().message);
     return {};
   }
   Snapshot snapshot;
-  write_snapshot(session.value(), snapshot);
+  simulation->write_snapshot(snapshot);
   add_simulation_facts(facts, snapshot, document.scene.bodies);
-  add_elasticity_facts(facts, session->simulation);
-  add_remarks(facts, session->simulation.remarks());
-  add_cell_facts(facts, session->simulation, maps.reports());
+  add_elasticity_facts(facts, simulation.value());
+  add_remarks(facts, simulation->remarks());
+  add_cell_facts(facts, simulation.value(), maps.reports());
   return {};
 }
 
@@ -162,11 +169,11 @@ Status info(const InfoOptions& options, Console& console) {
 
 }  // namespace
 
-CommandEntry add_info(CLI::App& root) {
+CommandEntry add_info(OptionSet root) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* parser =
-      root.add_subcommand("info", "Tell what a model, recording, script, material or CAD file holds");
-  parser->footer(
+  const OptionSet parser =
+      root.add_command("info", "Tell what a model, recording, script, material or CAD file holds");
+  parser.set_footer(
       "A model is reported with its size, its surfaces' degrees, control points and knots, and the lattice "
       "that a\n"
       "simulation would have: nodes, how good its cells are, mass, the Young's modulus felt while "
@@ -174,10 +181,10 @@ CommandEntry add_info(CLI::App& root) {
       "and what the lattice achieves of the material's elasticity along each axis.\n"
       "Example: spoonbill info assets/models/spoon-handle.json");
   parser
-      ->add_option("FILE", options->file,
-                   "A document, script or material (.json), a recording, or a STEP or IGES file")
-      ->required();
-  add_json_option(*parser, options->json);
+      .add_option("FILE", options->file,
+                  "A document, script or material (.json), a recording, or a STEP or IGES file")
+      .require();
+  add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return info(*options, console); }};
 }
 

@@ -14,6 +14,7 @@
 #include "app/commands/common_options.h"
 #include "app/commands/left_out.h"
 #include "app/commands/merge_report.h"
+#include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
 #include "app/commands/watched_work.h"
@@ -255,10 +256,10 @@ Status merge_models(const MergeOptions& options, Console& console) {
 
 }  // namespace
 
-CommandEntry add_merge(CLI::App& root) {
+CommandEntry add_merge(OptionSet root) {
   auto options = std::make_shared<MergeOptions>();
-  CLI::App* parser = root.add_subcommand("merge", "Make one surface of several patches");
-  parser->footer(
+  const OptionSet parser = root.add_command("merge", "Make one surface of several patches");
+  parser.set_footer(
       "The patches are the bodies of all models, counted from 1, and make a row, a ring or a full grid;\n"
       "which edges belong together is found by where they lie. Where the last lie on the first, as of a\n"
       "ring, the result is closed around. Closed bodies that do not touch are opened at their nearest\n"
@@ -267,68 +268,69 @@ CommandEntry add_merge(CLI::App& root) {
       "their trims, discs and rings about their middle. Material and tool are the first model's;\n"
       "regions, loads and supports of the patches are left out.\n"
       "Example: spoonbill merge bowl.json handle.json --continuity C2 --out spoon.json");
-  parser->add_option("MODEL", options->models, "Documents (.json)")->required();
-  add_document_output(*parser, options->out, "The merged document (.json)")->required();
-  parser->add_option("--name", options->name, "Of the result; the file's unless told");
+  parser.add_option("MODEL", options->models, "Documents (.json)").require();
+  add_document_output(parser, options->out, "The merged document (.json)").require();
+  parser.add_option("--name", options->name, "Of the result; the file's unless told");
   const JoinRequest& join = options->request.join;
   const auto length_in = [](Range<double> range) {
     return [range](const std::string& text) { return parse_length(text, range); };
   };
   add_parsed_option(
-      *parser, "--continuity", "C0..C8", parse_continuity,
+      parser, "--continuity", "C0..C8", parse_continuity,
       [options](int order) { options->continuity = order; },
       "Of the joints and a ring's seam, C2 unless told; of a fillet C1, for an arc that is to be C2 with "
       "what it touches gets "
       "tighter than its radius");
   add_parsed_option(
-      *parser, "--tolerance", "LENGTH", length_in(tolerance_range_m),
+      parser, "--tolerance", "LENGTH", length_in(tolerance_range_m),
       [options](double length_m) { options->request.join.tolerance_m = length_m; },
       "How far the result may leave the patches outside blends, " + short_length_text(join.tolerance_m) +
           " unless told");
   add_parsed_option(
-      *parser, "--blend", "LENGTH", length_in(blend_range_m),
+      parser, "--blend", "LENGTH", length_in(blend_range_m),
       [options](double length_m) { options->request.join.blend_m = length_m; },
       "Cut patches back where they are apart or do not meet as smoothly as asked, for a blend of this "
       "length; "
       "without it a kink is rounded within the tolerance, and a small gap that is no straight way on blended "
       "over a piece between two knots, 10 to 40 times the gap");
   parser
-      ->add_option_function<std::vector<std::string>>(
+      .add_parsed_list(
           "--edges",
-          [options](const std::vector<std::string>& texts) {
+          [options](const std::vector<std::string>& texts) -> Status {
             for (const std::string& text : texts) {
               const auto pair = parse_edges(text);
-              if (!pair) throw CLI::ValidationError("--edges", pair.error().message);
+              if (!pair) return pair.error();
               options->request.chosen.push_back(pair.value());
             }
+            return {};
           },
           "Join these edges, instead of those found: 1.v_end:2.v_start, or 1.v_end:-2.v_start where the "
           "second runs against the first and 1.v_end:+2.v_start where along it; once for each joint")
-      ->type_name("EDGE:EDGE");
-  CLI::Option* twist = add_parsed_option(
-      *parser, "--twist", "SHARE", parse_twist,
+      .show_as("EDGE:EDGE");
+  CommandOption twist = add_parsed_option(
+      parser, "--twist", "SHARE", parse_twist,
       [options](double share) { options->request.join.twist = share; },
       "Turn each ring by this share of a turn from where it fits the one before best");
-  CLI::Option* crossing = parser->add_flag("--intersect", options->crossing,
+  CommandOption crossing = parser.add_flag("--intersect", options->crossing,
                                            "The patches cross: each keeps what lies before the other");
   add_parsed_option(
-      *parser, "--fillet", "LENGTH", length_in(fillet_range_m),
+      parser, "--fillet", "LENGTH", length_in(fillet_range_m),
       [options](double length_m) { options->fillet_m = length_m; },
       "Round the corner in which they cross with this radius")
-      ->needs(crossing);
+      .need(crossing);
   // By then all have been read, in whichever order they came.
-  parser->final_callback([options] {
+  parser.set_final_check([options]() -> Status {
     if (options->crossing && options->fillet_m == 0.0 && options->continuity.value_or(0) > 0) {
-      throw CLI::ValidationError(
-          "--continuity",
-          "without --fillet bodies that cross meet at an edge, which is C0; give a radius "
-          "with --fillet, or leave it out");
+      return Error{
+          "--continuity: without --fillet bodies that cross meet at an edge, which is C0; give a radius "
+          "with --fillet, or leave it out"};
     }
+    return {};
   });
-  crossing->excludes(parser->get_option("--edges"));
-  crossing->excludes(parser->get_option("--blend"));
-  crossing->excludes(twist);
-  add_json_option(*parser, options->json);
+  crossing.exclude(parser.option("--edges"));
+  crossing.exclude(parser.option("--blend"));
+  crossing.exclude(twist);
+  add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return merge_models(*options, console); }};
 }
 

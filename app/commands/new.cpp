@@ -11,6 +11,7 @@
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/new_kinds.h"
+#include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
 #include "app/interrupt.h"
@@ -123,14 +124,14 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   if (options.control) fit.control_counts = {{options.control->width, options.control->height}};
   auto fitted = fit_with_progress(options, made.value(), fit, console);
   if (!fitted) return fitted.error();
-  const std::string name = options.name.empty() ? kind.parser->get_name() : options.name;
+  const std::string name = options.name.empty() ? kind.parser.name() : options.name;
   const Document document =
       starting_document(name, fitted->surface, material.value(), made->shell_thickness_m);
   if (Status written = write_document(document, options.out); !written) return written;
 
   FactSheet facts;
   facts.add("File", options.out.string(), "file", options.out.string());
-  facts.add("Kind", kind.parser->get_name(), "kind", kind.parser->get_name());
+  facts.add("Kind", kind.parser.name(), "kind", kind.parser.name());
   add_size_fact(facts, extent_of(fitted->surface));
   add_shape_facts(facts, made->shape, fitted.value(), fit.tolerance_m);
   std::vector<std::string> remarks;
@@ -142,7 +143,7 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   return {};
 }
 
-void add_fit_options(CLI::App& parser, NewOptions& options) {
+void add_fit_options(OptionSet parser, NewOptions& options) {
   add_parsed_option(
       parser, "--control", "UxV",
       [](const std::string& text) { return parse_extent(text, control_range, "24x24"); },
@@ -158,28 +159,28 @@ void add_fit_options(CLI::App& parser, NewOptions& options) {
 
 }  // namespace
 
-CommandEntry add_new(CLI::App& root) {
+CommandEntry add_new(OptionSet root) {
   auto options = std::make_shared<NewOptions>();
-  CLI::App* parser = root.add_subcommand("new", "Make a shape to start from");
-  parser->footer(
+  const OptionSet parser = root.add_command("new", "Make a shape to start from");
+  parser.set_footer(
       "Each shape is one B-spline surface of real size, about the origin, y up, fitted to the exact shape.\n"
       "`spoonbill new KIND --help` tells the sizes of a kind; each has a unit: mm, cm, m or in.\n"
       "Example: spoonbill new box --size 60x40x20mm --rounding 3mm --out box.json");
-  parser->require_subcommand(1);
-  std::vector<NewKind> kinds = add_lump_kinds(*parser);
-  for (NewKind& kind : add_swept_kinds(*parser)) kinds.push_back(std::move(kind));
+  parser.require_command();
+  std::vector<NewKind> kinds = add_lump_kinds(parser);
+  for (NewKind& kind : add_swept_kinds(parser)) kinds.push_back(std::move(kind));
   for (const NewKind& kind : kinds) {
-    add_fit_options(*kind.parser, *options);
-    kind.parser->add_option("--material", options->material,
-                            "One that comes with the program, or a part of its name; modelling-clay unless "
-                            "told");
-    kind.parser->add_option("--name", options->name, "Of the body and the document; its kind unless told");
-    add_document_output(*kind.parser, options->out)->required();
-    add_json_option(*kind.parser, options->json);
+    add_fit_options(kind.parser, *options);
+    kind.parser.add_option("--material", options->material,
+                           "One that comes with the program, or a part of its name; modelling-clay unless "
+                           "told");
+    kind.parser.add_option("--name", options->name, "Of the body and the document; its kind unless told");
+    add_document_output(kind.parser, options->out).require();
+    add_json_option(kind.parser, options->json);
   }
   return {parser, [options, kinds = std::move(kinds)](Console& console) {
             const auto chosen = std::find_if(kinds.begin(), kinds.end(),
-                                             [](const NewKind& kind) { return kind.parser->parsed(); });
+                                             [](const NewKind& kind) { return kind.parser.is_chosen(); });
             return make_new(*options, *chosen, console);
           }};
 }

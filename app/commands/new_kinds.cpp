@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/commands/parsed_option.h"
 #include "engine/material/lattice/shell_lattice.h"
@@ -16,13 +17,13 @@ namespace {
 // Wider than any shape may be: those say themselves what they need.
 constexpr Range<double> length_range_m{-1e3, 1e3};
 
-std::shared_ptr<std::vector<double>> add_size(CLI::App& parser, std::size_t count, const std::string& help) {
+std::shared_ptr<std::vector<double>> add_size(OptionSet parser, std::size_t count, const std::string& help) {
   auto size = std::make_shared<std::vector<double>>();
   add_parsed_option(
       parser, "--size", count == 2 ? "XxZ" : "XxYxZ",
       [count](const std::string& text) { return parse_lengths(text, count, length_range_m); },
       [size](const std::vector<double>& lengths) { *size = lengths; }, help)
-      ->required();
+      .require();
   return size;
 }
 
@@ -32,17 +33,17 @@ Result<NewShape> new_shape(const LumpSize& size) {
   return NewShape{std::move(shape).value(), {}, reach_m(size)};
 }
 
-NewKind add_sphere(CLI::App& root) {
-  CLI::App* parser = root.add_subcommand("sphere", "A ball, its poles up and down");
-  const Length radius = add_length(*parser, "--radius", "Its radius; 30mm unless told");
+NewKind add_sphere(OptionSet root) {
+  const OptionSet parser = root.add_command("sphere", "A ball, its poles up and down");
+  const Length radius = add_length(parser, "--radius", "Its radius; 30mm unless told");
   return {parser, [radius] { return new_shape(SphereSize{radius->value_or(SphereSize().radius_m)}); }};
 }
 
-NewKind add_box(CLI::App& root) {
-  CLI::App* parser = root.add_subcommand("box", "A box with rounded edges");
-  const auto sides = add_size(*parser, 3, "Along x, y and z, like 60x40x20mm");
+NewKind add_box(OptionSet root) {
+  const OptionSet parser = root.add_command("box", "A box with rounded edges");
+  const auto sides = add_size(parser, 3, "Along x, y and z, like 60x40x20mm");
   const Length rounding =
-      add_length(*parser, "--rounding",
+      add_length(parser, "--rounding",
                  "Of the edges about its end faces, those of its longest side unless they are slender; the "
                  "four edges between have twice that. A tenth of the shortest side unless told, at most two "
                  "fifths of it");
@@ -53,11 +54,11 @@ NewKind add_box(CLI::App& root) {
           }};
 }
 
-NewKind add_cylinder(CLI::App& root) {
-  CLI::App* parser = root.add_subcommand("cylinder", "A cylinder with rounded edges, upright");
-  const Length radius = add_length(*parser, "--radius", "Its radius; 20mm unless told");
-  const Length height = add_length(*parser, "--height", "From face to face; 60mm unless told");
-  const Length rounding = add_length(*parser, "--rounding",
+NewKind add_cylinder(OptionSet root) {
+  const OptionSet parser = root.add_command("cylinder", "A cylinder with rounded edges, upright");
+  const Length radius = add_length(parser, "--radius", "Its radius; 20mm unless told");
+  const Length height = add_length(parser, "--height", "From face to face; 60mm unless told");
+  const Length rounding = add_length(parser, "--rounding",
                                      "Of both edges: a tenth of the shorter of diameter and height unless "
                                      "told, at most half of it");
   return {parser, [=] {
@@ -69,12 +70,12 @@ NewKind add_cylinder(CLI::App& root) {
           }};
 }
 
-NewKind add_cone(CLI::App& root) {
-  CLI::App* parser = root.add_subcommand("cone", "A cone, or a part of one, rounded within the sharp one");
-  const Length radius = add_length(*parser, "--radius", "Of its base; 30mm unless told");
-  const Length height = add_length(*parser, "--height", "To the sharp tip or the top; 60mm unless told");
-  const Length top = add_length(*parser, "--top", "The radius of its top; none unless told: a tip");
-  const Length rounding = add_length(*parser, "--rounding",
+NewKind add_cone(OptionSet root) {
+  const OptionSet parser = root.add_command("cone", "A cone, or a part of one, rounded within the sharp one");
+  const Length radius = add_length(parser, "--radius", "Of its base; 30mm unless told");
+  const Length height = add_length(parser, "--height", "To the sharp tip or the top; 60mm unless told");
+  const Length top = add_length(parser, "--top", "The radius of its top; none unless told: a tip");
+  const Length rounding = add_length(parser, "--rounding",
                                      "Of edges and tip; a tenth of the shortest of its diameters and its "
                                      "height unless told");
   return {parser, [=] {
@@ -87,17 +88,17 @@ NewKind add_cone(CLI::App& root) {
           }};
 }
 
-NewKind add_plate(CLI::App& root) {
-  CLI::App* parser = root.add_subcommand(
+NewKind add_plate(OptionSet root) {
+  const OptionSet parser = root.add_command(
       "plate", "A level plate: a closed slab with a half round rim, or an open sheet with a thickness");
-  const auto sides = add_size(*parser, 2, "Along x and z, like 100x60mm");
-  const Length thickness = add_length(*parser, "--thickness", "3mm unless told");
-  const Length corner = add_length(*parser, "--corner",
+  const auto sides = add_size(parser, 2, "Along x and z, like 100x60mm");
+  const Length thickness = add_length(parser, "--thickness", "3mm unless told");
+  const Length corner = add_length(parser, "--corner",
                                    "The radius of its four corners, seen from above, at least the thickness; "
                                    "a tenth of its width unless told");
   auto sheet = std::make_shared<bool>(false);
-  parser->add_flag("--sheet", *sheet, "An open surface, whose body is a shell of the thickness below it")
-      ->excludes(parser->get_option("--corner"));
+  parser.add_flag("--sheet", *sheet, "An open surface, whose body is a shell of the thickness below it")
+      .exclude(parser.option("--corner"));
   return {parser, [=]() -> Result<NewShape> {
             PlateSize size{(*sides)[0], (*sides)[1]};
             size.thickness_m = thickness->value_or(size.thickness_m);
@@ -113,10 +114,10 @@ NewKind add_plate(CLI::App& root) {
           }};
 }
 
-NewKind add_torus(CLI::App& root) {
-  CLI::App* parser = root.add_subcommand("torus", "A ring, lying level, closed both ways");
-  const Length ring = add_length(*parser, "--ring", "The radius of the ring's middle line; 40mm unless told");
-  const Length tube = add_length(*parser, "--tube", "The radius of its tube; 10mm unless told");
+NewKind add_torus(OptionSet root) {
+  const OptionSet parser = root.add_command("torus", "A ring, lying level, closed both ways");
+  const Length ring = add_length(parser, "--ring", "The radius of the ring's middle line; 40mm unless told");
+  const Length tube = add_length(parser, "--tube", "The radius of its tube; 10mm unless told");
   return {parser, [=] {
             TorusSize size;
             size.ring_radius_m = ring->value_or(size.ring_radius_m);
@@ -127,7 +128,7 @@ NewKind add_torus(CLI::App& root) {
 
 }  // namespace
 
-Length add_length(CLI::App& parser, const std::string& name, const std::string& help) {
+Length add_length(OptionSet parser, const std::string& name, const std::string& help) {
   auto length = std::make_shared<std::optional<double>>();
   add_parsed_option(
       parser, name, "LENGTH", [](const std::string& text) { return parse_length(text, length_range_m); },
@@ -135,7 +136,7 @@ Length add_length(CLI::App& parser, const std::string& name, const std::string& 
   return length;
 }
 
-std::vector<NewKind> add_lump_kinds(CLI::App& parser) {
+std::vector<NewKind> add_lump_kinds(OptionSet parser) {
   return {add_sphere(parser), add_box(parser),   add_cylinder(parser),
           add_cone(parser),   add_plate(parser), add_torus(parser)};
 }

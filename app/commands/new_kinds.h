@@ -8,12 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "app/commands/option_set.h"
 #include "engine/base/result.h"
 #include "engine/shapes/exact_shape.h"
-
-namespace CLI {
-class App;
-}
 
 namespace spoonbill {
 
@@ -24,17 +21,17 @@ struct NewShape {
 };
 
 struct NewKind {
-  CLI::App* parser;  // owned by the one above it
+  OptionSet parser;
   std::function<Result<NewShape>()> make;
 };
 
 // Those of a few sizes: sphere, box, cylinder, cone, plate, torus.
-std::vector<NewKind> add_lump_kinds(CLI::App& parser);
+std::vector<NewKind> add_lump_kinds(OptionSet parser);
 // Those made from points: tube, lathe, loft.
-std::vector<NewKind> add_swept_kinds(CLI::App& parser);
+std::vector<NewKind> add_swept_kinds(OptionSet parser);
 
 // An option that is a length, once the command line has been read.
 using Length = std::shared_ptr<std::optional<double>>;
-Length add_length(CLI::App& parser, const std::string& name, const std::string& help);
+Length add_length(OptionSet parser, const std::string& name, const std::string& help);
 
 }  // namespace spoonbill

@@ -1,11 +1,9 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "app/commands/new_kinds.h"
+#include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/start/point_table.h"
 #include "engine/material/lattice/shell_lattice.h"
@@ -18,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-Length add_thickness(CLI::App& parser) {
+Length add_thickness(OptionSet parser) {
   return add_length(parser, "--thickness", "Of the shell that an open shape is; 2mm unless told");
 }
 
@@ -45,23 +43,23 @@ Result<std::vector<Vector3>> read_path(const std::string& path) {
   return points;
 }
 
-NewKind add_tube(CLI::App& root) {
-  CLI::App* parser = root.add_subcommand("tube", "A tube along a line, with round ends");
+NewKind add_tube(OptionSet root) {
+  const OptionSet parser = root.add_command("tube", "A tube along a line, with round ends");
   auto path = std::make_shared<std::string>();
   parser
-      ->add_option("--path", *path,
-                   "The points that its middle line goes through: a CSV file with the columns "
-                   "x_mm,y_mm,z_mm, or the points themselves, like '0,0,0;30,10,0;60,0,0mm'")
-      ->required()
-      ->type_name("FILE|POINTS");
-  const Length radius = add_length(*parser, "--radius", "Of a round section; 5mm unless told");
-  const Length width = add_length(*parser, "--width", "Of an elliptic section, level at its start");
-  const Length height = add_length(*parser, "--height", "Of an elliptic section");
-  CLI::Option *round = parser->get_option("--radius"), *wide = parser->get_option("--width"),
-              *high = parser->get_option("--height");
-  round->excludes(wide)->excludes(high);
-  wide->needs(high);
-  high->needs(wide);
+      .add_option("--path", *path,
+                  "The points that its middle line goes through: a CSV file with the columns "
+                  "x_mm,y_mm,z_mm, or the points themselves, like '0,0,0;30,10,0;60,0,0mm'")
+      .require()
+      .show_as("FILE|POINTS");
+  const Length radius = add_length(parser, "--radius", "Of a round section; 5mm unless told");
+  const Length width = add_length(parser, "--width", "Of an elliptic section, level at its start");
+  const Length height = add_length(parser, "--height", "Of an elliptic section");
+  const CommandOption round = parser.option("--radius"), wide = parser.option("--width"),
+                      high = parser.option("--height");
+  round.exclude(wide).exclude(high);
+  wide.need(high);
+  high.need(wide);
   return {parser, [=]() -> Result<NewShape> {
             const auto points = read_path(*path);
             if (!points) return points.error();
@@ -76,17 +74,17 @@ NewKind add_tube(CLI::App& root) {
           }};
 }
 
-NewKind add_lathe(CLI::App& root) {
-  CLI::App* parser = root.add_subcommand("lathe", "A profile turned about the upright axis");
+NewKind add_lathe(OptionSet root) {
+  const OptionSet parser = root.add_command("lathe", "A profile turned about the upright axis");
   auto profile = std::make_shared<std::string>();
   parser
-      ->add_option(
+      .add_option(
           "--profile", *profile,
           "A CSV file with the columns radius_mm,height_mm: the points that the profile goes through. "
           "An end of radius 0 closes the shape; a last point that is the first makes a ring")
-      ->required()
-      ->type_name("FILE");
-  const Length thickness = add_thickness(*parser);
+      .require()
+      .show_as("FILE");
+  const Length thickness = add_thickness(parser);
   return {parser, [=]() -> Result<NewShape> {
             const auto table = read_point_table(*profile, {"radius", "height"}, false);
             if (!table) return table.error();
@@ -110,24 +108,23 @@ Result<std::vector<std::vector<Vector3>>> read_sections(const std::string& file)
   return sections;
 }
 
-NewKind add_loft(CLI::App& root) {
-  CLI::App* parser = root.add_subcommand("loft", "A surface through sections");
+NewKind add_loft(OptionSet root) {
+  const OptionSet parser = root.add_command("loft", "A surface through sections");
   auto file = std::make_shared<std::string>();
   parser
-      ->add_option(
-          "--sections", *file,
-          "A CSV file with the columns section,x_mm,y_mm,z_mm: the points of each section in their "
-          "order, rows with the same number together. A first or last section of one point is a pole")
-      ->required()
-      ->type_name("FILE");
+      .add_option("--sections", *file,
+                  "A CSV file with the columns section,x_mm,y_mm,z_mm: the points of each section in their "
+                  "order, rows with the same number together. A first or last section of one point is a pole")
+      .require()
+      .show_as("FILE");
   const auto open = std::make_shared<bool>(false), no_caps = std::make_shared<bool>(false);
-  CLI::Option* sheet =
-      parser->add_flag("--open", *open, "Sections are lines, not rings: the shape is a sheet");
-  CLI::Option* pipe = parser->add_flag("--no-caps", *no_caps, "Leave both ends open")->excludes(sheet);
-  const Length cap = add_length(*parser, "--cap",
+  CommandOption sheet =
+      parser.add_flag("--open", *open, "Sections are lines, not rings: the shape is a sheet");
+  CommandOption pipe = parser.add_flag("--no-caps", *no_caps, "Leave both ends open").exclude(sheet);
+  const Length cap = add_length(parser, "--cap",
                                 "How far the ends bulge; half the mean radius of the ring there unless told");
-  parser->get_option("--cap")->excludes(sheet)->excludes(pipe);
-  const Length thickness = add_thickness(*parser);
+  parser.option("--cap").exclude(sheet).exclude(pipe);
+  const Length thickness = add_thickness(parser);
   return {parser, [=]() -> Result<NewShape> {
             auto sections = read_sections(*file);
             if (!sections) return sections.error();
@@ -140,7 +137,7 @@ NewKind add_loft(CLI::App& root) {
 
 }  // namespace
 
-std::vector<NewKind> add_swept_kinds(CLI::App& parser) {
+std::vector<NewKind> add_swept_kinds(OptionSet parser) {
   return {add_tube(parser), add_lathe(parser), add_loft(parser)};
 }
 

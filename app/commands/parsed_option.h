@@ -1,27 +1,27 @@
 // An option whose text is made a value of as the command line is read, so that wrong use is told then.
 #pragma once
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <string>
+
+#include "app/commands/option_set.h"
 
 namespace spoonbill {
 
 // `parse` makes a Result of the text, `take` keeps its value; the form is what --help shows for it.
 template <class Parse, class Take>
-CLI::Option* add_parsed_option(CLI::App& parser, const std::string& name, const char* form,
-                               const Parse& parse, const Take& take, const std::string& help) {
+CommandOption add_parsed_option(OptionSet parser, const std::string& name, const char* form,
+                                const Parse& parse, const Take& take, const std::string& help) {
   return parser
-      .add_option_function<std::string>(
+      .add_parsed(
           name,
-          [=](const std::string& text) {
+          [=](const std::string& text) -> Status {
             auto value = parse(text);
-            if (!value) throw CLI::ValidationError(name, value.error().message);
+            if (!value) return value.error();
             take(value.value());
+            return {};
           },
           help)
-      ->type_name(form);
+      .show_as(form);
 }
 
 }  // namespace spoonbill

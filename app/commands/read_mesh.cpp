@@ -1,14 +1,12 @@
 #include <sys/prctl.h>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <csignal>
 #include <filesystem>
 #include <memory>
 #include <new>
 
 #include "app/commands/command.h"
+#include "app/commands/option_set.h"
 #include "app/files/mesh_stream.h"
 #include "engine/exchange/mesh_import.h"
 
@@ -35,11 +33,12 @@ Status read_mesh(const std::filesystem::path& file, Console& console) {
 
 }  // namespace
 
-CommandEntry add_read_mesh(CLI::App& root) {
+CommandEntry add_read_mesh(OptionSet root) {
   auto file = std::make_shared<std::filesystem::path>();
-  CLI::App* parser = root.add_subcommand("read-mesh", "Hand a mesh file's triangles to the program itself");
-  parser->group("");  // hidden
-  parser->add_option("FILE", *file, "A mesh (.obj, .stl or .ply)")->required();
+  const OptionSet parser =
+      root.add_command("read-mesh", "Hand a mesh file's triangles to the program itself");
+  parser.hide();
+  parser.add_option("FILE", *file, "A mesh (.obj, .stl or .ply)").require();
   return {parser, [file](Console& console) {
             // Whoever asked may be stopped while a file keeps this one busy.
             prctl(PR_SET_PDEATHSIG, SIGKILL);

@@ -1,8 +1,5 @@
 #include <sys/prctl.h>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <csignal>
 #include <filesystem>
 #include <memory>
@@ -10,6 +7,7 @@
 #include <string>
 
 #include "app/commands/command.h"
+#include "app/commands/option_set.h"
 #include "app/files/mesh_stream.h"
 #include "engine/exchange/file.h"
 #include "engine/exchange/file_format.h"
@@ -58,11 +56,11 @@ Status read_points(const std::filesystem::path& file, Console& console) {
 
 }  // namespace
 
-CommandEntry add_read_points(CLI::App& root) {
+CommandEntry add_read_points(OptionSet root) {
   auto file = std::make_shared<std::filesystem::path>();
-  CLI::App* parser = root.add_subcommand("read-points", "Hand a cloud's points to the program itself");
-  parser->group("");  // hidden
-  parser->add_option("FILE", *file, "A cloud (.ply, .pcd, .xyz, .txt, .csv, .asc, .pts or .obj)")->required();
+  const OptionSet parser = root.add_command("read-points", "Hand a cloud's points to the program itself");
+  parser.hide();
+  parser.add_option("FILE", *file, "A cloud (.ply, .pcd, .xyz, .txt, .csv, .asc, .pts or .obj)").require();
   return {parser, [file](Console& console) {
             // Whoever asked may be stopped while a file keeps this one busy.
             prctl(PR_SET_PDEATHSIG, SIGKILL);

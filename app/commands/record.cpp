@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -8,6 +5,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
+#include "app/commands/option_set.h"
 #include "app/files/file_kind.h"
 #include "app/files/recording_place.h"
 #include "app/interrupt.h"
@@ -178,25 +176,25 @@ Status record(const RecordOptions& options, Console& console) {
 
 }  // namespace
 
-CommandEntry add_record(CLI::App& root) {
+CommandEntry add_record(OptionSet root) {
   auto options = std::make_shared<RecordOptions>();
-  CLI::App* parser = root.add_subcommand(
-      "record", "Play a script of tool motions on the model that it names, and record it");
-  parser->footer(
+  const OptionSet parser =
+      root.add_command("record", "Play a script of tool motions on the model that it names, and record it");
+  parser.set_footer(
       "An imitated hand of known mass and stiffness follows the script and feels the material's force; the "
       "path\n"
       "that results is recorded, tick by tick, with the model. A recording as the source keeps its path and "
       "gets\n"
       "this version's states: do that when `replay` says that another version made it.\n"
       "Example: spoonbill record assets/recordings/spoon-handle-bend.script.json --out bend.recording.jsonl");
-  parser->add_option("SOURCE", options->source, "A script (.json), or a recording")->required();
-  parser->add_option("--out", options->out, "The recording to write")->required();
-  CLI::Option* live =
-      parser->add_flag("--live", options->live,
-                       "Perform the script in real time on the 1 kHz thread, and report how well that held");
-  parser->add_flag("--draw", options->draw, "Draw sixty frames a second beside it, into memory")->needs(live);
-  add_instruction_set_option(*parser, options->instruction_set);
-  add_json_option(*parser, options->json);
+  parser.add_option("SOURCE", options->source, "A script (.json), or a recording").require();
+  parser.add_option("--out", options->out, "The recording to write").require();
+  CommandOption live =
+      parser.add_flag("--live", options->live,
+                      "Perform the script in real time on the 1 kHz thread, and report how well that held");
+  parser.add_flag("--draw", options->draw, "Draw sixty frames a second beside it, into memory").need(live);
+  add_instruction_set_option(parser, options->instruction_set);
+  add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return record(*options, console); }};
 }
 

@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -8,6 +5,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
+#include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/files/recording_place.h"
 #include "app/frames/marked_files.h"
@@ -207,52 +205,54 @@ Status replay(const ReplayOptions& options, Console& console) {
   return replay_recording(options, recording.value(), console);
 }
 
-void add_picture_options(CLI::App& parser, const std::shared_ptr<ReplayOptions>& options) {
+void add_picture_options(OptionSet parser, const std::shared_ptr<ReplayOptions>& options) {
   parser.add_option("--out", options->out, "The folder for frame-####.png and contact-sheet.png")
-      ->type_name("DIR");
+      .show_as("DIR");
   parser
-      .add_option_function<std::string>(
+      .add_parsed(
           "--size",
-          [options](const std::string& text) {
+          [options](const std::string& text) -> Status {
             const auto size = parse_extent(text, picture_side_range, "1280x720");
-            if (!size) throw CLI::ValidationError("--size", size.error().message);
+            if (!size) return size.error();
             options->size = size.value();
+            return {};
           },
           "The frames' size in pixels; 1280x720 unless told. The panel needs 750x700")
-      ->type_name("WxH");
+      .show_as("WxH");
   parser.add_option("--every", options->every, "Draw only each N-th frame; 1 unless told")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}).description(""))
-      ->type_name("N");
+      .limit(Range<std::uint64_t>{1, 1000000})
+      .show_as("N");
   parser
       .add_option("--video", options->video,
                   "Also make a video, when ffmpeg is installed; the ending tells the format")
-      ->type_name("FILE");
+      .show_as("FILE");
   parser.add_flag("--no-frames", options->no_frames, "Draw nothing; only compute and compare");
 }
 
 }  // namespace
 
-CommandEntry add_replay(CLI::App& root) {
+CommandEntry add_replay(OptionSet root) {
   auto options = std::make_shared<ReplayOptions>();
-  CLI::App* parser = root.add_subcommand("replay", "Replay a recording and draw what happened");
-  parser->footer(
+  const OptionSet parser = root.add_command("replay", "Replay a recording and draw what happened");
+  parser.set_footer(
       "Frame k shows the state after floor(k * 1000 / 60) ticks of 1 ms, on any machine and load. The states "
       "are\n"
       "compared with those in the recording; a difference is an error that names the tick. A recording that "
       "was\n"
       "cut replays up to the cut. Frames of an earlier replay in DIR are replaced.\n"
       "Example: spoonbill replay assets/recordings/spoon-handle-bend.recording.jsonl --out output/bend");
-  parser->add_option("RECORDING", options->recording, "A recording (.recording.jsonl)")->required();
-  add_picture_options(*parser, options);
+  parser.add_option("RECORDING", options->recording, "A recording (.recording.jsonl)").require();
+  add_picture_options(parser, options);
   parser
-      ->add_option("--rerecord", options->rerecord,
-                   "Write what was replayed as a recording, the same bytes again")
-      ->type_name("FILE");
-  add_instruction_set_option(*parser, options->instruction_set);
-  parser->add_flag("--progress", options->progress, "Show the progress even when nobody watches");
-  add_json_option(*parser, options->json);
-  parser->callback([options] {
-    if (options->out.empty() && !options->no_frames) throw CLI::RequiredError("--out");
+      .add_option("--rerecord", options->rerecord,
+                  "Write what was replayed as a recording, the same bytes again")
+      .show_as("FILE");
+  add_instruction_set_option(parser, options->instruction_set);
+  parser.add_flag("--progress", options->progress, "Show the progress even when nobody watches");
+  add_json_option(parser, options->json);
+  parser.set_final_check([options]() -> Status {
+    if (options->out.empty() && !options->no_frames) return Error{"--out is required"};
+    return {};
   });
   return {parser, [options](Console& console) { return replay(*options, console); }};
 }

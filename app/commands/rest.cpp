@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -8,6 +5,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
+#include "app/commands/option_set.h"
 #include "app/files/document_file.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/progress_bar.h"
@@ -112,19 +110,19 @@ Status rest(const RestOptions& options, Console& console) {
 
 }  // namespace
 
-CommandEntry add_rest(CLI::App& root) {
+CommandEntry add_rest(OptionSet root) {
   auto options = std::make_shared<RestOptions>();
-  CLI::App* parser = root.add_subcommand("rest", "Tell how bodies rest under gravity and their loads");
-  parser->footer(
+  const OptionSet parser = root.add_command("rest", "Tell how bodies rest under gravity and their loads");
+  parser.set_footer(
       "Each body by itself, with the stiffness of its material, in equilibrium under the document's "
       "gravity,\n"
       "its loads and its supports: how far it bends, what its supports bear, how much it is strained. The\n"
       "ground and other bodies do nothing here, and what flows or creeps counts as elastic.\n"
       "Example: spoonbill rest assets/models/loaded-handle.json");
-  parser->add_option("MODEL", options->model, "A document (.json)")->required();
-  add_document_output(*parser, options->out,
+  parser.add_option("MODEL", options->model, "A document (.json)").require();
+  add_document_output(parser, options->out,
                       "A document with the bodies as they rest, without the loads that bent them");
-  add_json_option(*parser, options->json);
+  add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return rest(*options, console); }};
 }
 

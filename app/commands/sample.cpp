@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <array>
 #include <charconv>
 #include <filesystem>
@@ -9,6 +6,7 @@
 #include <vector>
 
 #include "app/commands/command.h"
+#include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/files/document_file.h"
 #include "app/files/output_file.h"
@@ -111,26 +109,27 @@ Status sample(const SampleOptions& options, Console& console) {
 
 }  // namespace
 
-CommandEntry add_sample(CLI::App& root) {
+CommandEntry add_sample(OptionSet root) {
   auto options = std::make_shared<SampleOptions>();
-  CLI::App* parser =
-      root.add_subcommand("sample", "Write points and unit normals of a model's surfaces as CSV");
-  parser->footer(
+  const OptionSet parser =
+      root.add_command("sample", "Write points and unit normals of a model's surfaces as CSV");
+  parser.set_footer(
       "The grid spans the whole knot domain of each surface, both ends included; the seam of a periodic\n"
       "direction therefore appears twice. Lengths are metres. Numbers read back to the same bits.\n"
       "Example: spoonbill sample assets/models/spoon-handle.json --grid 50x50 --out points.csv");
-  parser->add_option("MODEL", options->model, "A document (.json)")->required();
+  parser.add_option("MODEL", options->model, "A document (.json)").require();
   parser
-      ->add_option_function<std::string>(
+      .add_parsed(
           "--grid",
-          [options](const std::string& text) {
+          [options](const std::string& text) -> Status {
             const auto grid = parse_extent(text, grid_side_range, "50x50");
-            if (!grid) throw CLI::ValidationError("--grid", grid.error().message);
+            if (!grid) return grid.error();
             options->grid = grid.value();
+            return {};
           },
           "Points along u and along v; 50x50 unless told")
-      ->type_name("UxV");
-  parser->add_option("--out", options->out, "The CSV file, or - for standard output")->required();
+      .show_as("UxV");
+  parser.add_option("--out", options->out, "The CSV file, or - for standard output").require();
   return {parser, [options](Console& console) { return sample(*options, console); }};
 }
 

@@ -78,6 +78,11 @@ Result<std::unique_ptr<Editor>> Editor::make(const EditSettings& settings) {
                                             mailbox, start, view.value(),
                                             EditedDocument(folder, settings.model)));
   if (!state) editor->messages_.add_problem(state.error().message);
+  if (!settings.log.empty()) {
+    auto log = FrameLog::open(settings.log);
+    if (!log) return log.error();
+    editor->log_ = std::move(log).value();
+  }
   return editor;
 }
 
@@ -137,12 +142,37 @@ Status Editor::frame(double seconds) {
   if (space_mouse_) inputs_.update(*space_mouse_, seconds);
   budget_.apply(shown_);
   if (Status drawn = window_.end_frame(frame.snapshot, shown_); !drawn) return drawn;
+  if (log_) log_->add(shown_frame(frame));
   if (screenshot_due_) write_screenshot();
   if (window_.window().should_close() && !unsaved_.asking()) {
     window_.window().set_should_close(false);
     leave(Leave::quit);
   }
   return {};
+}
+
+ShownFrame Editor::shown_frame(const LiveFrame& frame) const {
+  ShownFrame shown;
+  shown.tick = frame.snapshot.tick;
+  shown.session = frame.session;
+  shown.deed = frame.deed;
+  shown.recording = frame.recording;
+  shown.in_stroke = frame.facts.in_stroke;
+  shown.can_undo = frame.facts.can_undo;
+  shown.can_redo = frame.facts.can_redo;
+  shown.pressing = hand_.pressing();
+  shown.prompt = files_.asking()                            ? "file"
+                 : lumps_.asking()                          ? "lump"
+                 : unsaved_.asking() || left_over_.asking() ? "question"
+                                                            : "";
+  if (files_.asking()) shown.typed = files_.typed();
+  const ImVec2 pointer = ImGui::GetIO().MousePos;
+  if (ImGui::IsMousePosValid(&pointer)) {
+    shown.pointer_x_px = pointer.x;
+    shown.pointer_y_px = pointer.y;
+  }
+  shown.hand_lag_m = (frame.snapshot.tool.device.position_m - hand_.target_m()).norm();
+  return shown;
 }
 
 void Editor::take_news(const LiveFrame& frame, double seconds) {

@@ -11,6 +11,7 @@
 #include "app/edit/edit_window.h"
 #include "app/edit/edited_document.h"
 #include "app/edit/file_prompt.h"
+#include "app/edit/frame_log.h"
 #include "app/edit/lump_prompt.h"
 #include "app/edit/menu.h"
 #include "app/edit/message_line.h"
@@ -32,6 +33,7 @@ struct EditSettings {
   std::optional<double> scale;
   NavigationPreset navigation = NavigationPreset::rhino;
   std::filesystem::path recording;  // begins with the session; empty for none
+  std::filesystem::path log;        // a FrameLog; empty for none
   InstructionSet instruction_set = best_instruction_set();
   bool real_time = true;
 };
@@ -63,6 +65,7 @@ class Editor {
 
   Status frame(double seconds);
   void start();
+  ShownFrame shown_frame(const LiveFrame& frame) const;
   void take_news(const LiveFrame& frame, double seconds);
   void take_answers(const LiveFrame& frame);
   Status lay_out(const LiveFrame& frame, double seconds);
@@ -124,6 +127,7 @@ class Editor {
   LivePlots plots_;
   MessageLine messages_;
   std::vector<float> forces_n_;
+  std::optional<FrameLog> log_;
 
   FilePrompt files_;
   LumpPrompt lumps_;

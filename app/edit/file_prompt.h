@@ -19,6 +19,7 @@ class FilePrompt {
   void close() { asking_ = false; }
   bool asking() const { return asking_; }
   FilePurpose purpose() const { return purpose_; }
+  const char* typed() const { return text_.data(); }
 
   // Between begin_frame() and end_frame(). The file that was chosen, once.
   std::optional<std::filesystem::path> draw();

@@ -44,7 +44,8 @@ class MouseHand : public InputSource {
   void let_go();
 
   bool pressing() const { return press_.has_value(); }
-  bool on_model() const { return on_model_; }  // the last hover was over the body
+  const Vector3& target_m() const { return target_m_; }  // where the handle was last wanted
+  bool on_model() const { return on_model_; }            // the last hover was over the body
 
  private:
   struct Press {

@@ -4,6 +4,9 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "render/gl/glfw_library.h"
 
 namespace spoonbill {
 namespace {
@@ -46,6 +49,7 @@ Result<std::unique_ptr<GlfwWindow>> GlfwWindow::make(int width, int height, cons
     return Error{"window size " + std::to_string(width) + "x" + std::to_string(height) +
                  ": each side must lie between 1 and " + std::to_string(largest_side)};
   }
+  if (const Status opened = open_glfw(); !opened) return no_window(opened.error().message);
   if (glfw_in_use()) return Error{"a window is open already: close it before opening another"};
   if (glfwInit() != GLFW_TRUE) return no_window(last_glfw_message());
   ask_for_core_profile();

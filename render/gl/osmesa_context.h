@@ -11,7 +11,7 @@ namespace spoonbill {
 class OsmesaContext final : public GlContext {
  public:
   // A core profile of 3.3 or later. The context is not current yet. Refused, with the remedy: sizes outside
-  // 1..16384, a Mesa without a core profile.
+  // 1..16384, no libOSMesa, a Mesa without a core profile.
   static Result<std::unique_ptr<OsmesaContext>> make(int width_px, int height_px);
 
   ~OsmesaContext() override;
@@ -26,7 +26,11 @@ class OsmesaContext final : public GlContext {
   void swap() override {}
 
  private:
-  OsmesaContext(void* handle, int width_px, int height_px);
+  struct Functions;
+
+  OsmesaContext(std::unique_ptr<const Functions> functions, void* handle, int width_px, int height_px);
+
+  std::unique_ptr<const Functions> functions_;
 
   void* handle_;  // OSMesaContext
   int width_px_;

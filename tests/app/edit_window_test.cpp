@@ -25,7 +25,7 @@ namespace {
 using namespace std::chrono_literals;
 
 // The editor in a window of its own, and a person's hands: real X events from xdotool. Software drawing on a
-// loaded machine manages a few frames a second; every wait ends when what is waited for has happened.
+// loaded machine manages a frame in a second; every wait ends when the editor's log shows what is waited for.
 class EditWindow : public testing::Test {
  protected:
   void SetUp() override {
@@ -37,17 +37,75 @@ class EditWindow : public testing::Test {
   void TearDown() override { kill_editor(); }
 
   void start(const std::vector<std::string>& arguments) {
+    std::filesystem::remove(log_file());
     std::string command = "exec \"" SPOONBILL_PROGRAM "\" edit";
     for (const std::string& argument : arguments) command += " \"" + argument + "\"";
     editor_ = fork();
     ASSERT_GE(editor_, 0);
     if (editor_ == 0) {
+      setenv("SPOONBILL_FRAME_LOG", log_file().c_str(), 1);
       setenv("DISPLAY", display_->name().c_str(), 1);
       execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
       _exit(127);
     }
     ASSERT_TRUE(wait_for([&] { return hands("search --onlyvisible --name Spoonbill windowfocus --sync"); }));
-    std::this_thread::sleep_for(1s);
+    ASSERT_TRUE(wait_frames(2));
+  }
+
+  std::filesystem::path log_file() const { return place_.path("frames.log"); }
+
+  // The last frame that was shown, empty before the first. It has the fields of ShownFrame.
+  Json shown() const {
+    std::ifstream log(log_file());
+    std::string line, last;
+    while (std::getline(log, line) && !log.eof()) last = line;
+    return last.empty() ? Json::object() : json_of(last);
+  }
+
+  // Until a frame was shown of which the condition is true.
+  template <class Condition>
+  bool wait_shown(Condition condition) const {
+    return wait_for([&] {
+      const Json frame = shown();
+      return !frame.empty() && condition(frame);
+    });
+  }
+
+  // Until so many more frames were begun and shown, which have seen what happened before.
+  bool wait_frames(int count) const {
+    const Json before = shown();
+    const int from = before.empty() ? 0 : before["frame"].get<int>();
+    return wait_shown([&](const Json& frame) { return frame["frame"].get<int>() > from + count; });
+  }
+
+  // Until so many more ticks were computed: on a machine under load they take longer.
+  bool wait_ticks(int count) const {
+    const int from = shown()["tick"].get<int>();
+    return wait_shown([&](const Json& frame) { return frame["tick"].get<int>() >= from + count; });
+  }
+
+  // Moves the pointer until the editor has seen it there and the device is where the hand holds it.
+  bool move_to(int x, int y) const {
+    if (!hands("mousemove " + std::to_string(x) + " " + std::to_string(y))) return false;
+    return wait_shown(
+               [&](const Json& frame) { return frame["pointer_x_px"] == x && frame["pointer_y_px"] == y; }) &&
+           wait_frames(1) && wait_shown([](const Json& frame) {
+             return frame["pressing"].get<bool>() || frame["hand_lag_m"].get<double>() < 2e-4;
+           });
+  }
+
+  // Holds the keys down until frames have seen them: a text field asks for their state alone.
+  void press(const std::string& keys) const {
+    std::string down, up;
+    std::istringstream words(keys);
+    for (std::string key; words >> key;) {
+      down += "keydown " + key + " ";
+      up = "keyup " + key + " " + up;
+    }
+    EXPECT_TRUE(hands(down));
+    EXPECT_TRUE(wait_frames(2));
+    EXPECT_TRUE(hands(up));
+    EXPECT_TRUE(wait_frames(2));
   }
 
   bool hands(const std::string& what) const {
@@ -57,10 +115,10 @@ class EditWindow : public testing::Test {
 
   template <class Condition>
   bool wait_for(Condition condition) const {
-    const auto give_up = std::chrono::steady_clock::now() + 60s;
+    const auto give_up = std::chrono::steady_clock::now() + 300s;
     while (std::chrono::steady_clock::now() < give_up) {
       if (condition()) return true;
-      std::this_thread::sleep_for(50ms);
+      std::this_thread::sleep_for(20ms);
     }
     return false;
   }
@@ -79,15 +137,18 @@ class EditWindow : public testing::Test {
 
   // Presses at the handle's upper edge, right of the panel, and drags down.
   void stroke() {
-    EXPECT_TRUE(hands("mousemove 900 250"));
-    std::this_thread::sleep_for(700ms);
+    EXPECT_TRUE(move_to(900, 250));
     EXPECT_TRUE(hands("mousedown 1"));
+    EXPECT_TRUE(wait_shown([](const Json& frame) { return frame["pressing"].get<bool>(); }));
     for (int y = 260; y <= 350; y += 10) {
-      EXPECT_TRUE(hands("mousemove 900 " + std::to_string(y)));
-      std::this_thread::sleep_for(150ms);
+      EXPECT_TRUE(move_to(900, y));
+      EXPECT_TRUE(wait_ticks(100));
     }
+    EXPECT_TRUE(wait_shown([](const Json& frame) { return frame["in_stroke"].get<bool>(); }));
     EXPECT_TRUE(hands("mouseup 1"));
-    EXPECT_TRUE(hands("mousemove 900 150"));
+    EXPECT_TRUE(wait_shown([](const Json& frame) { return !frame["pressing"].get<bool>(); }));
+    EXPECT_TRUE(move_to(900, 150));
+    EXPECT_TRUE(wait_shown([](const Json& frame) { return !frame["in_stroke"].get<bool>(); }));
   }
 
   int wait_for_end() {
@@ -132,17 +193,17 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   start({place_.text("handle.json"), "--record", place_.text("session.jsonl")});
   const Document original = saved("handle.json", time_of("handle.json"));
   stroke();
-  std::this_thread::sleep_for(4s);  // settled
+  ASSERT_TRUE(wait_ticks(4000));  // settled
   const Document bent = saved("handle.json", time_of("handle.json"));
   EXPECT_GT(largest_difference(bent, original), 1e-3);
 
   ASSERT_TRUE(hands("key ctrl+z"));
-  std::this_thread::sleep_for(1s);
+  ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["can_redo"].get<bool>(); }));
   const Document undone = saved("handle.json", time_of("handle.json"));
   EXPECT_EQ(largest_difference(undone, original), 0.0);  // to the bit
 
   ASSERT_TRUE(hands("key ctrl+y"));
-  std::this_thread::sleep_for(1s);
+  ASSERT_TRUE(wait_shown([](const Json& frame) { return !frame["can_redo"].get<bool>(); }));
   const Document redone = saved("handle.json", time_of("handle.json"));
   // Between the saves it went on settling.
   EXPECT_LT(largest_difference(redone, bent), 0.25 * largest_difference(bent, original));
@@ -156,7 +217,7 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   EXPECT_TRUE(json_of(replayed.out)["complete"].get<bool>());
 
   start({place_.text("handle.json"), "--record", place_.text("again.jsonl")});
-  std::this_thread::sleep_for(1s);
+  ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["recording"].get<bool>(); }));
   ASSERT_TRUE(hands("key ctrl+q"));
   EXPECT_EQ(wait_for_end(), exit_done);
   const auto again = read_recording(place_.path("again.jsonl"));
@@ -167,24 +228,21 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
 
 TEST_F(EditWindow, BeginsAnewWithALump) {
   start({});
-  // Held long enough for a frame to see it.
-  const auto enter = [&] {
-    EXPECT_TRUE(hands("keydown Return"));
-    std::this_thread::sleep_for(500ms);
-    EXPECT_TRUE(hands("keyup Return"));
-    std::this_thread::sleep_for(1s);
+  const int session = shown()["session"].get<int>();
+  const auto wait_prompt = [&](const std::string& prompt) {
+    return wait_shown([&](const Json& frame) { return frame["prompt"] == prompt; }) && wait_frames(2);
   };
   EXPECT_TRUE(hands("key ctrl+shift+n"));
-  std::this_thread::sleep_for(1s);
-  enter();
-  std::this_thread::sleep_for(2s);
+  ASSERT_TRUE(wait_prompt("lump"));
+  press("Return");
+  ASSERT_TRUE(wait_shown([&](const Json& frame) { return frame["session"].get<int>() > session; }));
+  ASSERT_TRUE(wait_frames(2));
   EXPECT_TRUE(hands("key ctrl+s"));
-  std::this_thread::sleep_for(1s);
-  EXPECT_TRUE(hands("keydown ctrl keydown a"));
-  std::this_thread::sleep_for(500ms);
-  EXPECT_TRUE(hands("keyup a keyup ctrl"));
+  ASSERT_TRUE(wait_prompt("file"));
+  press("ctrl a");
   EXPECT_TRUE(hands("type --delay 60 " + place_.text("lump.json")));
-  enter();
+  ASSERT_TRUE(wait_shown([&](const Json& frame) { return frame["typed"] == place_.text("lump.json"); }));
+  press("Return");
   ASSERT_TRUE(wait_for([&] { return std::filesystem::exists(place_.path("lump.json")); }));
   const auto document = read_document(place_.path("lump.json"));
   ASSERT_TRUE(document) << document.error().message;
@@ -195,9 +253,10 @@ TEST_F(EditWindow, ShiftSmoothsUntilTheButtonIsLetGo) {
   ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
   start({place_.text("handle.json"), "--record", place_.text("session.jsonl")});
   ASSERT_TRUE(hands("keydown shift"));
+  ASSERT_TRUE(wait_frames(2));
   stroke();
   ASSERT_TRUE(hands("keyup shift"));
-  std::this_thread::sleep_for(1s);
+  ASSERT_TRUE(wait_ticks(100));
   saved("handle.json", time_of("handle.json"));
   ASSERT_TRUE(hands("key ctrl+q"));
   EXPECT_EQ(wait_for_end(), exit_done);
@@ -214,13 +273,16 @@ TEST_F(EditWindow, KilledInAStrokeItLosesASecondAtMost) {
   ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
   const std::string before = json_to_page(document_to_json(held_model()));
   start({place_.text("handle.json")});
-  ASSERT_TRUE(hands("mousemove 900 250"));
-  std::this_thread::sleep_for(700ms);
+  ASSERT_TRUE(move_to(900, 250));
   ASSERT_TRUE(hands("mousedown 1"));
+  ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["pressing"].get<bool>(); }));
   ASSERT_TRUE(hands("mousemove 900 330"));
   const Autosave autosave(place_.path("state") / "spoonbill", place_.path("handle.json"));
-  EXPECT_TRUE(wait_for([&] { return std::filesystem::exists(autosave.file()); }));
-  std::this_thread::sleep_for(1s);
+  // Until what was autosaved is bent: a second after it was, at most.
+  EXPECT_TRUE(wait_for([&] {
+    const auto saved = autosave.left_over();
+    return saved && saved.value() && largest_difference(*saved.value(), held_model()) > 1e-4;
+  }));
   kill_editor();
   EXPECT_EQ(json_to_page(document_to_json(read_document(place_.path("handle.json")).value())), before);
   const auto found = autosave.left_over();

@@ -57,6 +57,8 @@ LATTICE_COUNTS = (8, 12, 16, 20, 24, 28, 30, 32, 34)
 LOOP = ("ticks of the 1 kHz loop late by 1 ms or more, the tick of the block in it; peer: cyclictest -m -p80, "
         "without work, just after; ")
 LIVE = "60 s of `spoonbill record --live --draw`, strokes, and a command every tenth of a second while they press; "
+START_CASES = {"version": ["--version"], "info": ["info", "assets/models/trimmed-plate.json"]}
+START = "from starting the program to its end, the median of 21; "
 LATE = "p99 of how late a tick begins, as above; "
 
 FCL = ("ours on the true surface, every triangle of FCL's contacts in it; FCL: the faster of AABB and OBBRSS, f32, "
@@ -124,6 +126,8 @@ FIGURES = (
            LIVE + "p99 of how late a tick begins; peer: cyclictest beside as much drawing"),
     Figure("live_memory_growth", "MiB", "ours", "at most", 2,
            LIVE + "resident memory, from 10 s after the beginning to the end"),
+    Figure("start_ms", "ms", "ours", "at most", 50, START + "`spoonbill --version`", "version"),
+    Figure("start_ms", "ms", "ours", "at most", 50, START + "`spoonbill info` of the trimmed plate", "info"),
 )
 
 NAMES = tuple(dict.fromkeys(figure.name for figure in FIGURES))

@@ -14,7 +14,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from figures import FIGURES, GROWTH, HANDLE, LATTICE_COUNTS, NAMES, PAIRS, TICK_CASES
+from figures import FIGURES, GROWTH, HANDLE, LATTICE_COUNTS, NAMES, PAIRS, START_CASES, TICK_CASES
 
 LOOP_SECONDS = 20
 LIVE_SECONDS = 60
@@ -71,6 +71,16 @@ class Measurements:
             seconds, after = time.monotonic() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
         used = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
         return done["frames"], seconds, used
+
+    def start(self, arguments, rounds=21):
+        """Milliseconds from starting the program with these arguments to its end, sorted."""
+        times = []
+        for _ in range(rounds):
+            start = time.perf_counter()
+            subprocess.run([str(self.build / "app/spoonbill"), *arguments], cwd=ROOT, stdout=subprocess.DEVNULL,
+                           check=True)
+            times.append(1e3 * (time.perf_counter() - start))
+        return sorted(times)
 
     @functools.cache
     def loop(self, load):
@@ -225,6 +235,11 @@ def measured_frames(measure, _figure):
                         "frames_per_second_if_two_cores_were_free": 2 * frames / used}}
 
 
+def measured_start(measure, figure):
+    times = measure.start(START_CASES[figure.case])
+    return {"ours": times[len(times) // 2], "details": {"least": times[0], "most": times[-1]}}
+
+
 def measured_lattice(measure, _figure):
     times, largest = {}, 0
     for count in LATTICE_COUNTS:
@@ -242,7 +257,7 @@ def measured(measure, figure):
             "lattice_at_1khz": measured_lattice, "loop_missed_per_1000": measured_missed,
             "live_missed_per_1000": measured_live_missed, "live_p99_us": measured_live_lateness,
             "live_memory_growth": measured_live_memory,
-            "loop_p99_us": measured_lateness}[figure.name](measure, figure)
+            "loop_p99_us": measured_lateness, "start_ms": measured_start}[figure.name](measure, figure)
 
 
 def row_of(measure, figure):
@@ -252,7 +267,7 @@ def row_of(measure, figure):
            "compared": figure.compared}
     try:
         row.update(measured(measure, figure))
-    except (RuntimeError, OSError, KeyError, json.JSONDecodeError) as error:
+    except (RuntimeError, OSError, KeyError, subprocess.CalledProcessError, json.JSONDecodeError) as error:
         row["error"] = str(error)
         say(f"{figure.name} failed: {error}")
     row["met"] = figure.met(row["ours"], row["ratio"])

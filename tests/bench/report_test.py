@@ -29,6 +29,9 @@ class MadeUp:
     def replay(self):
         return 300, 6.0, 9.0
 
+    def start(self, _arguments):
+        return [20.0, 30.0, 90.0]
+
     def loop(self, load):
         ours = {"ticks": 9990, "missed": 10 if load == "idle" else 30, "p99_us": 80.0}
         return ours, {"ticks": 10000, "missed": 5, "p99_us": 60}
