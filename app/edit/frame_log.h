@@ -1,6 +1,6 @@
-// What the window has shown, one JSON object a line and frame, for a program that works the window from outside
-// and must know when something has happened: `spoonbill edit` with SPOONBILL_FRAME_LOG=FILE in its environment.
-// One owner; the thread that draws.
+// What the window has shown, one JSON object a line and frame, for a program that works the window from
+// outside and must know when something has happened: `spoonbill edit` with SPOONBILL_FRAME_LOG=FILE in its
+// environment. One owner; the thread that draws.
 #pragma once
 
 #include <cstdint>
