@@ -16,6 +16,7 @@
 #include "app/report/progress_bar.h"
 #include "app/report/solid_check_facts.h"
 #include "app/report/surface_extent.h"
+#include "engine/inspection/body_meetings.h"
 #include "engine/inspection/solid_check.h"
 
 namespace spoonbill {
@@ -102,12 +103,18 @@ Result<Json> check_solids(FactSheet& facts, const CadSolids& solids, const std::
   return json;
 }
 
-// The bodies' facts as JSON, in their order.
-Result<Json> check_bodies(FactSheet& facts, const std::vector<Body>& all, const std::set<std::size_t>& faces,
-                          InterruptWatch& interrupt, Console& console) {
+struct CheckedBodies {
+  Json facts = Json::array();       // of the bodies, in their order
+  std::vector<std::size_t> solids;  // those that enclose what they are made of, and are no faces
+};
+
+Result<CheckedBodies> check_bodies(FactSheet& facts, const std::vector<Body>& all,
+                                   const std::set<std::size_t>& faces, InterruptWatch& interrupt,
+                                   Console& console) {
   constexpr double whole = 1000.0;
   ProgressBar progress(console, "Checking", false);
-  Json bodies = Json::array();
+  CheckedBodies checked;
+  Json& bodies = checked.facts;
   for (const Body& body : all) {
     const auto trim = trim_of(body);
     if (!trim) return Error{"body \"" + body.name + "\": " + trim.error().message};
@@ -124,9 +131,34 @@ Result<Json> check_bodies(FactSheet& facts, const std::vector<Body>& all, const 
       interrupt.answer();
       return Error{"stopped"};
     }
+    const bool is_solid = as == CheckedAs::body && !body.shell_thickness_m && check->encloses();
+    if (is_solid && check->mass.volume_m3 > 0.0) checked.solids.push_back(bodies.size());
     bodies.push_back(add_check_facts(facts, body, as, area, *check));
   }
-  return bodies;
+  return checked;
+}
+
+// Where solid bodies are in each other.
+Status check_meetings(FactSheet& facts, const std::vector<std::size_t>& solids, const std::vector<Body>& all,
+                      InterruptWatch& interrupt) {
+  std::vector<const Surface*> surfaces;
+  surfaces.reserve(solids.size());
+  for (const std::size_t place : solids) surfaces.push_back(&all[place].surface);
+  const auto meetings = find_body_meetings(surfaces, [&](double) { return !interrupt.requested(); });
+  if (!meetings) {
+    interrupt.answer();
+    return Error{"stopped"};
+  }
+  Json json = Json::array();
+  for (const BodyMeeting& meeting : meetings->found) {
+    json.push_back(
+        add_meeting_facts(facts, meeting, all[solids[meeting.first]], all[solids[meeting.second]]));
+  }
+  facts.add("", "", "meetings", std::move(json));
+  facts.add(meetings->complete ? "" : "Notice",
+            "bodies are near each other in more places than could be searched", "meetings_complete",
+            meetings->complete);
+  return {};
 }
 
 Status check(const CheckOptions& options, Console& console) {
@@ -148,9 +180,13 @@ Status check(const CheckOptions& options, Console& console) {
   if (!solid_facts) return Error{options.model.string() + ": " + solid_facts.error().message};
   const auto bodies = check_bodies(facts, all, faces, interrupt, console);
   if (!bodies) return Error{options.model.string() + ": " + bodies.error().message};
+  if (all.size() > 1) {
+    const Status met = check_meetings(facts, bodies->solids, all, interrupt);
+    if (!met) return Error{options.model.string() + ": " + met.error().message};
+  }
   facts.add("", "", "solids", solid_facts.value());
-  facts.add("", "", "sound", all_sound(solid_facts.value()) && all_sound(bodies.value()));
-  facts.add("", "", "bodies", bodies.value());
+  facts.add("", "", "sound", all_sound(solid_facts.value()) && all_sound(bodies->facts));
+  facts.add("", "", "bodies", bodies->facts);
   facts.print(console.out, options.json);
   return {};
 }
@@ -171,8 +207,9 @@ CommandEntry add_check(OptionSet root) {
       "of. Bodies that are faces of one solid, as CAD parts come in, are that solid where they close, and\n"
       "are judged as faces: its volume, area, mass and centre, whether faces pass through each other, and\n"
       "its smallest thickness, searched on a mesh of it, beside which no wall is thinner by more than is\n"
-      "told. Sound is a body or a solid that encloses what it is made of, and a face of such a solid, that\n"
-      "meets itself nowhere. The exit code is 0 whatever was found; \"sound\" in the JSON tells.\n"
+      "told. Of several solid bodies: which are in each other, and how deep; that alone is no fault. Sound\n"
+      "is a body or a solid that encloses what it is made of, and a face of such a solid, that meets itself\n"
+      "nowhere. The exit code is 0 whatever was found; \"sound\" in the JSON tells.\n"
       "Example: spoonbill check assets/models/spoon-handle.json");
   parser.add_option("MODEL", options->model, "A document (.json)").require();
   add_json_option(parser, options->json);

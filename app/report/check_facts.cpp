@@ -195,4 +195,16 @@ Json add_check_facts(FactSheet& facts, const Body& body, CheckedAs as, const Tri
   return json;
 }
 
+Json add_meeting_facts(FactSheet& facts, const BodyMeeting& meeting, const Body& first, const Body& second) {
+  facts.add("In each other",
+            first.name + " and " + second.name + ", " + short_length_text(meeting.depth_m) + " deep at " +
+                place_text(meeting.position_m),
+            "", nullptr);
+  return {{"a", first.name},
+          {"b", second.name},
+          {"contained", meeting.contained},
+          {"depth_m", meeting.depth_m},
+          {"point_m", numbers(meeting.position_m)}};
+}
+
 }  // namespace spoonbill

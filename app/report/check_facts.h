@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/report/fact_sheet.h"
+#include "engine/inspection/body_meetings.h"
 #include "engine/inspection/surface_check.h"
 #include "engine/scene/scene.h"
 
@@ -23,5 +24,8 @@ std::vector<std::string> problems_of(const Body& body, CheckedAs as, const Surfa
 // `area` is what trims keep of the body's surface.
 Json add_check_facts(FactSheet& facts, const Body& body, CheckedAs as, const TrimmedArea& area,
                      const SurfaceCheck& check);
+
+// Of two bodies that are in each other.
+Json add_meeting_facts(FactSheet& facts, const BodyMeeting& meeting, const Body& first, const Body& second);
 
 }  // namespace spoonbill

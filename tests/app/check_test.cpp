@@ -1,6 +1,7 @@
 // The command that tells whether bodies are sound.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <numbers>
@@ -161,6 +162,41 @@ TEST(Check, LooksAtEveryBody) {
   EXPECT_EQ(facts["sound"], false);
   EXPECT_EQ(facts["bodies"][0]["sound"], true);
   EXPECT_EQ(facts["bodies"][1]["sound"], false);
+}
+
+TEST(Check, TellsWhichBodiesAreInEachOther) {
+  const Workplace place;
+  Document three = made(place, {"new", "sphere"});
+  EXPECT_FALSE(check_of(place, "made.json").contains("meetings"));
+  const double size = check_of(place, "made.json")["bodies"][0]["smallest_thickness_m"];
+  std::vector<Body>& bodies = three.scene.bodies;
+  bodies.resize(3, bodies[0]);
+  for (int b = 0; b < 3; ++b) {
+    bodies[static_cast<std::size_t>(b)].name = std::string(1, static_cast<char>('a' + b));
+    // The second a tenth into the first, the third as far beside the second.
+    for (double& x : bodies[static_cast<std::size_t>(b)].surface.net.x)
+      x += std::array{0.0, 0.9, 2.0}[b] * size;
+  }
+  save(place, "three.json", three);
+  const Json facts = check_of(place, "three.json");
+  EXPECT_EQ(facts["sound"], true);
+  EXPECT_EQ(facts["meetings_complete"], true);
+  ASSERT_EQ(facts["meetings"].size(), 1U);
+  const Json& meeting = facts["meetings"][0];
+  EXPECT_EQ(meeting["a"], "a");
+  EXPECT_EQ(meeting["b"], "b");
+  EXPECT_EQ(meeting["contained"], false);
+  EXPECT_NEAR(meeting["depth_m"].get<double>() / size, 0.1, 2e-3);
+  EXPECT_NE(run({"check", place.text("three.json")}).out.find("a and b, "), std::string::npos);
+
+  for (double& x : bodies[2].surface.net.x) x = 0.4 * (x - 2.0 * size);
+  for (double& y : bodies[2].surface.net.y) y *= 0.4;
+  for (double& z : bodies[2].surface.net.z) z *= 0.4;
+  bodies.erase(bodies.begin() + 1);
+  save(place, "inside.json", three);
+  const Json inside = check_of(place, "inside.json")["meetings"];
+  ASSERT_EQ(inside.size(), 1U);
+  EXPECT_EQ(inside[0]["contained"], true);
 }
 
 TEST(Check, RefusesWhatIsNoDocument) {
