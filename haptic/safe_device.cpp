@@ -2,10 +2,15 @@
 
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 SafeDevice::SafeDevice(Device& device, const DeviceReading& last)
-    : device_(&device), limits_(device.specification()), reading_(last) {}
+    : device_(&device), limits_(device.specification()), reading_(last) {
+  SPOONBILL_ASSERT(check_specification(limits_).ok());
+  SPOONBILL_ASSERT(last.is_valid());
+}
 
 DeviceReading SafeDevice::read() {
   const std::optional<DeviceReading> reading = device_->read();

@@ -2,25 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <fstream>
-#include <thread>
 
 #include "app/program.h"
 #include "haptic/devices/steered_device.h"
 #include "haptic/recording/recording.h"
 #include "haptic/safety.h"
 #include "render/tessellation/tessellated_surface.h"
+#include "tests/app/wait_for.h"
 #include "tests/app/workplace.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// A machine under load or a sanitizer may take its time; nothing here is judged by it.
-constexpr std::chrono::seconds patience{300};
 
 Document held_handle() {
   Document document{"small handle", small_handle(), Json::object()};
@@ -53,16 +47,6 @@ class Live {
   std::shared_ptr<TargetMailbox> mailbox_;
   std::unique_ptr<LiveSession> session_;
 };
-
-template <class Condition>
-bool wait_for(LiveSession& live, Condition condition) {
-  const auto give_up = Clock::now() + patience;
-  while (Clock::now() < give_up) {
-    if (condition(live.frame())) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return false;
-}
 
 void wait_ticks(LiveSession& live, std::uint64_t ticks) {
   const std::uint64_t from = live.frame().snapshot.tick;

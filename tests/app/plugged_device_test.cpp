@@ -3,24 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <numbers>
-#include <thread>
 
 #include "app/live/live_session.h"
 #include "app/program.h"
 #include "app/session/lockstep.h"
+#include "tests/app/wait_for.h"
 #include "tests/app/workplace.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// A machine under load or a sanitizer may take its time; nothing here is judged by it.
-constexpr std::chrono::seconds patience{300};
 
 constexpr double plugged_limit_n = 0.8;  // a press wants more
 constexpr double felt_n = 0.3;           // a force that is worth the name
@@ -101,16 +95,6 @@ Result<std::unique_ptr<LiveSession>> start_live(std::unique_ptr<Device> device) 
   LiveSettings settings;
   settings.real_time = false;
   return LiveSession::start(rubber_handle(), "test", settings, std::move(device));
-}
-
-template <class Condition>
-bool wait_for(LiveSession& live, Condition condition) {
-  const auto give_up = Clock::now() + patience;
-  while (Clock::now() < give_up) {
-    if (condition(live.frame())) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return false;
 }
 
 bool wait_until_felt(LiveSession& live, const Hardware& hardware) {
