@@ -12,6 +12,7 @@
 #include "app/panel/panel.h"
 #include "app/panel/session_panel.h"
 #include "app/session/control_net_box.h"
+#include "engine/base/assert.h"
 #include "haptic/safety.h"
 #include "render/gl/allocator_thresholds.h"
 #include "render/overlay/labels.h"
@@ -99,6 +100,15 @@ Editor::Editor(const EditSettings& settings, EditWindow window, std::unique_ptr<
       inputs_(std::move(mailbox), start, hand_) {}
 
 Status Editor::run() {
+  try {
+    return run_frames();
+  } catch (const FailedAssertion& failure) {
+    // The live session ends with the editor and autosaves what the last tick left.
+    return Error{std::string(failure.what()) + "; unsaved work is autosaved, and `edit` offers it again"};
+  }
+}
+
+Status Editor::run_frames() {
   keep_drawing_memory();
   start();
   window_.window().show();

@@ -63,6 +63,7 @@ class Editor {
          std::shared_ptr<TargetMailbox> mailbox, const HandTarget& start, ViewChoice view,
          EditedDocument document);
 
+  Status run_frames();
   Status frame(double seconds);
   void start();
   ShownFrame shown_frame(const LiveFrame& frame) const;

@@ -35,6 +35,24 @@ HapticSide::HapticSide(std::unique_ptr<Session> session, std::unique_ptr<Device>
 }
 
 void HapticSide::tick(const LoopTick& tick) noexcept {
+  try {
+    run_tick(tick);
+    last_tick_failed_ = false;
+  } catch (const FailedAssertion& failure) {
+    give_up_tick(failure, tick.dropped);
+  }
+}
+
+void HapticSide::give_up_tick(const FailedAssertion& failure, std::uint64_t dropped) {
+  safe_device_.give_none(dropped);
+  safe_device_.request_proxy_reset();
+  if (lent_.session != nullptr) lent_.session->flags |= tick_flag_failed;
+  recording_ = false;
+  if (!last_tick_failed_) exchange_->failures.push(failure);
+  last_tick_failed_ = true;
+}
+
+void HapticSide::run_tick(const LoopTick& tick) {
   if (journal_->take_gave_up()) recording_ = false;
   const DeviceReading reading = safe_device_.read();
   if (lent_.session == nullptr) take_back_if_done();
@@ -49,7 +67,10 @@ void HapticSide::tick(const LoopTick& tick) noexcept {
 
 void HapticSide::close() {
   safe_device_.give_none(0);
-  if (recording_ && lent_.session != nullptr) end_recording();
+  if (lent_.session == nullptr) return;
+  if (recording_) end_recording();
+  // The newest work, for the autosave of a session that ends in a fault.
+  if (published_change_ != change_) publish_scene();
 }
 
 void HapticSide::do_commands() {

@@ -12,11 +12,13 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 
 #include "app/live/journal.h"
 #include "app/live/live_command.h"
 #include "app/live/live_frame.h"
 #include "app/live/session_worker.h"
+#include "engine/base/assert.h"
 #include "haptic/bounded_queue.h"
 #include "haptic/haptic_loop.h"
 #include "haptic/safe_device.h"
@@ -28,14 +30,17 @@ namespace spoonbill {
 struct LiveExchange {
   static constexpr std::size_t command_capacity = 256;
   static constexpr std::size_t force_capacity = 4096;
+  static constexpr std::size_t failure_capacity = 16;
 
   explicit LiveExchange(const LiveFrame& first)
-      : commands(command_capacity), frames(first), forces(force_capacity) {}
+      : commands(command_capacity), frames(first), forces(force_capacity), failures(failure_capacity) {}
 
   BoundedQueue<LiveCommand> commands;             // main -> haptic
   TripleBuffer<LiveFrame> frames;                 // haptic -> main
   BoundedQueue<ForceSample> forces;               // haptic -> main; those that find no room are not plotted
   std::atomic<std::uint64_t> recordings_lost{0};  // ended because the disk could not follow
+  BoundedQueue<std::optional<FailedAssertion>>
+      failures;  // haptic -> main: the first of each row of failed ticks
 };
 
 class HapticSide {
@@ -44,16 +49,20 @@ class HapticSide {
   HapticSide(std::unique_ptr<Session> session, std::unique_ptr<Device> device, LiveExchange& exchange,
              Journal& journal, SessionWorker& worker);
 
-  // By the haptic thread alone, once a period.
+  // By the haptic thread alone, once a period. A failed assert gives up this tick: the hand gets no force,
+  // what was left to do is skipped, the frame that follows bears tick_flag_failed, and a recording ends, as
+  // its replay would not know where the tick broke off.
   void tick(const LoopTick& tick) noexcept;
 
-  // When the thread has stopped: leaves the device without force, and ends a recording as stop_recording
-  // does.
+  // When the thread has stopped: leaves the device without force, ends a recording as stop_recording does, and
+  // hands the journal the last changes.
   void close();
 
   const Session* session() const { return lent_.session.get(); }
 
  private:
+  void run_tick(const LoopTick& tick);
+  void give_up_tick(const FailedAssertion& failure, std::uint64_t dropped);
   void do_commands();
   bool do_command();
   void lend();
@@ -80,6 +89,7 @@ class HapticSide {
   SessionWorker* worker_;
   LiveCommand command_;  // the one that is being done
 
+  bool last_tick_failed_ = false;
   bool recording_ = false;
   std::uint64_t recorded_ticks_ = 0;
   bool state_recorded_ = false;  // of recorded_ticks_

@@ -162,6 +162,10 @@ std::vector<Notice> LiveSession::take_notices() {
     recordings_lost_ = lost;
     notices_.add(Notice::Kind::problem, "the recording has ended: the disk is too slow");
   }
+  std::optional<FailedAssertion> failure;
+  while (exchange_.failures.pop(failure)) {
+    notices_.add(Notice::Kind::problem, std::string(failure->what()) + "; undo the stroke, or save the work");
+  }
   return notices_.take();
 }
 

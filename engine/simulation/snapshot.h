@@ -112,6 +112,7 @@ enum TickFlag : std::uint32_t {
   tick_flag_speed_capped = 1u << 1,      // a node met the speed cap: move the tool more slowly
   tick_flag_contact_overflow = 1u << 2,  // more contact points than the workspace holds: use a smaller tool
   tick_flag_force_limited = 1u << 3,     // the device's force limit was met: lower the force scale
+  tick_flag_failed = 1u << 4,            // an internal fault broke the tick off: undo the stroke, or save
 };
 
 struct Snapshot {

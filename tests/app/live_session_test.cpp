@@ -194,6 +194,23 @@ TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
   EXPECT_EQ(read_document(place.path("model.json"))->name, "small handle");
 }
 
+// As it ends when a fault in the program unwinds it: nobody says that the work is not wanted any more.
+TEST(LiveSession, LeavesItsNewestWorkAutosavedWhenItEndsInAFault) {
+  const Workplace place;
+  const Autosave autosave(place.path("."), place.path("model.json"));
+  {
+    Live live(held_handle());
+    live->set_autosave(autosave);
+    const std::uint64_t before = live->frame().deed;
+    ASSERT_TRUE(live->ask(Command(PlacePlane{{Vector3(0.01, 0, 0), Vector3::UnitX()}})));
+    ASSERT_TRUE(wait_for(*live, [&](const LiveFrame& frame) { return frame.deed > before; }));
+  }
+  const auto found = autosave.left_over();
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found.value().has_value());
+  EXPECT_EQ(found.value()->scene.planes.size(), 2U);
+}
+
 TEST(LiveSession, AutosavesUnsavedWorkUntilItIsSaved) {
   const Workplace place;
   const Autosave autosave(place.path("."), place.path("model.json"));

@@ -2,6 +2,7 @@
 // answering and answers with garbage.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <numbers>
@@ -9,6 +10,7 @@
 #include "app/live/live_session.h"
 #include "app/program.h"
 #include "app/session/lockstep.h"
+#include "engine/base/assert.h"
 #include "tests/app/wait_for.h"
 #include "tests/app/workplace.h"
 #include "tests/engine/simulation/handle.h"
@@ -19,7 +21,7 @@ namespace {
 constexpr double plugged_limit_n = 0.8;  // a press wants more
 constexpr double felt_n = 0.3;           // a force that is worth the name
 
-enum class Fault { none, silent, garbage };
+enum class Fault { none, silent, garbage, broken_promise };
 
 // What the test sees of the device, which the live session owns.
 struct Hardware {
@@ -59,6 +61,7 @@ class PluggedDevice : public Device {
     faulty_ = hardware_->fault != Fault::none;
     if (faulty_) ++hardware_->faulty_ticks;
     if (hardware_->fault == Fault::silent) return {};
+    SPOONBILL_ASSERT(hardware_->fault != Fault::broken_promise);
     if (hardware_->fault == Fault::garbage) {
       reading.position_nm[1] = tick_ % 2 == 0 ? std::int64_t{-1} << 60 : reading.position_nm[1];
       reading.orientation_e9[3] = 0;
@@ -142,6 +145,38 @@ TEST(PluggedDevice, DrivesALiveSessionAndIsUnharmedByItsFaults) {
   live.reset();
   EXPECT_FALSE(hardware->is_open);
   replay_to_the_same_states(place, "plugged.jsonl");
+}
+
+// As the program's handler throws a failed assert.
+class ThrownAsserts {
+ public:
+  ThrownAsserts() : previous_(set_assertion_handler(throw_failed_assertion)) {}
+  ~ThrownAsserts() { set_assertion_handler(previous_); }
+
+ private:
+  AssertionHandler previous_;
+};
+
+TEST(PluggedDevice, GetsNoForceInTicksThatAFailedAssertBreaksOff) {
+  const ThrownAsserts thrown;
+  const auto hardware = std::make_shared<Hardware>();
+  auto started = start_live(std::make_unique<PluggedDevice>(hardware));
+  ASSERT_TRUE(started) << started.error().message;
+  auto live = std::move(started).value();
+  ASSERT_TRUE(wait_until_felt(*live, *hardware));
+  const std::uint64_t before = hardware->faulty_ticks;
+  hardware->fault = Fault::broken_promise;
+  EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return hardware->faulty_ticks > before + 50; }));
+  EXPECT_EQ(hardware->force_n, 0.0);
+  hardware->fault = Fault::none;
+  EXPECT_TRUE(
+      wait_for(*live, [](const LiveFrame& frame) { return (frame.snapshot.flags & tick_flag_failed) != 0; }));
+  EXPECT_TRUE(wait_until_felt(*live, *hardware));
+  const std::vector<Notice> notices = live->take_notices();
+  EXPECT_EQ(std::count_if(notices.begin(), notices.end(),
+                          [](const Notice& notice) { return notice.kind == Notice::Kind::problem; }),
+            1);
+  expect_harmless(*hardware);
 }
 
 TEST(PluggedDevice, IsRefusedWhereItDoesNotAnswerOrPromisesWhatNoDeviceDoes) {
