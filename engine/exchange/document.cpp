@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "engine/exchange/field_json.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/file.h"
 #include "engine/exchange/length.h"
@@ -42,7 +43,7 @@ std::optional<Body> read_body(FieldReader reader, int version) {
   if (surface && version > 1) trims = read_trims(surface_reader, *surface);
   surface_reader.finish();
   FieldReader material_reader = reader.inner("material");
-  Material material = read_material_fields(material_reader);
+  Material material = read_fields<Material>(material_reader);
   material_reader.finish();
   FieldReader lattice_reader = reader.inner("lattice");
   const LatticeRequest lattice = read_lattice_request(lattice_reader);
@@ -90,7 +91,7 @@ std::vector<FixingPlane> read_planes(FieldReader& reader) {
   }
   for (const Json& item : reader.list("fixing_planes", fixing_plane_count_range)) {
     FieldReader plane_reader = reader.element(item, "fixing_planes", planes.size());
-    planes.push_back(read_fixing_plane(plane_reader));
+    planes.push_back(read_fields<FixingPlane>(plane_reader));
     plane_reader.finish();
   }
   return planes;
@@ -99,7 +100,7 @@ std::vector<FixingPlane> read_planes(FieldReader& reader) {
 Symmetry read_symmetry_of(FieldReader& reader) {
   if (!reader.has("symmetry")) return {};
   FieldReader symmetry_reader = reader.inner("symmetry");
-  Symmetry symmetry = read_symmetry(symmetry_reader);
+  Symmetry symmetry = read_fields<Symmetry>(symmetry_reader);
   symmetry_reader.finish();
   return symmetry;
 }
@@ -107,7 +108,7 @@ Symmetry read_symmetry_of(FieldReader& reader) {
 std::optional<Ground> read_ground_of(FieldReader& reader) {
   if (!reader.has("ground")) return std::nullopt;
   FieldReader ground_reader = reader.inner("ground");
-  const Ground ground = read_ground(ground_reader);
+  const Ground ground = read_fields<Ground>(ground_reader);
   ground_reader.finish();
   return ground;
 }
@@ -123,7 +124,7 @@ Json body_to_json(const Body& body) {
   json["name"] = body.name;
   json["surface"] = surface_to_json(body.surface);
   add_trims(body.trims, json["surface"]);
-  add_material_fields(body.material, json["material"]);
+  add_fields(body.material, json["material"]);
   add_lattice_request(body.lattice, json["lattice"]);
   for (const Load& load : body.loads) json["loads"].push_back(load_to_json(load));
   for (const Support& support : body.supports) json["supports"].push_back(support_to_json(support));
@@ -151,7 +152,7 @@ Result<Document> document_from_json(const Json& json, const std::string& source)
   const Tool tool = read_tool(tool_reader);
   tool_reader.finish();
   FieldReader sculpting_reader = reader.inner("sculpting");
-  const Sculpting sculpting = read_sculpting(sculpting_reader);
+  const Sculpting sculpting = read_fields<Sculpting>(sculpting_reader);
   sculpting_reader.finish();
   const Symmetry symmetry = read_symmetry_of(reader);
   const std::optional<Ground> ground = read_ground_of(reader);
@@ -174,11 +175,11 @@ Json document_to_json(const Document& document) {
     json["other_bodies"].push_back(body_to_json(bodies[other]));
   }
   Json& planes = json["fixing_planes"] = Json::array();
-  for (const FixingPlane& plane : document.scene.planes) add_fixing_plane(plane, planes.emplace_back());
+  for (const FixingPlane& plane : document.scene.planes) add_fields(plane, planes.emplace_back());
   add_tool(document.scene.tool, json["tool"]);
-  add_sculpting(document.scene.sculpting, json["sculpting"]);
-  if (is_chosen(document.scene.symmetry)) add_symmetry(document.scene.symmetry, json["symmetry"]);
-  if (document.scene.ground) add_ground(*document.scene.ground, json["ground"]);
+  add_fields(document.scene.sculpting, json["sculpting"]);
+  if (is_chosen(document.scene.symmetry)) add_fields(document.scene.symmetry, json["symmetry"]);
+  if (document.scene.ground) add_fields(*document.scene.ground, json["ground"]);
   json["view"] = document.view;
   return json;
 }
@@ -203,7 +204,7 @@ Status write_document(const Document& document, const std::filesystem::path& fil
 
 Result<Material> material_from_json(const Json& json, const std::string& source) {
   FieldReader reader(json, source);
-  Material material = read_material_fields(reader);
+  Material material = read_fields<Material>(reader);
   reader.finish();
   if (!reader.status().ok()) return reader.status().error();
   return material;
@@ -211,7 +212,7 @@ Result<Material> material_from_json(const Json& json, const std::string& source)
 
 Json material_to_json(const Material& material) {
   Json json;
-  add_material_fields(material, json);
+  add_fields(material, json);
   return json;
 }
 

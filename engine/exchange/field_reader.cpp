@@ -209,7 +209,7 @@ const Json& FieldReader::list(std::string_view field, Range<int> size) {
   return nothing();
 }
 
-std::size_t FieldReader::choose(std::string_view field, const std::vector<const char*>& names) {
+std::size_t FieldReader::choose(std::string_view field, std::span<const char* const> names) {
   const Json* value = find(field);
   if (value == nullptr) return 0;
   std::string known;

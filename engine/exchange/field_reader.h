@@ -11,6 +11,7 @@
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -49,6 +50,8 @@ class FieldReader {
   const Json& object(std::string_view field);
   const Json& list(std::string_view field, Range<int> size);
 
+  // The place of the value among the names.
+  std::size_t choose(std::string_view field, std::span<const char* const> names);
   template <class Choice>
   Choice choice(std::string_view field, std::initializer_list<std::pair<const char*, Choice>> choices);
 
@@ -77,7 +80,6 @@ class FieldReader {
   void wrong_type(std::string_view field, const Json& value, const char* wanted);
   double component(std::string_view field, const Json& value, Range<double> range, bool is_length);
   Vector3 components(std::string_view field, Range<double> range, bool are_lengths);
-  std::size_t choose(std::string_view field, const std::vector<const char*>& names);
 
   const Json* json_;
   std::string source_;

@@ -1,5 +1,9 @@
-// Regions, loads, supports and the ground as JSON fields.
+// Regions, loads and supports as JSON fields.
+#include <type_traits>
+#include <variant>
+
 #include "engine/base/number_text.h"
+#include "engine/exchange/field_json.h"
 #include "engine/exchange/length.h"
 #include "engine/exchange/scene_json.h"
 
@@ -38,66 +42,9 @@ Range<double> read_depths(FieldReader& reader) {
   return depths;
 }
 
-Vector3 read_limited(FieldReader& reader, const char* field, double limit) {
-  Vector3 vector = reader.vector(field, {-limit, limit});
-  if (vector.norm() > limit) reader.refuse(field, "must be no longer than " + number_text(limit));
-  return vector;
-}
-
 void refuse_by(const Status& status, FieldReader& reader) {
   if (!status.ok() && reader.status().ok()) reader.refuse(status.error().message);
 }
-
-SupportMotion read_motion(FieldReader reader) {
-  SupportMotion motion;
-  motion.kind = reader.choice(
-      "kind", {std::pair{"ramp", MotionKind::ramp}, std::pair{"oscillation", MotionKind::oscillation}});
-  motion.way_m = reader.position_m("way_mm", {-way_limit_m, way_limit_m});
-  if (motion.way_m.norm() > way_limit_m) {
-    reader.refuse("way_mm", "must be no longer than " + number_text(1e3 * way_limit_m));
-  }
-  if (motion.kind == MotionKind::ramp) {
-    motion.duration_s = reader.number("duration_s", motion_duration_range_s);
-  } else {
-    motion.frequency_hz = reader.number("frequency_hz", motion_frequency_range_hz);
-  }
-  reader.finish();
-  return motion;
-}
-
-Json motion_to_json(const SupportMotion& motion) {
-  Json json;
-  const bool ramp = motion.kind == MotionKind::ramp;
-  json["kind"] = ramp ? "ramp" : "oscillation";
-  json["way_mm"] = position_to_json(motion.way_m);
-  json[ramp ? "duration_s" : "frequency_hz"] = number_to_json(ramp ? motion.duration_s : motion.frequency_hz);
-  return json;
-}
-
-enum class LoadKind { pressure, force, point };
-
-struct FieldsOfLoad {
-  Json operator()(const PressureLoad& load) const {
-    Json json{{"kind", "pressure"}};
-    json["region"] = region_to_json(load.region);
-    json["pressure_pa"] = number_to_json(load.pressure_pa);
-    return json;
-  }
-  Json operator()(const ForceLoad& load) const {
-    Json json{{"kind", "force"}};
-    json["region"] = region_to_json(load.region);
-    json["force_n"] = vector_to_json(load.force_n);
-    json["shared_by"] = load.shared_by == ForceShare::surface ? "surface" : "volume";
-    return json;
-  }
-  Json operator()(const PointLoad& load) const {
-    Json json{{"kind", "point"}};
-    json["u"] = number_to_json(load.u);
-    json["v"] = number_to_json(load.v);
-    json["force_n"] = vector_to_json(load.force_n);
-    return json;
-  }
-};
 
 }  // namespace
 
@@ -130,33 +77,37 @@ Json region_to_json(const BodyRegion& region) {
 }
 
 Load read_load(FieldReader& reader, const Surface& surface) {
-  const auto kind =
-      reader.choice("kind", {std::pair{"pressure", LoadKind::pressure}, std::pair{"force", LoadKind::force},
-                             std::pair{"point", LoadKind::point}});
-  if (kind == LoadKind::point) {
-    PointLoad load;
-    load.u = reader.number("u", {surface.u.domain_start(), surface.u.domain_end()});
-    load.v = reader.number("v", {surface.v.domain_start(), surface.v.domain_end()});
-    load.force_n = read_limited(reader, "force_n", force_limit_n);
-    return load;
-  }
-  const BodyRegion region = read_region(reader.inner("region"));
-  if (kind == LoadKind::pressure) {
-    return PressureLoad{region, reader.number("pressure_pa", pressure_range_pa)};
-  }
-  ForceLoad load{region, read_limited(reader, "force_n", force_limit_n)};
-  load.shared_by = reader.choice(
-      "shared_by", {std::pair{"surface", ForceShare::surface}, std::pair{"volume", ForceShare::volume}});
+  Load load = make_kind<Load>(reader.choose("kind", kind_names<Load>));
+  const auto read = [&]<class Kind>(Kind& of) {
+    if constexpr (std::is_same_v<Kind, PointLoad>) {
+      reader.number("u", {surface.u.domain_start(), surface.u.domain_end()});
+      reader.number("v", {surface.v.domain_start(), surface.v.domain_end()});
+    } else {
+      of.region = read_region(reader.inner("region"));
+    }
+    read_fields(reader, of);
+  };
+  std::visit(read, load);
   return load;
 }
 
 Json load_to_json(const Load& load) {
-  return std::visit(FieldsOfLoad{}, load);
+  const auto write = []<class Kind>(const Kind& of) {
+    Json json{{"kind", kind_name<Kind>}};
+    if constexpr (!std::is_same_v<Kind, PointLoad>) json["region"] = region_to_json(of.region);
+    add_fields(of, json);
+    return json;
+  };
+  return std::visit(write, load);
 }
 
 Support read_support(FieldReader& reader) {
   Support support{read_region(reader.inner("region"))};
-  if (reader.has("motion")) support.motion = read_motion(reader.inner("motion"));
+  if (reader.has("motion")) {
+    FieldReader motion = reader.inner("motion");
+    support.motion = read_fields<SupportMotion>(motion);
+    motion.finish();
+  }
   reader.ignore("motion");
   refuse_by(check_support(support), reader);
   return support;
@@ -165,22 +116,8 @@ Support read_support(FieldReader& reader) {
 Json support_to_json(const Support& support) {
   Json json;
   json["region"] = region_to_json(support.region);
-  if (support.motion) json["motion"] = motion_to_json(*support.motion);
+  if (support.motion) add_fields(*support.motion, json["motion"]);
   return json;
-}
-
-Ground read_ground(FieldReader& reader) {
-  Ground ground;
-  ground.point_m = reader.position_m("point_mm", position_range_m);
-  ground.normal = reader.direction("normal");
-  ground.friction = reader.number("friction", ground_friction_range);
-  return ground;
-}
-
-void add_ground(const Ground& ground, Json& json) {
-  json["point_mm"] = position_to_json(ground.point_m);
-  json["normal"] = vector_to_json(ground.normal);
-  json["friction"] = number_to_json(ground.friction);
 }
 
 }  // namespace spoonbill

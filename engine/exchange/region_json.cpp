@@ -1,5 +1,6 @@
 #include "engine/exchange/region_json.h"
 
+#include "engine/exchange/field_json.h"
 #include "engine/exchange/scene_json.h"
 
 namespace spoonbill {
@@ -10,7 +11,7 @@ MaterialRegion read_material_region(FieldReader reader) {
   region.region = read_region(reader.inner("region"));
   if (reader.has("material")) {
     FieldReader material = reader.inner("material");
-    region.material = read_material_fields(material);
+    region.material = read_fields<Material>(material);
     material.finish();
   }
   if (reader.has("friction")) region.friction = reader.number("friction", friction_range);
@@ -38,7 +39,7 @@ void add_material_regions(const std::vector<MaterialRegion>& regions, Json& body
   for (const MaterialRegion& region : regions) {
     Json& json = body["regions"].emplace_back(Json::object());
     json["region"] = region_to_json(region.region);
-    if (region.material) add_material_fields(*region.material, json["material"]);
+    if (region.material) add_fields(*region.material, json["material"]);
     if (region.friction) json["friction"] = number_to_json(*region.friction);
   }
 }

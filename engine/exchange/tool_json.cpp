@@ -1,59 +1,15 @@
+#include <algorithm>
 #include <array>
 #include <utility>
+#include <variant>
 
+#include "engine/exchange/field_json.h"
 #include "engine/exchange/length.h"
 #include "engine/exchange/scene_json.h"
 
 namespace spoonbill {
 
 namespace {
-
-enum class Form {
-  sphere,
-  ellipsoid,
-  cylinder,
-  capsule,
-  box,
-  cone,
-  torus,
-  half_space,
-  superquadric,
-  mesh,
-  surface
-};
-
-Vector3 lengths_m(FieldReader& reader, const char* field) {
-  return reader.position_m(field, shape_length_m);
-}
-
-ImplicitShape read_implicit(Form form, FieldReader& reader) {
-  const auto length = [&](const char* field) { return reader.length_m(field, shape_length_m); };
-  const auto length_or_none = [&](const char* field) {
-    return reader.length_m(field, shape_length_or_none_m);
-  };
-  switch (form) {
-    case Form::ellipsoid:
-      return EllipsoidShape{lengths_m(reader, "semi_axes_mm")};
-    case Form::cylinder:
-      return CylinderShape{length("radius_mm"), length("half_length_mm")};
-    case Form::capsule:
-      return CapsuleShape{length("radius_mm"), length_or_none("half_length_mm")};
-    case Form::box:
-      return BoxShape{lengths_m(reader, "half_extents_mm")};
-    case Form::cone:
-      return ConeShape{length("base_radius_mm"), length("height_mm")};
-    case Form::torus:
-      return TorusShape{length("ring_radius_mm"), length("tube_radius_mm")};
-    case Form::half_space:
-      return HalfSpaceShape{};
-    case Form::superquadric:
-      return SuperquadricShape{lengths_m(reader, "semi_axes_mm"),
-                               reader.number("exponent_along", superquadric_exponent),
-                               reader.number("exponent_around", superquadric_exponent)};
-    default:
-      return SphereShape{length_or_none("radius_mm")};
-  }
-}
 
 // Nothing where a list is not what it must be.
 std::optional<TriangleMesh> read_triangles(FieldReader& reader) {
@@ -90,26 +46,28 @@ std::optional<ToolSolid> read_mesh(FieldReader& reader) {
   return std::nullopt;
 }
 
+// The shapes that have a table of fields, then those that do not.
+constexpr std::size_t mesh_place = kind_names<ImplicitShape>.size(), surface_place = mesh_place + 1;
+constexpr auto shape_names = [] {
+  std::array<const char*, surface_place + 1> names{};
+  std::copy(kind_names<ImplicitShape>.begin(), kind_names<ImplicitShape>.end(), names.begin());
+  names[mesh_place] = kind_name<MeshSolid>;
+  names[surface_place] = kind_name<SurfaceSolid>;
+  return names;
+}();
+
 std::optional<ToolSolid> read_solid(FieldReader reader) {
-  const Form form = reader.choice<Form>("shape", {{"sphere", Form::sphere},
-                                                  {"ellipsoid", Form::ellipsoid},
-                                                  {"cylinder", Form::cylinder},
-                                                  {"capsule", Form::capsule},
-                                                  {"box", Form::box},
-                                                  {"cone", Form::cone},
-                                                  {"torus", Form::torus},
-                                                  {"half_space", Form::half_space},
-                                                  {"superquadric", Form::superquadric},
-                                                  {"mesh", Form::mesh},
-                                                  {"surface", Form::surface}});
+  const std::size_t place = reader.choose("shape", shape_names);
   std::optional<ToolSolid> solid;
-  if (form == Form::surface) {
+  if (place == surface_place) {
     std::optional<Surface> surface = read_surface(reader);
     if (surface) solid = SurfaceSolid{*std::move(surface)};
-  } else if (form == Form::mesh) {
+  } else if (place == mesh_place) {
     solid = read_mesh(reader);
   } else {
-    solid = read_implicit(form, reader);
+    auto shape = make_kind<ImplicitShape>(place);
+    std::visit([&](auto& of) { read_fields(reader, of); }, shape);
+    solid = shape;
   }
   reader.finish();
   return solid;
@@ -118,13 +76,13 @@ std::optional<ToolSolid> read_solid(FieldReader reader) {
 SoftTool read_soft(FieldReader reader) {
   SoftTool soft;
   FieldReader material = reader.inner("material");
-  soft.material = read_material_fields(material);
+  soft.material = read_fields<Material>(material);
   material.finish();
   FieldReader lattice = reader.inner("lattice");
   soft.lattice = read_lattice_request(lattice);
   lattice.finish();
   FieldReader grip = reader.inner("grip");
-  soft.grip = read_fixing_plane(grip);
+  soft.grip = read_fields<FixingPlane>(grip);
   grip.finish();
   reader.finish();
   return soft;
@@ -140,56 +98,24 @@ std::shared_ptr<const ToolBody> read_tool_body(FieldReader& reader) {
   return body;
 }
 
-struct FieldsOfShape {
-  Json operator()(const SphereShape& shape) const {
-    return {{"shape", "sphere"}, {"radius_mm", length_to_json(shape.radius_m)}};
-  }
-  Json operator()(const EllipsoidShape& shape) const {
-    return {{"shape", "ellipsoid"}, {"semi_axes_mm", position_to_json(shape.semi_axes_m)}};
-  }
-  Json operator()(const CylinderShape& shape) const {
-    return {{"shape", "cylinder"},
-            {"radius_mm", length_to_json(shape.radius_m)},
-            {"half_length_mm", length_to_json(shape.half_length_m)}};
-  }
-  Json operator()(const CapsuleShape& shape) const {
-    return {{"shape", "capsule"},
-            {"radius_mm", length_to_json(shape.radius_m)},
-            {"half_length_mm", length_to_json(shape.half_length_m)}};
-  }
-  Json operator()(const BoxShape& shape) const {
-    return {{"shape", "box"}, {"half_extents_mm", position_to_json(shape.half_extents_m)}};
-  }
-  Json operator()(const ConeShape& shape) const {
-    return {{"shape", "cone"},
-            {"base_radius_mm", length_to_json(shape.base_radius_m)},
-            {"height_mm", length_to_json(shape.height_m)}};
-  }
-  Json operator()(const TorusShape& shape) const {
-    return {{"shape", "torus"},
-            {"ring_radius_mm", length_to_json(shape.ring_radius_m)},
-            {"tube_radius_mm", length_to_json(shape.tube_radius_m)}};
-  }
-  Json operator()(const HalfSpaceShape&) const { return {{"shape", "half_space"}}; }
-  Json operator()(const SuperquadricShape& shape) const {
-    return {{"shape", "superquadric"},
-            {"semi_axes_mm", position_to_json(shape.semi_axes_m)},
-            {"exponent_along", number_to_json(shape.exponent_along)},
-            {"exponent_around", number_to_json(shape.exponent_around)}};
-  }
-};
-
 struct FieldsOfSolid {
-  Json operator()(const ImplicitShape& shape) const { return std::visit(FieldsOfShape{}, shape); }
+  Json operator()(const ImplicitShape& shape) const {
+    const auto write = []<class Shape>(const Shape& of) {
+      Json json{{"shape", kind_name<Shape>}};
+      add_fields(of, json);
+      return json;
+    };
+    return std::visit(write, shape);
+  }
   Json operator()(const MeshSolid& solid) const {
-    Json json{{"shape", "mesh"}};
+    Json json{{"shape", kind_name<MeshSolid>}};
     Json& vertices = json["vertices_mm"] = Json::array();
     for (const Vector3& vertex : solid.mesh.mesh.vertices_m) vertices.push_back(position_to_json(vertex));
     json["triangles"] = solid.mesh.mesh.triangles;
     return json;
   }
   Json operator()(const SurfaceSolid& solid) const {
-    Json json{{"shape", "surface"}};
+    Json json{{"shape", kind_name<SurfaceSolid>}};
     json.update(surface_to_json(solid.surface));
     return json;
   }
@@ -198,29 +124,20 @@ struct FieldsOfSolid {
 }  // namespace
 
 Tool read_tool(FieldReader& reader) {
-  Tool tool;
-  tool.kind = reader.choice<ToolKind>(
-      "kind", {{"point", ToolKind::point}, {"sphere", ToolKind::sphere}, {"solid", ToolKind::solid}});
-  tool.action = reader.choice<ToolAction>(
-      "action", {{"push", ToolAction::push}, {"pull", ToolAction::pull}, {"smooth", ToolAction::smooth}});
-  tool.radius_m = reader.length_m("radius_mm", tool_radius_range_m);
-  tool.iterations = reader.integer("iterations", tool_iterations_range);
+  Tool tool = read_fields<Tool>(reader);
   if (tool.kind == ToolKind::solid || reader.has("solid")) tool.body = read_tool_body(reader);
   return tool;
 }
 
 void add_tool(const Tool& tool, Json& json) {
-  json["kind"] = name_of(tool.kind);
-  json["action"] = name_of(tool.action);
-  json["radius_mm"] = length_to_json(tool.radius_m);
-  json["iterations"] = tool.iterations;
+  add_fields(tool, json);
   if (!tool.body) return;
   json["solid"] = std::visit(FieldsOfSolid{}, tool.body->solid);
   if (!tool.body->soft) return;
   const SoftTool& soft = *tool.body->soft;
-  add_material_fields(soft.material, json["soft"]["material"]);
+  add_fields(soft.material, json["soft"]["material"]);
   add_lattice_request(soft.lattice, json["soft"]["lattice"]);
-  add_fixing_plane(soft.grip, json["soft"]["grip"]);
+  add_fields(soft.grip, json["soft"]["grip"]);
 }
 
 }  // namespace spoonbill

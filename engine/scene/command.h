@@ -43,4 +43,26 @@ struct RefineKnots {
 using Command = std::variant<PlacePlane, RemovePlanes, SetTool, SetMaterial, SetSculpting, SetSymmetry,
                              ResetProxy, LiftTool, KeepShape, RefineKnots>;
 
+// As scripts and recordings call them.
+template <>
+inline constexpr const char* kind_name<PlacePlane> = "place_plane";
+template <>
+inline constexpr const char* kind_name<RemovePlanes> = "remove_planes";
+template <>
+inline constexpr const char* kind_name<SetTool> = "set_tool";
+template <>
+inline constexpr const char* kind_name<SetMaterial> = "set_material";
+template <>
+inline constexpr const char* kind_name<SetSculpting> = "set_sculpting";
+template <>
+inline constexpr const char* kind_name<SetSymmetry> = "set_symmetry";
+template <>
+inline constexpr const char* kind_name<ResetProxy> = "reset_proxy";
+template <>
+inline constexpr const char* kind_name<LiftTool> = "lift_tool";
+template <>
+inline constexpr const char* kind_name<KeepShape> = "keep_shape";
+template <>
+inline constexpr const char* kind_name<RefineKnots> = "refine_knots";
+
 }  // namespace spoonbill

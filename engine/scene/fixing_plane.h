@@ -1,6 +1,7 @@
 // Planes that hold what is behind them.
 #pragma once
 
+#include "engine/base/field.h"
 #include "engine/base/pose.h"
 #include "engine/base/result.h"
 
@@ -11,6 +12,12 @@ struct FixingPlane {
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitX();  // unit
 };
+
+template <>
+inline constexpr auto fields_of<FixingPlane> = std::to_array<Field<FixingPlane>>({
+    position_field("point_mm", &FixingPlane::point_m),
+    direction_field("normal", &FixingPlane::normal),
+});
 
 // Names the field, the value and the range of the first thing that is not within it.
 Status check_fixing_plane(const FixingPlane& plane);

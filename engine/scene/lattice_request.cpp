@@ -5,23 +5,7 @@
 namespace spoonbill {
 
 Status check_feature_map(const FeatureMapSettings& settings) {
-  if (Status status =
-          check_range("feature_map: draws_per_node", settings.draws_per_node, draws_per_node_range);
-      !status.ok()) {
-    return status;
-  }
-  const struct {
-    const char* field;
-    double value;
-    Range<double> range;
-  } checks[] = {{"feature_map: first_rate", settings.first_rate, map_rate_range},
-                {"feature_map: last_rate", settings.last_rate, map_rate_range},
-                {"feature_map: first_neighbourhood", settings.first_neighbourhood, map_neighbourhood_range},
-                {"feature_map: last_neighbourhood", settings.last_neighbourhood, map_neighbourhood_range}};
-  for (const auto& check : checks) {
-    if (Status status = check_range(check.field, check.value, check.range); !status.ok()) return status;
-  }
-  return {};
+  return check_fields("feature_map: ", settings);
 }
 
 Status check_lattice_request(const LatticeRequest& lattice) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "engine/base/field.h"
 #include "engine/base/range.h"
 #include "engine/base/result.h"
 
@@ -26,6 +27,16 @@ inline constexpr Range<int> draws_per_node_range{1, 10000};
 inline constexpr Range<int> map_seed_range{0, 1000000000};
 inline constexpr Range<double> map_rate_range{1e-6, 1.0};
 inline constexpr Range<double> map_neighbourhood_range{0.5, 64.0};
+
+template <>
+inline constexpr auto fields_of<FeatureMapSettings> = std::to_array<Field<FeatureMapSettings>>({
+    whole_number_field("draws_per_node", &FeatureMapSettings::draws_per_node, draws_per_node_range),
+    number_field("first_rate", &FeatureMapSettings::first_rate, map_rate_range),
+    number_field("last_rate", &FeatureMapSettings::last_rate, map_rate_range),
+    number_field("first_neighbourhood", &FeatureMapSettings::first_neighbourhood, map_neighbourhood_range),
+    number_field("last_neighbourhood", &FeatureMapSettings::last_neighbourhood, map_neighbourhood_range),
+    whole_number_field("seed", &FeatureMapSettings::seed, map_seed_range),
+});
 
 // How many nodes a body gets across (first, second) and along (third) itself, or along x, y and z where it
 // is made of triangles or lies in a box of cells (solid_lattice.h), or along u, through and along v of a

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "engine/base/number_text.h"
-#include "engine/base/pose.h"
 
 namespace spoonbill {
 namespace {
@@ -30,32 +29,20 @@ double sine_of_turns(double turns) {
   return sum;
 }
 
-Status check_length(const char* field, const Vector3& vector, double limit) {
-  return check_range(field, vector.norm(), Range<double>{0.0, limit});
-}
-
 struct CheckOf {
-  Status operator()(const PressureLoad& load) const {
+  template <class OnRegion>
+  Status operator()(const OnRegion& load) const {
     if (Status status = check_region(load.region); !status.ok()) return status;
-    return check_range("pressure_pa", load.pressure_pa, pressure_range_pa);
+    return check_fields("", load);
   }
-  Status operator()(const ForceLoad& load) const {
-    if (Status status = check_region(load.region); !status.ok()) return status;
-    return check_length("length of force_n", load.force_n, force_limit_n);
-  }
+  // Whether u and v are on the surface is checked with the body.
   Status operator()(const PointLoad& load) const {
-    return check_length("length of force_n", load.force_n, force_limit_n);
+    return check_value("", field_of(&PointLoad::force_n).form, load.force_n);
   }
 };
 
 Status check_motion(const SupportMotion& motion) {
-  if (Status status = check_length("length of way_m", motion.way_m, way_limit_m); !status.ok()) return status;
-  const bool ramp = motion.kind == MotionKind::ramp;
-  if (Status status = ramp ? check_range("duration_s", motion.duration_s, motion_duration_range_s)
-                           : check_range("frequency_hz", motion.frequency_hz, motion_frequency_range_hz);
-      !status.ok()) {
-    return status;
-  }
+  if (Status status = check_fields("", motion); !status.ok()) return status;
   const double speed = top_speed_m_per_s(motion);
   if (speed <= motion_speed_limit_m_per_s) return {};
   return Error{"motion reaches " + number_text(speed) + " m/s, must stay below " +
@@ -87,9 +74,7 @@ Status check_support(const Support& support) {
 }
 
 Status check_ground(const Ground& ground) {
-  if (Status status = check_position("ground: point_m", ground.point_m); !status.ok()) return status;
-  if (Status status = check_unit("ground: normal", ground.normal); !status.ok()) return status;
-  return check_range("ground: friction", ground.friction, ground_friction_range);
+  return check_fields("ground: ", ground);
 }
 
 }  // namespace spoonbill

@@ -1,10 +1,12 @@
 // What loads a body and what holds it. Plain data; directions are the world's, regions the body's own.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <variant>
 #include <vector>
 
+#include "engine/base/field.h"
 #include "engine/base/pose.h"
 #include "engine/base/range.h"
 #include "engine/base/result.h"
@@ -76,6 +78,51 @@ inline constexpr Range<double> motion_duration_range_s{0.01, 3600.0};
 inline constexpr Range<double> motion_frequency_range_hz{0.01, 100.0};
 inline constexpr double motion_speed_limit_m_per_s = 5.0;
 inline constexpr Range<double> ground_friction_range{0.0, 5.0};
+
+// Each after the region that it acts on, but for the point's.
+template <>
+inline constexpr const char* kind_name<PressureLoad> = "pressure";
+template <>
+inline constexpr auto fields_of<PressureLoad> = std::to_array<Field<PressureLoad>>({
+    number_field("pressure_pa", &PressureLoad::pressure_pa, pressure_range_pa, FieldUnit::pascal),
+});
+
+inline constexpr const char* force_share_names[] = {"surface", "volume"};
+template <>
+inline constexpr const char* kind_name<ForceLoad> = "force";
+template <>
+inline constexpr auto fields_of<ForceLoad> = std::to_array<Field<ForceLoad>>({
+    vector_field("force_n", &ForceLoad::force_n, force_limit_n, FieldUnit::newton),
+    choice_field<&ForceLoad::shared_by>("shared_by", force_share_names),
+});
+
+// Files keep u and v within the domain of the body's surface.
+template <>
+inline constexpr const char* kind_name<PointLoad> = "point";
+template <>
+inline constexpr auto fields_of<PointLoad> = std::to_array<Field<PointLoad>>({
+    number_field("u", &PointLoad::u, {-unlimited, unlimited}),
+    number_field("v", &PointLoad::v, {-unlimited, unlimited}),
+    vector_field("force_n", &PointLoad::force_n, force_limit_n, FieldUnit::newton),
+});
+
+inline constexpr const char* motion_kind_names[] = {"ramp", "oscillation"};
+template <>
+inline constexpr auto fields_of<SupportMotion> = std::to_array<Field<SupportMotion>>({
+    choice_field<&SupportMotion::kind>("kind", motion_kind_names),
+    vector_field("way_mm", &SupportMotion::way_m, way_limit_m, FieldUnit::metre),
+    number_field("duration_s", &SupportMotion::duration_s, motion_duration_range_s, FieldUnit::second)
+        .only_if([](const SupportMotion& motion) { return motion.kind == MotionKind::ramp; }),
+    number_field("frequency_hz", &SupportMotion::frequency_hz, motion_frequency_range_hz, FieldUnit::hertz)
+        .only_if([](const SupportMotion& motion) { return motion.kind == MotionKind::oscillation; }),
+});
+
+template <>
+inline constexpr auto fields_of<Ground> = std::to_array<Field<Ground>>({
+    position_field("point_mm", &Ground::point_m),
+    direction_field("normal", &Ground::normal),
+    number_field("friction", &Ground::friction, ground_friction_range),
+});
 
 // Each names the field, the value and the range of the first thing that is not within it.
 Status check_load(const Load& load);

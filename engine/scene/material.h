@@ -1,16 +1,19 @@
 // A material as the designer names it. Plain data; SI units.
 #pragma once
 
+#include <array>
 #include <string>
 
+#include "engine/base/field.h"
 #include "engine/base/range.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {
 
+// Here is what the numbers mean to the solvers; files, the panel and the checks go by the table below.
 struct Material {
-  std::string name;    // "modelling-clay"
-  std::string source;  // where the values come from
+  std::string name;
+  std::string source;
   double youngs_modulus_pa = 0.0;
   double poissons_ratio = 0.0;
   double density_kg_per_m3 = 0.0;
@@ -50,6 +53,35 @@ inline constexpr Range<double> friction_range{0.0, 5.0};
 inline constexpr Range<double> yield_strain_range_of(bool plastic) {
   return plastic ? yield_strain_range : elastic_yield_strain_range;
 }
+
+template <>
+inline constexpr auto fields_of<Material> = std::to_array<Field<Material>>({
+    text_field("name", &Material::name),
+    text_field("source", &Material::source, "Where the values come from"),
+    number_field("youngs_modulus_pa", &Material::youngs_modulus_pa, youngs_modulus_range_pa,
+                 FieldUnit::pascal)
+        .with_slider({"E", {1e3, 1e12}, true}),
+    number_field("poissons_ratio", &Material::poissons_ratio, poissons_ratio_range)
+        .with_slider({"Poisson", poissons_ratio_range, false}),
+    number_field("density_kg_per_m3", &Material::density_kg_per_m3, density_range_kg_per_m3,
+                 FieldUnit::kilogram_per_m3)
+        .with_slider({"Density", {50.0, 20000.0}, true}),
+    // Of a Voigt element a mode's loss factor is twice its damping ratio.
+    number_field("damping_ratio", &Material::damping_ratio, damping_ratio_range)
+        .with_alias({"loss_factor", 2.0, "Twice the damping ratio"}),
+    switch_field("plastic", &Material::plastic),
+    number_field("yield_strain", &Material::yield_strain, elastic_yield_strain_range, FieldUnit::none,
+                 "Of a plastic material at least 1e-4")
+        .with_range_by([](const Material& material) { return yield_strain_range_of(material.plastic); }),
+    number_field("flow_rate_per_s", &Material::flow_rate_per_s, flow_rate_range_per_s, FieldUnit::per_second),
+    number_field("hardening", &Material::hardening, hardening_range).optional(),
+    number_field("stiffening", &Material::stiffening, stiffening_range).optional(),
+    number_field("friction", &Material::friction, friction_range).optional(),
+    number_field("relaxing_share", &Material::relaxing_share, relaxing_share_range).optional(),
+    number_field("relaxation_time_s", &Material::relaxation_time_s, relaxation_time_range_s,
+                 FieldUnit::second)
+        .with_partner("relaxing_share"),
+});
 
 // Whether it is elastic and nothing else, as hexahedra are: those serve any Poisson's ratio.
 bool is_plainly_elastic(const Material& material);

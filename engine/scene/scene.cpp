@@ -1,7 +1,5 @@
 #include "engine/scene/scene.h"
 
-#include "engine/base/pose.h"
-
 namespace spoonbill {
 namespace {
 
@@ -29,8 +27,7 @@ Status check_body_count(const Scene& scene) {
 }
 
 Status check_symmetry(const Symmetry& symmetry) {
-  if (Status status = check_position("symmetry: point_m", symmetry.point_m); !status.ok()) return status;
-  return check_unit("symmetry: normal", symmetry.normal);
+  return check_fields("symmetry: ", symmetry);
 }
 
 Result<std::shared_ptr<const TrimmedArea>> trim_of(const Body& body) {
@@ -55,24 +52,15 @@ Status check_loads(const Body& body) {
 
 Status check_together(const Tool& tool, const Symmetry& symmetry) {
   if (tool.kind != ToolKind::solid || !tool.body->soft) return {};
-  if (tool.action != ToolAction::push) return Error{"tool: a soft one can only push; make it rigid to pull"};
+  if (!row_of(tool.action).with_soft_tool) {
+    return Error{"tool: a soft one can only push; make it rigid to pull"};
+  }
   if (symmetry.on) return Error{"tool: a soft one has no mirror image; make it rigid or turn symmetry off"};
   return {};
 }
 
 Status check_sculpting(const Sculpting& sculpting) {
-  if (Status status =
-          check_range("sculpting: damping_per_s", sculpting.damping_per_s, sculpting_damping_range_per_s);
-      !status.ok()) {
-    return status;
-  }
-  const double gravity = sculpting.gravity_m_per_s2.norm();
-  if (Status status = check_range("sculpting: length of gravity_m_per_s2", gravity,
-                                  Range<double>{0.0, gravity_limit_m_per_s2});
-      !status.ok()) {
-    return status;
-  }
-  return check_range("sculpting: force_scale", sculpting.force_scale, force_scale_range);
+  return check_fields("sculpting: ", sculpting);
 }
 
 }  // namespace spoonbill

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/field.h"
 #include "engine/base/pose.h"
 #include "engine/base/range.h"
 #include "engine/base/result.h"
@@ -71,6 +72,25 @@ inline constexpr Range<int> fixing_plane_count_range{0, 64};
 inline constexpr Range<double> sculpting_damping_range_per_s{0.0, 1000.0};
 inline constexpr double gravity_limit_m_per_s2 = 100.0;  // of the vector's length
 inline constexpr Range<double> force_scale_range{0.0, 1e6};
+
+template <>
+inline constexpr auto fields_of<Sculpting> = std::to_array<Field<Sculpting>>({
+    number_field("damping_per_s", &Sculpting::damping_per_s, sculpting_damping_range_per_s,
+                 FieldUnit::per_second)
+        .with_slider({"Damping", {0.0, 100.0}, false}),
+    vector_field("gravity_m_per_s2", &Sculpting::gravity_m_per_s2, gravity_limit_m_per_s2,
+                 FieldUnit::metre_per_s2),
+    number_field("force_scale", &Sculpting::force_scale, force_scale_range, FieldUnit::times)
+        .with_slider({"Force scale", {0.01, 100.0}, true}),
+    switch_field("settles", &Sculpting::settles).optional(),
+});
+
+template <>
+inline constexpr auto fields_of<Symmetry> = std::to_array<Field<Symmetry>>({
+    switch_field("on", &Symmetry::on),
+    position_field("point_mm", &Symmetry::point_m),
+    direction_field("normal", &Symmetry::normal),
+});
 
 // What its trims keep of its surface; null without trims.
 Result<std::shared_ptr<const TrimmedArea>> trim_of(const Body& body);

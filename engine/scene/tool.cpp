@@ -3,11 +3,30 @@
 #include <algorithm>
 #include <climits>
 #include <string>
+#include <string_view>
 
 #include "engine/collision/surfaces/closed_surface.h"
 
 namespace spoonbill {
 namespace {
+
+// What an action goes by is a field of Tool, and no wider.
+constexpr bool is_described(const ToolParameter& parameter) {
+  for (const Field<Tool>& field : fields_of<Tool>) {
+    if (std::string_view(field.form.name) != parameter.field) continue;
+    return field.form.range.contains(parameter.range.low) && field.form.range.contains(parameter.range.high);
+  }
+  return false;
+}
+
+static_assert([] {
+  for (const ToolActionRow& row : tool_actions) {
+    for (const ToolParameter& parameter : row.parameters) {
+      if (parameter.field != nullptr && !is_described(parameter)) return false;
+    }
+  }
+  return true;
+}());
 
 Status check_solid(const ImplicitShape& shape) {
   return check_implicit_shape(shape);
@@ -59,12 +78,7 @@ Status check_tool_body(const ToolBody& body) {
 }
 
 Status check_tool(const Tool& tool) {
-  if (Status status = check_range("tool: radius_m", tool.radius_m, tool_radius_range_m); !status.ok()) {
-    return status;
-  }
-  if (Status status = check_range("tool: iterations", tool.iterations, tool_iterations_range); !status.ok()) {
-    return status;
-  }
+  if (Status status = check_fields("tool: ", tool); !status.ok()) return status;
   if (tool.kind != ToolKind::solid) return {};
   if (!tool.body) return Error{"tool: a solid must have a body"};
   const Status status = check_tool_body(*tool.body);

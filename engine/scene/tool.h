@@ -1,29 +1,21 @@
 // The tool: its shape, what it does where it touches, and what it is made of. Plain data; lengths in metres.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <variant>
 
+#include "engine/base/field.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/collision/solids/implicit/implicit_shapes.h"
 #include "engine/scene/fixing_plane.h"
 #include "engine/scene/lattice_request.h"
 #include "engine/scene/material.h"
+#include "engine/scene/tool_actions.h"
 
 namespace spoonbill {
-
-enum class ToolKind { point, sphere, solid };
-enum class ToolAction { push, pull, smooth };
-
-// As files and labels call them.
-constexpr const char* name_of(ToolKind kind) {
-  return kind == ToolKind::point ? "point" : kind == ToolKind::sphere ? "sphere" : "solid";
-}
-constexpr const char* name_of(ToolAction action) {
-  return action == ToolAction::push ? "push" : action == ToolAction::pull ? "pull" : "smooth";
-}
 
 // A closed tube.
 struct SurfaceSolid {
@@ -34,6 +26,11 @@ struct SurfaceSolid {
 struct MeshSolid {
   CleanMesh mesh;
 };
+
+template <>
+inline constexpr const char* kind_name<MeshSolid> = "mesh";
+template <>
+inline constexpr const char* kind_name<SurfaceSolid> = "surface";
 
 using ToolSolid = std::variant<ImplicitShape, MeshSolid, SurfaceSolid>;
 
@@ -63,8 +60,28 @@ struct Tool {
   std::shared_ptr<const ToolBody> body = {};  // of a solid; may stay while the tool is another
 };
 
-inline constexpr Range<double> tool_radius_range_m{0.0, 0.5};
-inline constexpr Range<int> tool_iterations_range{1, 8};
+// What this tool's action takes of a field of it, named as in files; what any takes where it goes without.
+inline Range<double> range_in_action(const Tool& tool, const char* field, Range<double> any) {
+  const ToolParameter* parameter = parameter_of(tool.action, field);
+  return parameter == nullptr ? any : parameter->range;
+}
+
+// Before its body, which files hold as "solid" and "soft".
+template <>
+inline constexpr auto fields_of<Tool> = std::to_array<Field<Tool>>({
+    choice_field<&Tool::kind>("kind", tool_kind_names),
+    choice_field<&Tool::action>("action", tool_action_names),
+    number_field("radius_mm", &Tool::radius_m, tool_radius_range_m, FieldUnit::metre)
+        .with_slider({"Radius", {0.001, 0.05}, true})
+        .with_range_by([](const Tool& tool) {
+          return range_in_action(tool, "radius_mm", tool_radius_range_m);
+        }),
+    whole_number_field("iterations", &Tool::iterations, tool_iterations_range, FieldUnit::per_tick)
+        .with_slider({"Iterations", {1.0, 8.0}, false})
+        .with_range_by([](const Tool& tool) {
+          return range_in_action(tool, "iterations", {1.0, 8.0});
+        }),
+});
 
 // Each names the field of the first thing that is wrong.
 Status check_tool_body(const ToolBody& body);

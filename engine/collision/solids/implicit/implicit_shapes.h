@@ -2,9 +2,11 @@
 // Lengths in metres; each shape in its own frame, about the origin unless it says otherwise.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <variant>
 
+#include "engine/base/field.h"
 #include "engine/base/range.h"
 #include "engine/collision/solids/signed_distance.h"
 
@@ -58,6 +60,73 @@ inline constexpr Range<double> shape_length_or_none_m{0.0, 0.5};
 inline constexpr Range<double> shape_length_m{1e-5, 0.5};
 inline constexpr double greatest_axis_ratio = 1000.0;
 inline constexpr Range<double> superquadric_exponent{0.2, 1.8};
+
+template <>
+inline constexpr const char* kind_name<SphereShape> = "sphere";
+template <>
+inline constexpr auto fields_of<SphereShape> = std::to_array<Field<SphereShape>>({
+    number_field("radius_mm", &SphereShape::radius_m, shape_length_or_none_m, FieldUnit::metre),
+});
+
+template <>
+inline constexpr const char* kind_name<EllipsoidShape> = "ellipsoid";
+template <>
+inline constexpr auto fields_of<EllipsoidShape> = std::to_array<Field<EllipsoidShape>>({
+    lengths_field("semi_axes_mm", &EllipsoidShape::semi_axes_m, shape_length_m),
+});
+
+template <>
+inline constexpr const char* kind_name<CylinderShape> = "cylinder";
+template <>
+inline constexpr auto fields_of<CylinderShape> = std::to_array<Field<CylinderShape>>({
+    number_field("radius_mm", &CylinderShape::radius_m, shape_length_m, FieldUnit::metre),
+    number_field("half_length_mm", &CylinderShape::half_length_m, shape_length_m, FieldUnit::metre),
+});
+
+template <>
+inline constexpr const char* kind_name<CapsuleShape> = "capsule";
+template <>
+inline constexpr auto fields_of<CapsuleShape> = std::to_array<Field<CapsuleShape>>({
+    number_field("radius_mm", &CapsuleShape::radius_m, shape_length_m, FieldUnit::metre),
+    number_field("half_length_mm", &CapsuleShape::half_length_m, shape_length_or_none_m, FieldUnit::metre),
+});
+
+template <>
+inline constexpr const char* kind_name<BoxShape> = "box";
+template <>
+inline constexpr auto fields_of<BoxShape> = std::to_array<Field<BoxShape>>({
+    lengths_field("half_extents_mm", &BoxShape::half_extents_m, shape_length_m),
+});
+
+template <>
+inline constexpr const char* kind_name<ConeShape> = "cone";
+template <>
+inline constexpr auto fields_of<ConeShape> = std::to_array<Field<ConeShape>>({
+    number_field("base_radius_mm", &ConeShape::base_radius_m, shape_length_m, FieldUnit::metre),
+    number_field("height_mm", &ConeShape::height_m, shape_length_m, FieldUnit::metre),
+});
+
+template <>
+inline constexpr const char* kind_name<TorusShape> = "torus";
+template <>
+inline constexpr auto fields_of<TorusShape> = std::to_array<Field<TorusShape>>({
+    number_field("ring_radius_mm", &TorusShape::ring_radius_m, shape_length_m, FieldUnit::metre),
+    number_field("tube_radius_mm", &TorusShape::tube_radius_m, shape_length_m, FieldUnit::metre),
+});
+
+template <>
+inline constexpr const char* kind_name<HalfSpaceShape> = "half_space";
+template <>
+inline constexpr std::array<Field<HalfSpaceShape>, 0> fields_of<HalfSpaceShape>{};
+
+template <>
+inline constexpr const char* kind_name<SuperquadricShape> = "superquadric";
+template <>
+inline constexpr auto fields_of<SuperquadricShape> = std::to_array<Field<SuperquadricShape>>({
+    lengths_field("semi_axes_mm", &SuperquadricShape::semi_axes_m, shape_length_m),
+    number_field("exponent_along", &SuperquadricShape::exponent_along, superquadric_exponent),
+    number_field("exponent_around", &SuperquadricShape::exponent_around, superquadric_exponent),
+});
 
 // Refused, with the field named: a length or an exponent out of its range, semi-axes too unlike, a torus
 // whose tube is as wide as its ring.

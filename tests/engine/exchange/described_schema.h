@@ -1,0 +1,129 @@
+// The JSON schema of described structs (field.h): what a document may hold of them. "text", "length_mm",
+// "point_mm", "vector" and "region" are the definitions that the schema of documents has of its own.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "engine/base/field.h"
+#include "engine/exchange/json.h"
+
+namespace spoonbill {
+
+inline Json definition(const char* name) {
+  return {{"$ref", "#/$defs/" + std::string(name)}};
+}
+
+inline Json number_schema(const char* type, Range<double> range) {
+  Json json{{"type", type}};
+  if (std::isfinite(range.low)) json["minimum"] = number_to_json(range.low);
+  if (std::isfinite(range.high)) json["maximum"] = number_to_json(range.high);
+  return json;
+}
+
+template <class Object, class Member>
+Json value_schema(const FieldForm& form, Member) {
+  if constexpr (std::is_same_v<Member, std::string Object::*>) {
+    return definition("text");
+  } else if constexpr (std::is_same_v<Member, bool Object::*>) {
+    return {{"type", "boolean"}};
+  } else if constexpr (std::is_same_v<Member, double Object::*>) {
+    return form.unit == FieldUnit::metre ? definition("length_mm") : number_schema("number", form.range);
+  } else if constexpr (std::is_same_v<Member, Vector3 Object::*>) {
+    return definition(form.sense == VectorSense::position ? "point_mm" : "vector");
+  } else if constexpr (std::is_same_v<Member, ChoiceMember<Object>>) {
+    Json json;
+    for (const char* name : form.choices) json["enum"].push_back(name);
+    return json;
+  } else {
+    return number_schema("integer", form.range);
+  }
+}
+
+inline Json with_help(const std::string& help, Json json) {
+  if (help.empty()) return json;
+  Json described{{"description", help + "."}};
+  described.update(json);
+  return described;
+}
+
+inline void append(Json& list, Json item) {
+  if (list.is_null()) list = Json::array();
+  list.push_back(std::move(item));
+}
+
+// Adds what a field asks of the object that holds it.
+inline void require(const FieldForm& form, Json& object) {
+  if (form.partner != nullptr) {
+    object["dependentRequired"][form.partner] = Json::array({form.name});
+    object["dependentRequired"][form.name] = Json::array({form.partner});
+  } else if (form.alias.name != nullptr) {
+    for (const char* name : {form.name, form.alias.name}) {
+      append(object["oneOf"], {{"required", Json::array({name})}});
+    }
+  } else if (!form.optional) {
+    append(object["required"], form.name);
+  }
+}
+
+// An object with the fields of the table that this one has, after those of `first`, which are required too.
+template <class Object>
+Json object_schema(const Object& object, const Json& first = Json::object()) {
+  Json json{{"type", "object"}, {"required", Json::array()}};
+  Json properties = Json::object();
+  for (const auto& [name, property] : first.items()) {
+    append(json["required"], name);
+    properties[name] = property;
+  }
+  for (const Field<Object>& field : fields_of<Object>) {
+    const FieldForm& form = field.form;
+    if (!field.applies(object)) continue;
+    if (!properties.contains(form.name)) require(form, json);
+    const Json value =
+        std::visit([&](auto member) { return value_schema<Object>(form, member); }, field.member);
+    if (!properties.contains(form.name)) properties[form.name] = with_help(form.help, value);
+    if (form.alias.name == nullptr) continue;
+    const FieldAlias& alias = form.alias;
+    properties[alias.name] = with_help(
+        alias.help, number_schema("number", {alias.factor * form.range.low, alias.factor * form.range.high}));
+  }
+  json["additionalProperties"] = false;
+  json["properties"] = properties;
+  return json;
+}
+
+// One form for each value of the choice that is the struct's first field.
+template <class Object>
+Json choice_schema() {
+  const Field<Object>& choice = fields_of<Object>.front();
+  Json json;
+  for (std::size_t value = 0; value < choice.form.choices.size(); ++value) {
+    Object object;
+    std::get<ChoiceMember<Object>>(choice.member).set(object, value);
+    const Json kind{{"const", choice.form.choices[value]}};
+    append(json["oneOf"], object_schema(object, {{choice.form.name, kind}}));
+  }
+  return json;
+}
+
+// Of each alternative that its name tells; a region is the undescribed part of those that have one.
+template <class Variant>
+Json variant_schema(const char* name_field) {
+  Json json;
+  const auto add = [&]<class Kind>(const Kind& kind) {
+    Json first{{name_field, {{"const", kind_name<Kind>}}}};
+    if constexpr (requires { kind.region; }) first["region"] = definition("region");
+    append(json["oneOf"], object_schema(kind, first));
+  };
+  [&]<std::size_t... places>(std::index_sequence<places...>) {
+    (add(std::variant_alternative_t<places, Variant>{}), ...);
+  }
+  (std::make_index_sequence<std::variant_size_v<Variant>>());
+  return json;
+}
+
+}  // namespace spoonbill
