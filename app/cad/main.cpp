@@ -1,4 +1,4 @@
-// spoonbill-cad: the child of spoonbill that alone loads OpenCASCADE. It answers with frames (cad_stream.h)
+// spoonbill-cad: the child of spoonbill that alone loads OpenCASCADE. It answers with frames (frame_stream.h)
 // on its standard output:
 //
 //   spoonbill-cad read step|iges FILE UNIT_M TOLERANCE_M FACE_LIMIT      UNIT_M 0: as the file declares
@@ -27,6 +27,7 @@
 #include "engine/exchange/cad/solid_meshes.h"
 #include "engine/exchange/cad_solid_stream.h"
 #include "engine/exchange/cad_stream.h"
+#include "engine/exchange/frame_stream.h"
 
 namespace spoonbill {
 namespace {
@@ -68,8 +69,8 @@ bool parse(const std::string& text, Number& number) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-CadFormat format_named(const std::string& name) {
-  return name == "iges" ? CadFormat::iges : CadFormat::step;
+FileFormat format_named(const std::string& name) {
+  return name == "iges" ? FileFormat::iges : FileFormat::step;
 }
 
 void answer_read(const std::vector<std::string>& arguments, CadReading reading, std::ostream& out) {
@@ -77,13 +78,13 @@ void answer_read(const std::vector<std::string>& arguments, CadReading reading, 
   const auto model = read_cad(
       arguments[2], reading,
       [&](const CadSurface& surface) {
-        write_frame(out, CadFrameKind::surface, json_to_line(cad_surface_to_json(surface)));
+        write_frame(out, FrameKind::surface, json_to_line(cad_surface_to_json(surface)));
       },
       [&](double share) { write_progress(out, share); });
-  if (!model) return write_cad_failure(out, model.error().message);
+  if (!model) return write_failure(out, model.error().message);
   const Json ending = {
       {"unit", model->unit}, {"unit_declared", model->unit_declared}, {"notes", model->notes}};
-  write_frame(out, CadFrameKind::ending, json_to_line(ending));
+  write_frame(out, FrameKind::ending, json_to_line(ending));
 }
 
 Result<CadModel> model_of(std::istream& in) {
@@ -93,7 +94,7 @@ Result<CadModel> model_of(std::istream& in) {
       return static_cast<bool>(in.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)));
     });
     if (!frame) return Error{"the model ends early"};
-    if (frame->kind == CadFrameKind::ending) return model;
+    if (frame->kind == FrameKind::ending) return model;
     auto surface = cad_surface_from_json(frame->content, "model");
     if (!surface) return surface.error();
     model.surfaces.push_back(std::move(surface).value());
@@ -102,30 +103,30 @@ Result<CadModel> model_of(std::istream& in) {
 
 void answer_write(const std::vector<std::string>& arguments, std::ostream& out) {
   const auto model = model_of(std::cin);
-  if (!model) return write_cad_failure(out, model.error().message);
+  if (!model) return write_failure(out, model.error().message);
   CadWriting writing;
   writing.format = format_named(arguments[1]);
   writing.schema = arguments[2] == "ap242" ? StepSchema::ap242 : StepSchema::ap214;
   writing.unit = arguments[3];
   const auto content = write_cad(model.value(), writing, [&](double share) { write_progress(out, share); });
-  if (!content) return write_cad_failure(out, content.error().message);
-  write_frame(out, CadFrameKind::file, content->text);
+  if (!content) return write_failure(out, content.error().message);
+  write_frame(out, FrameKind::file, content->text);
   const Json ending = {
       {"solids", content->solids}, {"open_shells", content->open_shells}, {"notes", content->notes}};
-  write_frame(out, CadFrameKind::ending, json_to_line(ending));
+  write_frame(out, FrameKind::ending, json_to_line(ending));
 }
 
 // Each solid, then which surfaces are in none.
 void answer_solids(const SolidMeshing& meshing, std::ostream& out) {
   const auto model = model_of(std::cin);
-  if (!model) return write_cad_failure(out, model.error().message);
+  if (!model) return write_failure(out, model.error().message);
   const auto found = mesh_solids(model.value(), meshing, [&](double share) { write_progress(out, share); });
-  if (!found) return write_cad_failure(out, found.error().message);
+  if (!found) return write_failure(out, found.error().message);
   for (const CadSolid& solid : found->solids) {
-    write_frame(out, CadFrameKind::solid, cad_solid_to_bytes(solid));
+    write_frame(out, FrameKind::solid, cad_solid_to_bytes(solid));
   }
   const Json ending = {{"loose", found->loose}, {"notes", found->notes}};
-  write_frame(out, CadFrameKind::ending, json_to_line(ending));
+  write_frame(out, FrameKind::ending, json_to_line(ending));
 }
 
 int serve(const std::vector<std::string>& arguments) {
@@ -149,9 +150,9 @@ int serve(const std::vector<std::string>& arguments) {
     if (writes) answer_write(arguments, out);
     if (meshes) answer_solids(meshing, out);
   } catch (const std::bad_alloc&) {
-    write_cad_failure(out, "bad allocation");
+    write_failure(out, bad_allocation);
   } catch (const std::exception& exception) {
-    write_cad_failure(out, exception.what());
+    write_failure(out, exception.what());
   }
   return out ? 0 : 1;
 }

@@ -62,7 +62,7 @@ Result<CadSolids> join_solids(const CheckOptions& options, const std::vector<Bod
     return CadSolids();
   }
   CadChild child;
-  child.stop = [&] { return interrupt.requested(); };
+  child.progress = Progress([&](double) { return !interrupt.requested(); });
   const CadModel model = model_of(all);
   const double chord_m = std::clamp(chord_share * size_of(all), chord_range_m.low, chord_range_m.high);
   auto solids = make_cad_solids(model, {chord_m, triangle_limit}, options.model, child);

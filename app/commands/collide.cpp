@@ -21,6 +21,7 @@
 #include "engine/collision/surfaces/net_box.h"
 #include "engine/collision/surfaces/surface_pair_collider.h"
 #include "engine/exchange/document.h"
+#include "engine/exchange/file_format.h"
 
 namespace spoonbill {
 namespace {
@@ -190,7 +191,7 @@ Status check_use(const CollideOptions& options, bool mesh_is_a, bool mesh_is_b) 
 }
 
 Status collide(const CollideOptions& options, Console& console) {
-  const bool mesh_is_a = is_mesh_file(options.first), mesh_is_b = is_mesh_file(options.second);
+  const bool mesh_is_a = is_mesh(format_of(options.first)), mesh_is_b = is_mesh(format_of(options.second));
   if (Status use = check_use(options, mesh_is_a, mesh_is_b); !use) return use.error();
   const bool both = mesh_is_a && mesh_is_b;
   FactSheet facts = facts_of(options);

@@ -27,15 +27,13 @@ struct ConvertOptions {
 
 Status convert(const ConvertOptions& options, Console& console) {
   InterruptWatch interrupt;
-  ConversionWatch watch;
-  watch.stop = [&] { return interrupt.requested(); };
   Result<ConversionReport> report = Error{};
   {
     ProgressBar bar(console, "Converting", options.progress);
-    watch.progress = [&](double share) {
-      bar.show(static_cast<std::uint64_t>(share * progress_steps), progress_steps);
-    };
-    report = convert_file(options.request, watch);
+    report = convert_file(options.request, Progress([&](double fraction) {
+                            bar.show(static_cast<std::uint64_t>(fraction * progress_steps), progress_steps);
+                            return !interrupt.requested();
+                          }));
   }
   if (interrupt.requested()) interrupt.answer();
   if (!report) return report.error();

@@ -120,7 +120,7 @@ Result<IslandChoice> parse_islands(const std::string& text) {
 }
 
 Result<std::filesystem::path> parse_cloud_name(const std::string& text) {
-  if (format_of(text) == "ply") return std::filesystem::path(text);
+  if (format_of(text) == FileFormat::ply) return std::filesystem::path(text);
   return Error{"'" + excerpt(text) + "' does not end in .ply, as a cloud with colours does"};
 }
 

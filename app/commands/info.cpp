@@ -8,7 +8,7 @@
 #include "app/commands/common_options.h"
 #include "app/commands/option_set.h"
 #include "app/files/cad_file.h"
-#include "app/files/file_kind.h"
+#include "app/files/document_file.h"
 #include "app/interrupt.h"
 #include "app/report/conversion_facts.h"
 #include "app/report/document_facts.h"
@@ -17,6 +17,7 @@
 #include "app/report/progress_bar.h"
 #include "app/session/session.h"
 #include "engine/base/number_text.h"
+#include "engine/exchange/file_format.h"
 #include "engine/material/lattice/lattice_of.h"
 #include "haptic/devices/virtual_device.h"
 #include "haptic/recording/recording.h"
@@ -126,15 +127,17 @@ Status describe_cad(FactSheet& facts, const std::filesystem::path& file, Console
   InterruptWatch interrupt;
   ProgressBar bar(console, "Reading", false);
   CadReading reading;
-  reading.format = cad_format_of(file);
+  reading.format = format_of(file);
   CadChild child;
-  child.stop = [&] { return interrupt.requested(); };
-  child.progress = [&](double share) { bar.show(static_cast<std::uint64_t>(1000.0 * share), 1000); };
+  child.progress = Progress([&](double fraction) {
+    bar.show(static_cast<std::uint64_t>(1000.0 * fraction), 1000);
+    return !interrupt.requested();
+  });
   const auto model = read_cad_file(file, reading, child);
   if (interrupt.requested()) interrupt.answer();
   if (!model) return model.error();
-  facts.add("Kind", reading.format == CadFormat::step ? "STEP file" : "IGES file", "kind",
-            reading.format == CadFormat::step ? "step" : "iges");
+  facts.add("Kind", reading.format == FileFormat::step ? "STEP file" : "IGES file", "kind",
+            reading.format == FileFormat::step ? "step" : "iges");
   add_unit_facts(facts, model->unit, model->unit_declared);
   add_surface_facts(facts, model->surfaces);
   for (const std::string& note : model->notes) facts.add("Note", note, "", nullptr);
@@ -143,20 +146,20 @@ Status describe_cad(FactSheet& facts, const std::filesystem::path& file, Console
 }
 
 Status describe(FactSheet& facts, const std::filesystem::path& file, Console& console) {
-  if (is_cad_file(file)) return describe_cad(facts, file, console);
-  const auto kind = kind_of_file(file);
-  if (!kind) return kind.error();
-  switch (kind.value()) {
-    case FileKind::document:
+  if (is_cad(format_of(file))) return describe_cad(facts, file, console);
+  if (Status native = check_native_name(file); !native) return native;
+  const auto format = find_native_format(file);
+  if (!format) return format.error();
+  switch (format.value()) {
+    case FileFormat::document:
       return describe_document(facts, file, console);
-    case FileKind::recording:
+    case FileFormat::recording:
       return describe_recording(facts, file, console);
-    case FileKind::script:
+    case FileFormat::script:
       return describe_script(facts, file);
-    case FileKind::material:
+    default:
       return describe_material(facts, file);
   }
-  return {};
 }
 
 Status info(const InfoOptions& options, Console& console) {

@@ -1,13 +1,11 @@
-#include <sys/prctl.h>
-
-#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <new>
 
 #include "app/commands/command.h"
 #include "app/commands/option_set.h"
-#include "app/files/mesh_stream.h"
+#include "app/files/foreign_child.h"
+#include "engine/exchange/frame_stream.h"
 #include "engine/exchange/mesh_import.h"
 
 namespace spoonbill {
@@ -40,8 +38,7 @@ CommandEntry add_read_mesh(OptionSet root) {
   parser.hide();
   parser.add_option("FILE", *file, "A mesh (.obj, .stl or .ply)").require();
   return {parser, [file](Console& console) {
-            // Whoever asked may be stopped while a file keeps this one busy.
-            prctl(PR_SET_PDEATHSIG, SIGKILL);
+            end_with_parent();
             return read_mesh(*file, console);
           }};
 }

@@ -1,6 +1,3 @@
-#include <sys/prctl.h>
-
-#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <new>
@@ -8,9 +5,10 @@
 
 #include "app/commands/command.h"
 #include "app/commands/option_set.h"
-#include "app/files/mesh_stream.h"
-#include "engine/exchange/file.h"
+#include "app/files/foreign_child.h"
+#include "engine/base/file.h"
 #include "engine/exchange/file_format.h"
+#include "engine/exchange/frame_stream.h"
 #include "engine/exchange/points/point_cloud.h"
 
 namespace spoonbill {
@@ -20,15 +18,15 @@ constexpr std::size_t header_bytes = 65536;
 
 // The header of a PLY file tells, which may be long after it.
 Status hand_over(const std::filesystem::path& file, Console& console) {
-  const std::string format = format_of(file);
-  if (format == "ply" && ply_face_count(first_bytes(file, header_bytes)) > 0) {
-    write_has_faces(console.out);
+  const FileFormat format = format_of(file);
+  if (format == FileFormat::ply && ply_face_count(first_bytes(file, header_bytes)) > 0) {
+    write_frame(console.out, FrameKind::faces, {});
     return {};
   }
-  const auto bytes = read_text_file(file, point_file_bytes_limit);
+  const auto bytes = read_file(file, point_file_bytes_limit);
   if (!bytes) return bytes.error();
-  if (format == "obj" && obj_has_faces(bytes.value())) {
-    write_has_faces(console.out);
+  if (format == FileFormat::obj && obj_has_faces(bytes.value())) {
+    write_frame(console.out, FrameKind::faces, {});
     return {};
   }
   const auto cloud = points_of(bytes.value(), file);
@@ -62,8 +60,7 @@ CommandEntry add_read_points(OptionSet root) {
   parser.hide();
   parser.add_option("FILE", *file, "A cloud (.ply, .pcd, .xyz, .txt, .csv, .asc, .pts or .obj)").require();
   return {parser, [file](Console& console) {
-            // Whoever asked may be stopped while a file keeps this one busy.
-            prctl(PR_SET_PDEATHSIG, SIGKILL);
+            end_with_parent();
             return read_points(*file, console);
           }};
 }

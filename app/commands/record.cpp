@@ -6,8 +6,7 @@
 #include "app/commands/command.h"
 #include "app/commands/common_options.h"
 #include "app/commands/option_set.h"
-#include "app/files/file_kind.h"
-#include "app/files/recording_place.h"
+#include "app/files/document_file.h"
 #include "app/interrupt.h"
 #include "app/live/performance.h"
 #include "app/report/fact_sheet.h"
@@ -16,6 +15,7 @@
 #include "app/report/progress_bar.h"
 #include "app/session/lockstep.h"
 #include "engine/base/number_text.h"
+#include "engine/exchange/file_format.h"
 #include "haptic/devices/playback_device.h"
 #include "haptic/devices/scripted_device.h"
 
@@ -58,13 +58,12 @@ Status record_input(const RecordOptions& options, const RecordingHeader& header,
   }();
   if (!session) return session.error();
   for (const std::string& remark : session->simulation.remarks()) console.err << remark << '\n';
-  const RecordingPlace place(options.out);
-  auto writer = RecordingWriter::create(place.written(), header);
+  auto writer = RecordingWriter::create(options.out, header);
   if (!writer) return writer.error();
   const std::size_t command_count = input.commands.size();
   Lockstep lockstep(session.value(), std::move(input), &writer.value());
   if (Status ran = run(lockstep, session.value(), console); !ran) return ran;
-  if (Status placed = place.commit(); !placed) return placed;
+  if (Status placed = writer->commit(); !placed) return placed;
 
   FactSheet facts;
   const double duration_s = tick_s * static_cast<double>(lockstep.tick());
@@ -162,15 +161,16 @@ Status record_again(const RecordOptions& options, Console& console) {
 }
 
 Status record(const RecordOptions& options, Console& console) {
-  const auto kind = kind_of_file(options.source);
-  if (!kind) return kind.error();
+  if (Status native = check_native_name(options.source); !native) return native;
+  const auto format = find_native_format(options.source);
+  if (!format) return format.error();
   std::error_code ignored;
   if (std::filesystem::equivalent(options.source, options.out, ignored)) {
     return Error{options.out.string() + ": is the source itself; choose another name"};
   }
-  if (kind.value() == FileKind::script) return record_script(options, console);
+  if (format.value() == FileFormat::script) return record_script(options, console);
   if (options.live) return Error{options.source.string() + ": only a script can be performed live"};
-  if (kind.value() == FileKind::recording) return record_again(options, console);
+  if (format.value() == FileFormat::recording) return record_again(options, console);
   return Error{options.source.string() + ": is neither a script nor a recording"};
 }
 

@@ -7,7 +7,6 @@
 #include "app/commands/common_options.h"
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
-#include "app/files/recording_place.h"
 #include "app/frames/marked_files.h"
 #include "app/frames/painting_crew.h"
 #include "app/frames/replay_pictures.h"
@@ -165,9 +164,8 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
   }();
   if (!session) return session.error();
   std::optional<RecordingWriter> writer;
-  const RecordingPlace place(options.rerecord);
   if (!options.rerecord.empty()) {
-    auto created = RecordingWriter::create(place.written(), recording.header);
+    auto created = RecordingWriter::create(options.rerecord, recording.header);
     if (!created) return created.error();
     writer.emplace(std::move(created).value());
   }
@@ -185,7 +183,9 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
   FactSheet facts;
   facts.add("Ticks", std::to_string(recording.readings.size()), "ticks", recording.readings.size());
   if (Status ran = run_with_pictures({options, session.value(), lockstep, console}, facts); !ran) return ran;
-  if (Status placed = place.commit(); !placed) return placed;
+  if (writer) {
+    if (Status placed = writer->commit(); !placed) return placed;
+  }
   const std::string hash = hash_text(state_hash(session.value()));
   facts.add("State hash", hash, "state_hash", hash);
   facts.add("", "", "complete", recording.end.has_value());

@@ -9,8 +9,8 @@
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/files/document_file.h"
-#include "app/files/output_file.h"
 #include "app/interrupt.h"
+#include "engine/base/output_file.h"
 #include "engine/bspline/evaluate.h"
 
 namespace spoonbill {

@@ -7,9 +7,9 @@
 
 #include "app/convert/cad_document.h"
 #include "app/convert/model_meshes.h"
-#include "app/files/output_file.h"
 #include "app/report/quantity_text.h"
 #include "engine/base/number_text.h"
+#include "engine/base/output_file.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/file_format.h"
@@ -22,38 +22,33 @@ constexpr double usual_chord_m = 5e-5, usual_tolerance_m = 1e-5;
 // Of the whole work; writing takes the rest.
 constexpr double share_of_reading = 0.5, share_of_solids = 0.7;
 
-enum class ModelKind { document, cad, mesh, unknown };
-
-ModelKind kind_of(const std::filesystem::path& file) {
-  const std::string format = format_of(file);
-  if (format == "json") return ModelKind::document;
-  if (is_cad_file(file)) return ModelKind::cad;
-  if (format == "stl" || format == "obj" || format == "ply" || format == "3mf") return ModelKind::mesh;
-  return ModelKind::unknown;
-}
-
-MeshFormat mesh_format_of(const std::filesystem::path& file) {
-  const std::string format = format_of(file);
-  if (format == "stl") return MeshFormat::stl;
-  if (format == "obj") return MeshFormat::obj;
-  return format == "ply" ? MeshFormat::ply : MeshFormat::three_mf;
-}
+// A request and the formats that its names stand for.
+struct Job {
+  const ConversionRequest& request;
+  FileFormat in = format_of(request.in), out = format_of(request.out);
+};
 
 Error about(const std::filesystem::path& file, const std::string& message) {
   return Error{file.string() + ": " + message};
 }
 
-Status check_kinds(const ConversionRequest& request) {
-  const ModelKind in = kind_of(request.in), out = kind_of(request.out);
+bool is_model(FileFormat format) {
+  return format == FileFormat::document || is_cad(format);
+}
+
+Status check_formats(const Job& job) {
+  const auto& [request, in, out] = job;
   const std::string known = ".json, .step, .stp, .iges, .igs";
-  if (in == ModelKind::unknown) return about(request.in, "is no model by its name; " + known + " are read");
-  if (in == ModelKind::mesh) {
+  if (!is_model(in) && !is_written_mesh(in)) {
+    return about(request.in, "is no model by its name; " + known + " are read");
+  }
+  if (is_written_mesh(in)) {
     return about(request.in, "is a mesh, which has no B-splines; fit a surface to it with `spoonbill fit`");
   }
-  if (out == ModelKind::unknown) {
+  if (!is_model(out) && !is_written_mesh(out)) {
     return about(request.out, "names no format; " + known + ", .stl, .obj, .ply and .3mf are written");
   }
-  if (in == ModelKind::document && out == ModelKind::document && request.bodies.empty()) {
+  if (in == FileFormat::document && out == FileFormat::document && request.bodies.empty()) {
     return about(
         request.out,
         "is a document like the one that is read; choose another ending, or some bodies with --bodies");
@@ -66,24 +61,24 @@ Status check_kinds(const ConversionRequest& request) {
 }
 
 // An option that changes nothing is a mistake.
-Status check_options(const ConversionRequest& request) {
-  const ModelKind in = kind_of(request.in), out = kind_of(request.out);
-  if (request.unit && in == ModelKind::document && out == ModelKind::document) {
+Status check_options(const Job& job) {
+  const auto& [request, in, out] = job;
+  if (request.unit && in == FileFormat::document && out == FileFormat::document) {
     return about(request.out, "is in millimetres like the document that is read; leave --unit out");
   }
-  if (request.chord_m && out != ModelKind::mesh) {
+  if (request.chord_m && !is_written_mesh(out)) {
     return about(request.out, "is no mesh, which has no chord error; leave --chord out");
   }
-  if (request.tolerance_m && in != ModelKind::cad) {
+  if (request.tolerance_m && !is_cad(in)) {
     return about(request.in, "is taken exactly; leave --tolerance out");
   }
-  if (request.schema && (out != ModelKind::cad || cad_format_of(request.out) != CadFormat::step)) {
+  if (request.schema && out != FileFormat::step) {
     return about(request.out, "is no STEP file, which alone has a schema; leave --schema out");
   }
-  if (request.unit && format_of(request.out) == "3mf") {
+  if (request.unit && out == FileFormat::three_mf) {
     return about(request.out, "3MF is written in millimetres; leave --unit out");
   }
-  if (request.unit && in == ModelKind::cad && out != ModelKind::document) {
+  if (request.unit && is_cad(in) && out != FileFormat::document) {
     return about(request.out, "of two files with a unit --unit could mean either; convert to .json first");
   }
   return {};
@@ -109,14 +104,15 @@ CadModel model_of(std::vector<Body> bodies) {
   return model;
 }
 
-Result<CadModel> read_model(const ConversionRequest& request, const CadChild& child) {
-  if (kind_of(request.in) == ModelKind::document) {
+Result<CadModel> read_model(const Job& job, const CadChild& child) {
+  const ConversionRequest& request = job.request;
+  if (job.in == FileFormat::document) {
     auto document = read_document(request.in);
     if (!document) return document.error();
     return model_of(std::move(document->scene.bodies));
   }
   CadReading reading;
-  reading.format = cad_format_of(request.in);
+  reading.format = job.in;
   reading.tolerance_m = request.tolerance_m.value_or(usual_tolerance_m);
   if (request.unit) reading.unit_m = request.unit->metres;
   auto model = read_cad_file(request.in, reading, child);
@@ -140,13 +136,6 @@ Status choose(const ConversionRequest& request, std::vector<Item>& items) {
   return {};
 }
 
-Status store(const std::filesystem::path& file, const std::string& text) {
-  auto out = OutputFile::create(file);
-  if (!out) return out.error();
-  if (Status written = out->write(text); !written) return written;
-  return out->commit();
-}
-
 std::vector<std::string> notes_on_shells(const CadModel& model) {
   std::vector<std::string> notes;
   for (const CadSurface& part : model.surfaces) {
@@ -157,10 +146,10 @@ std::vector<std::string> notes_on_shells(const CadModel& model) {
   return notes;
 }
 
-Status write_model(const CadModel& model, const ConversionRequest& request, const CadChild& child,
-                   ConversionReport& report) {
+Status write_model(const CadModel& model, const Job& job, const CadChild& child, ConversionReport& report) {
+  const ConversionRequest& request = job.request;
   CadWriting writing;
-  writing.format = cad_format_of(request.out);
+  writing.format = job.out;
   writing.schema = request.schema.value_or(StepSchema::ap214);
   writing.unit = request.unit.value_or(millimetre).name;
   const auto content = make_cad_file(model, writing, request.out, child);
@@ -170,31 +159,25 @@ Status write_model(const CadModel& model, const ConversionRequest& request, cons
   report.open_shells = content->open_shells;
   for (std::string& note : notes_on_shells(model)) report.notes.push_back(std::move(note));
   report.notes.insert(report.notes.end(), content->notes.begin(), content->notes.end());
-  return store(request.out, content->text);
+  return write_file(request.out, content->text);
 }
 
-CadChild child_of(const ConversionRequest& request, const ConversionWatch& watch, double from, double to) {
+CadChild child_of(const ConversionRequest& request, const Progress& progress) {
   CadChild child;
   child.program = request.cad_program;
-  child.stop = watch.stop;
-  if (watch.progress) {
-    child.progress = [report = watch.progress, from, to](double share) {
-      report(from + share * (to - from));
-    };
-  }
+  child.progress = progress;
   return child;
 }
 
-Status write_mesh_file(const CadModel& model, const ConversionRequest& request, const ConversionWatch& watch,
+Status write_mesh_file(const CadModel& model, const Job& job, const Progress& progress,
                        ConversionReport& report) {
-  const MeshFormat format = mesh_format_of(request.out);
-  const LengthUnit unit = request.unit.value_or(format == MeshFormat::ply ? metre : millimetre);
+  const ConversionRequest& request = job.request;
+  const LengthUnit unit = request.unit.value_or(job.out == FileFormat::ply ? metre : millimetre);
   ModelMeshing meshing;
   meshing.chord_m = request.chord_m.value_or(usual_chord_m);
   meshing.file = request.out;
-  meshing.child = child_of(request, watch, share_of_reading, share_of_solids);
-  meshing.progress = watch.progress;
-  meshing.progress_from = share_of_solids;
+  meshing.child = child_of(request, progress.part(share_of_reading, share_of_solids));
+  meshing.progress = progress.part(share_of_solids, 1.0);
   auto made = mesh_model(model, meshing);
   if (!made) return made.error();
   report.notes.insert(report.notes.end(), made->notes.begin(), made->notes.end());
@@ -210,8 +193,8 @@ Status write_mesh_file(const CadModel& model, const ConversionRequest& request, 
   if (!out) return out.error();
   // What the file refuses names it, what the writer refuses does not.
   Status taken;
-  const Status written = write_meshes(made->meshes, format, unit.metres, [&](std::string_view bytes) {
-    taken = watch.stop && watch.stop() ? Status(about(request.out, "stopped")) : out->write(bytes);
+  const Status written = write_meshes(made->meshes, job.out, unit.metres, [&](std::string_view bytes) {
+    taken = progress.report(1.0) ? out->write(bytes) : Status(about(request.out, "stopped"));
     return taken;
   });
   if (!taken) return taken;
@@ -243,51 +226,50 @@ Result<ConversionReport> choose_from_document(const ConversionRequest& request) 
   return report;
 }
 
-Result<ConversionReport> written_report(CadModel model, const ConversionRequest& request,
-                                        const ConversionWatch& watch) {
+Result<ConversionReport> written_report(CadModel model, const Job& job, const Progress& progress) {
+  const ConversionRequest& request = job.request;
   ConversionReport report;
   report.unit_in = model.unit;
   report.unit_declared = model.unit_declared;
   report.notes.insert(report.notes.end(), model.notes.begin(), model.notes.end());
-  if (watch.progress) watch.progress(share_of_reading);
-  if (watch.stop && watch.stop()) return about(request.out, "stopped");
-  const ModelKind out = kind_of(request.out);
+  if (!progress.report(share_of_reading)) return about(request.out, "stopped");
   const Status written =
-      out == ModelKind::document ? write_native(model, request, report)
-      : out == ModelKind::cad
-          ? write_model(model, request, child_of(request, watch, share_of_reading, 1.0), report)
-          : write_mesh_file(model, request, watch, report);
+      job.out == FileFormat::document ? write_native(model, request, report)
+      : is_cad(job.out)
+          ? write_model(model, job, child_of(request, progress.part(share_of_reading, 1.0)), report)
+          : write_mesh_file(model, job, progress, report);
   if (!written) return written.error();
   report.surfaces = std::move(model.surfaces);
-  if (watch.progress) watch.progress(1.0);
+  progress.report(1.0);
   return report;
 }
 
 }  // namespace
 
 bool is_exported_to(const std::filesystem::path& file) {
-  const ModelKind kind = kind_of(file);
-  return kind == ModelKind::cad || kind == ModelKind::mesh;
+  const FileFormat format = format_of(file);
+  return is_cad(format) || is_written_mesh(format);
 }
 
 Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::filesystem::path& out,
-                                       const ConversionWatch& watch) {
+                                       const Progress& progress) {
   ConversionRequest request;
   request.out = out;
   if (!is_exported_to(out)) return about(out, "names no format that bodies are exported to");
-  return written_report(model_of(std::move(bodies)), request, watch);
+  return written_report(model_of(std::move(bodies)), {request}, progress);
 }
 
-Result<ConversionReport> convert_file(const ConversionRequest& request, const ConversionWatch& watch) {
-  if (Status kinds = check_kinds(request); !kinds) return kinds.error();
-  if (Status options = check_options(request); !options) return options.error();
-  if (kind_of(request.in) == ModelKind::document && kind_of(request.out) == ModelKind::document) {
+Result<ConversionReport> convert_file(const ConversionRequest& request, const Progress& progress) {
+  const Job job{request};
+  if (Status formats = check_formats(job); !formats) return formats.error();
+  if (Status options = check_options(job); !options) return options.error();
+  if (job.in == FileFormat::document && job.out == FileFormat::document) {
     return choose_from_document(request);
   }
-  auto model = read_model(request, child_of(request, watch, 0.0, share_of_reading));
+  auto model = read_model(job, child_of(request, progress.part(0.0, share_of_reading)));
   if (!model) return model.error();
   if (Status chosen = choose(request, model->surfaces); !chosen) return chosen.error();
-  return written_report(std::move(model).value(), request, watch);
+  return written_report(std::move(model).value(), job, progress);
 }
 
 }  // namespace spoonbill

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/files/cad_file.h"
 #include "app/files/length_unit.h"
+#include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
 #include "engine/scene/scene.h"
@@ -37,11 +37,6 @@ struct ConversionReport {
   std::vector<std::string> notes;
 };
 
-struct ConversionWatch {
-  std::function<void(double)> progress;  // a share of the work
-  std::function<bool()> stop;
-};
-
 // The faces of one solid leave as that solid, in a CAD file and in a mesh, where they close; notes tell where
 // they do not.
 //
@@ -49,13 +44,13 @@ struct ConversionWatch {
 // stands under the name of `out` before it is whole, and a file that stood there stays as it is when
 // anything fails. Refused: a mesh to come in, two documents unless bodies are chosen, options that say
 // nothing to these files, and whatever the readers and writers refuse.
-Result<ConversionReport> convert_file(const ConversionRequest& request, const ConversionWatch& watch);
+Result<ConversionReport> convert_file(const ConversionRequest& request, const Progress& progress);
 
 // Whether the ending is that of a CAD file or a mesh.
 bool is_exported_to(const std::filesystem::path& file);
 
 // Bodies that stand in memory go out as convert_file() writes those of a document.
 Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::filesystem::path& out,
-                                       const ConversionWatch& watch);
+                                       const Progress& progress);
 
 }  // namespace spoonbill

@@ -31,9 +31,9 @@ class Mesher {
         add({solid->second->name, std::move(solid->second->mesh), true}, solid->second->chord_error_m);
       }
       if (loose.contains(k)) {
-        if (Status added = add_alone(model_.surfaces[k]); !added) return added;
+        if (Status added = add_alone(k); !added) return added;
       }
-      show(static_cast<double>(k + 1) / static_cast<double>(model_.surfaces.size() + 1));
+      meshing_.progress.report(fraction_after(k + 1));
     }
     return {};
   }
@@ -47,11 +47,9 @@ class Mesher {
   }
 
  private:
-  bool is_stopped() const { return meshing_.child.stop && meshing_.child.stop(); }
-
-  void show(double share) const {
-    if (!meshing_.progress) return;
-    meshing_.progress(meshing_.progress_from + (1.0 - meshing_.progress_from) * share);
+  // Once so many surfaces are meshed; the file is still to be written.
+  double fraction_after(std::size_t surfaces) const {
+    return static_cast<double>(surfaces) / static_cast<double>(model_.surfaces.size() + 1);
   }
 
   CadSolids joined_solids() {
@@ -78,13 +76,16 @@ class Mesher {
     return std::move(found).value();
   }
 
-  Status add_alone(const CadSurface& part) {
+  Status add_alone(std::size_t place) {
+    const CadSurface& part = model_.surfaces[place];
     const std::size_t left = exported_triangle_limit - std::min(triangles_, exported_triangle_limit);
     // A shell has its surface twice, and its walls.
     const std::size_t limit = part.shell_thickness_m > 0.0 ? left / 3 : left;
-    auto alone = tessellate(part.surface, part.trims, meshing_.chord_m, limit, meshing_.child.stop);
+    const double before = fraction_after(place);
+    auto alone =
+        tessellate(part.surface, part.trims, meshing_.chord_m, limit, meshing_.progress.part(before, before));
     const std::string file = meshing_.file.string();
-    if (is_stopped()) return Error{file + ": stopped"};
+    if (!meshing_.progress.report(before)) return Error{file + ": stopped"};
     if (!alone) return Error{file + ": '" + part.name + "': " + alone.error().message};
     if (part.shell_thickness_m > 0.0) thicken(part, alone.value());
     triangles_ += alone->mesh.triangles.size();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,9 +15,8 @@ namespace spoonbill {
 struct ModelMeshing {
   double chord_m = 5e-5;
   std::filesystem::path file;  // its name in messages
-  CadChild child;              // that joins the faces of solids; its stop() stops all
-  std::function<void(double)> progress;
-  double progress_from = 0.0;  // once solids are meshed; 1 once all is
+  CadChild child;              // that joins the faces of solids
+  Progress progress;           // of the meshes after that
 };
 
 struct ModelMeshes {

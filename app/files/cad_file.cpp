@@ -4,8 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cstdint>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -13,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/files/foreign_file.h"
-#include "app/process/child_output.h"
+#include "app/files/foreign_child.h"
+#include "engine/base/file.h"
 #include "engine/base/number_text.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/cad_solid_stream.h"
@@ -39,85 +37,45 @@ std::string program_of(const CadChild& child) {
   return (self.parent_path() / "spoonbill-cad").string();
 }
 
-// Frames of a child until the last; what is neither progress nor the last goes to take(), which says whether
-// it is welcome.
-class Conversation {
- public:
-  enum class Work { reading, writing };
+ForeignTask task_for(const std::filesystem::path& file, ForeignTask::Work work) {
+  const bool reads = work == ForeignTask::Work::reading;
+  ForeignTask task;
+  task.file = file;
+  task.thing = reads ? "model" : "file";
+  task.remedy = reads ? smaller : fewer;
+  task.work = work;
+  task.too_much = "takes more than ";
+  task.not_in_form = "the program that handles CAD files did not answer in its own form; build it anew";
+  task.refusal = [](const std::string& reason) {
+    return clean_cad_name(reason, "the program that handles CAD files refuses it", longest_line);
+  };
+  return task;
+}
 
-  Conversation(ChildOutput output, const std::filesystem::path& file, const CadChild& child, Work work)
-      : output_(std::move(output)), file_(file), child_(child), work_(work) {
-    if (child.stop) output_.give_up_when(child.stop);
+// Frames of the child until the last, whose content is returned; take() gets the others and says whether they
+// are welcome.
+template <class Take>
+Result<std::string> listen(ForeignChild& child, const Take& take) {
+  for (;;) {
+    const auto head = child.next();
+    if (!head) return head.error();
+    auto content = child.content(head.value());
+    if (!content || head->kind == FrameKind::ending) return content;
+    Frame frame{head->kind, std::move(content).value()};
+    if (Status taken = take(frame); !taken) return taken.error();
   }
-
-  // The content of the last frame.
-  template <class Take>
-  Result<std::string> listen(const Take& take) {
-    for (;;) {
-      auto frame = read_frame([&](void* to, std::size_t bytes) { return output_.read(to, bytes); });
-      if (!frame) return end_without_answer();
-      if (frame->kind == CadFrameKind::ending) return std::move(frame->content);
-      if (frame->kind == CadFrameKind::failure) return refusal(frame->content);
-      if (frame->kind == CadFrameKind::progress) {
-        show(frame->content);
-        continue;
-      }
-      if (Status taken = take(*frame); !taken) return taken.error();
-    }
-  }
-
- private:
-  void show(const std::string& thousandths) const {
-    int number = 0;
-    std::from_chars(thousandths.data(), thousandths.data() + thousandths.size(), number);
-    if (child_.progress) child_.progress(std::clamp(number, 0, 1000) / 1000.0);
-  }
-
-  Error end_without_answer() {
-    if (child_.stop && child_.stop()) return Error{file_.string() + ": stopped"};
-    const ChildEnd end = output_.wait();
-    if (work_ == Work::reading) return explain_end(file_, end, child_.patience, "model", smaller);
-    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(child_.patience).count();
-    const std::string name = file_.string(), remedy = std::string("; ") + fewer;
-    if (end.out_of_time) {
-      return Error{name + ": writing it took longer than " + std::to_string(seconds) + " s" + remedy};
-    }
-    if (end.signal != 0) {
-      return Error{name + ": the writer crashed (signal " + std::to_string(end.signal) + ")" + remedy};
-    }
-    return Error{name + ": the writer ended without a file (exit code " + std::to_string(end.exit_code) +
-                 ")" + remedy};
-  }
-
-  Error refusal(const std::string& reason) const {
-    if (reason.find("bad alloc") != std::string::npos) {
-      return Error{file_.string() + ": takes more than " + std::to_string(ChildOutput::memory_limit >> 30) +
-                   " GiB; " + (work_ == Work::reading ? smaller : fewer)};
-    }
-    return Error{file_.string() + ": " +
-                 clean_cad_name(reason, "the program that handles CAD files refuses it", longest_line)};
-  }
-
-  ChildOutput output_;
-  const std::filesystem::path& file_;
-  const CadChild& child_;
-  Work work_;
-};
-
-Error not_in_form(const std::filesystem::path& file) {
-  return Error{file.string() +
-               ": the program that handles CAD files did not answer in its own form; build it anew"};
 }
 
 // What the child says last. Whatever a hostile file made of it, its answer is data.
 template <class Read>
-Status read_ending(const std::string& text, const std::filesystem::path& file, const Read& read) {
+Status read_ending(const std::string& text, const std::filesystem::path& file, const ForeignChild& child,
+                   const Read& read) {
   const auto json = parse_json(text, file.string());
-  if (!json) return not_in_form(file);
+  if (!json) return child.not_in_form();
   FieldReader reader(json.value(), file.string());
   read(reader);
   reader.finish();
-  return reader.status() ? Status() : not_in_form(file);
+  return reader.status() ? Status() : child.not_in_form();
 }
 
 std::vector<std::string> read_notes(FieldReader& reader) {
@@ -136,11 +94,11 @@ class ModelInMemory {
     complete_ = true;
     for (const CadSurface& surface : model.surfaces) {
       std::ostringstream text;
-      write_frame(text, CadFrameKind::surface, json_to_line(cad_surface_to_json(surface)));
+      write_frame(text, FrameKind::surface, json_to_line(cad_surface_to_json(surface)));
       append(text.str());
     }
     std::ostringstream text;
-    write_frame(text, CadFrameKind::ending, "{}");
+    write_frame(text, FrameKind::ending, "{}");
     append(text.str());
     complete_ = complete_ && lseek(descriptor_, 0, SEEK_SET) == 0;
   }
@@ -167,34 +125,26 @@ class ModelInMemory {
   bool complete_ = false;
 };
 
-const char* name_of(CadFormat format) {
-  return format == CadFormat::step ? "step" : "iges";
+std::string name_of(FileFormat format) {
+  return std::string(ending_of(format));
 }
 
 }  // namespace
 
-bool is_cad_file(const std::filesystem::path& file) {
-  const std::string format = format_of(file);
-  return format == "step" || format == "stp" || format == "iges" || format == "igs";
-}
-
-CadFormat cad_format_of(const std::filesystem::path& file) {
-  return format_of(file).starts_with("i") ? CadFormat::iges : CadFormat::step;
-}
-
 Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReading& reading,
-                               const CadChild& child) {
-  if (Status status = check_foreign_file(file, file_bytes_limit, smaller); !status) return status.error();
-  auto output = ChildOutput::start(
-      {program_of(child), "read", name_of(reading.format), std::filesystem::absolute(file).string(),
+                               const CadChild& run) {
+  if (Status status = check_file(file, file_bytes_limit, smaller); !status) return status.error();
+  auto child = ForeignChild::start(
+      task_for(file, ForeignTask::Work::reading),
+      {program_of(run), "read", name_of(reading.format), std::filesystem::absolute(file).string(),
        number_text(reading.unit_m), number_text(reading.tolerance_m), std::to_string(reading.face_limit)},
-      child.patience);
-  if (!output) return Error{file.string() + ": " + output.error().message};
-  Conversation conversation(std::move(output).value(), file, child, Conversation::Work::reading);
+      run.patience);
+  if (!child) return child.error();
+  child->watch(run.progress);
   CadModel model;
-  const auto ending = conversation.listen([&](const CadFrame& frame) -> Status {
-    if (frame.kind != CadFrameKind::surface || model.surfaces.size() >= reading.face_limit) {
-      return not_in_form(file);
+  const auto ending = listen(child.value(), [&](const Frame& frame) -> Status {
+    if (frame.kind != FrameKind::surface || model.surfaces.size() >= reading.face_limit) {
+      return child->not_in_form();
     }
     auto surface = cad_surface_from_json(frame.content, file.string());
     if (!surface) return surface.error();
@@ -202,7 +152,7 @@ Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReadi
     return {};
   });
   if (!ending) return ending.error();
-  const Status read = read_ending(ending.value(), file, [&](FieldReader& reader) {
+  const Status read = read_ending(ending.value(), file, child.value(), [&](FieldReader& reader) {
     model.unit = clean_cad_name(reader.text("unit"), "mm");
     model.unit_declared = reader.boolean("unit_declared");
     model.notes = read_notes(reader);
@@ -217,24 +167,25 @@ Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReadi
 }
 
 Result<CadFileContent> make_cad_file(const CadModel& model, const CadWriting& writing,
-                                     const std::filesystem::path& file, const CadChild& child) {
+                                     const std::filesystem::path& file, const CadChild& run) {
   const ModelInMemory input(model);
   if (!input.complete()) return Error{file.string() + ": there is no memory left to write it through"};
-  auto output = ChildOutput::start({program_of(child), "write", name_of(writing.format),
+  auto child = ForeignChild::start(task_for(file, ForeignTask::Work::writing),
+                                   {program_of(run), "write", name_of(writing.format),
                                     writing.schema == StepSchema::ap242 ? "ap242" : "ap214", writing.unit},
-                                   child.patience, input.descriptor());
-  if (!output) return Error{file.string() + ": " + output.error().message};
-  Conversation conversation(std::move(output).value(), file, child, Conversation::Work::writing);
+                                   run.patience, input.descriptor());
+  if (!child) return child.error();
+  child->watch(run.progress);
   CadFileContent content;
-  const auto ending = conversation.listen([&](CadFrame& frame) -> Status {
-    if (frame.kind != CadFrameKind::file) {
-      return not_in_form(file);
+  const auto ending = listen(child.value(), [&](Frame& frame) -> Status {
+    if (frame.kind != FrameKind::file) {
+      return child->not_in_form();
     }
     content.text = std::move(frame.content);
     return {};
   });
   if (!ending) return ending.error();
-  const Status read = read_ending(ending.value(), file, [&](FieldReader& reader) {
+  const Status read = read_ending(ending.value(), file, child.value(), [&](FieldReader& reader) {
     content.solids = reader.integer("solids", count_range);
     content.open_shells = reader.integer("open_shells", count_range);
     content.notes = read_notes(reader);
@@ -245,18 +196,19 @@ Result<CadFileContent> make_cad_file(const CadModel& model, const CadWriting& wr
 }
 
 Result<CadSolids> make_cad_solids(const CadModel& model, const SolidMeshing& meshing,
-                                  const std::filesystem::path& file, const CadChild& child) {
+                                  const std::filesystem::path& file, const CadChild& run) {
   const ModelInMemory input(model);
   if (!input.complete()) return Error{file.string() + ": there is no memory left to mesh it through"};
-  auto output = ChildOutput::start(
-      {program_of(child), "solids", number_text(meshing.chord_m), std::to_string(meshing.triangle_limit)},
-      child.patience, input.descriptor());
-  if (!output) return Error{file.string() + ": " + output.error().message};
-  Conversation conversation(std::move(output).value(), file, child, Conversation::Work::writing);
+  auto child = ForeignChild::start(
+      task_for(file, ForeignTask::Work::writing),
+      {program_of(run), "solids", number_text(meshing.chord_m), std::to_string(meshing.triangle_limit)},
+      run.patience, input.descriptor());
+  if (!child) return child.error();
+  child->watch(run.progress);
   CadSolids found;
-  const auto ending = conversation.listen([&](const CadFrame& frame) -> Status {
-    if (frame.kind != CadFrameKind::solid || found.solids.size() >= model.surfaces.size()) {
-      return not_in_form(file);
+  const auto ending = listen(child.value(), [&](const Frame& frame) -> Status {
+    if (frame.kind != FrameKind::solid || found.solids.size() >= model.surfaces.size()) {
+      return child->not_in_form();
     }
     auto solid = cad_solid_from_bytes(frame.content, model.surfaces.size(), file.string());
     if (!solid) return solid.error();
@@ -264,7 +216,7 @@ Result<CadSolids> make_cad_solids(const CadModel& model, const SolidMeshing& mes
     return {};
   });
   if (!ending) return ending.error();
-  const Status read = read_ending(ending.value(), file, [&](FieldReader& reader) {
+  const Status read = read_ending(ending.value(), file, child.value(), [&](FieldReader& reader) {
     found.loose = read_places(reader, "loose", model.surfaces.size());
     found.notes = read_notes(reader);
   });

@@ -4,8 +4,8 @@
 
 #include <chrono>
 #include <filesystem>
-#include <functional>
 
+#include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
 #include "engine/exchange/cad_solid.h"
@@ -16,14 +16,8 @@ namespace spoonbill {
 struct CadChild {
   std::filesystem::path program;  // beside this one, if empty
   std::chrono::milliseconds patience{300'000};
-  std::function<void(double)> progress;  // a share of the work; may be empty
-  std::function<bool()> stop;            // asked several times a second; may be empty
+  Progress progress;  // reported several times a second
 };
-
-// Whether the name ends in .step, .stp, .iges or .igs, in any case.
-bool is_cad_file(const std::filesystem::path& file);
-// Of such a name.
-CadFormat cad_format_of(const std::filesystem::path& file);
 
 // Refused, each with one line that names the file: missing, a folder or device, unreadable, empty, above 512
 // MiB; what OpenCASCADE cannot read; what crashes it, takes it longer than the patience or more than 4 GiB;

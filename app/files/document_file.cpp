@@ -1,16 +1,15 @@
 #include "app/files/document_file.h"
 
-#include "app/files/cad_file.h"
-#include "app/files/mesh_file.h"
-#include "engine/exchange/points/point_cloud.h"
+#include "engine/exchange/file_format.h"
 
 namespace spoonbill {
 
 Status check_native_name(const std::filesystem::path& file) {
-  if (is_cad_file(file)) {
+  const FileFormat format = format_of(file);
+  if (is_cad(format)) {
     return Error{file.string() + ": is a CAD file; make a document of it with `spoonbill convert`"};
   }
-  if (is_mesh_file(file) || is_point_name(file)) {
+  if (is_mesh(format) || is_cloud(format)) {
     return Error{file.string() + ": is a mesh or a scan; fit a surface to it with `spoonbill fit`"};
   }
   return {};

@@ -4,9 +4,9 @@
 #include <cstring>
 #include <string>
 
-#include "app/files/output_file.h"
 #include "app/report/colour_scale.h"
 #include "engine/base/number_text.h"
+#include "engine/base/output_file.h"
 
 namespace spoonbill {
 namespace {

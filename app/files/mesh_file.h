@@ -26,9 +26,6 @@ struct MeshFile {
   LengthUnit unit = millimetre;
 };
 
-// Whether the name ends in .obj, .stl or .ply, in any case.
-bool is_mesh_file(const std::filesystem::path& file);
-
 // Refused, each with one line that names the file: another ending; missing, a folder or device, unreadable,
 // empty, above 512 MiB; what is cut, where it can be told, or Assimp cannot read; what crashes it, takes it
 // longer than the patience or more than 4 GiB; more triangles than the limit, or more than three vertices for

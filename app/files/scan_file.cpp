@@ -13,9 +13,8 @@
 namespace spoonbill {
 namespace {
 
-bool is_in_metres(const std::filesystem::path& file) {
-  const std::string format = format_of(file);
-  return format == "ply" || format == "pcd";
+bool is_in_metres(FileFormat format) {
+  return format == FileFormat::ply || format == FileFormat::pcd;
 }
 
 Status check_places(const std::filesystem::path& file, const ScanFile& scan) {
@@ -89,8 +88,9 @@ ScanFile scan_of(PointCloud cloud, LengthUnit unit) {
 }
 
 Result<ScanFile> read_any(const std::filesystem::path& file, const MeshReading& reading) {
-  if (format_of(file) == "stl") return read_mesh_scan(file, reading);
-  if (!is_point_name(file)) {
+  const FileFormat format = format_of(file);
+  if (format == FileFormat::stl) return read_mesh_scan(file, reading);
+  if (!is_cloud(format)) {
     return Error{
         file.string() +
         ": is no scan by its name; .ply, .pcd, .xyz, .txt, .csv, .asc, .pts, .obj and .stl are read"};
@@ -98,7 +98,7 @@ Result<ScanFile> read_any(const std::filesystem::path& file, const MeshReading& 
   auto cloud = read_cloud_file(file, reading);
   if (!cloud) return cloud.error();
   if (!cloud.value()) return read_mesh_scan(file, reading);
-  return scan_of(std::move(*cloud.value()), reading.unit.value_or(is_in_metres(file) ? metre : millimetre));
+  return scan_of(std::move(*cloud.value()), reading.unit.value_or(is_in_metres(format) ? metre : millimetre));
 }
 
 }  // namespace

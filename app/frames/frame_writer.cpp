@@ -74,8 +74,9 @@ Status FrameWriter::finish() {
     finishing_ = true;
     changed_.notify_all();
   }
-  if (thread_.joinable()) thread_.join();
-  return failure_;
+  if (!thread_.joinable()) return failure_;
+  thread_.join();
+  return failure_ ? flush_to_disk(folder_) : failure_;
 }
 
 void FrameWriter::write_frames() {
@@ -90,7 +91,8 @@ void FrameWriter::write_frames() {
       queue_.pop_front();
       changed_.notify_all();
     }
-    const Status written = write_png(folder_ / frame_file_name(frame.first), frame.second, encoder);
+    const Status written =
+        write_png(folder_ / frame_file_name(frame.first), frame.second, encoder, Durability::later);
     if (!written) {
       const std::lock_guard lock(mutex_);
       failure_ = written;

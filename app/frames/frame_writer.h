@@ -31,7 +31,7 @@ class FrameWriter {
 
   // Both return the first failure of any frame so far; after one nothing more is written.
   Status add(int number, Image frame);
-  Status finish();  // waits until all is written; nothing can be added afterwards
+  Status finish();  // waits until the disk has all of them; nothing can be added afterwards
 
  private:
   void write_frames();

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "app/process/child_process.h"
+#include "engine/base/output_file.h"
 
 namespace spoonbill {
 namespace {
@@ -105,16 +106,15 @@ Status VideoEncoder::add(const Image& frame) {
 }
 
 Status VideoEncoder::finish() {
-  std::error_code error, ignored;
+  std::error_code ignored;
   if (const int code = close_and_wait(); code != 0) {
     std::filesystem::remove(unfinished_, ignored);
     return Error{file_.string() + ": ffmpeg failed with exit code " + std::to_string(code) +
                  "; is the folder writable and the ending known?"};
   }
-  std::filesystem::rename(unfinished_, file_, error);
-  if (!error) return {};
-  std::filesystem::remove(unfinished_, ignored);
-  return Error{file_.string() + ": cannot be written: " + error.message()};
+  Status placed = put_in_place(unfinished_, file_);
+  if (!placed) std::filesystem::remove(unfinished_, ignored);
+  return placed;
 }
 
 }  // namespace spoonbill

@@ -3,8 +3,9 @@
 #include <system_error>
 
 #include "app/report/hash_text.h"
+#include "engine/base/file.h"
+#include "engine/base/output_file.h"
 #include "engine/exchange/field_reader.h"
-#include "engine/exchange/file.h"
 #include "engine/simulation/state_hash.h"
 
 namespace spoonbill {
@@ -51,7 +52,7 @@ Result<std::optional<Document>> Autosave::left_over() const {
   std::error_code problem;
   if (!std::filesystem::exists(file_, problem)) return std::optional<Document>();
   if (!of_.empty() && is_older(file_, of_)) return std::optional<Document>();
-  const auto text = read_text_file(file_, bytes_limit);
+  const auto text = read_file(file_, bytes_limit);
   if (!text) return text.error();
   const auto json = parse_json(text.value(), file_.string());
   if (!json) return json.error();

@@ -32,7 +32,8 @@ void Exporter::begin(std::vector<Body> bodies, std::filesystem::path file) {
 }
 
 void Exporter::run(std::vector<Body> bodies, const std::filesystem::path& file) {
-  const auto report = export_bodies(std::move(bodies), file, {{}, [this] { return stopping_.load(); }});
+  const auto report =
+      export_bodies(std::move(bodies), file, Progress([this](double) { return !stopping_.load(); }));
   if (!report) return notices_->add(Notice::Kind::problem, "not exported: " + report.error().message);
   notices_->add(Notice::Kind::information,
                 "exported " + file.filename().string() + ", in " + report->unit_out);

@@ -158,7 +158,7 @@ void HapticSide::reset_proxy() {
   if (recording_) push(RecordedReset{});
 }
 
-void HapticSide::begin_recording(std::unique_ptr<PlacedRecording> recording) {
+void HapticSide::begin_recording(std::unique_ptr<RecordingWriter> recording) {
   recording_ = true;
   recorded_ticks_ = 0;
   state_recorded_ = false;

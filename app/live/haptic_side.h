@@ -71,7 +71,7 @@ class HapticSide {
   void apply_now(AskedRequest& asked);
   void record(Json&& command);
   void reset_proxy();
-  void begin_recording(std::unique_ptr<PlacedRecording> recording);
+  void begin_recording(std::unique_ptr<RecordingWriter> recording);
   void end_recording();
   void record_state_when_due();
   void push(JournalEntry&& entry);

@@ -87,7 +87,7 @@ void Journal::write(JournalEntry& entry) {
 }
 
 Status Journal::write_to_recording(JournalEntry& entry) {
-  RecordingWriter& writer = recording_->writer;
+  RecordingWriter& writer = *recording_;
   if (const auto* reading = std::get_if<RecordedReading>(&entry)) return writer.reading(reading->reading);
   if (const auto* command = std::get_if<RecordedCommand>(&entry)) {
     return command->recorded ? writer.command(command->command) : Status();
@@ -98,7 +98,7 @@ Status Journal::write_to_recording(JournalEntry& entry) {
   if (!state->last) return writer.checkpoint(state->state_hash);
   const std::uint64_t ticks = writer.tick();
   if (Status finished = writer.finish(state->state_hash); !finished) return finished;
-  if (Status placed = recording_->place.commit(); !placed) return placed;
+  if (Status placed = writer.commit(); !placed) return placed;
   notices_->add(Notice::Kind::information, "recorded " + std::to_string(ticks / 1000) + " s");
   recording_.reset();
   last_is_whole_ = true;

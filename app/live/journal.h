@@ -14,15 +14,15 @@
 #include "app/live/exporter.h"
 #include "app/live/live_frame.h"
 #include "app/live/notices.h"
-#include "app/live/placed_recording.h"
 #include "haptic/bounded_queue.h"
+#include "haptic/recording/recording_writer.h"
 #include "haptic/triple_buffer.h"
 
 namespace spoonbill {
 
 // What happened, in its order. A command that was not recorded travels here too, to be freed.
 struct RecordingBegun {
-  std::unique_ptr<PlacedRecording> recording;
+  std::unique_ptr<RecordingWriter> recording;
 };
 struct RecordedReading {
   DeviceReading reading;
@@ -109,7 +109,7 @@ class Journal {
   std::uint64_t autosave_count_ = 0;  // of the places that were set
   std::uint64_t settled_change_ = 0;  // in the file, or as it was opened: need not be autosaved
 
-  std::unique_ptr<PlacedRecording> recording_;  // the journal's thread only, as all below
+  std::unique_ptr<RecordingWriter> recording_;  // the journal's thread only, as all below
   std::uint64_t autosaved_change_ = 0;
   bool autosave_failed_ = false;
   bool last_is_whole_ = false;

@@ -8,9 +8,9 @@
 #include <string>
 #include <variant>
 
-#include "app/live/placed_recording.h"
 #include "app/session/request.h"
 #include "app/session/session.h"
+#include "haptic/recording/recording_writer.h"
 
 namespace spoonbill {
 
@@ -19,7 +19,7 @@ struct LentSession {
   std::unique_ptr<Session> session;
   bool begun_anew = false;                     // another session than the one that was lent
   bool other_document = false;                 // and of another document
-  std::unique_ptr<PlacedRecording> recording;  // that begins with the session's next tick
+  std::unique_ptr<RecordingWriter> recording;  // that begins with the session's next tick
 };
 
 // Work on a session that may take its time: it is done on the worker's thread while the haptic thread keeps

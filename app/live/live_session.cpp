@@ -39,10 +39,10 @@ Status begin_recording(LentSession& lent, const std::filesystem::path& file, con
                        const DeviceSpecification& device, InstructionSet set) {
   lent.session->view = view;
   const RecordingHeader header{lent.session->device, document_of(*lent.session)};
-  auto recording = PlacedRecording::begin(file, header);
+  auto recording = RecordingWriter::create(file, header);
   if (!recording) return recording.error();
   if (Status anew = begin_anew(lent, device, set); !anew) return anew;
-  lent.recording = std::move(recording).value();
+  lent.recording = std::make_unique<RecordingWriter>(std::move(recording).value());
   return {};
 }
 

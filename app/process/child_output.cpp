@@ -56,8 +56,7 @@ Result<ChildOutput> ChildOutput::start(const std::vector<std::string>& arguments
 ChildOutput::ChildOutput(ChildOutput&& other) noexcept
     : process_(std::exchange(other.process_, -1)),
       pipe_(std::exchange(other.pipe_, -1)),
-      deadline_(other.deadline_),
-      gives_up_(std::move(other.gives_up_)) {}
+      deadline_(other.deadline_) {}
 
 ChildOutput::~ChildOutput() {
   if (pipe_ >= 0) close(pipe_);
@@ -66,17 +65,13 @@ ChildOutput::~ChildOutput() {
   wait_for_process(process_);
 }
 
-void ChildOutput::give_up_when(std::function<bool()> asked) {
-  gives_up_ = std::move(asked);
-}
-
-bool ChildOutput::read(void* to, std::size_t bytes) {
+bool ChildOutput::read(void* to, std::size_t bytes, const std::function<bool()>& gives_up) {
   auto* place = static_cast<char*>(to);
   while (bytes > 0) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline_ - Clock::now()).count();
     pollfd waiting{pipe_, POLLIN, 0};
-    if (gives_up_ && gives_up_()) return false;
-    const auto wait = gives_up_ ? std::min<std::int64_t>(left, milliseconds_between_questions) : left;
+    if (gives_up && gives_up()) return false;
+    const auto wait = gives_up ? std::min<std::int64_t>(left, milliseconds_between_questions) : left;
     const int ready = wait > 0 ? poll(&waiting, 1, static_cast<int>(wait)) : 0;
     if ((ready < 0 && errno == EINTR) || (ready == 0 && wait < left)) continue;
     if (ready <= 0) return false;

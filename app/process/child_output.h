@@ -33,11 +33,9 @@ class ChildOutput {
   ChildOutput& operator=(ChildOutput&&) = delete;
   ~ChildOutput();  // a child that still runs is killed
 
-  // Asked several times a second while read() waits; it gives up where the answer is yes.
-  void give_up_when(std::function<bool()> asked);
-
-  // False when the output ends before so many bytes, or the patience does, or it gave up.
-  bool read(void* to, std::size_t bytes);
+  // False when the output ends before so many bytes, or the patience does, or `gives_up`, which is asked
+  // several times a second meanwhile, returns true.
+  bool read(void* to, std::size_t bytes, const std::function<bool()>& gives_up = {});
 
   // Waits for its end until the patience is over, then kills it.
   ChildEnd wait();
@@ -50,7 +48,6 @@ class ChildOutput {
   pid_t process_;  // -1 when it has ended
   int pipe_;
   Clock::time_point deadline_;
-  std::function<bool()> gives_up_;
 };
 
 }  // namespace spoonbill

@@ -8,7 +8,7 @@
 
 #include "app/files/length_unit.h"
 #include "engine/base/excerpt.h"
-#include "engine/exchange/file.h"
+#include "engine/base/file.h"
 #include "engine/exchange/points/number_lines.h"
 
 namespace spoonbill {
@@ -151,7 +151,7 @@ Result<PointTable> point_table(const std::string& text, const std::string& sourc
 
 Result<PointTable> read_point_table(const std::filesystem::path& file,
                                     const std::vector<std::string>& columns, bool with_section) {
-  const auto text = read_text_file(file, bytes_limit);
+  const auto text = read_file(file, bytes_limit);
   if (!text) return text.error();
   return point_table(text.value(), file.string(), columns, with_section);
 }

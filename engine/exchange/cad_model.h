@@ -6,10 +6,10 @@
 
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
+#include "engine/exchange/file_format.h"
 
 namespace spoonbill {
 
-enum class CadFormat { step, iges };
 enum class StepSchema { ap214, ap242 };
 
 struct CadSurface {
@@ -32,14 +32,14 @@ struct CadModel {
 };
 
 struct CadReading {
-  CadFormat format = CadFormat::step;
-  double unit_m = 0.0;            // of the file's numbers, whatever it declares; 0: as declared
-  double tolerance_m = 1e-5;      // of what is approximated
-  std::size_t face_limit = 1000;  // files of more are refused
+  FileFormat format = FileFormat::step;  // or iges
+  double unit_m = 0.0;                   // of the file's numbers, whatever it declares; 0: as declared
+  double tolerance_m = 1e-5;             // of what is approximated
+  std::size_t face_limit = 1000;         // files of more are refused
 };
 
 struct CadWriting {
-  CadFormat format = CadFormat::step;
+  FileFormat format = FileFormat::step;   // or iges
   StepSchema schema = StepSchema::ap214;  // of STEP
   std::string unit = "mm";                // mm, cm, m or in
 };

@@ -1,5 +1,5 @@
-// Solids as bytes between the program and its child (cad_stream.h): a line of JSON, then the mesh's vertices
-// as doubles and its triangles as indices of 32 bits.
+// Solids as bytes between the program and its child (frame_stream.h): a line of JSON, then the mesh's
+// vertices as doubles and its triangles as indices of 32 bits.
 #pragma once
 
 #include <cstddef>

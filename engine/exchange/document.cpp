@@ -2,9 +2,10 @@
 
 #include <utility>
 
+#include "engine/base/file.h"
+#include "engine/base/output_file.h"
 #include "engine/exchange/field_json.h"
 #include "engine/exchange/field_reader.h"
-#include "engine/exchange/file.h"
 #include "engine/exchange/length.h"
 #include "engine/exchange/region_json.h"
 #include "engine/exchange/scene_json.h"
@@ -135,7 +136,7 @@ Json body_to_json(const Body& body) {
 }
 
 Result<Json> read_json(const std::filesystem::path& file, std::size_t bytes_limit) {
-  auto text = read_text_file(file, bytes_limit);
+  auto text = read_file(file, bytes_limit);
   if (!text.ok()) return text.error();
   return parse_json(text.value(), file.string());
 }

@@ -1,20 +1,98 @@
-// The format of a file, which the ending of its name alone decides.
+// The formats of files that the program reads and writes.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <string>
+#include <string_view>
+
+#include "engine/base/result.h"
 
 namespace spoonbill {
 
-// The ending in small letters, without the point.
-inline std::string format_of(const std::filesystem::path& file) {
+enum class FileFormat {
+  unknown,
+  document,  // .json, and so are the next three: their content tells which (find_native_format())
+  recording,
+  script,
+  material,
+  step,  // .step, .stp
+  iges,  // .iges, .igs
+  stl,
+  obj,
+  ply,
+  three_mf,  // .3mf
+  pcd,
+  point_text  // .xyz, .txt, .csv, .asc, .pts
+};
+
+struct FileEnding {
+  std::string_view ending;  // in small letters, without the point
+  FileFormat format;
+};
+
+// Every ending that stands for a format. The first of a format is its usual one.
+inline constexpr std::array<FileEnding, 15> file_endings{{{"json", FileFormat::document},
+                                                          {"step", FileFormat::step},
+                                                          {"stp", FileFormat::step},
+                                                          {"iges", FileFormat::iges},
+                                                          {"igs", FileFormat::iges},
+                                                          {"stl", FileFormat::stl},
+                                                          {"obj", FileFormat::obj},
+                                                          {"ply", FileFormat::ply},
+                                                          {"3mf", FileFormat::three_mf},
+                                                          {"pcd", FileFormat::pcd},
+                                                          {"xyz", FileFormat::point_text},
+                                                          {"txt", FileFormat::point_text},
+                                                          {"csv", FileFormat::point_text},
+                                                          {"asc", FileFormat::point_text},
+                                                          {"pts", FileFormat::point_text}}};
+
+// Returns the format that the ending of the name stands for, in any case of letters.
+inline FileFormat format_of(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
+  if (ending.empty()) return FileFormat::unknown;
   ending.erase(0, 1);
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return ending;
+  for (const FileEnding& known : file_endings) {
+    if (known.ending == ending) return known.format;
+  }
+  return FileFormat::unknown;
 }
+
+// Returns the usual ending of a format's files, without the point; none of FileFormat::unknown.
+inline std::string_view ending_of(FileFormat format) {
+  for (const FileEnding& known : file_endings) {
+    if (known.format == format) return known.ending;
+  }
+  return {};
+}
+
+inline bool is_cad(FileFormat format) {
+  return format == FileFormat::step || format == FileFormat::iges;
+}
+
+// Whether triangles are read from such files.
+inline bool is_mesh(FileFormat format) {
+  return format == FileFormat::obj || format == FileFormat::stl || format == FileFormat::ply;
+}
+
+// Whether triangles are written to such files.
+inline bool is_written_mesh(FileFormat format) {
+  return is_mesh(format) || format == FileFormat::three_mf;
+}
+
+// Whether points are read from such files.
+inline bool is_cloud(FileFormat format) {
+  return format == FileFormat::ply || format == FileFormat::pcd || format == FileFormat::obj ||
+         format == FileFormat::point_text;
+}
+
+// Returns which of the program's own formats a file has: document, recording, script or material. Its name
+// says nothing. Refused: a file that cannot be read, or is none of these.
+Result<FileFormat> find_native_format(const std::filesystem::path& file);
 
 }  // namespace spoonbill

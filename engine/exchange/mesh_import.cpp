@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/file.h"
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/ply_check.h"
 #include "engine/exchange/text_mesh_check.h"
@@ -26,10 +27,7 @@ namespace {
 // number after it from a byte too far. True for such a file, whose numbers begin at `begin`.
 bool begins_with_line_feed(const std::string& file, std::size_t& begin) {
   constexpr std::string_view last_line = "\nend_header\n";
-  std::string start(ply_header_bytes_limit, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(stream.gcount()));
+  const std::string start = first_bytes(file, ply_header_bytes_limit);
   const std::size_t place = start.find(last_line);
   if (place == std::string::npos || start.find("\nformat binary") > place) return false;
   begin = place + last_line.size();
@@ -65,7 +63,7 @@ class OneFile final : public Assimp::DefaultIOSystem {
   Assimp::IOStream* Open(const char* name, const char* mode) override {
     if (file_ != name) return nullptr;
     std::size_t begin = 0;
-    if (format_of(file_) == "ply" && begins_with_line_feed(file_, begin)) {
+    if (format_of(file_) == FileFormat::ply && begins_with_line_feed(file_, begin)) {
       return new MendedStream(file_, begin);
     }
     return DefaultIOSystem::Open(name, mode);
@@ -75,19 +73,19 @@ class OneFile final : public Assimp::DefaultIOSystem {
   std::string file_;
 };
 
-bool names_format(const char* endings, const std::string& format) {
+bool names_ending(const char* endings, std::string_view ending) {
   std::istringstream words(endings != nullptr ? endings : "");
   for (std::string word; words >> word;) {
-    if (word == format) return true;
+    if (word == ending) return true;
   }
   return false;
 }
 
 // Else a file that is none of its format is tried with every other importer there is.
-void keep_importers_of(Assimp::Importer& importer, const std::string& format) {
+void keep_importers_of(Assimp::Importer& importer, FileFormat format) {
   for (std::size_t k = importer.GetImporterCount(); k-- > 0;) {
     const aiImporterDesc* description = importer.GetImporterInfo(k);
-    if (description != nullptr && names_format(description->mFileExtensions, format)) continue;
+    if (description != nullptr && names_ending(description->mFileExtensions, ending_of(format))) continue;
     importer.UnregisterLoader(importer.GetImporter(k));
   }
 }
@@ -134,10 +132,10 @@ Result<TriangleMesh> gather(const aiScene& scene) {
 
 // What Assimp would not miss.
 Status check_whole(const std::filesystem::path& file) {
-  const std::string format = format_of(file);
-  if (format == "ply") return check_ply(file);
-  if (format == "stl") return check_text_stl(file);
-  return format == "obj" ? check_last_obj_line(file) : Status();
+  const FileFormat format = format_of(file);
+  if (format == FileFormat::ply) return check_ply(file);
+  if (format == FileFormat::stl) return check_text_stl(file);
+  return format == FileFormat::obj ? check_last_obj_line(file) : Status();
 }
 
 }  // namespace

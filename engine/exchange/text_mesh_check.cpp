@@ -1,7 +1,5 @@
 #include "engine/exchange/text_mesh_check.h"
 
-#include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstdint>
 #include <cstring>
@@ -12,22 +10,13 @@
 #include <system_error>
 
 #include "engine/base/excerpt.h"
+#include "engine/base/file.h"
 
 namespace spoonbill {
 namespace {
 
 // A line of a name as long as any.
-constexpr std::uintmax_t tail_bytes = 65536;
-
-std::string tail_of(const std::filesystem::path& file, std::uintmax_t size) {
-  const std::uintmax_t length = std::min(size, tail_bytes);
-  std::string tail(static_cast<std::size_t>(length), '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.seekg(static_cast<std::streamoff>(size - length));
-  stream.read(tail.data(), static_cast<std::streamsize>(length));
-  tail.resize(static_cast<std::size_t>(stream.gcount()));
-  return tail;
-}
+constexpr std::size_t tail_bytes = 65536;
 
 std::string_view last_line_of(std::string_view text) {
   const std::size_t end = text.find_last_of("\r\n");
@@ -39,9 +28,8 @@ std::string_view last_line_of(std::string_view text) {
 // As Assimp tells them apart: by the count of triangles behind a binary one's first 80 bytes.
 bool is_binary_stl(const std::filesystem::path& file, std::uintmax_t size) {
   constexpr std::size_t head_bytes = 84, count_at = 80, triangle_bytes = 50;
-  std::array<char, head_bytes> head{};
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.read(head.data(), head.size())) return false;
+  const std::string head = first_bytes(file, head_bytes);
+  if (head.size() < head_bytes) return false;
   std::uint32_t triangles = 0;
   std::memcpy(&triangles, head.data() + count_at, sizeof triangles);
   return head_bytes + triangle_bytes * static_cast<std::uintmax_t>(triangles) == size;
@@ -91,15 +79,14 @@ Status check_text_stl(const std::filesystem::path& file) {
   std::error_code ignored;
   const std::uintmax_t size = std::filesystem::file_size(file, ignored);
   if (is_binary_stl(file, size) || !begins_as_text_stl(file)) return {};
-  std::string tail = tail_of(file, size);
+  std::string tail = last_bytes(file, tail_bytes);
   while (!tail.empty() && static_cast<unsigned char>(tail.back()) <= ' ') tail.pop_back();
   if (last_line_of(tail).starts_with("endsolid")) return {};
   return Error{"it does not end with 'endsolid'; it is cut or damaged"};
 }
 
 Status check_last_obj_line(const std::filesystem::path& file) {
-  std::error_code ignored;
-  const std::string tail = tail_of(file, std::filesystem::file_size(file, ignored));
+  const std::string tail = last_bytes(file, tail_bytes);
   const std::string_view last = last_line_of(tail);
   const std::string line(last.substr(0, last.find('#')));
   std::istringstream words(line);

@@ -1,8 +1,8 @@
-#include <fstream>
 #include <istream>
 #include <string_view>
 #include <utility>
 
+#include "engine/base/file.h"
 #include "haptic/recording/line_reader.h"
 #include "haptic/recording/recording.h"
 #include "haptic/recording/recording_lines.h"
@@ -139,14 +139,9 @@ Result<Recording> read_recording(std::istream& in, const std::string& source) {
 }
 
 Result<Recording> read_recording(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto state = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(state)) return Error{file.string() + ": no such file"};
-  if (std::filesystem::is_directory(state)) return Error{file.string() + ": is a folder, name a file in it"};
-  if (!std::filesystem::is_regular_file(state)) return Error{file.string() + ": is not a regular file"};
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return Error{file.string() + ": cannot be opened, check its permissions"};
-  return read_recording(in, file.string());
+  auto in = open_file(file);
+  if (!in) return in.error();
+  return read_recording(in.value(), file.string());
 }
 
 }  // namespace spoonbill

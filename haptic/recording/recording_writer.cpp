@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include "engine/exchange/sequential_file.h"
+#include "engine/base/output_file.h"
 #include "haptic/recording/recording_lines.h"
 
 namespace spoonbill {
 
 struct RecordingWriter::State {
-  SequentialFile out;
+  OutputFile out;
   std::string name;
   std::uint64_t ticks = 0;             // readings taken
   std::vector<DeviceReading> pending;  // those of them not written yet
@@ -27,7 +27,7 @@ struct RecordingWriter::State {
   }
 
   Status write_line(const Json& json) {
-    if (failure.ok()) failure = out.append(json_to_line(json) + '\n');
+    if (failure.ok()) failure = out.write(json_to_line(json) + '\n');
     return failure;
   }
 
@@ -74,7 +74,7 @@ Result<RecordingWriter> RecordingWriter::create(const std::filesystem::path& fil
                                                 const RecordingHeader& header) {
   const Json header_json = header_to_json(header);
   if (Status status = check_header(header_json, file.string()); !status.ok()) return status.error();
-  auto out = SequentialFile::create(file);
+  auto out = OutputFile::create_growing(file);
   if (!out.ok()) return out.error();
   auto state =
       std::make_unique<State>(State{std::move(out).value(), file.string(), 0, {}, {}, {}, {}, {}, false});
@@ -139,7 +139,13 @@ Status RecordingWriter::finish(std::uint64_t state_hash) {
   const Json line{{"end", true}, {"ticks", state.ticks}, {"state_hash", hash_text(state_hash)}};
   if (!state.write_line(line).ok()) return state.failure;
   state.finished = true;
-  return state.failure = state.out.close();
+  return state.failure = state.out.flush();
+}
+
+Status RecordingWriter::commit() {
+  State& state = *state_;
+  if (!state.failure.ok()) return state.failure;
+  return state.failure = state.out.commit();
 }
 
 }  // namespace spoonbill

@@ -21,9 +21,11 @@ namespace spoonbill {
 //     writer.reading(reading);
 //   }
 //   writer.finish(simulation.state_hash());
+//   writer.commit();
 class RecordingWriter {
  public:
-  // Writes the header. Refused: a path that cannot be written, a document that could not be read back.
+  // Writes the header. Where there is an older file of that name the recording grows beside it, as FILE.part,
+  // which replays as well. Refused: a path that cannot be written, a document that could not be read back.
   static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header);
 
   RecordingWriter(RecordingWriter&&) noexcept;
@@ -42,8 +44,11 @@ class RecordingWriter {
 
   Status reading(const DeviceReading& reading);
 
-  // The last line, flushed to the disk.
+  // Writes the last line and waits until the disk has it all.
   Status finish(std::uint64_t state_hash);
+
+  // After finish(): the recording takes the place of an older file of its name, and is closed.
+  Status commit();
 
  private:
   struct State;

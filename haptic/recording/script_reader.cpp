@@ -2,9 +2,9 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/base/file.h"
 #include "engine/base/number_text.h"
 #include "engine/exchange/field_reader.h"
-#include "engine/exchange/file.h"
 #include "engine/simulation/simulation.h"
 #include "haptic/device.h"
 #include "haptic/recording/script.h"
@@ -156,7 +156,7 @@ Result<Script> script_from_json(const Json& json, const std::string& source,
 }
 
 Result<Script> read_script(const std::filesystem::path& file) {
-  auto text = read_text_file(file, script_bytes_limit);
+  auto text = read_file(file, script_bytes_limit);
   if (!text.ok()) return text.error();
   auto json = parse_json(text.value(), file.string());
   if (!json.ok()) return json.error();

@@ -4,18 +4,25 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
-#include "render/read_bytes.h"
+#include "engine/base/file.h"
 
 namespace spoonbill {
 namespace {
 
 constexpr int ink = 40;
+constexpr std::size_t font_bytes_limit = std::size_t{256} << 20;
 
 struct Glyph {
   int width = 0, height = 0, left = 0, top = 0;
   std::vector<std::uint8_t> coverage;
 };
+
+// The font refers to the bytes.
+bool read_font(const std::string& bytes, stbtt_fontinfo& font) {
+  return stbtt_InitFont(&font, reinterpret_cast<const unsigned char*>(bytes.data()), 0) != 0;
+}
 
 Glyph rasterise(const stbtt_fontinfo& font, int codepoint, float scale, float shift) {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
@@ -46,11 +53,11 @@ void stamp(Image& image, const Glyph& glyph, int x0, int y0) {
 }  // namespace
 
 Result<CaptionFont> CaptionFont::load(const std::string& path) {
-  auto file = read_bytes(path);
+  auto file = read_file(path, font_bytes_limit);
   CaptionFont font;
   if (file) font.file_ = std::move(file).value();
   stbtt_fontinfo info;
-  if (font.file_.size() < 16 || stbtt_InitFont(&info, font.file_.data(), 0) == 0) {
+  if (font.file_.size() < 16 || !read_font(font.file_, info)) {
     return Error{path + ": no readable TrueType font; install fonts-roboto-unhinted or name another file"};
   }
   return font;
@@ -58,7 +65,7 @@ Result<CaptionFont> CaptionFont::load(const std::string& path) {
 
 void CaptionFont::draw(Image& image, const std::string& text, int x_px, int y_px, int size_px) const {
   stbtt_fontinfo font;
-  stbtt_InitFont(&font, file_.data(), 0);
+  read_font(file_, font);
   const float scale = stbtt_ScaleForPixelHeight(&font, static_cast<float>(size_px));
   int ascent = 0, descent = 0, gap = 0;
   stbtt_GetFontVMetrics(&font, &ascent, &descent, &gap);

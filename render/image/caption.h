@@ -1,9 +1,7 @@
 // Text on a picture without GL, for captions.
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <vector>
 
 #include "engine/base/result.h"
 #include "render/image/image.h"
@@ -20,7 +18,7 @@ class CaptionFont {
   void draw(Image& image, const std::string& text, int x_px, int y_px, int size_px) const;
 
  private:
-  std::vector<std::uint8_t> file_;
+  std::string file_;  // its bytes
 };
 
 }  // namespace spoonbill

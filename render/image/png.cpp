@@ -5,9 +5,8 @@
 
 #include <array>
 #include <cstring>
-#include <fstream>
 #include <string>
-#include <system_error>
+#include <string_view>
 
 namespace spoonbill {
 namespace {
@@ -25,23 +24,6 @@ bool is_opaque(const Image& image) {
   std::uint8_t all = 0xff;
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) all &= image.rgba[i];
   return all == 0xff;
-}
-
-Status write_bytes(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
-  const std::filesystem::path unfinished = path.string() + ".part";
-  std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
-  stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  stream.close();
-  std::error_code failure;
-  if (!stream) {
-    std::filesystem::remove(unfinished, failure);
-    return Error{path.string() + ": cannot be written; check that the folder exists and has room"};
-  }
-  std::filesystem::rename(unfinished, path, failure);
-  if (!failure) return {};
-  Error error{path.string() + ": cannot be put in its place: " + failure.message()};
-  std::filesystem::remove(unfinished, failure);
-  return error;
 }
 
 }  // namespace
@@ -125,15 +107,16 @@ Result<std::span<const std::uint8_t>> PngEncoder::encode(const Image& image) {
   return std::span<const std::uint8_t>(file_);
 }
 
-Status write_png(const std::filesystem::path& path, const Image& image, PngEncoder& encoder) {
+Status write_png(const std::filesystem::path& path, const Image& image, PngEncoder& encoder,
+                 Durability durability) {
   const auto bytes = encoder.encode(image);
   if (!bytes) return Error{path.string() + ": " + bytes.error().message};
-  return write_bytes(path, bytes.value());
+  return write_file(path, {reinterpret_cast<const char*>(bytes->data()), bytes->size()}, durability);
 }
 
 Status write_png(const std::filesystem::path& path, const Image& image) {
   PngEncoder encoder;
-  return write_png(path, image, encoder);
+  return write_png(path, image, encoder, Durability::now);
 }
 
 }  // namespace spoonbill

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/output_file.h"
 #include "engine/base/result.h"
 #include "render/image/image.h"
 
@@ -33,11 +34,11 @@ class PngEncoder {
   std::vector<std::uint8_t> file_;
 };
 
-// Encodes and writes. The file appears whole or not at all: it is written beside its place under another name
-// and renamed. The error names the path.
-Status write_png(const std::filesystem::path& path, const Image& image, PngEncoder& encoder);
+// Encodes and writes a file as write_file() does. The error names the path.
+Status write_png(const std::filesystem::path& path, const Image& image, PngEncoder& encoder,
+                 Durability durability);
 
-// As above, for a single picture.
+// As above, for a single picture, which is on the disk when this returns.
 Status write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace spoonbill

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "engine/exchange/cad_stream.h"
+#include "engine/exchange/frame_stream.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/effort.h"
@@ -42,7 +43,7 @@ class CadFileTest : public testing::Test {
 
   static Result<CadModel> read(const std::string& file, const CadChild& child = by_program()) {
     CadReading reading;
-    reading.format = cad_format_of(file);
+    reading.format = format_of(file);
     return read_cad_file(file, reading, child);
   }
 
@@ -60,7 +61,7 @@ class CadFileTest : public testing::Test {
     EXPECT_LT(line.size(), file.size() + 500) << line;
   }
 
-  static std::string text_of(CadFormat format) {
+  static std::string text_of(FileFormat format) {
     const auto content = make_cad_file(two_tubes(), {format, StepSchema::ap214, "mm"}, "model", by_program());
     EXPECT_TRUE(content) << content.error().message;
     return content ? content->text : "";
@@ -79,8 +80,8 @@ class CadFileTest : public testing::Test {
 };
 
 TEST_F(CadFileTest, WhatIsMadeIsRead) {
-  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
-    const auto model = read(write(format == CadFormat::step ? "a.step" : "a.igs", text_of(format)));
+  for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
+    const auto model = read(write(format == FileFormat::step ? "a.step" : "a.igs", text_of(format)));
     ASSERT_TRUE(model) << model.error().message;
     ASSERT_EQ(model->surfaces.size(), 2u);
     EXPECT_EQ(model->surfaces[1].name, "two");
@@ -90,12 +91,12 @@ TEST_F(CadFileTest, WhatIsMadeIsRead) {
 }
 
 TEST_F(CadFileTest, NamesTellTheFormat) {
-  EXPECT_TRUE(is_cad_file("a.STEP"));
-  EXPECT_TRUE(is_cad_file("a.b.igs"));
-  EXPECT_FALSE(is_cad_file("a.stl"));
-  EXPECT_FALSE(is_cad_file("step"));
-  EXPECT_EQ(cad_format_of("a.Stp"), CadFormat::step);
-  EXPECT_EQ(cad_format_of("a.IGES"), CadFormat::iges);
+  EXPECT_TRUE(is_cad(format_of("a.STEP")));
+  EXPECT_TRUE(is_cad(format_of("a.b.igs")));
+  EXPECT_FALSE(is_cad(format_of("a.stl")));
+  EXPECT_FALSE(is_cad(format_of("step")));
+  EXPECT_EQ(format_of("a.Stp"), FileFormat::step);
+  EXPECT_EQ(format_of("a.IGES"), FileFormat::iges);
 }
 
 TEST_F(CadFileTest, WhatIsNoFileIsRefused) {
@@ -124,8 +125,8 @@ TEST_F(CadFileTest, OtherContentIsRefused) {
     for (int k = 0; k < 20000; ++k) noise += static_cast<char>(random.integer(0, 255));
     expect_refusal(write(std::string("noise") + ending, noise), "");
   }
-  expect_refusal(write("is-iges.step", text_of(CadFormat::iges)), "is no STEP file");
-  expect_refusal(write("is-step.iges", text_of(CadFormat::step)), "");
+  expect_refusal(write("is-iges.step", text_of(FileFormat::iges)), "is no STEP file");
+  expect_refusal(write("is-step.iges", text_of(FileFormat::step)), "");
   const std::string nothing =
       "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
       "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n";
@@ -136,7 +137,7 @@ TEST_F(CadFileTest, OtherContentIsRefused) {
 TEST_F(CadFileTest, DamagedFilesGiveAModelOrOneLine) {
   Random random(11);
   int refused = 0, read_all_the_same = 0;
-  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+  for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
     const std::string sound = text_of(format);
     for (int k = 0; k < effort(40); ++k) {
       std::string damaged = sound;
@@ -148,7 +149,7 @@ TEST_F(CadFileTest, DamagedFilesGiveAModelOrOneLine) {
         damaged[at] =
             letters[static_cast<std::size_t>(random.integer(0, static_cast<int>(letters.size()) - 1))];
       }
-      const std::string file = write(format == CadFormat::step ? "damaged.step" : "damaged.iges", damaged);
+      const std::string file = write(format == FileFormat::step ? "damaged.step" : "damaged.iges", damaged);
       const auto model = read(file);
       if (model) {
         ++read_all_the_same;
@@ -164,7 +165,7 @@ TEST_F(CadFileTest, DamagedFilesGiveAModelOrOneLine) {
 }
 
 TEST_F(CadFileTest, NumbersBeyondAllBoundsAreRefused) {
-  const std::string sound = text_of(CadFormat::step);
+  const std::string sound = text_of(FileFormat::step);
   for (const char* number : {"1.E+300", "NAN", "1.E+999", "1.E+8"}) {
     SCOPED_TRACE(number);
     std::string text = sound;
@@ -185,7 +186,7 @@ TEST_F(CadFileTest, NumbersBeyondAllBoundsAreRefused) {
 
 // One bad face of a hundred is no reason to have none.
 TEST_F(CadFileTest, AFaceThatCannotBeTakenIsLeftOutAndNamed) {
-  std::string text = text_of(CadFormat::step);
+  std::string text = text_of(FileFormat::step);
   const std::string begin = "CARTESIAN_POINT('',(";
   std::size_t at = 0;
   const auto spoil_next_surface = [&] {
@@ -204,11 +205,11 @@ TEST_F(CadFileTest, AFaceThatCannotBeTakenIsLeftOutAndNamed) {
 }
 
 TEST_F(CadFileTest, AReaderThatFailsIsExplained) {
-  const std::string file = write("a.step", text_of(CadFormat::step));
+  const std::string file = write("a.step", text_of(FileFormat::step));
   expect_refusal(file, "crashed on it (signal 11)", instead("kill -SEGV $$"));
   expect_refusal(file, "ended without a model (exit code 3)", instead("exit 3"));
   expect_refusal(file, "longer than 2 s", instead("sleep 20"));
-  expect_refusal(file, "ended without a model", instead("echo nonsense of more than sixteen bytes"));
+  expect_refusal(file, "did not answer in its own form", instead("echo nonsense of more than sixteen bytes"));
   CadChild absent;
   absent.program = folder_.path() / "absent";
   expect_refusal(file, "does not start", absent);
@@ -217,20 +218,20 @@ TEST_F(CadFileTest, AReaderThatFailsIsExplained) {
 // A hostile file that has taken the child over says what it likes.
 TEST_F(CadFileTest, AnswersOfAnotherFormAreRefused) {
   std::ostringstream surface;
-  write_frame(surface, CadFrameKind::surface, json_to_line(cad_surface_to_json(two_tubes().surfaces[0])));
-  const std::string file = write("a.step", text_of(CadFormat::step));
+  write_frame(surface, FrameKind::surface, json_to_line(cad_surface_to_json(two_tubes().surfaces[0])));
+  const std::string file = write("a.step", text_of(FileFormat::step));
   for (const char* ending : {"", "7", "[]", "{", R"({"unit": 5, "unit_declared": true, "notes": []})",
                              R"({"unit": "mm", "unit_declared": "yes", "notes": []})",
                              R"({"unit": "mm", "unit_declared": true, "notes": 3})", R"({"unit": "mm"})"}) {
     SCOPED_TRACE(ending);
     std::ostringstream answer;
     answer << surface.str();
-    write_frame(answer, CadFrameKind::ending, ending);
+    write_frame(answer, FrameKind::ending, ending);
     expect_refusal(file, "did not answer in its own form",
                    instead("cat " + folder_.write("answer", answer.str()).string()));
     std::ostringstream made;
-    write_frame(made, CadFrameKind::file, "ISO-10303-21;");
-    write_frame(made, CadFrameKind::ending, ending);
+    write_frame(made, FrameKind::file, "ISO-10303-21;");
+    write_frame(made, FrameKind::ending, ending);
     const auto content = make_cad_file(two_tubes(), {}, "b.step",
                                        instead("cat " + folder_.write("made", made.str()).string()));
     ASSERT_FALSE(content);
@@ -250,20 +251,23 @@ TEST_F(CadFileTest, AWriterThatFailsIsExplained) {
 }
 
 TEST_F(CadFileTest, AReaderIsStoppedSoon) {
-  const std::string file = write("a.step", text_of(CadFormat::step));
+  const std::string file = write("a.step", text_of(FileFormat::step));
   CadChild child = instead("sleep 20");
   child.patience = 20s;
   const auto start = std::chrono::steady_clock::now();
-  child.stop = [&] { return std::chrono::steady_clock::now() - start > 100ms; };
+  child.progress = Progress([&](double) { return std::chrono::steady_clock::now() - start <= 100ms; });
   expect_refusal(file, "stopped", child);
   EXPECT_LT(std::chrono::steady_clock::now() - start, 10s);
 }
 
 TEST_F(CadFileTest, ProgressGrowsToTheEnd) {
-  const std::string file = write("a.step", text_of(CadFormat::step));
+  const std::string file = write("a.step", text_of(FileFormat::step));
   CadChild child = by_program();
   std::vector<double> shares;
-  child.progress = [&](double share) { shares.push_back(share); };
+  child.progress = Progress([&](double fraction) {
+    shares.push_back(fraction);
+    return true;
+  });
   ASSERT_TRUE(read(file, child));
   ASSERT_GE(shares.size(), 3u);
   EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));

@@ -49,9 +49,9 @@ class Side {
   }
   void begin_recording(const std::filesystem::path& file) {
     const SessionWork work = [file](LentSession& lent) {
-      auto recording = PlacedRecording::begin(file, {lent.session->device, document_of(*lent.session)});
+      auto recording = RecordingWriter::create(file, {lent.session->device, document_of(*lent.session)});
       if (!recording) return Status(recording.error());
-      lent.recording = std::move(recording).value();
+      lent.recording = std::make_unique<RecordingWriter>(std::move(recording).value());
       return Status();
     };
     ASSERT_TRUE(exchange_->commands.push(AskedWork{work, true}));

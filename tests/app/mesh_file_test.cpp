@@ -302,14 +302,15 @@ TEST_F(MeshFileTest, AReaderThatFailsIsOneLine) {
   expect_refusal(file, "ended without a mesh (exit code 0)", instead("printf 'spnlmesh'"));
   expect_refusal(file, "did not answer in its own form", instead("exec head -c 1000000 /dev/zero"));
   expect_refusal(file, "18446744073709551615 triangles",
-                 instead("printf 'spnlmesh'; head -c 16 /dev/zero | tr '\\000' '\\377'"));
-  expect_refusal(file, "ended without a mesh",
-                 instead("printf 'spnlmesh\\003\\0\\0\\0\\0\\0\\0\\0\\001\\0\\0\\0\\0\\0\\0\\0abc'"));
-  expect_refusal(file, "cannot be read as STL (a b)",
-                 instead("printf 'spnlfail\\003\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0a\\nb'"));
+                 instead("printf 'spnlmesh'; head -c 24 /dev/zero | tr '\\000' '\\377'"));
   expect_refusal(
-      file, "more than 4 GiB",
-      instead("printf 'spnlfail\\016\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0bad allocation'"));
+      file, "ended without a mesh",
+      instead("printf "
+              "'spnlmesh\\144\\0\\0\\0\\0\\0\\0\\0\\003\\0\\0\\0\\0\\0\\0\\0\\001\\0\\0\\0\\0\\0\\0\\0abc'"));
+  expect_refusal(file, "cannot be read as STL (a b)",
+                 instead("printf 'spnlfail\\003\\0\\0\\0\\0\\0\\0\\0a\\nb'"));
+  expect_refusal(file, "more than 4 GiB",
+                 instead("printf 'spnlfail\\016\\0\\0\\0\\0\\0\\0\\0bad allocation'"));
   MeshReading missing;
   missing.program = folder_.path() / "nobody";
   expect_refusal(file, "does not start", missing);
@@ -337,22 +338,20 @@ TEST_F(MeshFileTest, AReaderOfPointsThatFailsIsOneLine) {
   expect_no_cloud("ended without a cloud (exit code 3)", instead("exit 3"));
   expect_no_cloud("did not answer in its own form", instead("exec head -c 1000000 /dev/zero"));
   expect_no_cloud("did not answer in its own form",
-                  instead("printf 'spnlclud'; head -c 16 /dev/zero | tr '\\000' '\\377'"));
+                  instead("printf 'spnlclud'; head -c 32 /dev/zero | tr '\\000' '\\377'"));
   expect_no_cloud("ended without a cloud",
-                  instead("printf 'spnlclud\\003\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0abc'"));
-  expect_no_cloud(": a b",
-                  instead("printf 'spnlfail\\003\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0a\\nb'"));
-  expect_no_cloud(
-      "more than 4 GiB; thin it out",
-      instead("printf 'spnlfail\\016\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0bad allocation'"));
+                  instead("printf 'spnlclud\\140\\0\\0\\0\\0\\0\\0\\0\\003\\0\\0\\0\\0\\0\\0\\0'; head -c 16 "
+                          "/dev/zero; printf abc"));
+  expect_no_cloud(": a b", instead("printf 'spnlfail\\003\\0\\0\\0\\0\\0\\0\\0a\\nb'"));
+  expect_no_cloud("more than 4 GiB; thin it out",
+                  instead("printf 'spnlfail\\016\\0\\0\\0\\0\\0\\0\\0bad allocation'"));
 }
 
 TEST_F(MeshFileTest, TheReaderHasFourGibibytes) {
   if (sanitized) GTEST_SKIP() << "a sanitizer's memory knows no limit";
   // Late enough that the limit has been set; seven letters: 4194304 kibibytes.
-  expect_refusal(
-      write("box.stl", binary_stl(box)), "(4194304)",
-      instead("sleep 0.3; printf 'spnlfail\\007\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0'; ulimit -v"));
+  expect_refusal(write("box.stl", binary_stl(box)), "(4194304)",
+                 instead("sleep 0.3; printf 'spnlfail\\007\\0\\0\\0\\0\\0\\0\\0'; ulimit -v"));
 }
 
 // A ball of many triangles: in the full run five million, against the limit that holds.

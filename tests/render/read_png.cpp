@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "render/read_bytes.h"
+#include "engine/base/file.h"
 
 namespace spoonbill {
 namespace {
@@ -19,9 +19,9 @@ constexpr int largest_side_px = 16384;
 }  // namespace
 
 Result<Image> read_png(const std::filesystem::path& path) {
-  const auto bytes = read_bytes(path);
+  const auto bytes = read_file(path, std::size_t{256} << 20);
   if (!bytes) return bytes.error();
-  const stbi_uc* data = bytes->data();
+  const auto* data = reinterpret_cast<const stbi_uc*>(bytes->data());
   if (bytes->size() < signature.size() || std::memcmp(data, signature.data(), signature.size()) != 0) {
     return Error{path.string() + ": not a PNG file"};
   }

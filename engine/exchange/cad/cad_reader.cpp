@@ -57,7 +57,7 @@ Result<Content> read_step(const std::filesystem::path& file, const CadProgress& 
   Content content{new_document(), unit_of(reader.Reader().StepModel())};
   content.external_files = forget_external_files(reader.Reader().StepModel());
   if (!reader.Transfer(content.document)) return Error{"holds no shape"};
-  content.losses = count_losses(reader.Reader().WS(), CadFormat::step);
+  content.losses = count_losses(reader.Reader().WS(), FileFormat::step);
   content.unread_placements = count_unread_placements(reader.Reader().StepModel());
   return content;
 }
@@ -73,7 +73,7 @@ Result<Content> read_iges(const std::filesystem::path& file, const CadProgress& 
   if (progress) progress(share_of_parsing);
   Content content{new_document(), unit_of(reader.IGESModel(), file)};
   if (!reader.Transfer(content.document)) return Error{"holds no shape"};
-  content.losses = count_losses(reader.WS(), CadFormat::iges);
+  content.losses = count_losses(reader.WS(), FileFormat::iges);
   content.losses.unread -= std::min(content.losses.unread, null_entities.value());
   content.unread_placements = count_unread_placements(reader.IGESModel());
   content.model_scale = iges_model_scale(file);
@@ -198,7 +198,7 @@ Status take_faces(const std::vector<NamedFace>& faces, double scale, const CadRe
 Result<CadModel> read(const std::filesystem::path& file, const CadReading& reading, const TakeSurface& take,
                       const CadProgress& progress) {
   const auto content =
-      reading.format == CadFormat::step ? read_step(file, progress) : read_iges(file, progress);
+      reading.format == FileFormat::step ? read_step(file, progress) : read_iges(file, progress);
   if (!content) return content.error();
   if (progress) progress(share_of_transfer);
   const NamedFaces named = named_faces(content->document);

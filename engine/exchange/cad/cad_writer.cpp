@@ -202,8 +202,8 @@ Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writin
                                  const CadProgress& progress) {
   choose_unit(writing.unit);
   try {
-    return writing.format == CadFormat::step ? write_step(model, writing, progress)
-                                             : write_iges(model, progress);
+    return writing.format == FileFormat::step ? write_step(model, writing, progress)
+                                              : write_iges(model, progress);
   } catch (const Standard_Failure& failure) {
     return Error{std::string("OpenCASCADE fails on it (") + failure.DynamicType()->Name() + ")"};
   } catch (const std::bad_alloc&) {

@@ -49,8 +49,8 @@ bool shapes_something(int type) {
          type == iges_instance;
 }
 
-bool is_face(const Entity& entity, const Interface_Graph& graph, CadFormat format) {
-  if (format == CadFormat::step) {
+bool is_face(const Entity& entity, const Interface_Graph& graph, FileFormat format) {
+  if (format == FileFormat::step) {
     return !opencascade::handle<StepShape_FaceSurface>::DownCast(entity).IsNull();
   }
   const auto iges = opencascade::handle<IGESData_IGESEntity>::DownCast(entity);
@@ -72,7 +72,7 @@ void count_iges(const Entity& entity, bool made, bool damaged, LossCount& count)
 
 }  // namespace
 
-LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session, CadFormat format) {
+LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session, FileFormat format) {
   const auto model = session->Model();
   const auto made_of = session->MapReader();
   const Interface_Graph& graph = session->Graph();
@@ -84,7 +84,7 @@ LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session
     if (is_face(entity, graph, format)) {
       ++count.faces;
       if (!made) ++count.lost_faces;
-    } else if (format == CadFormat::iges) {
+    } else if (format == FileFormat::iges) {
       count_iges(entity, made, model->IsErrorEntity(k) || model->IsRedefinedContent(k), count);
     }
   }

@@ -14,6 +14,6 @@ struct LossCount {
 };
 
 // After the transfer.
-LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session, CadFormat format);
+LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session, FileFormat format);
 
 }  // namespace spoonbill

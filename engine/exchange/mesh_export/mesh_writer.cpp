@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/exchange/mesh_export/three_mf.h"
 
@@ -132,24 +133,24 @@ Status write_ply(const std::vector<NamedMesh>& meshes, double unit_m, const Take
 
 }  // namespace
 
-Status write_meshes(const std::vector<NamedMesh>& meshes, MeshFormat format, double unit_m,
+Status write_meshes(const std::vector<NamedMesh>& meshes, FileFormat format, double unit_m,
                     const TakeBytes& take) {
   const Counts counts = counts_of(meshes);
   constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
   if (counts.vertices > most || counts.triangles > most) {
     return Error{"has more triangles than the format counts; choose a larger chord error"};
   }
+  SPOONBILL_ASSERT(is_written_mesh(format));
   switch (format) {
-    case MeshFormat::stl:
+    case FileFormat::stl:
       return write_stl(meshes, unit_m, take);
-    case MeshFormat::obj:
+    case FileFormat::obj:
       return write_obj(meshes, unit_m, take);
-    case MeshFormat::ply:
+    case FileFormat::ply:
       return write_ply(meshes, unit_m, take);
-    case MeshFormat::three_mf:
+    default:
       return write_three_mf(meshes, take);
   }
-  return {};
 }
 
 }  // namespace spoonbill

@@ -9,10 +9,9 @@
 
 #include "engine/base/result.h"
 #include "engine/collision/meshes/triangle_mesh.h"
+#include "engine/exchange/file_format.h"
 
 namespace spoonbill {
-
-enum class MeshFormat { stl, obj, ply, three_mf };
 
 struct NamedMesh {
   std::string name;
@@ -26,9 +25,9 @@ using TakeBytes = std::function<Status(std::string_view)>;
 
 // STL binary, in single precision as the format has it; OBJ as text with every digit, an object for each
 // mesh; PLY binary in double precision, one after the other; 3MF as a zip with an object for each mesh,
-// always in millimetres. `unit_m` is the length of one of the file's numbers. Refused: more triangles than
-// the format's indices count; what take() refuses.
-Status write_meshes(const std::vector<NamedMesh>& meshes, MeshFormat format, double unit_m,
+// always in millimetres. `format` must be one of these. `unit_m` is the length of one of the file's numbers.
+// Refused: more triangles than the format's indices count; what take() refuses.
+Status write_meshes(const std::vector<NamedMesh>& meshes, FileFormat format, double unit_m,
                     const TakeBytes& take);
 
 }  // namespace spoonbill

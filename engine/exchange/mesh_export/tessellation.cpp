@@ -97,11 +97,11 @@ Result<Sheet> sheet_of(const Surface& surface, const Cells& cells) {
 
 // Of each polynomial piece, the largest error of its cells; of those that come after a stop, none.
 Eigen::MatrixXd errors_of(const Sheet& sheet, const SurfaceBounds& bounds, const Cells& cells,
-                          const std::function<bool()>& stop) {
+                          const Progress& progress) {
   Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(bounds.elements_u(), bounds.elements_v());
   std::size_t i = 0;
   for (int a = 0; a < bounds.elements_u(); ++a) {
-    if (stop && stop()) break;
+    if (!progress.report(0.0)) break;
     for (int k = 0; k < cells.u_cuts[static_cast<std::size_t>(a)]; ++k, ++i) {
       std::size_t j = 0;
       for (int b = 0; b < bounds.elements_v(); ++b) {
@@ -288,7 +288,7 @@ Result<Tessellation> finished(const Sheet& sheet, const Surface& surface, const 
 }  // namespace
 
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
-                                std::size_t triangle_limit, const std::function<bool()>& stop) {
+                                std::size_t triangle_limit, const Progress& progress) {
   const double edges_m = trim_edge_error_m(surface, trims);
   const double allowed_m = std::max(chord_m - edges_m, least_share_of_cells * chord_m);
   SurfaceBounds bounds(surface.u, surface.v);
@@ -301,8 +301,8 @@ Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLo
     }
     const auto sheet = sheet_of(surface, cells);
     if (!sheet) return sheet.error();
-    const Eigen::MatrixXd errors = errors_of(sheet.value(), bounds, cells, stop);
-    if (stop && stop()) return Error{"stopped"};
+    const Eigen::MatrixXd errors = errors_of(sheet.value(), bounds, cells, progress);
+    if (!progress.report(0.0)) return Progress::stopped();
     if (const double largest = errors.maxCoeff(); largest <= allowed_m) {
       return finished(sheet.value(), surface, trims, largest + edges_m);
     }

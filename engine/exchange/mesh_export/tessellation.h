@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <vector>
 
+#include "engine/base/progress.h"
 #include "engine/base/range.h"
 #include "engine/base/result.h"
 #include "engine/bspline/surface.h"
@@ -32,10 +32,10 @@ inline constexpr std::size_t exported_triangle_limit = 10'000'000;
 // within |P00 - P10 - P01 + P11| / 4 of its triangles, those that trim loops cut too, whose corners lie on
 // the patch. An edge that a loop makes is that of its polygon, within polygon_error_share() of the domain
 // of the loop, which the surface stretches by no more than its first derivatives. Refused: more triangles
-// than the limit, loops that bound nothing; `stop`, asked now and then, where it says so.
+// than the limit, loops that bound nothing; a request to stop.
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
                                 std::size_t triangle_limit = exported_triangle_limit,
-                                const std::function<bool()>& stop = {});
+                                const Progress& progress = {});
 
 // By the divergence theorem; of a closed mesh, negative where its normals point inward.
 double enclosed_volume_m3(const TriangleMesh& mesh);

@@ -1,7 +1,5 @@
 #include "engine/exchange/points/point_cloud.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "engine/exchange/file_format.h"
@@ -48,18 +46,12 @@ Result<PointCloud> PointGatherer::done() && {
   return Error{"has no points"};
 }
 
-bool is_point_name(const std::filesystem::path& file) {
-  static constexpr std::array<std::string_view, 8> endings{"ply", "pcd", "xyz", "txt",
-                                                           "csv", "asc", "pts", "obj"};
-  return std::find(endings.begin(), endings.end(), format_of(file)) != endings.end();
-}
-
 Result<PointCloud> points_of(std::string_view bytes, const std::filesystem::path& file) {
-  const std::string format = format_of(file);
-  auto cloud = format == "ply"   ? ply_points(bytes)
-               : format == "pcd" ? pcd_points(bytes)
-               : format == "obj" ? obj_points(bytes)
-                                 : text_points(bytes);
+  const FileFormat format = format_of(file);
+  auto cloud = format == FileFormat::ply   ? ply_points(bytes)
+               : format == FileFormat::pcd ? pcd_points(bytes)
+               : format == FileFormat::obj ? obj_points(bytes)
+                                           : text_points(bytes);
   if (!cloud) return Error{file.string() + ": " + cloud.error().message};
   return cloud;
 }

@@ -62,9 +62,6 @@ Result<PointCloud> text_points(std::string_view bytes);
 Result<PointCloud> obj_points(std::string_view bytes);
 bool obj_has_faces(std::string_view bytes);
 
-// Whether the name ends in .ply, .pcd, .xyz, .txt, .csv, .asc, .pts or .obj.
-bool is_point_name(const std::filesystem::path& file);
-
 // By the ending of the name. Each Error names the file.
 Result<PointCloud> points_of(std::string_view bytes, const std::filesystem::path& file);
 

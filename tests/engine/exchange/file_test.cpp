@@ -1,4 +1,4 @@
-#include "engine/exchange/file.h"
+#include "engine/base/file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -8,15 +8,15 @@
 #include <csignal>
 #include <fstream>
 
+#include "engine/base/output_file.h"
 #include "engine/exchange/document.h"
-#include "engine/exchange/sequential_file.h"
 #include "tests/engine/exchange/sample_document.h"
 
 namespace spoonbill {
 namespace {
 
 std::string reading_refusal(const std::filesystem::path& file, std::size_t limit = std::size_t{1} << 20) {
-  const auto text = read_text_file(file, limit);
+  const auto text = read_file(file, limit);
   return text.ok() ? "accepted" : text.error().message;
 }
 
@@ -108,9 +108,9 @@ TEST(File, RefusesToReplaceWhatIsNoFile) {
 }
 
 TEST(File, ReportsAFullDisk) {
-  auto full = SequentialFile::create("/dev/full");
+  auto full = OutputFile::create_growing("/dev/full");
   ASSERT_TRUE(full.ok());
-  EXPECT_EQ(full->append("x").error().message, "/dev/full: cannot be written: No space left on device");
+  EXPECT_EQ(full->write("x").error().message, "/dev/full: cannot be written: No space left on device");
 }
 
 TEST(File, WritesDocumentsThatReadBack) {

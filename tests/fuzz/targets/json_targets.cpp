@@ -4,6 +4,7 @@
 #include "engine/exchange/cad_solid_stream.h"
 #include "engine/exchange/cad_stream.h"
 #include "engine/exchange/document.h"
+#include "engine/exchange/frame_stream.h"
 #include "haptic/recording/recording.h"
 #include "haptic/recording/script.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -71,7 +72,7 @@ void take_cad_stream(std::string_view bytes) {
     return true;
   };
   while (const auto frame = read_frame(read)) {
-    if (frame->kind == CadFrameKind::solid) {
+    if (frame->kind == FrameKind::solid) {
       take_cad_solid(frame->content);
       continue;
     }

@@ -55,7 +55,7 @@ class CadReader : public testing::Test {
   static void SetUpTestSuite() { prepare_occt(); }
 
   Found read(const std::filesystem::path& file, CadReading reading = {}) const {
-    if (file.extension() == ".igs") reading.format = CadFormat::iges;
+    if (file.extension() == ".igs") reading.format = FileFormat::iges;
     Found found;
     auto model = read_cad(file, reading, [&](CadSurface part) { found.surfaces.push_back(std::move(part)); });
     EXPECT_TRUE(model) << model.error().message;

@@ -41,7 +41,7 @@ class CadRoundTrip : public testing::Test {
   std::filesystem::path write(const CadModel& model, const CadWriting& writing) const {
     const auto content = write_cad(model, writing);
     EXPECT_TRUE(content) << content.error().message;
-    return folder_.write(writing.format == CadFormat::step ? "model.step" : "model.iges",
+    return folder_.write(writing.format == FileFormat::step ? "model.step" : "model.iges",
                          content ? content->text : "");
   }
 
@@ -79,21 +79,21 @@ class CadRoundTrip : public testing::Test {
 
 TEST_F(CadRoundTrip, EverySurfaceComesBackFromStep) {
   for (const KnownSurface& known : known_surfaces()) {
-    expect_round_trip(known, {CadFormat::step, StepSchema::ap214, "mm"});
-    expect_round_trip(known, {CadFormat::step, StepSchema::ap242, "in"});
+    expect_round_trip(known, {FileFormat::step, StepSchema::ap214, "mm"});
+    expect_round_trip(known, {FileFormat::step, StepSchema::ap242, "in"});
   }
 }
 
 TEST_F(CadRoundTrip, EverySurfaceComesBackFromIges) {
   for (const KnownSurface& known : known_surfaces()) {
     for (const char* unit : {"mm", "in", "m", "cm"}) {
-      expect_round_trip(known, {CadFormat::iges, StepSchema::ap214, unit});
+      expect_round_trip(known, {FileFormat::iges, StepSchema::ap214, unit});
     }
   }
 }
 
 TEST_F(CadRoundTrip, PeriodicTubesComeBackPeriodicWithTheSameControlPoints) {
-  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+  for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
     for (const Surface& surface : {ellipsoid_tube(9, 12), torus_like(0.04, 0.012)}) {
       CadModel model;
       model.surfaces.push_back({"tube", surface, 0.0, {}, {}});
@@ -113,7 +113,7 @@ TEST_F(CadRoundTrip, PeriodicTubesComeBackPeriodicWithTheSameControlPoints) {
 }
 
 TEST_F(CadRoundTrip, NamesAndTheirOrderAreKept) {
-  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+  for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
     CadModel model;
     const std::vector<std::string> names = {"handle",
                                             "a long name with spaces, 'quotes' and (brackets)",
@@ -174,9 +174,9 @@ TopoDS_Shape shape_in(const std::filesystem::path& file) {
 }
 
 TEST_F(CadRoundTrip, BodiesThatCloseAreValidSolidsOfTheirVolume) {
-  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+  for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
     for (const KnownSurface& known : known_surfaces()) {
-      SCOPED_TRACE(known.surface.name + (format == CadFormat::step ? ", STEP" : ", IGES"));
+      SCOPED_TRACE(known.surface.name + (format == FileFormat::step ? ", STEP" : ", IGES"));
       CadModel model;
       model.surfaces.push_back(known.surface);
       const auto content = write_cad(model, {format, StepSchema::ap214, "mm"});
@@ -185,8 +185,8 @@ TEST_F(CadRoundTrip, BodiesThatCloseAreValidSolidsOfTheirVolume) {
       EXPECT_EQ(content->open_shells, known.closes ? 0 : 1);
       EXPECT_TRUE(content->notes.empty());
       const auto file = folder_.write("solid", content->text);
-      const TopoDS_Shape shape =
-          format == CadFormat::step ? shape_in<STEPControl_Reader>(file) : shape_in<IGESControl_Reader>(file);
+      const TopoDS_Shape shape = format == FileFormat::step ? shape_in<STEPControl_Reader>(file)
+                                                            : shape_in<IGESControl_Reader>(file);
       EXPECT_TRUE(BRepCheck_Analyzer(shape).IsValid());
       EXPECT_EQ(TopExp_Explorer(shape, TopAbs_SOLID).More(), known.closes);
       if (!known.closes) continue;
@@ -207,7 +207,7 @@ TEST_F(CadRoundTrip, IgesFilesTellTheirLargestCoordinate) {
       SCOPED_TRACE(known.surface.name);
       CadModel model;
       model.surfaces.push_back(known.surface);
-      const auto file = write(model, {CadFormat::iges, StepSchema::ap214, unit});
+      const auto file = write(model, {FileFormat::iges, StepSchema::ap214, unit});
       const auto parameters = iges_global_parameters(file);
       ASSERT_GT(parameters.size(), 19u);
       double largest_m = 0.0, largest_control_m = 0.0;
@@ -232,7 +232,7 @@ TEST_F(CadRoundTrip, IgesFilesTellTheirLargestCoordinate) {
 TEST_F(CadRoundTrip, FilesSayTheProgramAndNotThePerson) {
   CadModel model;
   model.surfaces.push_back({"tube", ellipsoid_tube(8, 8), 0.0, {}, {}});
-  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+  for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
     const std::string text = write_cad(model, {format, StepSchema::ap214, "mm"})->text;
     EXPECT_NE(text.find("Spoonbill"), std::string::npos);
     // The words that OpenCASCADE would put there.
@@ -240,7 +240,7 @@ TEST_F(CadRoundTrip, FilesSayTheProgramAndNotThePerson) {
       EXPECT_EQ(text.find(word), std::string::npos) << word;
     }
   }
-  const std::string text = write_cad(model, {CadFormat::iges, StepSchema::ap214, "mm"})->text;
+  const std::string text = write_cad(model, {FileFormat::iges, StepSchema::ap214, "mm"})->text;
   // The parameters 21, the author, and 22, the organization.
   const auto parameters = iges_global_parameters(folder_.write("named.igs", text));
   ASSERT_GT(parameters.size(), 22u);
@@ -252,7 +252,7 @@ TEST_F(CadRoundTrip, SchemaAndUnitAreDeclared) {
   CadModel model;
   model.surfaces.push_back({"tube", ellipsoid_tube(8, 8), 0.0, {}, {}});
   const auto text = [&](StepSchema schema, const char* unit) {
-    return write_cad(model, {CadFormat::step, schema, unit})->text;
+    return write_cad(model, {FileFormat::step, schema, unit})->text;
   };
   EXPECT_NE(text(StepSchema::ap214, "mm").find("AUTOMOTIVE_DESIGN"), std::string::npos);
   EXPECT_NE(text(StepSchema::ap242, "mm").find("AP242_MANAGED_MODEL_BASED_3D_ENGINEERING"),
@@ -309,7 +309,7 @@ TEST_F(CadRoundTrip, WhatACheckCallsClosedIsASolidAndSaysWhatItMisses) {
   ASSERT_EQ(closing_of(pole).closedness, Closedness::solid);
   CadModel model;
   model.surfaces.push_back({"tube", pole, 0.0, {}, ""});
-  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+  for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
     const auto content = write_cad(model, {format, StepSchema::ap214, "mm"});
     ASSERT_TRUE(content) << content.error().message;
     EXPECT_EQ(content->solids, 1);
@@ -331,7 +331,7 @@ TEST_F(CadRoundTrip, ASeamThatIsALittleApartIsClosed) {
   ASSERT_EQ(closing_of(open).closedness, Closedness::solid);
   CadModel model;
   model.surfaces.push_back({"ring", open, 0.0, {}, ""});
-  const auto content = write_cad(model, {CadFormat::step, StepSchema::ap214, "mm"});
+  const auto content = write_cad(model, {FileFormat::step, StepSchema::ap214, "mm"});
   ASSERT_TRUE(content) << content.error().message;
   EXPECT_EQ(content->solids, 1);
 }

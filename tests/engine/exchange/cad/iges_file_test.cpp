@@ -97,7 +97,7 @@ class IgesFile : public testing::Test {
 
   Found read(const std::string& text) const {
     CadReading reading;
-    reading.format = CadFormat::iges;
+    reading.format = FileFormat::iges;
     Found found;
     auto model = read_cad(folder_.write("a.igs", text), reading,
                           [&](CadSurface part) { found.surfaces.push_back(std::move(part)); });

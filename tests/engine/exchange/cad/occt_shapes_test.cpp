@@ -120,13 +120,13 @@ void expect_same_shape(const TopoDS_Shape& shape, const ReadBack& back) {
   EXPECT_NEAR(area, area_m2(shape), (back.trimmed ? 5e-3 : 2e-3) * area);
 }
 
-class OcctShapes : public testing::TestWithParam<CadFormat> {
+class OcctShapes : public testing::TestWithParam<FileFormat> {
  protected:
   static void SetUpTestSuite() { prepare_occt(); }
 
   std::filesystem::path write(const TopoDS_Shape& shape) const {
     choose_unit("mm");
-    if (GetParam() == CadFormat::step) {
+    if (GetParam() == FileFormat::step) {
       const auto file = folder_.path() / "shape.step";
       STEPControl_Writer writer;
       EXPECT_EQ(writer.Transfer(shape, STEPControl_AsIs), IFSelect_RetDone);
@@ -181,9 +181,9 @@ TEST_P(OcctShapes, FacesAreReadWithoutLoss) {
   expect_read_without_loss(single_faces());
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, OcctShapes, testing::Values(CadFormat::step, CadFormat::iges),
+INSTANTIATE_TEST_SUITE_P(Both, OcctShapes, testing::Values(FileFormat::step, FileFormat::iges),
                          [](const auto& format) {
-                           return std::string(format.param == CadFormat::step ? "Step" : "Iges");
+                           return std::string(format.param == FileFormat::step ? "Step" : "Iges");
                          });
 
 }  // namespace

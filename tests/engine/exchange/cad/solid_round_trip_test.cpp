@@ -47,19 +47,19 @@ class SolidRoundTrip : public testing::Test {
 
   CadModel read(const TopoDS_Shape& shape) const { return read_through_step(shape, folder_.path()); }
 
-  CadFileContent write(const CadModel& model, CadFormat format = CadFormat::step) const {
+  CadFileContent write(const CadModel& model, FileFormat format = FileFormat::step) const {
     const auto content = write_cad(model, {format, StepSchema::ap214, "mm"});
     EXPECT_TRUE(content) << content.error().message;
     return content ? content.value() : CadFileContent();
   }
 
-  TopoDS_Shape shape_of(const CadFileContent& content, CadFormat format = CadFormat::step) const {
+  TopoDS_Shape shape_of(const CadFileContent& content, FileFormat format = FileFormat::step) const {
     const auto file = folder_.write("out", content.text);
-    return format == CadFormat::step ? shape_in<STEPControl_Reader>(file)
-                                     : shape_in<IGESControl_Reader>(file);
+    return format == FileFormat::step ? shape_in<STEPControl_Reader>(file)
+                                      : shape_in<IGESControl_Reader>(file);
   }
 
-  void expect_same_solids(const TopoDS_Shape& shape, CadFormat format) const {
+  void expect_same_solids(const TopoDS_Shape& shape, FileFormat format) const {
     const CadFileContent content = write(read(shape), format);
     EXPECT_EQ(content.notes, std::vector<std::string>());
     const TopoDS_Shape back = shape_of(content, format);
@@ -75,19 +75,19 @@ class SolidRoundTrip : public testing::Test {
 };
 
 TEST_F(SolidRoundTrip, SolidsOfManyFacesComeBackWhole) {
-  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+  for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
     for (const NamedShape& named : solid_shapes()) {
       if (count_of(named.shape, TopAbs_SOLID) == 0) continue;
-      SCOPED_TRACE(named.name + (format == CadFormat::step ? ", STEP" : ", IGES"));
+      SCOPED_TRACE(named.name + (format == FileFormat::step ? ", STEP" : ", IGES"));
       expect_same_solids(named.shape, format);
     }
   }
 }
 
 TEST_F(SolidRoundTrip, CavitiesStayCavities) {
-  for (const CadFormat format : {CadFormat::step, CadFormat::iges}) {
+  for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
     for (const NamedShape& named : hollow_solids()) {
-      SCOPED_TRACE(named.name + (format == CadFormat::step ? ", STEP" : ", IGES"));
+      SCOPED_TRACE(named.name + (format == FileFormat::step ? ", STEP" : ", IGES"));
       EXPECT_EQ(count_of(named.shape, TopAbs_SHELL), 2);
       expect_same_solids(named.shape, format);
     }

@@ -49,11 +49,11 @@ TEST(StepFile, ScipyEvaluatesTheSameSurfaces) {
   CadModel model;
   for (const KnownSurface& known : known_surfaces()) model.surfaces.push_back(known.surface);
   // The surfaces are up to 2 m wide; files hold about fourteen digits of coordinates and knots.
-  EXPECT_LT(largest_distance_by_script(model, {CadFormat::step, StepSchema::ap214, "mm"}, "0.001"), 1e-9);
-  EXPECT_LT(largest_distance_by_script(model, {CadFormat::step, StepSchema::ap242, "m"}, "1"), 1e-9);
-  EXPECT_LT(largest_distance_by_script(model, {CadFormat::step, StepSchema::ap214, "in"}, "0.0254"), 1e-9);
+  EXPECT_LT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap214, "mm"}, "0.001"), 1e-9);
+  EXPECT_LT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap242, "m"}, "1"), 1e-9);
+  EXPECT_LT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap214, "in"}, "0.0254"), 1e-9);
   // The script can tell.
-  EXPECT_GT(largest_distance_by_script(model, {CadFormat::step, StepSchema::ap214, "in"}, "0.02540001"),
+  EXPECT_GT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap214, "in"}, "0.02540001"),
             1e-8);
 }
 

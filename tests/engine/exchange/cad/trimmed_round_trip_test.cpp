@@ -66,7 +66,7 @@ std::vector<CadSurface> trimmed_surfaces() {
   return {holed, framed, islands, tube, across, cup};
 }
 
-class TrimmedRoundTrip : public testing::TestWithParam<CadFormat> {
+class TrimmedRoundTrip : public testing::TestWithParam<FileFormat> {
  protected:
   static void SetUpTestSuite() { prepare_occt(); }
 
@@ -76,7 +76,7 @@ class TrimmedRoundTrip : public testing::TestWithParam<CadFormat> {
     const auto content = write_cad(model, {GetParam(), StepSchema::ap214, "mm"});
     EXPECT_TRUE(content) << content.error().message;
     if (!content) return {};
-    const auto file = folder_.write(GetParam() == CadFormat::step ? "a.step" : "a.igs", content->text);
+    const auto file = folder_.write(GetParam() == FileFormat::step ? "a.step" : "a.igs", content->text);
     CadReading reading;
     reading.format = GetParam();
     std::vector<CadSurface> back;
@@ -153,9 +153,9 @@ TEST_P(TrimmedRoundTrip, WhatWouldCloseButForItsTrimsIsSaid) {
             "come back as a body each");
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, TrimmedRoundTrip, testing::Values(CadFormat::step, CadFormat::iges),
+INSTANTIATE_TEST_SUITE_P(Both, TrimmedRoundTrip, testing::Values(FileFormat::step, FileFormat::iges),
                          [](const auto& format) {
-                           return std::string(format.param == CadFormat::step ? "Step" : "Iges");
+                           return std::string(format.param == FileFormat::step ? "Step" : "Iges");
                          });
 
 // A small hole leaves most of the flux through a body's surface.

@@ -21,7 +21,7 @@ NamedMesh tube(const std::string& name, const Vector3& centre) {
   return {name, tessellate(ellipsoid_tube(8, 10, centre), {}, 2e-4).value().mesh, true};
 }
 
-std::string bytes_of(const std::vector<NamedMesh>& meshes, MeshFormat format, double unit_m) {
+std::string bytes_of(const std::vector<NamedMesh>& meshes, FileFormat format, double unit_m) {
   std::string bytes;
   const Status written = write_meshes(meshes, format, unit_m, [&](std::string_view more) -> Status {
     bytes += more;
@@ -64,8 +64,8 @@ TEST_F(MeshWriter, AssimpReadsTheSameTriangles) {
   const std::size_t triangles = meshes[0].mesh.triangles.size() + meshes[1].mesh.triangles.size();
   const double volume = enclosed_volume_m3(meshes[0].mesh) + enclosed_volume_m3(meshes[1].mesh);
   for (const auto& [name, format, unit_m] :
-       {std::tuple("a.stl", MeshFormat::stl, 1e-3), std::tuple("a.obj", MeshFormat::obj, 0.0254),
-        std::tuple("a.ply", MeshFormat::ply, 1.0)}) {
+       {std::tuple("a.stl", FileFormat::stl, 1e-3), std::tuple("a.obj", FileFormat::obj, 0.0254),
+        std::tuple("a.ply", FileFormat::ply, 1.0)}) {
     SCOPED_TRACE(name);
     const TriangleMesh back = read(name, bytes_of(meshes, format, unit_m));
     EXPECT_EQ(back.triangles.size(), triangles);
@@ -76,7 +76,7 @@ TEST_F(MeshWriter, AssimpReadsTheSameTriangles) {
 
 TEST_F(MeshWriter, StlHoldsItsCountAndUnitNormals) {
   const NamedMesh mesh = tube("one", {0, 0, 0});
-  const std::string bytes = bytes_of({mesh}, MeshFormat::stl, 1e-3);
+  const std::string bytes = bytes_of({mesh}, FileFormat::stl, 1e-3);
   ASSERT_EQ(bytes.size(), 84 + 50 * mesh.mesh.triangles.size());
   EXPECT_FALSE(bytes.starts_with("solid"));  // which text files begin with
   for (std::size_t k = 0; k < mesh.mesh.triangles.size(); ++k) {
@@ -93,7 +93,7 @@ TEST_F(MeshWriter, ThreeMfHoldsAModelInMillimetres) {
   const NamedMesh mesh = tube("a <b> & \"c\"", {0, 0, 0});
   NamedMesh sheet = tube("two", {0.1, 0, 0});
   sheet.closed = false;
-  const std::string bytes = bytes_of({mesh, sheet}, MeshFormat::three_mf, 1.0);
+  const std::string bytes = bytes_of({mesh, sheet}, FileFormat::three_mf, 1.0);
   EXPECT_NE(unzipped(bytes, "[Content_Types].xml").find("3dmanufacturing-3dmodel+xml"), std::string::npos);
   EXPECT_NE(unzipped(bytes, "_rels/.rels").find("/3D/3dmodel.model"), std::string::npos);
   const std::string model = unzipped(bytes, "3D/3dmodel.model");
@@ -114,7 +114,7 @@ TEST_F(MeshWriter, ThreeMfHoldsAModelInMillimetres) {
 }
 
 TEST_F(MeshWriter, ARefusalOfTheTakerEndsIt) {
-  for (const MeshFormat format : {MeshFormat::stl, MeshFormat::obj, MeshFormat::ply, MeshFormat::three_mf}) {
+  for (const FileFormat format : {FileFormat::stl, FileFormat::obj, FileFormat::ply, FileFormat::three_mf}) {
     const Status written = write_meshes({tube("one", {0, 0, 0})}, format, 1.0,
                                         [](std::string_view) -> Status { return Error{"disk full"}; });
     ASSERT_FALSE(written.ok());
@@ -128,7 +128,7 @@ TEST_F(MeshWriter, ThreeMfAsksWhetherToGoOn) {
       {"fine", tessellate(ellipsoid_tube(8, 10, {0, 0, 0}), {}, 2e-5).value().mesh, true}};
   int asked = 0;
   bool has_begun = false;
-  ASSERT_TRUE(write_meshes(meshes, MeshFormat::three_mf, 1.0, [&](std::string_view bytes) -> Status {
+  ASSERT_TRUE(write_meshes(meshes, FileFormat::three_mf, 1.0, [&](std::string_view bytes) -> Status {
     has_begun = has_begun || !bytes.empty();
     asked += has_begun ? 0 : 1;
     return {};
@@ -137,7 +137,7 @@ TEST_F(MeshWriter, ThreeMfAsksWhetherToGoOn) {
   for (const int last : {1, asked / 2, asked}) {
     int left = last;
     const Status stopped =
-        write_meshes(meshes, MeshFormat::three_mf, 1.0, [&](std::string_view bytes) -> Status {
+        write_meshes(meshes, FileFormat::three_mf, 1.0, [&](std::string_view bytes) -> Status {
           EXPECT_TRUE(bytes.empty());
           EXPECT_GT(left, 0);
           if (--left > 0) return {};

@@ -241,10 +241,11 @@ TEST(Tessellation, MoreTrianglesThanTheLimitAreRefused) {
 }
 
 TEST(Tessellation, StopsWhenAskedTo) {
-  const auto stopped = tessellate(ellipsoid_tube(8, 8), {}, 1e-4, 1000000, [] { return true; });
+  const auto stopped =
+      tessellate(ellipsoid_tube(8, 8), {}, 1e-4, 1000000, Progress([](double) { return false; }));
   ASSERT_FALSE(stopped);
   EXPECT_EQ(stopped.error().message, "stopped");
-  EXPECT_TRUE(tessellate(ellipsoid_tube(8, 8), {}, 1e-4, 1000000, [] { return false; }));
+  EXPECT_TRUE(tessellate(ellipsoid_tube(8, 8), {}, 1e-4, 1000000, Progress([](double) { return true; })));
 }
 
 TEST(Tessellation, ACubeOfTetrahedraHasItsVolume) {

@@ -1,9 +1,8 @@
-#include "app/files/file_kind.h"
+#include "engine/exchange/file_format.h"
 
 #include <string>
 
-#include "app/files/document_file.h"
-#include "engine/exchange/file.h"
+#include "engine/base/file.h"
 #include "engine/exchange/json.h"
 
 namespace spoonbill {
@@ -18,17 +17,16 @@ bool starts_like_recording(const std::filesystem::path& file) {
 
 }  // namespace
 
-Result<FileKind> kind_of_file(const std::filesystem::path& file) {
-  if (Status native = check_native_name(file); !native) return native.error();
-  if (starts_like_recording(file)) return FileKind::recording;
-  const auto text = read_text_file(file, bytes_limit);
+Result<FileFormat> find_native_format(const std::filesystem::path& file) {
+  if (starts_like_recording(file)) return FileFormat::recording;
+  const auto text = read_file(file, bytes_limit);
   if (!text) return text.error();
   const auto json = parse_json(text.value(), file.string());
   if (!json) return json.error();
   if (json->is_object()) {
-    if (json->contains("spoonbill_document")) return FileKind::document;
-    if (json->contains("spoonbill_script")) return FileKind::script;
-    if (json->contains("youngs_modulus_pa")) return FileKind::material;
+    if (json->contains("spoonbill_document")) return FileFormat::document;
+    if (json->contains("spoonbill_script")) return FileFormat::script;
+    if (json->contains("youngs_modulus_pa")) return FileFormat::material;
   }
   return Error{file.string() + ": is no Spoonbill document, recording, script or material"};
 }
