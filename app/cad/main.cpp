@@ -73,6 +73,13 @@ FileFormat format_named(const std::string& name) {
   return name == "iges" ? FileFormat::iges : FileFormat::step;
 }
 
+Progress shown_on(std::ostream& out) {
+  return Progress([&out](double fraction) {
+    write_progress(out, fraction);
+    return true;
+  });
+}
+
 void answer_read(const std::vector<std::string>& arguments, CadReading reading, std::ostream& out) {
   reading.format = format_named(arguments[1]);
   const auto model = read_cad(
@@ -80,7 +87,7 @@ void answer_read(const std::vector<std::string>& arguments, CadReading reading, 
       [&](const CadSurface& surface) {
         write_frame(out, FrameKind::surface, json_to_line(cad_surface_to_json(surface)));
       },
-      [&](double share) { write_progress(out, share); });
+      shown_on(out));
   if (!model) return write_failure(out, model.error().message);
   const Json ending = {
       {"unit", model->unit}, {"unit_declared", model->unit_declared}, {"notes", model->notes}};
@@ -108,7 +115,7 @@ void answer_write(const std::vector<std::string>& arguments, std::ostream& out) 
   writing.format = format_named(arguments[1]);
   writing.schema = arguments[2] == "ap242" ? StepSchema::ap242 : StepSchema::ap214;
   writing.unit = arguments[3];
-  const auto content = write_cad(model.value(), writing, [&](double share) { write_progress(out, share); });
+  const auto content = write_cad(model.value(), writing, shown_on(out));
   if (!content) return write_failure(out, content.error().message);
   write_frame(out, FrameKind::file, content->text);
   const Json ending = {
@@ -120,7 +127,7 @@ void answer_write(const std::vector<std::string>& arguments, std::ostream& out) 
 void answer_solids(const SolidMeshing& meshing, std::ostream& out) {
   const auto model = model_of(std::cin);
   if (!model) return write_failure(out, model.error().message);
-  const auto found = mesh_solids(model.value(), meshing, [&](double share) { write_progress(out, share); });
+  const auto found = mesh_solids(model.value(), meshing, shown_on(out));
   if (!found) return write_failure(out, found.error().message);
   for (const CadSolid& solid : found->solids) {
     write_frame(out, FrameKind::solid, cad_solid_to_bytes(solid));

@@ -86,9 +86,9 @@ Status change(const ChangeOptions& options, Console& console) {
   }
   const std::size_t place = static_cast<std::size_t>(options.body) - 1;
   auto result = WatchedWork(console, "Changing", options.out)
-                    .done([&](const WorkWatch& watch) -> Result<ChangedSurfaces> {
+                    .done([&](const Progress& progress) -> Result<ChangedSurfaces> {
                       auto made = changed(bodies[place].surface, bodies[place].trims, asked,
-                                          options.tolerance_m, watch);
+                                          options.tolerance_m, progress);
                       if (made) return made;
                       return Error{options.model.string() + ": body \"" + bodies[place].name +
                                    "\": " + made.error().message};

@@ -80,17 +80,15 @@ std::vector<const Surface*> surfaces_of(const CadSolid& solid, const std::vector
 // The solids' facts as JSON.
 Result<Json> check_solids(FactSheet& facts, const CadSolids& solids, const std::vector<Body>& all,
                           InterruptWatch& interrupt, Console& console) {
-  constexpr double whole = 1000.0;
-  ProgressBar progress(console, "Checking solids", false);
+  ProgressBar bar(console, "Checking solids", false);
   Json json = Json::array();
   for (const CadSolid& solid : solids.solids) {
     const double done = static_cast<double>(json.size());
-    const auto watch = [&](double share) {
-      const double of_all = (done + share) / static_cast<double>(solids.solids.size());
-      progress.show(static_cast<std::uint64_t>(whole * of_all), static_cast<std::uint64_t>(whole));
+    const Progress progress([&](double fraction) {
+      bar.show((done + fraction) / static_cast<double>(solids.solids.size()));
       return !interrupt.requested();
-    };
-    const auto check = check_solid(solid.mesh, surfaces_of(solid, all), solid.chord_error_m, watch);
+    });
+    const auto check = check_solid(solid.mesh, surfaces_of(solid, all), solid.chord_error_m, progress);
     if (!check) {
       interrupt.answer();
       return Error{"stopped"};
@@ -111,8 +109,7 @@ struct CheckedBodies {
 Result<CheckedBodies> check_bodies(FactSheet& facts, const std::vector<Body>& all,
                                    const std::set<std::size_t>& faces, InterruptWatch& interrupt,
                                    Console& console) {
-  constexpr double whole = 1000.0;
-  ProgressBar progress(console, "Checking", false);
+  ProgressBar bar(console, "Checking", false);
   CheckedBodies checked;
   Json& bodies = checked.facts;
   for (const Body& body : all) {
@@ -121,12 +118,11 @@ Result<CheckedBodies> check_bodies(FactSheet& facts, const std::vector<Body>& al
     const TrimmedArea area = trim.value() ? *trim.value() : TrimmedArea();
     const double done = static_cast<double>(bodies.size());
     const CheckedAs as = faces.contains(bodies.size()) ? CheckedAs::face : CheckedAs::body;
-    const auto watch = [&](double share) {
-      const double of_all = (done + share) / static_cast<double>(all.size());
-      progress.show(static_cast<std::uint64_t>(whole * of_all), static_cast<std::uint64_t>(whole));
+    const Progress progress([&](double fraction) {
+      bar.show((done + fraction) / static_cast<double>(all.size()));
       return !interrupt.requested();
-    };
-    const auto check = check_surface(body.surface, area, watch);
+    });
+    const auto check = check_surface(body.surface, area, progress);
     if (!check) {
       interrupt.answer();
       return Error{"stopped"};

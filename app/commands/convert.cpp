@@ -17,7 +17,6 @@ namespace spoonbill {
 namespace {
 
 constexpr Range<double> tolerance_range_m{1e-9, 0.01};
-constexpr std::uint64_t progress_steps = 1000;
 
 struct ConvertOptions {
   ConversionRequest request;
@@ -31,7 +30,7 @@ Status convert(const ConvertOptions& options, Console& console) {
   {
     ProgressBar bar(console, "Converting", options.progress);
     report = convert_file(options.request, Progress([&](double fraction) {
-                            bar.show(static_cast<std::uint64_t>(fraction * progress_steps), progress_steps);
+                            bar.show(fraction);
                             return !interrupt.requested();
                           }));
   }

@@ -41,17 +41,16 @@ struct FitOptions {
 
 Result<ScanFit> fit_with_progress(const FitOptions& options, Scan scan, Console& console) {
   InterruptWatch interrupt;
-  ProgressBar progress(console, "Fitting", false);
+  ProgressBar bar(console, "Fitting", false);
   bool stopped = false;
   FitRequest request = options.request;
   request.settings.control_u = options.control.width;
   request.settings.control_v = options.control.height;
-  request.settings.watch = [&](double share) {
-    constexpr double whole = 1000.0;
-    progress.show(static_cast<std::uint64_t>(whole * share), static_cast<std::uint64_t>(whole));
+  request.settings.progress = Progress([&](double fraction) {
+    bar.show(fraction);
     stopped = interrupt.requested();
     return !stopped;
-  };
+  });
   auto fit = fit_scan(std::move(scan), request);
   if (stopped) {
     interrupt.answer();

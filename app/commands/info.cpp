@@ -130,7 +130,7 @@ Status describe_cad(FactSheet& facts, const std::filesystem::path& file, Console
   reading.format = format_of(file);
   CadChild child;
   child.progress = Progress([&](double fraction) {
-    bar.show(static_cast<std::uint64_t>(1000.0 * fraction), 1000);
+    bar.show(fraction);
     return !interrupt.requested();
   });
   const auto model = read_cad_file(file, reading, child);

@@ -195,11 +195,11 @@ Result<Parts> read_parts(const MergeOptions& options) {
 }
 
 // Those that cross are merged one after the other, each by its share of the tolerance.
-Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options, const WorkWatch& watch) {
+Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options, const Progress& progress) {
   const std::vector<Surface>& patches = parts.patches;
   MergeRequest request = options.request;
   request.join.continuity = continuity_of(options);
-  request.join.watch = watch;
+  request.join.progress = progress;
   if (!options.crossing) {
     request.join.spent_m = parts.untrimmed_m;
     auto merged = merge(patches, request);
@@ -213,7 +213,7 @@ Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options, 
       (request.join.tolerance_m - parts.untrimmed_m) / static_cast<double>(patches.size() - 1);
   const double each = 1.0 / static_cast<double>(patches.size() - 1);
   for (std::size_t p = 1; p < patches.size(); ++p) {
-    request.join.watch = watch.part(each * static_cast<double>(p - 1), each * static_cast<double>(p));
+    request.join.progress = progress.part(each * static_cast<double>(p - 1), each * static_cast<double>(p));
     auto next = merge_crossing(merged.surface, patches[p], {request.join, options.fillet_m});
     if (!next) return Error{"patch " + std::to_string(p + 1) + ": " + next.error().message};
     merged.surface = std::move(next->surface);
@@ -233,7 +233,7 @@ Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options, 
 
 Result<Outcome> merge_with_progress(const MergeOptions& options, const Parts& parts, Console& console) {
   WatchedWork work(console, "Merging", options.out);
-  return work.done([&](const WorkWatch& watch) { return merged_surface(parts, options, watch); });
+  return work.done([&](const Progress& progress) { return merged_surface(parts, options, progress); });
 }
 
 Status merge_models(const MergeOptions& options, Console& console) {

@@ -47,14 +47,14 @@ class Making {
  public:
   explicit Making(Console& console) : bar_(console, "Making", false) {}
 
-  bool goes_on(double share) {
-    constexpr double whole = 1000.0;
-    constexpr std::chrono::milliseconds patience{500};
-    if (std::chrono::steady_clock::now() - start_ > patience) {
-      bar_.show(static_cast<std::uint64_t>(whole * share), static_cast<std::uint64_t>(whole));
-    }
-    stopped_ = stopped_ || interrupt_.requested();
-    return !stopped_;
+  // Refers to this.
+  Progress progress() {
+    return Progress([this](double fraction) {
+      constexpr std::chrono::milliseconds patience{500};
+      if (std::chrono::steady_clock::now() - start_ > patience) bar_.show(fraction);
+      stopped_ = stopped_ || interrupt_.requested();
+      return !stopped_;
+    });
   }
   bool stopped() const { return stopped_; }
   void answer() { interrupt_.answer(); }
@@ -76,7 +76,7 @@ Status check_apart(const Surface& surface, bool closed, Making& making) {
   SurfaceSelfCollider collider(grid.value());
   SelfQuery query;
   query.closed = closed;
-  query.watch = [&](double share) { return making.goes_on(fit_share + (1.0 - fit_share) * share); };
+  query.progress = making.progress().part(fit_share, 1.0);
   const SelfResult result = collider.collide(surface, query);
   if (result.stopped || !result.touching) return {};
   if (collider.contacts().empty()) return Error{"the shape passes through itself; make it thinner or wider"};
@@ -101,7 +101,7 @@ void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShap
 Result<FittedShape> fit_with_progress(const NewOptions& options, const NewShape& made, ShapeFit fit,
                                       Console& console) {
   Making making(console);
-  fit.watch = [&](double share) { return making.goes_on(fit_share * share); };
+  fit.progress = making.progress().part(0.0, fit_share);
   auto fitted = fit_shape(made.shape, fit);
   Status apart;
   const bool may_meet = fitted && !(fitted->deviation_m < 0.5 * made.reach_m);

@@ -86,12 +86,11 @@ Status rest(const RestOptions& options, Console& console) {
   std::vector<Surface> bent;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    ProgressBar progress(console, "Bending " + body.name, false);
-    const auto show = [&](double share) {
-      constexpr double whole = 1000.0;
-      progress.show(static_cast<std::uint64_t>(whole * share), static_cast<std::uint64_t>(whole));
-    };
-    const auto shape = rest_shape(scene, static_cast<int>(b), show);
+    ProgressBar bar(console, "Bending " + body.name, false);
+    const auto shape = rest_shape(scene, static_cast<int>(b), Progress([&](double fraction) {
+                                    bar.show(fraction);
+                                    return true;
+                                  }));
     if (!shape) {
       return Error{options.model.string() + ": body \"" + body.name + "\": " + shape.error().message};
     }

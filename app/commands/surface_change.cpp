@@ -24,7 +24,7 @@ constexpr Range<double> cap_height_range_m{0.0, 1.0};
 // What a change may cost.
 struct Allowed {
   double tolerance_m;
-  WorkWatch watch;
+  Progress progress;
 };
 
 // What the words after a change's name mean, in their order.
@@ -152,15 +152,15 @@ Result<ChangedSurfaces> set_degree(const Surface& surface, const AskedChange& as
   const auto lower = reduced(knots, asked.number);
   if (!lower) return lower.error();
   return nearly(approximated(surface, asked.direction, lower.value(), allowed.tolerance_m,
-                             control_points_limit, allowed.watch));
+                             control_points_limit, allowed.progress));
 }
 
 Result<ChangedSurfaces> simplify(const Surface& surface, const AskedChange&, const Allowed& allowed) {
   auto along_u =
-      without_spare_knots(surface, Direction::u, 0.5 * allowed.tolerance_m, allowed.watch.part(0.0, 0.5));
+      without_spare_knots(surface, Direction::u, 0.5 * allowed.tolerance_m, allowed.progress.part(0.0, 0.5));
   if (!along_u) return along_u.error();
   auto both = without_spare_knots(along_u->surface, Direction::v, 0.5 * allowed.tolerance_m,
-                                  allowed.watch.part(0.5, 1.0));
+                                  allowed.progress.part(0.5, 1.0));
   if (!both) return both.error();
   return ChangedSurfaces{{std::move(both->surface)}, {}, along_u->deviation_m + both->deviation_m, true};
 }
@@ -179,7 +179,7 @@ Result<ChangedSurfaces> move_seam(const Surface& surface, const AskedChange& ask
 
 Result<ChangedSurfaces> close_around(const Surface& surface, const AskedChange& asked,
                                      const Allowed& allowed) {
-  auto closed = closed_around(surface, asked.direction, asked.continuity, allowed.tolerance_m, allowed.watch);
+  auto closed = closed_around(surface, asked.direction, asked.continuity, allowed.tolerance_m, allowed.progress);
   if (!closed) return closed.error();
   return ChangedSurfaces{{std::move(closed->surface)}, {}, closed->deviation_m, true};
 }
@@ -187,7 +187,7 @@ Result<ChangedSurfaces> close_around(const Surface& surface, const AskedChange& 
 Result<ChangedSurfaces> cap(const Surface& surface, const AskedChange& asked, const Allowed& allowed) {
   JoinRequest request;
   request.tolerance_m = allowed.tolerance_m;
-  request.watch = allowed.watch;
+  request.progress = allowed.progress;
   auto capped = with_cap(surface, asked.side, asked.height_m, request);
   if (!capped) return capped.error();
   return ChangedSurfaces{{std::move(capped->surface)}, {}, capped->deviation_m, false};
@@ -271,10 +271,10 @@ Result<AskedChange> parse_change(const std::vector<std::string>& words) {
 }
 
 Result<ChangedSurfaces> changed(const Surface& surface, const std::vector<TrimLoop>& trims,
-                                const AskedChange& asked, double tolerance_m, const WorkWatch& watch) {
+                                const AskedChange& asked, double tolerance_m, const Progress& progress) {
   const auto change = std::find_if(all_changes().begin(), all_changes().end(),
                                    [&](const Change& one) { return one.kind == asked.kind; });
-  auto result = change->make(surface, asked, {tolerance_m, watch});
+  auto result = change->make(surface, asked, {tolerance_m, progress});
   if (!result) return result;
   if (Status turned = turn_trims(*change, surface, asked, trims, result.value()); !turned) {
     return turned.error();

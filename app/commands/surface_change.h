@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/base/work_watch.h"
+#include "engine/base/progress.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
 #include "engine/merging/patch_edge.h"
@@ -35,10 +35,10 @@ struct AskedChange {
 // Of words such as {"insert", "v=0.3", "2"}. Refused: those that no surface could make sense of.
 Result<AskedChange> parse_change(const std::vector<std::string>& words);
 
-// `tolerance_m` is for the changes that cannot be exact, which the watch may stop. Trims stay or turn with
+// `tolerance_m` is for the changes that cannot be exact, which can be stopped. Trims stay or turn with
 // the surface; changes that would lose them are refused.
 Result<ChangedSurfaces> changed(const Surface& surface, const std::vector<TrimLoop>& trims,
-                                const AskedChange& asked, double tolerance_m, const WorkWatch& watch = {});
+                                const AskedChange& asked, double tolerance_m, const Progress& progress = {});
 
 // One line for each change, for --help.
 std::string changes_text();

@@ -1,7 +1,6 @@
 // Work that a command shows the progress of, and that Ctrl+C stops.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -10,7 +9,7 @@
 #include "app/interrupt.h"
 #include "app/report/progress_bar.h"
 #include "engine/base/result.h"
-#include "engine/base/work_watch.h"
+#include "engine/base/progress.h"
 
 namespace spoonbill {
 
@@ -21,18 +20,17 @@ class WatchedWork {
   WatchedWork(Console& console, std::string label, std::filesystem::path out)
       : out_(std::move(out)), bar_(console, std::move(label), false) {}
 
-  // What `work` makes of a watch, or that it was stopped.
+  // What `work` makes with a progress to report to, or that it was stopped.
   template <class Work>
-  auto done(const Work& work) -> decltype(work(WorkWatch())) {
-    const WorkWatch watch([this](double share) {
-      constexpr double whole = 1000.0;
-      bar_.show(static_cast<std::uint64_t>(whole * share), static_cast<std::uint64_t>(whole));
+  auto done(const Work& work) -> decltype(work(Progress())) {
+    const Progress progress([this](double fraction) {
+      bar_.show(fraction);
       return !interrupt_.requested();
     });
-    if (!watch.goes_on(0.0)) return stopped();
-    auto result = work(watch);
+    if (!progress.report(0.0)) return stopped();
+    auto result = work(progress);
     // The last step may have been long.
-    if (!watch.goes_on(result ? 1.0 : 0.0)) return stopped();
+    if (!progress.report(result ? 1.0 : 0.0)) return stopped();
     return result;
   }
 

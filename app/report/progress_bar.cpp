@@ -29,4 +29,9 @@ void ProgressBar::show(std::uint64_t done, std::uint64_t total) {
   }
 }
 
+void ProgressBar::show(double fraction) {
+  constexpr double whole = 1000.0;
+  show(static_cast<std::uint64_t>(whole * fraction), static_cast<std::uint64_t>(whole));
+}
+
 }  // namespace spoonbill

@@ -18,6 +18,7 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(std::uint64_t done, std::uint64_t total);
+  void show(double fraction);
 
  private:
   Console* console_;

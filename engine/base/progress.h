@@ -4,6 +4,7 @@
 #include <functional>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {
@@ -27,8 +28,10 @@ class Progress {
   // Whether the work goes on; otherwise it ends early, with stopped() for an error where it has no result.
   bool report(double fraction) const { return !report_ || report_(start_ + (end_ - start_) * fraction); }
 
-  // The progress of a part of the work: 0 and 1 of it are the fractions `from` and `to` of this one.
+  // The progress of a part of the work: 0 and 1 of it are the fractions `from` and `to` of this one, which must not
+  // run backwards.
   Progress part(double from, double to) const {
+    SPOONBILL_ASSERT(0.0 <= from && from <= to);
     Progress part = *this;
     part.start_ = start_ + (end_ - start_) * from;
     part.end_ = start_ + (end_ - start_) * to;
@@ -47,7 +50,10 @@ class Progress {
 // The fraction done of rounds whose number shows only at the last: each takes its part of what is left.
 class RoundsDone {
  public:
-  explicit RoundsDone(double part_of_rest) : part_of_rest_(part_of_rest) {}
+  // `part_of_rest` must be between 0 and 1.
+  explicit RoundsDone(double part_of_rest) : part_of_rest_(part_of_rest) {
+    SPOONBILL_ASSERT(0.0 < part_of_rest && part_of_rest < 1.0);
+  }
 
   double fraction() const { return fraction_; }
   void step() { fraction_ += part_of_rest_ * (1.0 - fraction_); }

@@ -239,11 +239,11 @@ Result<Neighbourhood> around_knot(const Surface& surface, Direction direction, i
 // What each copy of an inner knot costs with those before it, the cheapest first, as far as that is within
 // the tolerance; found in the knot's neighbourhood alone, which is much faster than over the whole direction.
 Result<std::vector<SpareKnot>> spare_knots(const Surface& surface, Direction direction, double tolerance_m,
-                                           const WorkWatch& watch) {
+                                           const Progress& progress) {
   std::vector<SpareKnot> spare;
   const auto all = knot_multiplicities(knots_along(surface, direction));
   for (std::size_t k = 1; k < all.size(); ++k) {
-    if (!watch.goes_on(static_cast<double>(k) / static_cast<double>(all.size()))) return WorkWatch::stopped();
+    if (!progress.report(static_cast<double>(k) / static_cast<double>(all.size()))) return Progress::stopped();
     const auto near = around_knot(surface, direction, static_cast<int>(k));
     if (!near) continue;
     std::vector<SpareKnot> copies;
@@ -304,10 +304,10 @@ Result<Approximation> over_coarser_knots(const Surface& surface, Direction direc
 }
 
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
-                                   double tolerance_m, int largest_count, const WorkWatch& watch) {
+                                   double tolerance_m, int largest_count, const Progress& progress) {
   KnotVector knots = first;
   for (RoundsDone done(0.3);; done.step()) {
-    if (!watch.goes_on(done.share())) return WorkWatch::stopped();
+    if (!progress.report(done.fraction())) return Progress::stopped();
     auto fit = fitted(surface, direction, knots);
     if (!fit) return fit.error();
     const double deviation_m = largest_of(fit->difference);
@@ -325,18 +325,18 @@ Result<Approximation> approximated(const Surface& surface, Direction direction, 
 }
 
 Result<Approximation> without_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
-                                          const WorkWatch& watch) {
+                                          const Progress& progress) {
   Approximation best{surface, 0.0};
   for (RoundsDone done(0.2);; done.step()) {
     // As many of the cheapest as can go together; what they cost then is another matter, so once more.
     const auto spare =
-        spare_knots(best.surface, direction, tolerance_m, watch.part(done.share(), done.share()));
+        spare_knots(best.surface, direction, tolerance_m, progress.part(done.fraction(), done.fraction()));
     if (!spare) return spare.error();
     const KnotVector knots = knots_along(best.surface, direction);
     std::size_t few = 0, many = spare->size();
     while (few < many) {
       done.step();
-      if (!watch.goes_on(done.share())) return WorkWatch::stopped();
+      if (!progress.report(done.fraction())) return Progress::stopped();
       const std::size_t count = (few + many + 1) / 2;
       const auto fewer = without_knots(knots, std::span(spare.value()).first(count));
       auto fit = fewer ? over_coarser_knots(surface, direction, fewer.value()) : fewer.error();

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "engine/base/result.h"
-#include "engine/base/work_watch.h"
+#include "engine/base/progress.h"
 #include "engine/bspline/knot_insertion.h"
 #include "engine/bspline/knot_vectors.h"
 #include "engine/bspline/surface.h"
@@ -34,14 +34,14 @@ Result<Approximation> over_coarser_knots(const Surface& surface, Direction direc
 
 // The same with pieces of `first` halved where the deviation asks, until it is at most `tolerance_m`. Refused
 // where `largest_count` control points do not reach it; the message tells what they reach. Stopped by the
-// watch.
+// progress.
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
-                                   double tolerance_m, int largest_count, const WorkWatch& watch = {});
+                                   double tolerance_m, int largest_count, const Progress& progress = {});
 
 // As few knots as the tolerance allows to remove, the cheapest first. Ends and degree stay. Stopped by the
-// watch.
+// progress.
 Result<Approximation> without_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
-                                          const WorkWatch& watch = {});
+                                          const Progress& progress = {});
 
 // The knot vector of a direction.
 const KnotVector& knots_along(const Surface& surface, Direction direction);

@@ -34,8 +34,8 @@ Vector3 extent_of(const std::vector<Vector3>& points_m) {
 }
 
 Result<FittedBody> fit_from(FitPoints island, const Parameterisation& start, FitSettings settings,
-                            const FitWatch& watch) {
-  settings.watch = watch;
+                            const Progress& progress) {
+  settings.progress = progress;
   auto fit = fit_surface(island, start, settings);
   if (!fit) return fit.error();
   FittedBody body;
@@ -55,34 +55,34 @@ bool nearer_as_wall(const FittedBody& wall, const FittedBody& face) {
 }
 
 Result<FittedBody> fit_from_profile(FitPoints island, Parameterisation start, const FitSettings& settings,
-                                    const FitWatch& watch) {
+                                    const Progress& progress) {
   start.uv = take_points_as_nodes(island, start.uv);
-  return fit_from(std::move(island), start, settings, watch);
+  return fit_from(std::move(island), start, settings, progress);
 }
 
-Result<FittedBody> fit_from_kind(FitPoints island, const FitRequest& request, const FitWatch& watch) {
+Result<FittedBody> fit_from_kind(FitPoints island, const FitRequest& request, const Progress& progress) {
   if (request.islands == IslandChoice::bridge && island.spanning_nodes > 0 &&
       request.kind.value_or(ShapeKind::closed) != ShapeKind::closed) {
     return Error{"bridged islands make a closed body; leave --kind out"};
   }
   const auto start = first_parameters(island, request.kind.value_or(kind_of_shape(island)));
   if (!start) return start.error();
-  return fit_from(std::move(island), start.value(), request.settings, watch);
+  return fit_from(std::move(island), start.value(), request.settings, progress);
 }
 
-Result<FittedBody> fit_island(FitPoints island, const FitRequest& request, const FitWatch& watch) {
+Result<FittedBody> fit_island(FitPoints island, const FitRequest& request, const Progress& progress) {
   const bool may_be_closed = request.kind.value_or(ShapeKind::closed) == ShapeKind::closed;
   if (may_be_closed && !island.scan.has_normals()) {
     if (auto map = profile_map(island.scan.points_m)) {
       const bool is_doubtful = map->may_be_one_face && !request.kind;
-      auto wall = fit_from_profile(island, std::move(map->start), request.settings, watch);
+      auto wall = fit_from_profile(island, std::move(map->start), request.settings, progress);
       if (!is_doubtful) return wall;
-      auto face = fit_from_kind(std::move(island), request, watch);
+      auto face = fit_from_kind(std::move(island), request, progress);
       if (!wall) return face;
       return face && !nearer_as_wall(wall.value(), face.value()) ? std::move(face) : std::move(wall);
     }
   }
-  return fit_from_kind(std::move(island), request, watch);
+  return fit_from_kind(std::move(island), request, progress);
 }
 
 Status choose_islands(std::vector<FitPoints>& islands, IslandChoice choice, ScanFit& result) {
@@ -109,12 +109,12 @@ Status fit_islands(std::vector<FitPoints> islands, const FitRequest& request, Sc
   const auto count = static_cast<double>(islands.size());
   bool stopped = false;
   for (std::size_t k = 0; k < islands.size(); ++k) {
-    const auto watch = [&](double share) {
-      stopped = request.settings.watch && !request.settings.watch((static_cast<double>(k) + share) / count);
+    const Progress progress([&](double fraction) {
+      stopped = !request.settings.progress.report((static_cast<double>(k) + fraction) / count);
       return !stopped;
-    };
+    });
     UnfittedIsland unfitted = unfitted_island(islands[k]);
-    auto body = fit_island(std::move(islands[k]), request, watch);
+    auto body = fit_island(std::move(islands[k]), request, progress);
     if (body) {
       result.bodies.push_back(std::move(body).value());
       continue;

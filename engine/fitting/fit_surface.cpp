@@ -245,7 +245,7 @@ Status SurfaceFitter::node_rounds() {
       fairness = std::max(fairness_factor_ * least_fairness, 0.6 * fairness);
     }
     ++stage;
-    if (!tell(0.1 * std::min(stage, 6))) return Error{"stopped before the fit was done"};
+    if (!report(0.1 * std::min(stage, 6))) return Error{"stopped before the fit was done"};
   } while (grow());
   return {};
 }
@@ -282,7 +282,7 @@ Status SurfaceFitter::point_rounds() {
     }
     set_fairness(chosen_fairness_, all_);
     if (Status solved = solve(all_); !solved) return solved;
-    if (!tell(0.7 + 0.05 * round)) return Error{"stopped before the fit was done"};
+    if (!report(0.7 + 0.05 * round)) return Error{"stopped before the fit was done"};
   }
   return {};
 }
@@ -334,10 +334,10 @@ Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisatio
   const double size_m = size_of(points.scan.points_m);
   FitSettings watched = settings;
   double told = 0.0;
-  watched.watch = [&](double share) {
-    told = std::max(told, share);
-    return !settings.watch || settings.watch(told);
-  };
+  watched.progress = Progress([&](double fraction) {
+    told = std::max(told, fraction);
+    return settings.progress.report(told);
+  });
   std::optional<FittedSurface> best;
   FitQuality quality{};
   for (const Trial& trial : trials) {

@@ -11,13 +11,10 @@
 
 namespace spoonbill {
 
-// Told how far a fit has come, 0 to 1; false stops it.
-using FitWatch = std::function<bool(double)>;
-
 struct FitSettings {
   int control_u = 24, control_v = 24;  // as many control points at most
   double tolerance_m = 0.0;            // no more of them once all but outliers lie within; 0: all of them
-  FitWatch watch = {};
+  Progress progress = {};              // stops the fit, which is then an error
 };
 
 struct FittedSurface {

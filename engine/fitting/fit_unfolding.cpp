@@ -160,7 +160,7 @@ Status SurfaceFitter::unfold(int relaxing) {
       least = folds_;
       least_uv = all_.uv;
     }
-    if (!tell(0.9)) return Error{"stopped before the fit was done"};
+    if (!report(0.9)) return Error{"stopped before the fit was done"};
   }
   surface_ = std::move(least_folded);
   folds_ = std::move(least);

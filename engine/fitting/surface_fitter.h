@@ -95,7 +95,7 @@ class SurfaceFitter {
   void take(const Folding& folding);
   void set_fairness(double fairness, const FittedData& data);
   Status choose_fairness(const FittedData& data);
-  bool tell(double share) const { return !settings_->watch || settings_->watch(share); }
+  bool report(double fraction) const { return settings_->progress.report(fraction); }
   FittedSurface result();
 
   const FitPoints* points_;

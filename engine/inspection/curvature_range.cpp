@@ -31,7 +31,7 @@ std::optional<PrincipalCurvatures> principal_curvatures(const SurfacePoint& poin
   return PrincipalCurvatures{mean - spread, mean + spread};
 }
 
-CurvatureRange curvature_range(const Surface& surface, const TrimmedArea& area, const StudyWatch& watch) {
+CurvatureRange curvature_range(const Surface& surface, const TrimmedArea& area, const Progress& progress) {
   const std::vector<PieceCell> cells = piece_cells(surface, parts);
   const auto extreme = [&](bool largest) {
     const auto value = [&](double u, double v) {
@@ -42,7 +42,7 @@ CurvatureRange curvature_range(const Surface& surface, const TrimmedArea& area, 
       return largest ? -found->largest : found->smallest;
     };
     const ParameterPlace place =
-        least_place(cells, value, largest ? part_watch(watch, 0.5, 1.0) : part_watch(watch, 0.0, 0.5));
+        least_place(cells, value, largest ? progress.part(0.5, 1.0) : progress.part(0.0, 0.5));
     return CurvaturePlace{largest ? -place.value : place.value, place.u, place.v,
                           position(surface, place.u, place.v)};
   };

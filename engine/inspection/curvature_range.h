@@ -6,7 +6,7 @@
 
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_area.h"
-#include "engine/inspection/study_watch.h"
+#include "engine/base/progress.h"
 
 namespace spoonbill {
 
@@ -32,7 +32,7 @@ struct CurvatureRange {
 // Over all pieces of the surface, on both sides of each knot, from samples refined where the extremes are, up
 // to a hundredth of a piece from a pole. A smooth extreme comes out to a millionth.
 CurvatureRange curvature_range(const Surface& surface, const TrimmedArea& area = {},
-                               const StudyWatch& watch = {});
+                               const Progress& progress = {});
 
 // The integral of the squares of both principal curvatures over the area, 8 pi of a ball of any size: small
 // where a surface is fair.

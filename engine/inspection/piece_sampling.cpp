@@ -17,7 +17,7 @@ constexpr double off_poles = 1e-2;
 constexpr double collapsed = 1e-9;
 // How many cells are searched further.
 constexpr std::size_t searched = 12;
-// Between two looks at the watch.
+// Between two reports.
 constexpr std::size_t watched_cells = 256;
 // Each halves the step.
 constexpr int halvings = 24;
@@ -112,13 +112,13 @@ std::vector<PieceCell> piece_cells(const Surface& surface, int parts) {
 }
 
 ParameterPlace least_place(const std::vector<PieceCell>& cells,
-                           const std::function<double(double u, double v)>& value, const StudyWatch& watch) {
+                           const std::function<double(double u, double v)>& value, const Progress& progress) {
   const ParameterPlace none{0.0, 0.0, std::numeric_limits<double>::infinity()};
   std::vector<Candidate> candidates;
   candidates.reserve(cells.size());
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    if (watch && k % watched_cells == 0 &&
-        !watch(static_cast<double>(k) / static_cast<double>(cells.size()))) {
+    if (k % watched_cells == 0 &&
+        !progress.report(static_cast<double>(k) / static_cast<double>(cells.size()))) {
       return none;
     }
     const ParameterPlace best = best_in_cell(cells[k], value);

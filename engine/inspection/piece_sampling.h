@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/bspline/surface.h"
-#include "engine/inspection/study_watch.h"
+#include "engine/base/progress.h"
 
 namespace spoonbill {
 
@@ -31,6 +31,6 @@ struct ParameterPlace {
 // infinite where none does.
 ParameterPlace least_place(const std::vector<PieceCell>& cells,
                            const std::function<double(double u, double v)>& value,
-                           const StudyWatch& watch = {});
+                           const Progress& progress = {});
 
 }  // namespace spoonbill

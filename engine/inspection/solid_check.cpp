@@ -48,12 +48,12 @@ Vector3 place_of(const Triangle& first, const Triangle& second) {
 }
 
 void find_self_meetings(const TriangleMesh& mesh, const LineExits& exits, double error_m,
-                        const std::function<bool()>& stop, SolidCheck& check) {
+                        const Progress& progress, SolidCheck& check) {
   const std::vector<std::uint32_t>& order = exits.tree().order();
   std::vector<TriangleCorners> in_order;
   in_order.reserve(order.size());
   for (const std::uint32_t index : order) in_order.push_back(mesh.triangles[index]);
-  const MeshMeetings meetings = self_meetings(mesh.vertices_m, in_order, exits.tree(), most_meetings, stop);
+  const MeshMeetings meetings = self_meetings(mesh.vertices_m, in_order, exits.tree(), most_meetings, progress);
   check.self_meetings_complete = meetings.complete;
   for (const MeshMeeting& meeting : meetings.found) {
     if (!(meeting.depth_m > 2.0 * error_m)) continue;
@@ -137,9 +137,9 @@ class Thinnest {
  public:
   Thinnest(const Walls& walls, const ExactWalls& exact) : walls_(walls), exact_(exact) {}
 
-  std::optional<WallThickness> found(const StudyWatch& watch) {
+  std::optional<WallThickness> found(const Progress& progress) {
     const std::vector<PieceCell> cells = walls_.cells();
-    const auto order = thinnest_first(cells, watch);
+    const auto order = thinnest_first(cells, progress);
     std::vector<PieceCell> chosen = chosen_of(cells, order);
     is_exact_ = !chosen.empty();
     const std::size_t by_mesh = is_exact_ ? 0 : std::min(most_chosen, order.size());
@@ -155,11 +155,11 @@ class Thinnest {
   static constexpr std::size_t most_chosen = 12, most_asked = 20'000, cells_between_looks = 1024;
   using Order = std::vector<std::pair<double, std::size_t>>;
 
-  Order thinnest_first(const std::vector<PieceCell>& cells, const StudyWatch& watch) const {
+  Order thinnest_first(const std::vector<PieceCell>& cells, const Progress& progress) const {
     Order order;
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const double share = static_cast<double>(k) / static_cast<double>(cells.size());
-      if (watch && k % cells_between_looks == 0 && !watch(share)) return {};
+      if (k % cells_between_looks == 0 && !progress.report(share)) return {};
       const auto wall = walls_.at(cells[k].middle_u(), cells[k].middle_v());
       if (wall) order.emplace_back(wall->thickness_m, k);
     }
@@ -189,17 +189,16 @@ class Thinnest {
 }  // namespace
 
 std::optional<SolidCheck> check_solid(const TriangleMesh& mesh, const std::vector<const Surface*>& surfaces,
-                                      double error_m, const StudyWatch& watch) {
+                                      double error_m, const Progress& progress) {
   SolidCheck check;
   bool goes_on = true;
-  const StudyWatch asked = [&](double share) { return goes_on = goes_on && (!watch || watch(share)); };
+  const Progress asked([&](double fraction) { return goes_on = goes_on && progress.report(fraction); });
   const LineExits exits(triangles_of(mesh));
-  const auto stop = [&] { return !asked(0.1); };
-  find_self_meetings(mesh, exits, error_m, stop, check);
-  if (stop()) return std::nullopt;
+  find_self_meetings(mesh, exits, error_m, asked.part(0.1, 0.1), check);
+  if (!asked.report(0.1)) return std::nullopt;
   const Walls walls(exits, mesh, error_m);
   const ExactWalls exact(surfaces, error_m);
-  check.thinnest = Thinnest(walls, exact).found(part_watch(asked, 0.1, 1.0));
+  check.thinnest = Thinnest(walls, exact).found(asked.part(0.1, 1.0));
   return goes_on ? std::optional(check) : std::nullopt;
 }
 

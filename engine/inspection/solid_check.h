@@ -8,7 +8,7 @@
 #include "engine/bspline/surface.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/inspection/exact_wall.h"
-#include "engine/inspection/study_watch.h"
+#include "engine/base/progress.h"
 
 namespace spoonbill {
 
@@ -29,8 +29,8 @@ struct SolidCheck {
 
 // `mesh` is watertight, with normals out of the material, and nowhere farther than `error_m` from the
 // surfaces that bound the solid: parts of it that meet by less than both may be wrong do not count. Where the
-// surfaces are unknown, or some face inwards, it tells alone. Nothing where the watch stopped it.
+// surfaces are unknown, or some face inwards, it tells alone. Nothing where it was stopped.
 std::optional<SolidCheck> check_solid(const TriangleMesh& mesh, const std::vector<const Surface*>& surfaces,
-                                      double error_m, const StudyWatch& watch = {});
+                                      double error_m, const Progress& progress = {});
 
 }  // namespace spoonbill

@@ -115,7 +115,7 @@ void find_bad_spots(const Surface& surface, const TrimmedArea& area, SurfaceChec
   }
 }
 
-void find_self_meetings(const Surface& surface, const TrimmedArea& area, const StudyWatch& watch,
+void find_self_meetings(const Surface& surface, const TrimmedArea& area, const Progress& progress,
                         SurfaceCheck& check) {
   const auto grid = make_nested_grid(surface.u, surface.v, surface.net.size() > large_net ? 0 : 1);
   if (!grid) {
@@ -125,7 +125,7 @@ void find_self_meetings(const Surface& surface, const TrimmedArea& area, const S
   SurfaceSelfCollider collider(grid.value());
   SelfQuery query;
   query.closed = check.closing.closedness == Closedness::solid;
-  query.watch = watch;
+  query.progress = progress;
   check.self_meetings_complete = !collider.collide(surface, query).overflow;
   for (const PairContact& contact : collider.contacts()) {
     const PairParameters& at = contact.pair.at;
@@ -137,23 +137,23 @@ void find_self_meetings(const Surface& surface, const TrimmedArea& area, const S
 }  // namespace
 
 std::optional<SurfaceCheck> check_surface(const Surface& surface, const TrimmedArea& area,
-                                          const StudyWatch& watch) {
+                                          const Progress& progress) {
   bool goes_on = true;
-  const StudyWatch asked = [&](double share) { return goes_on = goes_on && (!watch || watch(share)); };
+  const Progress asked([&](double fraction) { return goes_on = goes_on && progress.report(fraction); });
   SurfaceCheck check;
   check.closing = closing_of(surface);
   check.is_trimmed = !area.is_whole();
   check.mass = enclosed_mass(surface, area);
-  if (!asked(0.05)) return std::nullopt;
-  check.curvature = curvature_range(surface, area, part_watch(asked, 0.05, 0.4));
+  if (!asked.report(0.05)) return std::nullopt;
+  check.curvature = curvature_range(surface, area, asked.part(0.05, 0.4));
   if (!goes_on) return std::nullopt;
   check.bending = bending_measure(surface, area);
   find_bad_spots(surface, area, check);
-  if (!asked(0.5)) return std::nullopt;
-  find_self_meetings(surface, area, part_watch(asked, 0.5, 0.6), check);
-  if (!asked(0.6)) return std::nullopt;
+  if (!asked.report(0.5)) return std::nullopt;
+  find_self_meetings(surface, area, asked.part(0.5, 0.6), check);
+  if (!asked.report(0.6)) return std::nullopt;
   if (check.encloses() && check.mass.volume_m3 > 0.0) {
-    check.thinnest = ThicknessSearch(surface).smallest(part_watch(asked, 0.6, 1.0));
+    check.thinnest = ThicknessSearch(surface).smallest(asked.part(0.6, 1.0));
   }
   return goes_on ? std::optional(check) : std::nullopt;
 }

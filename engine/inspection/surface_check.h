@@ -11,7 +11,7 @@
 #include "engine/inspection/closing.h"
 #include "engine/inspection/curvature_range.h"
 #include "engine/inspection/enclosed_mass.h"
-#include "engine/inspection/study_watch.h"
+#include "engine/base/progress.h"
 #include "engine/inspection/thickness.h"
 
 namespace spoonbill {
@@ -44,8 +44,8 @@ struct SurfaceCheck {
   bool encloses() const { return closing.closedness == Closedness::solid && !is_trimmed; }
 };
 
-// Nothing where the watch stopped it.
+// Nothing where it was stopped.
 std::optional<SurfaceCheck> check_surface(const Surface& surface, const TrimmedArea& area = {},
-                                          const StudyWatch& watch = {});
+                                          const Progress& progress = {});
 
 }  // namespace spoonbill

@@ -94,12 +94,12 @@ SurfaceExit ThicknessSearch::settled(const LineExit& exit, const Vector3& from,
   return exit_at(start);  // where that does not come to the line, as at a pole
 }
 
-std::optional<Thickness> ThicknessSearch::smallest(const StudyWatch& watch) const {
+std::optional<Thickness> ThicknessSearch::smallest(const Progress& progress) const {
   const auto value = [&](double u, double v) {
     const auto found = at(u, v);
     return found ? found->thickness_m : std::numeric_limits<double>::infinity();
   };
-  const ParameterPlace place = least_place(cells_, value, watch);
+  const ParameterPlace place = least_place(cells_, value, progress);
   return std::isfinite(place.value) ? at(place.u, place.v) : std::nullopt;
 }
 

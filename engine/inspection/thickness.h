@@ -40,7 +40,7 @@ class ThicknessSearch {
 
   // From samples, refined about the least of them. A wall thinner than a cell of samples is wide is found
   // where a sample looks through it.
-  std::optional<Thickness> smallest(const StudyWatch& watch = {}) const;
+  std::optional<Thickness> smallest(const Progress& progress = {}) const;
 
  private:
   // Of the corners of a facet.

@@ -148,11 +148,11 @@ std::vector<double> apart_m(const Surface& surface, const std::vector<double>& a
 
 // The same surface with the parameters that `before` has on the edge they share.
 Result<CompatiblePatches> with_parameters_of(const Surface& before, const Surface& patch, double tolerance_m,
-                                             int largest_count, const WorkWatch& watch) {
+                                             int largest_count, const Progress& progress) {
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
   KnotVector knots = before.u;
   for (RoundsDone done(0.3); knots.control_point_count() <= largest_count; done.step()) {
-    if (!watch.goes_on(done.share())) return WorkWatch::stopped();
+    if (!progress.report(done.fraction())) return Progress::stopped();
     const std::vector<double> looked_at = dense_parameters(knots, looked_at_in_piece);
     const std::vector<double> beside = parameters_beside(a, b, looked_at);
     if (!std::is_sorted(beside.begin(), beside.end())) break;
@@ -240,13 +240,13 @@ bool needs_matching(const Surface& before, const Surface& patch, double toleranc
 Status match_parameters(std::vector<Surface>& patches, const JoinRequest& request, double& deviation_m) {
   const double share = 1.0 / static_cast<double>(patches.size());
   for (std::size_t p = 1; p < patches.size(); ++p) {
-    const WorkWatch watch =
-        request.watch.part(share * static_cast<double>(p - 1), share * static_cast<double>(p));
-    if (!watch.goes_on(0.0)) return WorkWatch::stopped();
+    const Progress progress =
+        request.progress.part(share * static_cast<double>(p - 1), share * static_cast<double>(p));
+    if (!progress.report(0.0)) return Progress::stopped();
     if (request.twist != 0.0 && patches[p].u.is_periodic()) continue;
     if (!needs_matching(patches[p - 1], patches[p], request.tolerance_m)) continue;
     auto matched = with_parameters_of(patches[p - 1], patches[p], matching_share * request.tolerance_m,
-                                      request.largest_count, watch);
+                                      request.largest_count, progress);
     if (!matched) return Error{name_of(p) + ": " + matched.error().message};
     patches[p] = std::move(matched->patches[0]);
     deviation_m = std::max(deviation_m, matched->deviation_m);

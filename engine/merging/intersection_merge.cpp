@@ -61,7 +61,7 @@ Error not_reached(bool with_fillet) {
 }
 
 Result<FittedShape> fitted_part(const Surface& first, CornerLines& lines, const PartShape& part,
-                                bool with_fillet, double tolerance_m, const WorkWatch& watch) {
+                                bool with_fillet, double tolerance_m, const Progress& progress) {
   bool missed = false;
   ExactShape exact;
   exact.u = {first.u.is_periodic(), {first.u.domain_start(), first.u.domain_end()}};
@@ -82,14 +82,14 @@ Result<FittedShape> fitted_part(const Surface& first, CornerLines& lines, const 
   fit.keeps_parameters = true;
   fit.least_spans = few_spans;
   constexpr double first_try = 0.5;
-  fit.watch = [&](double done) { return watch.goes_on(first_try * done); };
+  fit.progress = progress.part(0.0, first_try);
   auto fitted = fit_shape(exact, fit);
-  if (!watch.goes_on(first_try)) return WorkWatch::stopped();
+  if (!progress.report(first_try)) return Progress::stopped();
   if (!fitted && !missed) {
-    fit.watch = [&](double done) { return watch.goes_on(between(first_try, 1.0, done)); };
+    fit.progress = progress.part(first_try, 1.0);
     fit.least_spans = local_spans;
     fitted = fit_shape(exact, fit);
-    if (!watch.goes_on(1.0)) return WorkWatch::stopped();
+    if (!progress.report(1.0)) return Progress::stopped();
   }
   if (missed) return not_reached(with_fillet);
   if (!fitted) return not_fitted(fitted.error(), share, tolerance_m);
@@ -139,8 +139,8 @@ Result<Parts> fitted_parts(const CrossingPatches& patches, const IntersectionReq
   for (const PartShape* part : {&of_first, &of_fillet, &of_second}) {
     if (part == &of_fillet && request.fillet_m == 0.0) continue;
     const double done = static_cast<double>(parts.surfaces.size());
-    const WorkWatch watch = request.join.watch.part(done * fitted_share, (done + 1.0) * fitted_share);
-    auto fitted = fitted_part(first, lines, *part, request.fillet_m > 0.0, request.join.tolerance_m, watch);
+    const Progress progress = request.join.progress.part(done * fitted_share, (done + 1.0) * fitted_share);
+    auto fitted = fitted_part(first, lines, *part, request.fillet_m > 0.0, request.join.tolerance_m, progress);
     if (!fitted) return fitted.error();
     parts.deviation_m = std::max(parts.deviation_m, fitted->deviation_m);
     parts.surfaces.push_back(std::move(fitted->surface));
@@ -193,7 +193,7 @@ Result<IntersectionMerge> merge_outward(const Surface& first, const Surface& sec
   JoinRequest join = request.join;
   join.tolerance_m -= before_m;
   join.blend_m = 0.0;
-  join.watch = request.join.watch.part(3.0 * fitted_share, 1.0);
+  join.progress = request.join.progress.part(3.0 * fitted_share, 1.0);
   join.shared_parameters = true;
   if (request.fillet_m == 0.0) join.continuity = 0;
   auto joined = join_row(std::move(parts->surfaces), join);

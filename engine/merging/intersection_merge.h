@@ -25,7 +25,7 @@ struct IntersectionMerge {
 // closed body that the first does not cross around one of its poles is run through from the crossing to the
 // pole on the far side (LinesFromLoop). Refused: patches whose lines of constant u do not each cross the
 // other or do not follow each other along the crossing, one that leaves a closed body again, as where it goes
-// through, a fillet that does not fit. The message names where. Stopped by the watch.
+// through, a fillet that does not fit. The message names where. Stopped on request.
 Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
                                          const IntersectionRequest& request);
 

@@ -137,11 +137,11 @@ double deviation_from_m(const Surface& merged, const Surface& patch) {
 }
 
 Result<double> measured_deviation_m(const Surface& merged, const std::vector<Surface>& placed,
-                                    const WorkWatch& watch) {
+                                    const Progress& progress) {
   double largest = 0.0;
   for (std::size_t p = 0; p < placed.size(); ++p) {
-    if (!watch.goes_on(static_cast<double>(p) / static_cast<double>(placed.size()))) {
-      return WorkWatch::stopped();
+    if (!progress.report(static_cast<double>(p) / static_cast<double>(placed.size()))) {
+      return Progress::stopped();
     }
     largest = std::max(largest, deviation_from_m(merged, placed[p]));
   }
@@ -214,10 +214,10 @@ Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request)
   if (!knots) return knots.error();
   if (Status status = check_count(knots.value(), request.largest_count); !status) return status.error();
   auto merged = approximated(whole.value(), Direction::v, knots.value(), tolerance_left_m(row, request),
-                             request.largest_count, request.watch.part(0.0, approximated_share));
+                             request.largest_count, request.progress.part(0.0, approximated_share));
   if (!merged) return merged.error();
   const auto measured_m =
-      measured_deviation_m(merged->surface, placed.value(), request.watch.part(approximated_share, 1.0));
+      measured_deviation_m(merged->surface, placed.value(), request.progress.part(approximated_share, 1.0));
   if (!measured_m) return measured_m.error();
   const double deviation_m = row.deviation_m + measured_m.value();
   std::vector<Joint> described = described_joints(merged->surface, placed.value(), row);
@@ -230,8 +230,8 @@ Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request)
 
 Result<Joined> join_row(std::vector<Surface> patches, const JoinRequest& request) {
   JoinRequest preparing = request, joining = request;
-  preparing.watch = request.watch.part(0.0, prepared_share);
-  joining.watch = request.watch.part(prepared_share, 1.0);
+  preparing.progress = request.progress.part(0.0, prepared_share);
+  joining.progress = request.progress.part(prepared_share, 1.0);
   const auto rows = prepare_rows({std::move(patches)}, preparing);
   if (!rows) return rows.error();
   return join_prepared(rows.value()[0], joining);

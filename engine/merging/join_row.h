@@ -31,7 +31,7 @@ struct Joined {
 // and knots are added beside it until the tolerance holds. At a joint-knot multiplicity m of degree p the
 // continuity is C^(p - m), and of r1 and r2 control points r1 + r2 + m - p - 1 result (Pungotra et al. 2013
 // give r1 + r2 - 1, which holds for C0 alone). Refused: more than the largest count of them, a surface that
-// folds over where no patch does, unless bridges may. Stopped by the watch.
+// folds over where no patch does, unless bridges may. Stopped on request.
 Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request);
 
 // prepare_rows() of a single one, and join_prepared(). Patches whose edges are at most the tolerance apart

@@ -65,13 +65,13 @@ Result<std::vector<Joined>> joined_along_v(const Grid& grid, const JoinRequest& 
   }
   constexpr double prepared_share = 0.3;
   JoinRequest step = request;
-  step.watch = request.watch.part(0.0, prepared_share);
+  step.progress = request.progress.part(0.0, prepared_share);
   const auto prepared = prepare_rows(std::move(rows), step);
   if (!prepared) return prepared.error();
   const double each = (1.0 - prepared_share) / static_cast<double>(prepared->size());
   for (const PreparedRow& row : prepared.value()) {
     const double done = prepared_share + each * static_cast<double>(joined.size());
-    step.watch = request.watch.part(done, done + each);
+    step.progress = request.progress.part(done, done + each);
     auto result = join_prepared(row, step);
     if (!result) return result.error();
     joined.push_back(std::move(result).value());
@@ -79,7 +79,7 @@ Result<std::vector<Joined>> joined_along_v(const Grid& grid, const JoinRequest& 
   return joined;
 }
 
-// Shares the tolerance and the watch out to the steps of a merge: each may spend its part of what those
+// Shares the tolerance and the progress out to the steps of a merge: each may spend its part of what those
 // before it left.
 class Steps {
  public:
@@ -92,7 +92,7 @@ class Steps {
     step.spent_m += left_m * (steps_ - 1) / steps_;
     --steps_;
     const double end = steps_ == 0 ? 1.0 : done_ + (1.0 - done_) / (steps_ + 1);
-    step.watch = request_.watch.part(done_, end);
+    step.progress = request_.progress.part(done_, end);
     done_ = end;
     return step;
   }
@@ -106,7 +106,7 @@ class Steps {
 Result<Approximation> closed_without_folds(const Surface& surface, Direction direction,
                                            const JoinRequest& request) {
   auto closed = closed_around(surface, direction, request.continuity, request.tolerance_m - request.spent_m,
-                              request.watch);
+                              request.progress);
   if (!closed || closed->deviation_m <= rounding_m) return closed;
   const auto place_m = place_of_fold(closed->surface);
   if (!place_m || place_of_fold(surface)) return closed;
@@ -121,7 +121,7 @@ Status close_ring(const Grid& grid, Direction direction, Steps& steps, Merged& m
   if (matches.empty()) return {};
   const JoinRequest step = steps.next(merged.deviation_m);
   auto closed = closed_without_folds(merged.surface, direction, step);
-  if (!step.watch.goes_on(1.0)) return WorkWatch::stopped();
+  if (!step.progress.report(1.0)) return Progress::stopped();
   if (!closed) {
     for (const EdgeMatch& match : matches) {
       merged.left_open.push_back({match.a, match.b, closed.error().message});
@@ -340,12 +340,12 @@ Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request) {
   if (Status status = check(patches, request); !status) return status.error();
   if (patches.size() == 1) return Merged{patches[0], 0.0, {}};
-  if (!request.join.watch.goes_on(0.0)) return WorkWatch::stopped();
+  if (!request.join.progress.report(0.0)) return Progress::stopped();
   if (Status status = check_different(patches, request.join.tolerance_m); !status) return status.error();
   std::vector<Surface> ready = patches;
   const auto matches = matches_for(ready, request);
   if (!matches) return matches.error();
-  if (!request.join.watch.goes_on(0.0)) return WorkWatch::stopped();
+  if (!request.join.progress.report(0.0)) return Progress::stopped();
   const auto arrangement = arrange(ready, matches.value());
   if (!arrangement) return arrangement.error();
   if (Status status = check_left_open(arrangement.value(), request.chosen); !status) return status.error();

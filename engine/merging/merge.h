@@ -46,7 +46,7 @@ struct Merged {
 // off and the tubes bridged; what is cut off belongs to the blend. A bridge may fold over only where the
 // direction of an edge is chosen. Refused: no patch or more than 64, two that are one, chosen edges that
 // contradict each other or cannot be closed, patches that do not make a row or a grid, what join_row()
-// refuses, more of a deviation than the tolerance. Stopped by the watch. One patch is given back as it is.
+// refuses, more of a deviation than the tolerance. Stopped on request. One patch is given back as it is.
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request);
 
 }  // namespace spoonbill

@@ -173,7 +173,7 @@ Result<std::vector<PreparedRow>> prepare_rows(std::vector<std::vector<Surface>> 
   for (std::vector<Surface>& row : rows) {
     const double done = static_cast<double>(prepared.size()), count = static_cast<double>(rows.size());
     JoinRequest of_row = request;
-    of_row.watch = request.watch.part(done / count, (done + 1.0) / count);
+    of_row.progress = request.progress.part(done / count, (done + 1.0) / count);
     auto compatible = compatible_along_v(std::move(row), of_row);
     if (!compatible) return compatible.error();
     prepared.push_back({std::move(compatible->patches), {}, compatible->deviation_m});

@@ -42,7 +42,7 @@ Result<KnotVector> period_of(const KnotVector& knots, int continuity) {
 }  // namespace
 
 Result<Approximation> closed_around(const Surface& surface, Direction direction, int continuity,
-                                    double tolerance_m, const WorkWatch& watch) {
+                                    double tolerance_m, const Progress& progress) {
   const KnotVector& knots = knots_along(surface, direction);
   if (knots.is_periodic()) return Error{"the direction is closed already; choose the other one"};
   if (const double gap_m = edge_gap_m(surface, direction); gap_m > tolerance_m) {
@@ -53,7 +53,7 @@ Result<Approximation> closed_around(const Surface& surface, Direction direction,
   if (!raised) return raised.error();
   const auto period = period_of(raised.value(), continuity);
   if (!period) return period.error();
-  return approximated(surface, direction, period.value(), tolerance_m, largest_count, watch);
+  return approximated(surface, direction, period.value(), tolerance_m, largest_count, progress);
 }
 
 }  // namespace spoonbill

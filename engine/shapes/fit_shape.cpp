@@ -29,18 +29,17 @@ constexpr int most_rounds = 12;
 
 using Lines = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// How many rounds it takes shows at the last: each step takes its part of what is left.
-class Progress {
+// The progress of a fit whose number of rounds shows only at the last.
+class FitRounds {
  public:
-  explicit Progress(const ShapeFit& fit) : watch_(&fit.watch) {}
+  explicit FitRounds(const ShapeFit& fit) : progress_(&fit.rounds) {}
 
-  void step() { done_ += 0.1 * (1.0 - done_); }
-  bool goes_on() const { return !*watch_ || (*watch_)(done_); }
-  static Error stopped() { return Error{"stopped"}; }
+  void step() { done_.step(); }
+  bool report() const { return progress_->report(done_.fraction()); }
 
  private:
-  const std::function<bool(double)>* watch_;
-  double done_ = 0.0;
+  const Progress* progress_;
+  RoundsDone done_{0.1};
 };
 
 struct DirectionError {
@@ -76,8 +75,8 @@ std::vector<double> between(const std::vector<double>& parameters, const ShapeDi
 // error, unless parameters are to be kept.
 Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const ShapeKnots& knots,
                                    const std::vector<double>& lines, bool keeps_parameters,
-                                   Progress& progress) {
-  progress.step();
+                                   FitRounds& rounds) {
+  rounds.step();
   DirectionError result;
   result.at = knots.parameters(samples_in_span);
   const KnotVector vector = knots.knots();
@@ -86,7 +85,7 @@ Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const 
   const auto point = [&](double t, double line) { return along_u ? shape.at(t, line) : shape.at(line, t); };
   Lines samples(static_cast<Eigen::Index>(result.at.size()), static_cast<Eigen::Index>(3 * lines.size()));
   for (Eigen::Index i = 0; i < samples.rows(); ++i) {
-    if (!progress.goes_on()) return Progress::stopped();
+    if (!rounds.report()) return Progress::stopped();
     for (std::size_t l = 0; l < lines.size(); ++l) {
       samples.block<1, 3>(i, static_cast<Eigen::Index>(3 * l)) =
           point(result.at[static_cast<std::size_t>(i)], lines[l]).transpose();
@@ -95,7 +94,7 @@ Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const 
   if (!samples.allFinite()) return Error{"shape: not finite everywhere; its sizes must be"};
   const Lines residual = fitted(inverse.value(), blending_matrix(vector, result.at, 0), samples) - samples;
   for (Eigen::Index i = 0; i < samples.rows(); ++i) {
-    if (!progress.goes_on()) return Progress::stopped();
+    if (!rounds.report()) return Progress::stopped();
     const double t = result.at[static_cast<std::size_t>(i)];
     double largest = 0.0;
     for (std::size_t l = 0; l < lines.size(); ++l) {
@@ -147,9 +146,9 @@ void settle_pole(const ExactShape& shape, bool at_start, const KnotVector& knots
 }
 
 Result<Surface> fit_with(const ExactShape& shape, const ShapeKnots& u, const ShapeKnots& v,
-                         Progress& progress) {
-  progress.step();
-  if (!progress.goes_on()) return Progress::stopped();
+                         FitRounds& rounds) {
+  rounds.step();
+  if (!rounds.report()) return Progress::stopped();
   PointGrid grid{u.parameters(samples_in_span), v.parameters(samples_in_span), {}};
   for (const double at_u : grid.u) {
     for (const double at_v : grid.v) grid.points_m.push_back(shape.at(at_u, at_v));
@@ -170,11 +169,11 @@ struct Measure {
 };
 
 Result<Measure> measure(const ExactShape& shape, const Surface& surface, const ShapeKnots& u,
-                        const ShapeKnots& v, bool keeps_parameters, Progress& progress) {
-  progress.step();
+                        const ShapeKnots& v, bool keeps_parameters, FitRounds& rounds) {
+  rounds.step();
   Measure result;
   for (const double at_u : between(u.parameters(checks_in_span), shape.u)) {
-    if (!progress.goes_on()) return Progress::stopped();
+    if (!rounds.report()) return Progress::stopped();
     for (const double at_v : between(v.parameters(checks_in_span), shape.v)) {
       const SurfacePoint point = evaluate(surface, at_u, at_v);
       if (!(point.du.cross(point.dv).dot(tangents(shape, at_u, at_v).normal) >= 0.0)) result.folds = true;
@@ -190,8 +189,8 @@ Result<Measure> measure(const ExactShape& shape, const Surface& surface, const S
 
 // Where parameters are kept: more densely, on the edges too, and about the worst sample.
 Result<Measure> measure_closely(const ExactShape& shape, const Surface& surface, const ShapeKnots& u,
-                                const ShapeKnots& v, Progress& progress) {
-  auto result = measure(shape, surface, u, v, true, progress);
+                                const ShapeKnots& v, FitRounds& rounds) {
+  auto result = measure(shape, surface, u, v, true, rounds);
   if (!result) return result;
   const auto with_ends = [](const ShapeKnots& knots, const ShapeDirection& direction) {
     std::vector<double> all = between(knots.parameters(2 * checks_in_span), direction);
@@ -209,7 +208,7 @@ Result<Measure> measure_closely(const ExactShape& shape, const Surface& surface,
   };
   double worst_u = shape.u.start(), worst_v = shape.v.start(), worst_m = 0.0;
   for (const double at_u : along_u) {
-    if (!progress.goes_on()) return Progress::stopped();
+    if (!rounds.report()) return Progress::stopped();
     for (const double at_v : along_v) {
       const double here_m = apart_m(at_u, at_v);
       if (here_m <= worst_m) continue;
@@ -228,13 +227,13 @@ Result<Measure> measure_closely(const ExactShape& shape, const Surface& surface,
 }
 
 Result<Measure> measured(const ExactShape& shape, const Surface& surface, const ShapeKnots& u,
-                         const ShapeKnots& v, bool keeps_parameters, Progress& progress) {
-  return keeps_parameters ? measure_closely(shape, surface, u, v, progress)
-                          : measure(shape, surface, u, v, false, progress);
+                         const ShapeKnots& v, bool keeps_parameters, FitRounds& rounds) {
+  return keeps_parameters ? measure_closely(shape, surface, u, v, rounds)
+                          : measure(shape, surface, u, v, false, rounds);
 }
 
 Result<FittedShape> fit_counted(const ExactShape& shape, const ShapeFit& fit) {
-  Progress progress(fit);
+  FitRounds rounds(fit);
   const auto [u_count, v_count] = *fit.control_counts;
   auto u = ShapeKnots::counted(shape.u, fit.degree, u_count);
   auto v = ShapeKnots::counted(shape.v, fit.degree, v_count);
@@ -246,14 +245,14 @@ Result<FittedShape> fit_counted(const ExactShape& shape, const ShapeFit& fit) {
     ShapeKnots& knots = along_u ? u.value() : v.value();
     while (knots.control_count() < (along_u ? u_count : v_count)) {
       const auto error =
-          error_along(shape, along_u, knots, along_u ? v_lines : u_lines, fit.keeps_parameters, progress);
+          error_along(shape, along_u, knots, along_u ? v_lines : u_lines, fit.keeps_parameters, rounds);
       if (!error) return error.error();
       knots.refine_worst(error->at, error->error_m);
     }
   }
-  auto surface = fit_with(shape, u.value(), v.value(), progress);
+  auto surface = fit_with(shape, u.value(), v.value(), rounds);
   if (!surface) return surface.error();
-  const auto found = measured(shape, surface.value(), u.value(), v.value(), fit.keeps_parameters, progress);
+  const auto found = measured(shape, surface.value(), u.value(), v.value(), fit.keeps_parameters, rounds);
   if (!found) return found.error();
   if (found->folds) {
     return Error{"with " + std::to_string(u_count) + " x " + std::to_string(v_count) +
@@ -269,10 +268,10 @@ Error too_fine(const ShapeFit& fit, const std::string& direction) {
 }
 
 Status refine_until(const ExactShape& shape, bool along_u, double allowed_m, const ShapeFit& fit,
-                    const std::vector<double>& lines, ShapeKnots& knots, Progress& progress) {
+                    const std::vector<double>& lines, ShapeKnots& knots, FitRounds& rounds) {
   for (;;) {
     if (knots.control_count() > most_control_points) return too_fine(fit, along_u ? "u" : "v");
-    const auto error = error_along(shape, along_u, knots, lines, fit.keeps_parameters, progress);
+    const auto error = error_along(shape, along_u, knots, lines, fit.keeps_parameters, rounds);
     if (!error) return error.error();
     if (!knots.refine(error->at, error->error_m, allowed_m)) return {};
   }
@@ -288,16 +287,16 @@ Result<FittedShape> fit_shape(const ExactShape& shape, const ShapeFit& fit) {
   const std::vector<double> u_lines = between(u.parameters(lines_in_cell), shape.u);
   const std::vector<double> v_lines = between(v.parameters(lines_in_cell), shape.v);
   double allowed_m = direction_share * fit.tolerance_m;
-  Progress progress(fit);
+  FitRounds rounds(fit);
   for (int round = 0; round < most_rounds; ++round) {
     for (const bool along_u : {true, false}) {
       const Status done = refine_until(shape, along_u, allowed_m, fit, along_u ? v_lines : u_lines,
-                                       along_u ? u : v, progress);
+                                       along_u ? u : v, rounds);
       if (!done) return done.error();
     }
-    auto surface = fit_with(shape, u, v, progress);
+    auto surface = fit_with(shape, u, v, rounds);
     if (!surface) return surface.error();
-    const auto found = measured(shape, surface.value(), u, v, fit.keeps_parameters, progress);
+    const auto found = measured(shape, surface.value(), u, v, fit.keeps_parameters, rounds);
     if (!found) return found.error();
     if (!found->folds && found->deviation_m <= fit.tolerance_m) {
       return FittedShape{std::move(surface).value(), found->deviation_m};

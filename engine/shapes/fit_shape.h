@@ -5,7 +5,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <optional>
 
 #include "engine/base/result.h"
@@ -24,8 +23,7 @@ struct ShapeFit {
   // Given, so many control points along u and v, placed where the shape asks for them, and whatever
   // deviation that leaves.
   std::optional<std::array<int, 2>> control_counts = {};
-  // Told the share that is done, 0 to 1; false stops the fit, which is then an error. May be empty.
-  std::function<bool(double share)> watch = {};
+  Progress progress = {};  // stops the fit, which is then an error
 };
 
 struct FittedShape {

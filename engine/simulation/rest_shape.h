@@ -27,6 +27,6 @@ struct RestShape {
 // oscillation; the ground and the other bodies do nothing. What flows or creeps counts as elastic. Refused:
 // what make_body_state() refuses, a body that nothing holds, loads under which it finds no rest.
 Result<RestShape> rest_shape(const Scene& scene, int body,
-                             const std::function<void(double share)>& progress = {});
+                             const Progress& progress = {});
 
 }  // namespace spoonbill

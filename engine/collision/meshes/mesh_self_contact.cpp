@@ -48,10 +48,10 @@ class SelfContact {
         pairs_left_(pairs_a_triangle * triangles.size()),
         most_(most) {}
 
-  MeshMeetings meetings(const std::function<bool()>& stop) {
+  MeshMeetings meetings(const Progress& progress) {
     waiting_.assign(1, {0, 0});
     for (std::size_t looks = 1; !waiting_.empty() && meetings_.complete; ++looks) {
-      if (stop && looks % looks_between_stops == 0 && stop()) meetings_.complete = false;
+      if (looks % looks_between_stops == 0 && !progress.report(0.0)) meetings_.complete = false;
       const auto [a, b] = waiting_.back();
       waiting_.pop_back();
       const BoxTree::Node &first = tree_.nodes()[a], &second = tree_.nodes()[b];
@@ -110,8 +110,8 @@ class SelfContact {
 
 MeshMeetings self_meetings(const std::vector<Vector3>& vertices_m,
                            const std::vector<TriangleCorners>& triangles, const BoxTree& tree,
-                           std::size_t most, const std::function<bool()>& stop) {
-  return SelfContact(vertices_m, triangles, tree, most).meetings(stop);
+                           std::size_t most, const Progress& progress) {
+  return SelfContact(vertices_m, triangles, tree, most).meetings(progress);
 }
 
 bool meets_itself(const std::vector<Vector3>& vertices_m, const std::vector<TriangleCorners>& triangles,

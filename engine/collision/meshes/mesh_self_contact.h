@@ -26,11 +26,10 @@ struct MeshMeetings {
 // Any two triangles that meet count, but for those with a common corner, of which a millionth of their size
 // at their rims is left out. `triangles` lie in the order of the tree's leaves. At most so many are found.
 // Takes about a microsecond a triangle where they do not; a mesh for which more than 200 pairs a triangle
-// must be tested (needles across each other's boxes) is not searched to its end. `stop` is asked now and
-// then.
+// must be tested (needles across each other's boxes) is not searched to its end. `progress` only stops it.
 MeshMeetings self_meetings(const std::vector<Vector3>& vertices_m,
                            const std::vector<TriangleCorners>& triangles, const BoxTree& tree,
-                           std::size_t most, const std::function<bool()>& stop = {});
+                           std::size_t most, const Progress& progress = {});
 
 // Whether there is any, or may be in a mesh that is not searched to its end.
 bool meets_itself(const std::vector<Vector3>& vertices_m, const std::vector<TriangleCorners>& triangles,

@@ -73,9 +73,9 @@ SelfResult SurfaceSelfCollider::collide(const Surface& surface, const SelfQuery&
 }
 
 // Not for every pair: to look for a signal is a call of the system.
-bool SurfaceSelfCollider::goes_on(double share) {
+bool SurfaceSelfCollider::goes_on(double fraction) {
   constexpr std::uint64_t between_looks = 64;
-  if (!stopped_ && query_->watch && asked_++ % between_looks == 0) stopped_ = !query_->watch(share);
+  if (!stopped_ && asked_++ % between_looks == 0) stopped_ = !query_->progress.report(fraction);
   return !stopped_;
 }
 

@@ -22,15 +22,14 @@ struct SelfQuery {
   // Whether it bounds a body: du x dv then points outwards. An open surface has two sides, and the shorter
   // way out counts.
   bool closed = false;
-  // Told the share that is searched, 0 to 1; false stops the search. May be empty.
-  std::function<bool(double share)> watch = {};
+  Progress progress = {};  // of what is searched; may stop the search
 };
 
 struct SelfResult {
   bool touching = false;  // decided to touch_tolerance_m
   // A capacity was met, and a contact may be missing. Remedy: a surface of fewer elements or fewer levels.
   bool overflow = false;
-  bool stopped = false;  // by the watch: what was found until then
+  bool stopped = false;  // on request: what was found until then
 };
 
 // One owner, one thread; allocates only when made. The grid must outlive it.
@@ -76,7 +75,7 @@ class SurfaceSelfCollider {
   void split(const CellPair& pair);
   bool is_mirror_of_earlier(const Region& region) const;
   bool touches(const RegionCells& cells);
-  bool goes_on(double share);
+  bool goes_on(double fraction);
   PairContact contact_of(const RegionCells& cells, const SelfQuery& query) const;
   void settle(PairContact& contact, const PairParameters& from, double outside, const SelfQuery& query,
               double& shortest) const;

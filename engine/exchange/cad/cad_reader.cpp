@@ -47,13 +47,13 @@ OcctDocument new_document() {
   return document;
 }
 
-Result<Content> read_step(const std::filesystem::path& file, const CadProgress& progress) {
+Result<Content> read_step(const std::filesystem::path& file, const Progress& progress) {
   STEPCAFControl_Reader reader;
   reader.SetColorMode(false);
   reader.SetLayerMode(false);
   reader.SetNameMode(true);
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return Error{"is no STEP file, or a damaged one"};
-  if (progress) progress(share_of_parsing);
+  if (!progress.report(share_of_parsing)) return Progress::stopped();
   Content content{new_document(), unit_of(reader.Reader().StepModel())};
   content.external_files = forget_external_files(reader.Reader().StepModel());
   if (!reader.Transfer(content.document)) return Error{"holds no shape"};
@@ -62,7 +62,7 @@ Result<Content> read_step(const std::filesystem::path& file, const CadProgress& 
   return content;
 }
 
-Result<Content> read_iges(const std::filesystem::path& file, const CadProgress& progress) {
+Result<Content> read_iges(const std::filesystem::path& file, const Progress& progress) {
   const auto null_entities = count_null_entities(file);
   if (!null_entities) return null_entities.error();
   IGESCAFControl_Reader reader;
@@ -70,7 +70,7 @@ Result<Content> read_iges(const std::filesystem::path& file, const CadProgress& 
   reader.SetLayerMode(false);
   reader.SetNameMode(true);
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return Error{"is no IGES file, or a damaged one"};
-  if (progress) progress(share_of_parsing);
+  if (!progress.report(share_of_parsing)) return Progress::stopped();
   Content content{new_document(), unit_of(reader.IGESModel(), file)};
   if (!reader.Transfer(content.document)) return Error{"holds no shape"};
   content.losses = count_losses(reader.WS(), FileFormat::iges);
@@ -175,7 +175,7 @@ Result<FaceSurface> near_surface(const TopoDS_Face& face, double scale, double t
 
 // Those that are no surfaces of ours are told in notes. Refused: when all are.
 Status take_faces(const std::vector<NamedFace>& faces, double scale, const CadReading& reading,
-                  const TakeSurface& take, const CadProgress& progress, CadModel& model) {
+                  const TakeSurface& take, const Progress& progress, CadModel& model) {
   std::optional<Error> first;
   std::size_t taken = 0;
   for (std::size_t k = 0; k < faces.size(); ++k) {
@@ -187,20 +187,18 @@ Status take_faces(const std::vector<NamedFace>& faces, double scale, const CadRe
       if (!first) first = Error{"'" + faces[k].name + "': " + found.error().message};
       model.notes.push_back("'" + faces[k].name + "' is left out: " + found.error().message);
     }
-    if (progress) {
-      progress(share_of_transfer +
-               (1.0 - share_of_transfer) * static_cast<double>(k + 1) / static_cast<double>(faces.size()));
-    }
+    const double fraction = static_cast<double>(k + 1) / static_cast<double>(faces.size());
+    if (!progress.report(fraction)) return Progress::stopped();
   }
   return taken > 0 ? Status() : *first;
 }
 
 Result<CadModel> read(const std::filesystem::path& file, const CadReading& reading, const TakeSurface& take,
-                      const CadProgress& progress) {
+                      const Progress& progress) {
   const auto content =
       reading.format == FileFormat::step ? read_step(file, progress) : read_iges(file, progress);
   if (!content) return content.error();
-  if (progress) progress(share_of_transfer);
+  if (!progress.report(share_of_transfer)) return Progress::stopped();
   const NamedFaces named = named_faces(content->document);
   const std::vector<NamedFace>& faces = named.faces;
   if (faces.empty()) return no_surface(content.value());
@@ -212,7 +210,7 @@ Result<CadModel> read(const std::filesystem::path& file, const CadReading& readi
   say_unit(content->unit, reading, model);
   say_losses(content.value(), model);
   say_solids(named, model);
-  const Status taken = take_faces(faces, scale_of(content->unit, reading), reading, take, progress, model);
+  const Status taken = take_faces(faces, scale_of(content->unit, reading), reading, take, progress.part(share_of_transfer, 1.0), model);
   if (!taken) return taken.error();
   return model;
 }
@@ -220,7 +218,7 @@ Result<CadModel> read(const std::filesystem::path& file, const CadReading& readi
 }  // namespace
 
 Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& reading,
-                          const TakeSurface& take, const CadProgress& progress) {
+                          const TakeSurface& take, const Progress& progress) {
   try {
     return read(file, reading, take, progress);
   } catch (const Standard_Failure& failure) {

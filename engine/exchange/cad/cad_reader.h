@@ -20,6 +20,6 @@ using TakeSurface = std::function<void(CadSurface)>;
 // OpenCASCADE cannot read, a file without faces that can be taken, or with more than the limit. The Error
 // says what is wrong, without the file's name.
 Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& reading,
-                          const TakeSurface& take, const CadProgress& progress = {});
+                          const TakeSurface& take, const Progress& progress = {});
 
 }  // namespace spoonbill

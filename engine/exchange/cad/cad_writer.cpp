@@ -93,19 +93,14 @@ void fill_header(const opencascade::handle<IGESData_IGESModel>& model) {
 // Of the work; putting the file together takes the rest.
 constexpr double share_of_shapes = 0.5;
 
-CadProgress half_of(const CadProgress& progress) {
-  if (!progress) return {};
-  return [&progress](double share) { progress(share_of_shapes * share); };
-}
-
 Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writing,
-                                  const CadProgress& progress) {
+                                  const Progress& progress) {
   choose_schema(writing.schema);
   opencascade::handle<TDocStd_Document> document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
   const auto shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
   CadFileContent content;
-  const auto bodies = written_bodies(model, half_of(progress), content);
+  const auto bodies = written_bodies(model, progress.part(0.0, share_of_shapes), content);
   if (!bodies) return bodies.error();
   for (const WrittenBody& body : bodies.value()) {
     const TDF_Label label = shapes->AddShape(body.shape, false);
@@ -182,10 +177,10 @@ Status add_to(IGESControl_Writer& writer, const WrittenBody& body) {
   return {};
 }
 
-Result<CadFileContent> write_iges(const CadModel& model, const CadProgress& progress) {
+Result<CadFileContent> write_iges(const CadModel& model, const Progress& progress) {
   IGESControl_Writer writer;
   CadFileContent content;
-  const auto bodies = written_bodies(model, half_of(progress), content);
+  const auto bodies = written_bodies(model, progress.part(0.0, share_of_shapes), content);
   if (!bodies) return bodies.error();
   for (const WrittenBody& body : bodies.value()) {
     if (Status added = add_to(writer, body); !added) return added.error();
@@ -199,7 +194,7 @@ Result<CadFileContent> write_iges(const CadModel& model, const CadProgress& prog
 }  // namespace
 
 Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writing,
-                                 const CadProgress& progress) {
+                                 const Progress& progress) {
   choose_unit(writing.unit);
   try {
     return writing.format == FileFormat::step ? write_step(model, writing, progress)

@@ -113,11 +113,12 @@ class Mesher {
   std::set<std::string> known_;
 };
 
-Result<CadSolids> mesh_all(const CadModel& model, const SolidMeshing& meshing, const CadProgress& progress) {
+Result<CadSolids> mesh_all(const CadModel& model, const SolidMeshing& meshing, const Progress& progress) {
   Mesher mesher(model, meshing);
   for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
     if (Status added = mesher.add(k); !added) return added.error();
-    if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size()));
+    const double fraction = static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size());
+    if (!progress.report(fraction)) return Progress::stopped();
   }
   return mesher.take();
 }
@@ -125,7 +126,7 @@ Result<CadSolids> mesh_all(const CadModel& model, const SolidMeshing& meshing, c
 }  // namespace
 
 Result<CadSolids> mesh_solids(const CadModel& model, const SolidMeshing& meshing,
-                              const CadProgress& progress) {
+                              const Progress& progress) {
   try {
     return mesh_all(model, meshing, progress);
   } catch (const Standard_Failure& failure) {

@@ -12,6 +12,6 @@ namespace spoonbill {
 // which OpenCASCADE makes no solid, or none with a mesh, are loose, and a note says so. prepare_occt() must
 // have been called. Refused: more triangles than the limit.
 Result<CadSolids> mesh_solids(const CadModel& model, const SolidMeshing& meshing,
-                              const CadProgress& progress = {});
+                              const Progress& progress = {});
 
 }  // namespace spoonbill

@@ -100,12 +100,13 @@ class Collector {
 
 }  // namespace
 
-Result<std::vector<WrittenBody>> written_bodies(const CadModel& model, const CadProgress& progress,
+Result<std::vector<WrittenBody>> written_bodies(const CadModel& model, const Progress& progress,
                                                 CadFileContent& content) {
   Collector collector(model, content);
   for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
     if (Status added = collector.add(model.surfaces[k]); !added) return added.error();
-    if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size()));
+    const double fraction = static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size());
+    if (!progress.report(fraction)) return Progress::stopped();
   }
   return collector.take();
 }

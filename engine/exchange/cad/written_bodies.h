@@ -20,7 +20,7 @@ struct WrittenBody {
 
 // Solids stand where the first of their faces does. `content` is told how many there are of each kind, and
 // what is no solid that one expects to be one.
-Result<std::vector<WrittenBody>> written_bodies(const CadModel& model, const CadProgress& progress,
+Result<std::vector<WrittenBody>> written_bodies(const CadModel& model, const Progress& progress,
                                                 CadFileContent& content);
 
 }  // namespace spoonbill

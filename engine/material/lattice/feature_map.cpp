@@ -195,13 +195,13 @@ FeatureMapReport order_by_feature_map(LatticeMesh& mesh, const FeatureMapSetting
       static_cast<std::int64_t>(settings.draws_per_node) * static_cast<std::int64_t>(map.inside_count());
   for (std::int64_t draw = 0; draw < count; ++draw) {
     const double way = static_cast<double>(draw) / static_cast<double>(count);
-    if (watch.progress && draw % draws_between_looks == 0 && !watch.progress(way)) return report;
+    if (draw % draws_between_looks == 0 && !watch.progress.report(way)) return report;
     map.learn(draws.next(), between(settings.first_rate, settings.last_rate, way),
               between(settings.first_neighbourhood, settings.last_neighbourhood, way));
   }
   report.share = take_moves(map.mesh().nodes, report.before.worst_jacobian, mesh);
   report.after = quality_of(mesh);
-  if (watch.progress) watch.progress(1.0);
+  watch.progress.report(1.0);
   if (watch.done) watch.done(report);
   return report;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "engine/base/progress.h"
 #include "engine/material/lattice/lattice_mesh.h"
 #include "engine/scene/lattice_request.h"
 
@@ -23,11 +24,10 @@ struct FeatureMapReport {
       0.0;  // how much of the map's moves was kept: all, or as much as makes no cell worse than the worst
 };
 
-// Who waits for a map. Called on the thread that makes it; either may be empty.
+// Who waits for a map.
 struct FeatureMapWatch {
-  // Told a share from 0 to 1 now and then; stops the map, with nothing moved, by returning false.
-  std::function<bool(double)> progress;
-  std::function<void(const FeatureMapReport&)> done;
+  Progress progress;                                  // stops the map, with nothing moved
+  std::function<void(const FeatureMapReport&)> done;  // called on the thread that makes it; may be empty
 };
 
 // Moves the nodes that are not on the shell. The same seed gives the same nodes. The worst Jacobian never

@@ -51,7 +51,10 @@ class Equilibrium {
       if (unbalanced.norm() <= settings_->tolerance * size) return true;
       ++steps_;
       first = std::max(first, unbalanced.norm() / size);
-      tell(share, unbalanced.norm() / size, first);
+      if (!report(share, unbalanced.norm() / size, first)) {
+        stopped_ = true;
+        return false;
+      }
       if (!factor(at)) return false;
       if (!descend(factors_.solve(unbalanced), loads, unbalanced, at)) return false;
     }
@@ -60,13 +63,14 @@ class Equilibrium {
 
   int steps() const { return steps_; }
   bool may_go_on() const { return steps_ < settings_->step_limit; }
+  bool stopped() const { return stopped_; }
 
  private:
   // Newton's method comes nearer by orders of magnitude, the more the nearer it is.
-  void tell(double share, double unbalanced, double first) const {
-    if (!settings_->progress) return;
+  bool report(double share, double unbalanced, double first) const {
+    if (!settings_->progress.is_watched()) return true;
     const double orders = std::log(first / settings_->tolerance);
-    settings_->progress(orders > 0.0 ? share * std::log(first / unbalanced) / orders : 0.0);
+    return settings_->progress.report(orders > 0.0 ? share * std::log(first / unbalanced) / orders : 0.0);
   }
 
   StaticSystem::Forces take(const Coordinates& at, Tangent tangent) { return system_->respond(at, tangent); }
@@ -104,6 +108,7 @@ class Equilibrium {
   const StaticSettings* settings_;
   Eigen::SimplicialLDLT<StaticSystem::Stiffness> factors_;
   int steps_ = 0;
+  bool stopped_ = false;
 };
 
 Status check_held(const StaticBody& body, const std::vector<HeldAxis>& held) {
@@ -158,6 +163,7 @@ Result<StaticResult> rest_under_load(const StaticBody& body, const StaticLoads& 
       step *= 2.0;
       continue;
     }
+    if (equilibrium.stopped()) return Progress::stopped();
     step *= 0.25;
     if (step < least_load_step || !equilibrium.may_go_on()) {
       return Error{"loads: the body finds no rest beyond " + std::to_string(static_cast<int>(100.0 * share)) +

@@ -1,7 +1,6 @@
 // The shape in which a body rests under its loads.
 #pragma once
 
-#include <functional>
 
 #include "engine/material/statics/static_body.h"
 
@@ -11,8 +10,8 @@ struct StaticSettings {
   // Of the forces that the cells exert on the nodes: what may be left unbalanced.
   double tolerance = 1e-8;
   int step_limit = 400;  // Newton steps in all
-  // Told after each of them how far it is, from 0 to 1; may go back where the loads must grow more slowly.
-  std::function<void(double share)> progress = {};
+  // After each of them; may go back where the loads must grow more slowly. Stops the search, which is then an error.
+  Progress progress = {};
 };
 
 struct StaticResult {

@@ -266,7 +266,7 @@ TEST(FitScan, ToleranceSavesControlPoints) {
 
 TEST(FitScan, StopsWhenToldTo) {
   FitRequest request;
-  request.settings.watch = [](double) { return false; };
+  request.settings.progress = Progress([](double) { return false; });
   EXPECT_FALSE(fit_scan(ellipsoid_cloud(2000, {0.02, 0.02, 0.02}), request));
 }
 

@@ -192,7 +192,7 @@ TEST(Ring, PipesThatMeetAtBothEndsDoToo) {
 TEST(Ring, StopsWhereverItIsAskedTo) {
   MergeRequest request = request_of(1, 2e-4);
   std::vector<double> shares;
-  request.join.watch = WorkWatch([&](double share) {
+  request.join.progress = Progress([&](double share) {
     shares.push_back(share);
     return true;
   });
@@ -203,7 +203,7 @@ TEST(Ring, StopsWhereverItIsAskedTo) {
   ASSERT_GT(shares.size(), 10U);
   for (std::size_t stop = 0; stop < shares.size(); ++stop) {
     std::size_t asked = 0;
-    request.join.watch = WorkWatch([&](double) { return asked++ < stop; });
+    request.join.progress = Progress([&](double) { return asked++ < stop; });
     const auto merged = merge(square_tube(), request);
     ASSERT_FALSE(merged.ok()) << stop;
     EXPECT_EQ(merged.error().message, "stopped");

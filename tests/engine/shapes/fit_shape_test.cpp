@@ -60,18 +60,18 @@ TEST(FitShape, TellsHowFarItIsAndStops) {
   ShapeFit fit;
   double last = 0.0;
   int asked = 0;
-  fit.watch = [&](double share) {
+  fit.progress = Progress([&](double share) {
     EXPECT_GE(share, last);
     EXPECT_LE(share, 1.0);
     last = share;
     ++asked;
     return true;
-  };
+  });
   ASSERT_TRUE(fit_shape(wave(0.02), fit));
   EXPECT_GT(asked, 100);
   for (int stop = 1; stop < asked; stop += 7) {
     int left = stop;
-    fit.watch = [&](double) { return --left > 0; };
+    fit.progress = Progress([&](double) { return --left > 0; });
     const auto stopped = fit_shape(wave(0.02), fit);
     ASSERT_FALSE(stopped);
     EXPECT_EQ(stopped.error().message, "stopped");

@@ -214,11 +214,11 @@ TEST(SurfaceSelfCollider, StopsWhenAskedTo) {
   const NestedGrid nested = make_nested_grid(sheet.u, sheet.v, 2).value();
   SurfaceSelfCollider collider(nested);
   SelfQuery query;
-  query.watch = [](double share) { return share < 0.0; };
+  query.progress = Progress([](double fraction) { return fraction < 0.0; });
   const SelfResult stopped = collider.collide(sheet, query);
   EXPECT_TRUE(stopped.stopped);
   EXPECT_FALSE(stopped.touching);
-  query.watch = [](double share) { return share <= 1.0; };
+  query.progress = Progress([](double fraction) { return fraction <= 1.0; });
   const SelfResult whole = collider.collide(sheet, query);
   EXPECT_FALSE(whole.stopped);
   EXPECT_TRUE(whole.touching);
