@@ -24,7 +24,7 @@ Eigen::Vector2d free_centre(const Viewport& viewport) {
 }
 
 // The distance at which every corner lies within the share of the free rectangle around its middle.
-double fitting_distance(const Camera& camera, const BoundingBox& box, const Viewport& viewport) {
+double fitting_distance(const Camera& camera, const Box& box, const Viewport& viewport) {
   const Eigen::Matrix3d axes = eye_axes(camera);
   const double focal = focal_px(camera, viewport);
   const double half_width = 0.5 * filled_share * viewport.free_px.width;
@@ -40,15 +40,12 @@ double fitting_distance(const Camera& camera, const BoundingBox& box, const View
 }
 
 // How far the middle of the projected corners lies from the free rectangle's, in pixels.
-Eigen::Vector2d projected_offset(const Camera& camera, const BoundingBox& box, const Viewport& viewport) {
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e30), high = -low;
+Eigen::Vector2d projected_offset(const Camera& camera, const Box& box, const Viewport& viewport) {
+  Box2 pixels;
   for (int i = 0; i < 8; ++i) {
-    if (const auto pixel = project(camera, viewport, box.corner(i))) {
-      low = low.cwiseMin(*pixel);
-      high = high.cwiseMax(*pixel);
-    }
+    if (const auto pixel = project(camera, viewport, box.corner(i))) pixels.include(*pixel);
   }
-  return 0.5 * (low + high) - free_centre(viewport);
+  return pixels.centre() - free_centre(viewport);
 }
 
 }  // namespace
@@ -101,10 +98,10 @@ Camera look_from(const Camera& camera, StandardView view) {
   return turned;
 }
 
-Camera frame(const Camera& camera, const BoundingBox& box, const Viewport& viewport) {
-  if (box.empty()) return camera;
+Camera frame(const Camera& camera, const Box& box, const Viewport& viewport) {
+  if (box.is_empty()) return camera;
   Camera framed = camera;
-  framed.target_m = 0.5 * (box.low_m + box.high_m);
+  framed.target_m = box.centre();
   const double smallest_distance = 1e-3;
   // Perspective shows the near side larger, so the middle moves a little with the distance: a few rounds
   // settle both below a hundredth of a pixel.

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "engine/base/box.h"
 #include "engine/base/pose.h"
 
 namespace spoonbill {
@@ -32,22 +33,6 @@ struct Viewport {
   Rectangle free_px;
 };
 
-struct BoundingBox {
-  Vector3 low_m = Vector3::Constant(1e30);
-  Vector3 high_m = Vector3::Constant(-1e30);
-
-  bool empty() const { return (low_m.array() > high_m.array()).any(); }
-  void include(const Vector3& point) {
-    low_m = low_m.cwiseMin(point);
-    high_m = high_m.cwiseMax(point);
-  }
-  // Corner 0..7.
-  Vector3 corner(int i) const {
-    return {(i & 1) != 0 ? high_m.x() : low_m.x(), (i & 2) != 0 ? high_m.y() : low_m.y(),
-            (i & 4) != 0 ? high_m.z() : low_m.z()};
-  }
-};
-
 // The part of the window beside a panel at its left or right edge; the whole window without a panel.
 Viewport make_viewport(int width_px, int height_px, const Rectangle& panel_px);
 
@@ -56,7 +41,7 @@ Camera look_from(const Camera& camera, StandardView view);
 
 // Moves the camera, without turning it, so that the box fills two thirds of the free rectangle in the tighter
 // direction and lies in its middle. An empty box leaves the camera as it is.
-Camera frame(const Camera& camera, const BoundingBox& box, const Viewport& viewport);
+Camera frame(const Camera& camera, const Box& box, const Viewport& viewport);
 
 Vector3 eye_position(const Camera& camera);
 

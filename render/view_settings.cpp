@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/box.h"
+
 namespace spoonbill {
 
 double interface_scale_for(int height_px) {
@@ -9,10 +11,10 @@ double interface_scale_for(int height_px) {
   return std::max(1.0, height_px / reference_height_px);
 }
 
-double ground_below(const BoundingBox& model) {
-  if (model.empty()) return 0.0;
+double ground_below(const Box& model) {
+  if (model.is_empty()) return 0.0;
   constexpr double gap_share = 0.01;
-  return model.low_m.y() - gap_share * (model.high_m - model.low_m).norm();
+  return model.low.y() - gap_share * model.size();
 }
 
 }  // namespace spoonbill

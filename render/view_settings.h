@@ -55,6 +55,6 @@ struct ViewSettings {
 double interface_scale_for(int height_px);
 
 // The ground's height just below a model: its lowest point, less a gap that keeps it from touching.
-double ground_below(const BoundingBox& model);
+double ground_below(const Box& model);
 
 }  // namespace spoonbill

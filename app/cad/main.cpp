@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "engine/base/assert.h"
+#include "engine/base/progress.h"
 #include "engine/exchange/cad/cad_reader.h"
 #include "engine/exchange/cad/cad_writer.h"
 #include "engine/exchange/cad/session.h"

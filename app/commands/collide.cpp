@@ -18,7 +18,6 @@
 #include "engine/collision/rigid/body_tree.h"
 #include "engine/collision/rigid/mesh_pair.h"
 #include "engine/collision/surfaces/closed_surface.h"
-#include "engine/collision/surfaces/net_box.h"
 #include "engine/collision/surfaces/surface_pair_collider.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/file_format.h"

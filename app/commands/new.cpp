@@ -23,6 +23,7 @@
 #include "app/start/starting_document.h"
 #include "engine/base/number_text.h"
 #include "engine/base/place_text.h"
+#include "engine/base/progress.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 #include "engine/inspection/enclosed_mass.h"
 #include "engine/shapes/fit_shape.h"

@@ -17,6 +17,7 @@
 #include "app/report/map_progress.h"
 #include "app/report/progress_bar.h"
 #include "app/session/lockstep.h"
+#include "engine/base/box.h"
 #include "haptic/devices/playback_device.h"
 #include "render/gl/allocator_thresholds.h"
 
@@ -82,8 +83,7 @@ PictureRequest picture_request(const ReplayOptions& options, const Lockstep& loc
 }
 
 // The frame that shows the session as it stands.
-PaintingJob job_of(std::uint64_t frame, Session& session, const BoundingBox& framed,
-                   const PictureRequest& request) {
+PaintingJob job_of(std::uint64_t frame, Session& session, const Box& framed, const PictureRequest& request) {
   PaintingJob job;
   job.frame = frame;
   write_snapshot(session, job.snapshot);
@@ -108,7 +108,7 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
                    const InterruptWatch& interrupt) {
   Snapshot start;
   write_snapshot(replay.session, start);
-  const BoundingBox framed = framed_box(start);
+  const Box framed = framed_box(start);
   PaintingCrew crew(request.width_px, request.height_px);
   ProgressBar progress(replay.console, "Drawing", replay.options.progress);
   for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested();

@@ -12,6 +12,7 @@
 #include "app/report/quantity_text.h"
 #include "engine/base/number_text.h"
 #include "engine/base/place_text.h"
+#include "engine/base/progress.h"
 #include "engine/simulation/rest_shape.h"
 
 namespace spoonbill {

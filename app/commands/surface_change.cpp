@@ -179,7 +179,8 @@ Result<ChangedSurfaces> move_seam(const Surface& surface, const AskedChange& ask
 
 Result<ChangedSurfaces> close_around(const Surface& surface, const AskedChange& asked,
                                      const Allowed& allowed) {
-  auto closed = closed_around(surface, asked.direction, asked.continuity, allowed.tolerance_m, allowed.progress);
+  auto closed =
+      closed_around(surface, asked.direction, asked.continuity, allowed.tolerance_m, allowed.progress);
   if (!closed) return closed.error();
   return ChangedSurfaces{{std::move(closed->surface)}, {}, closed->deviation_m, true};
 }

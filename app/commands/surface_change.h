@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/result.h"
 #include "engine/base/progress.h"
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
 #include "engine/merging/patch_edge.h"

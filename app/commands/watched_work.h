@@ -8,8 +8,8 @@
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/report/progress_bar.h"
-#include "engine/base/result.h"
 #include "engine/base/progress.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 

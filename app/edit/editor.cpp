@@ -11,8 +11,8 @@
 #include "app/files/state_folder.h"
 #include "app/panel/panel.h"
 #include "app/panel/session_panel.h"
-#include "app/session/control_net_box.h"
 #include "engine/base/assert.h"
+#include "engine/base/box.h"
 #include "haptic/safety.h"
 #include "render/gl/allocator_thresholds.h"
 #include "render/overlay/labels.h"
@@ -46,9 +46,9 @@ std::vector<Material> read_presets() {
 
 // Above the model, where it touches nothing.
 Vector3 resting_place(const Surface& surface) {
-  const BoundingBox box = control_net_box(surface);
-  Vector3 place = 0.5 * (box.low_m + box.high_m);
-  place.y() = box.high_m.y() + 0.25 * (box.high_m - box.low_m).norm();
+  const Box box = box_of(surface.net);
+  Vector3 place = box.centre();
+  place.y() = box.high.y() + 0.25 * box.size();
   return place;
 }
 
@@ -129,7 +129,7 @@ Status Editor::run_frames() {
 void Editor::start() {
   const LiveFrame& frame = live_->frame();
   body_ = drawn_bounds(frame.snapshot);
-  hand_ = MouseHand(0.5 * (body_.low_m + body_.high_m));
+  hand_ = MouseHand(body_.centre());
   shown_ = view_settings(0.0);
   if (auto cap = SpaceMouse::open()) space_mouse_.emplace(std::move(cap).value());
   if (frame.snapshot.planes.empty()) {

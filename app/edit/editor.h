@@ -20,6 +20,7 @@
 #include "app/edit/prompts.h"
 #include "app/view/shown_stages.h"
 #include "app/view/view_choice.h"
+#include "engine/base/box.h"
 #include "haptic/devices/hand_inputs.h"
 #include "haptic/devices/space_mouse.h"
 #include "render/frame_budget.h"
@@ -113,7 +114,7 @@ class Editor {
   EditedDocument document_;
   std::vector<Material> presets_;
 
-  BoundingBox body_;
+  Box body_;
   std::uint64_t session_ = 0;
   ViewSettings shown_;
   ShownStages stages_;

@@ -246,12 +246,12 @@ void Editor::set_tool(const LiveFrame& frame, ToolKind kind, ToolAction tool_act
 
 // Across the model's longest direction, at the tool; the shorter part is held.
 void Editor::place_plane(const LiveFrame& frame) {
-  const Vector3 size = body_.high_m - body_.low_m;
+  const Vector3 size = body_.extent();
   int axis = 0;
   size.maxCoeff(&axis);
   FixingPlane plane;
   plane.point_m = frame.snapshot.tool.proxy.position_m;
-  const double middle = 0.5 * (body_.low_m[axis] + body_.high_m[axis]);
+  const double middle = 0.5 * (body_.low[axis] + body_.high[axis]);
   plane.normal = Vector3::Zero();
   plane.normal[axis] = plane.point_m[axis] <= middle ? 1.0 : -1.0;
   ask(Command(PlacePlane{plane}));

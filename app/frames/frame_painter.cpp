@@ -4,6 +4,7 @@
 
 #include "app/panel/font_file.h"
 #include "app/panel/panel.h"
+#include "engine/base/box.h"
 #include "render/overlay/labels.h"
 
 namespace spoonbill {
@@ -15,8 +16,8 @@ std::unique_lock<std::mutex> take_turn(std::mutex* interface_turn) {
 
 }  // namespace
 
-BoundingBox framed_box(const Snapshot& start) {
-  BoundingBox box;
+Box framed_box(const Snapshot& start) {
+  Box box;
   for (const BodySnapshot& body : start.bodies) {
     const SurfaceSnapshot& surface = body.surface;
     for (std::size_t i = 0; i < surface.x.size(); ++i) {
@@ -29,7 +30,7 @@ BoundingBox framed_box(const Snapshot& start) {
   return box;
 }
 
-ViewSettings frame_view(const ViewChoice& choice, const BoundingBox& framed, int width_px, int height_px) {
+ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_px, int height_px) {
   ViewSettings view =
       settings_for(choice, framed, width_px, height_px, picture_panel_rectangle(width_px, height_px),
                    interface_scale_for(height_px));

@@ -9,6 +9,7 @@
 #include "app/panel/panel_model.h"
 #include "app/view/shown_stages.h"
 #include "app/view/view_choice.h"
+#include "engine/base/box.h"
 #include "render/gl/osmesa_context.h"
 #include "render/image/image.h"
 #include "render/renderer.h"
@@ -17,11 +18,11 @@ namespace spoonbill {
 
 // What the camera and the ground go by: the box around the control nets of a snapshot, taken before the body
 // was touched.
-BoundingBox framed_box(const Snapshot& start);
+Box framed_box(const Snapshot& start);
 
 // How a frame of this size shows the choice, with room for the panel. Its picture does not depend on the
 // frames before.
-ViewSettings frame_view(const ViewChoice& choice, const BoundingBox& framed, int width_px, int height_px);
+ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_px, int height_px);
 
 class FramePainter {
  public:

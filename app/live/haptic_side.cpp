@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/session/control_net_box.h"
-
 namespace spoonbill {
 namespace {
 
@@ -120,8 +118,8 @@ void HapticSide::take_back_if_done() {
     ++document_count_;
     // A virtual handle's workspace moves along to the body that is shaped now.
     if (lent_.session->device.workspace_follows_model) {
-      const BoundingBox box = control_net_box(lent_.session->simulation.surface());
-      safe_device_.set_workspace_centre(0.5 * (box.low_m + box.high_m));
+      const Box box = box_of(lent_.session->simulation.surface().net);
+      safe_device_.set_workspace_centre(box.centre());
     }
     lent_.other_document = false;
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/session/control_net_box.h"
 #include "engine/base/assert.h"
 
 namespace spoonbill {
@@ -12,8 +11,8 @@ namespace {
 // A virtual handle reaches as far as the body needs.
 DeviceSpecification fitted(DeviceSpecification device, const Surface& surface) {
   if (!device.workspace_follows_model) return device;
-  const BoundingBox box = control_net_box(surface);
-  const double reach = (box.high_m - box.low_m).norm();
+  const Box box = box_of(surface.net);
+  const double reach = box.size();
   device.workspace_radius_m = std::clamp(reach, device.workspace_radius_m, device_workspace_range_m.high);
   return device;
 }

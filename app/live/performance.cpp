@@ -6,6 +6,7 @@
 
 #include "app/frames/frame_painter.h"
 #include "app/panel/session_panel.h"
+#include "engine/base/box.h"
 #include "haptic/devices/steered_device.h"
 #include "render/gl/allocator_thresholds.h"
 
@@ -34,9 +35,9 @@ class Painting {
   }
 
  private:
-  Painting(FramePainter painter, const BoundingBox& framed) : painter_(std::move(painter)), framed_(framed) {}
+  Painting(FramePainter painter, const Box& framed) : painter_(std::move(painter)), framed_(framed) {}
   FramePainter painter_;
-  BoundingBox framed_;
+  Box framed_;
   Image picture_;
 };
 

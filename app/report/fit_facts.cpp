@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/report/quantity_text.h"
+#include "engine/base/box.h"
 #include "engine/base/number_text.h"
 #include "engine/base/range.h"
 
@@ -30,14 +31,9 @@ Json millimetres(const Vector3& size_m) {
 }
 
 Vector3 size_of_all(const ScanFit& fit) {
-  Vector3 low = fit.bodies.front().points_m.front(), high = low;
-  for (const FittedBody& body : fit.bodies) {
-    for (const Vector3& point : body.points_m) {
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
-    }
-  }
-  return high - low;
+  Box box;
+  for (const FittedBody& body : fit.bodies) box.join(box_about(body.points_m));
+  return box.extent();
 }
 
 void add_body(FactSheet& facts, const FittedBody& body, Json& list) {

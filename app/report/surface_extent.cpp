@@ -10,15 +10,6 @@ namespace {
 // count.
 constexpr int samples = 201, trimmed_samples = 61;
 
-Box nothing() {
-  const Vector3 far = Vector3::Constant(1e30);
-  return {far, -far};
-}
-
-Box with(const Box& box, const Vector3& point) {
-  return joined(box, {point, point});
-}
-
 Box extent_within(const Surface& surface, const Grid& grid, const TrimmedArea& area) {
   const TrimmedGrid trimmed = trim_grid(grid.u, grid.v, area);
   const auto columns = static_cast<std::size_t>(grid.columns());
@@ -29,12 +20,12 @@ Box extent_within(const Surface& surface, const Grid& grid, const TrimmedArea& a
       if (vertex < count) kept[vertex] = true;
     }
   }
-  Box box = nothing();
+  Box box;
   for (std::size_t s = 0; s < count; ++s) {
     if (!kept[s]) continue;
-    box = with(box, position(surface, grid.u.parameters[s / columns], grid.v.parameters[s % columns]));
+    box.include(position(surface, grid.u.parameters[s / columns], grid.v.parameters[s % columns]));
   }
-  for (const CutVertex& cut : trimmed.vertices) box = with(box, position(surface, cut.u, cut.v));
+  for (const CutVertex& cut : trimmed.vertices) box.include(position(surface, cut.u, cut.v));
   return box;
 }
 
@@ -47,10 +38,10 @@ Box extent_of(const Surface& surface, const std::vector<TrimLoop>& trims) {
                                 uniform_parameters(surface.v, trimmed_samples));
     if (area && grid) return extent_within(surface, grid.value(), area.value());
   }
-  Box box = nothing();
+  Box box;
   const auto v_parameters = uniform_parameters(surface.v, samples);
   for (const double u : uniform_parameters(surface.u, samples)) {
-    for (const double v : v_parameters) box = with(box, position(surface, u, v));
+    for (const double v : v_parameters) box.include(position(surface, u, v));
   }
   return box;
 }

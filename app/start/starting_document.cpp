@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "app/session/control_net_box.h"
+#include "engine/base/box.h"
 
 namespace spoonbill {
 namespace {
@@ -18,12 +18,12 @@ constexpr double held_share = 0.1;
 // A body less high than this share of its mean size cannot be held by its foot and be pressed too.
 constexpr double flat_share = 0.25;
 
-FixingPlane holding_plane(const BoundingBox& box, double middle_size) {
-  const Vector3 size = box.high_m - box.low_m;
+FixingPlane holding_plane(const Box& box, double middle_size) {
+  const Vector3 size = box.extent();
   const int axis = size.y() > flat_share * middle_size ? 1 : 0;
   FixingPlane plane;
-  plane.point_m = 0.5 * (box.low_m + box.high_m);
-  plane.point_m[axis] = box.low_m[axis] + held_share * size[axis];
+  plane.point_m = box.centre();
+  plane.point_m[axis] = box.low[axis] + held_share * size[axis];
   plane.normal = Vector3::Unit(axis);
   return plane;
 }
@@ -38,8 +38,8 @@ double rounded_down(double number) {
 
 Document starting_document(const std::string& name, Surface surface, const Material& material,
                            std::optional<double> shell_thickness_m) {
-  const BoundingBox box = control_net_box(surface);
-  const Vector3 size = box.high_m - box.low_m;
+  const Box box = box_of(surface.net);
+  const Vector3 size = box.extent();
   // The middle one: neither the length of a rod nor the thickness of a plate.
   const double middle = size.sum() - size.maxCoeff() - size.minCoeff();
   Document document;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/base/box.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/length.h"
 #include "engine/scene/scene.h"
@@ -174,7 +175,7 @@ Status apply_view_command(const Json& command, const std::string& source, ViewCh
   return {};
 }
 
-ViewSettings settings_for(const ViewChoice& choice, const BoundingBox& body, int width_px, int height_px,
+ViewSettings settings_for(const ViewChoice& choice, const Box& body, int width_px, int height_px,
                           const Rectangle& panel_px, double interface_scale) {
   ViewSettings settings;
   settings.camera = choice.camera;

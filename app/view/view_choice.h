@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/base/box.h"
 #include "engine/base/result.h"
 #include "engine/exchange/json.h"
 #include "render/view_settings.h"
@@ -45,7 +46,7 @@ Status apply_view_command(const Json& command, const std::string& source, ViewCh
 
 // The settings to draw a frame of that size with, beside a panel. `body` is the model as it was at the start,
 // so that neither the camera nor the ground moves with its deformation.
-ViewSettings settings_for(const ViewChoice& choice, const BoundingBox& body, int width_px, int height_px,
+ViewSettings settings_for(const ViewChoice& choice, const Box& body, int width_px, int height_px,
                           const Rectangle& panel_px, double interface_scale);
 
 }  // namespace spoonbill

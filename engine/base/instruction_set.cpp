@@ -39,13 +39,6 @@ std::vector<InstructionSet> available_instruction_sets() {
   return sets;
 }
 
-std::optional<InstructionSet> instruction_set_from_name(std::string_view name) {
-  for (const auto& [set, set_name] : names) {
-    if (set_name == name) return set;
-  }
-  return std::nullopt;
-}
-
 std::string_view name_of(InstructionSet set) {
   return names[static_cast<std::size_t>(set)].second;
 }

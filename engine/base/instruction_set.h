@@ -2,7 +2,6 @@
 // use no FMA contraction and no reduction whose order depends on the vector width.
 #pragma once
 
-#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -16,8 +15,7 @@ InstructionSet best_instruction_set();
 // Every set that this processor runs, narrowest first.
 std::vector<InstructionSet> available_instruction_sets();
 
-// "baseline", "avx2", "avx512"; none for any other word.
-std::optional<InstructionSet> instruction_set_from_name(std::string_view name);
+// "baseline", "avx2", "avx512".
 std::string_view name_of(InstructionSet set);
 
 }  // namespace spoonbill

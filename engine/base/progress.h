@@ -28,8 +28,8 @@ class Progress {
   // Whether the work goes on; otherwise it ends early, with stopped() for an error where it has no result.
   bool report(double fraction) const { return !report_ || report_(start_ + (end_ - start_) * fraction); }
 
-  // The progress of a part of the work: 0 and 1 of it are the fractions `from` and `to` of this one, which must not
-  // run backwards.
+  // The progress of a part of the work: 0 and 1 of it are the fractions `from` and `to` of this one, which
+  // must not run backwards.
   Progress part(double from, double to) const {
     SPOONBILL_ASSERT(0.0 <= from && from <= to);
     Progress part = *this;

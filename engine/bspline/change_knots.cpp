@@ -243,7 +243,8 @@ Result<std::vector<SpareKnot>> spare_knots(const Surface& surface, Direction dir
   std::vector<SpareKnot> spare;
   const auto all = knot_multiplicities(knots_along(surface, direction));
   for (std::size_t k = 1; k < all.size(); ++k) {
-    if (!progress.report(static_cast<double>(k) / static_cast<double>(all.size()))) return Progress::stopped();
+    if (!progress.report(static_cast<double>(k) / static_cast<double>(all.size())))
+      return Progress::stopped();
     const auto near = around_knot(surface, direction, static_cast<int>(k));
     if (!near) continue;
     std::vector<SpareKnot> copies;

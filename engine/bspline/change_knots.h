@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "engine/base/result.h"
 #include "engine/base/progress.h"
+#include "engine/base/result.h"
 #include "engine/bspline/knot_insertion.h"
 #include "engine/bspline/knot_vectors.h"
 #include "engine/bspline/surface.h"

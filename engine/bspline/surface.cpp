@@ -31,6 +31,12 @@ Status check_coordinates(const ControlNet& net, const std::vector<double>& value
 
 }  // namespace
 
+Box box_of(const ControlNet& net) {
+  Box box;
+  for (std::size_t k = 0; k < net.size(); ++k) box.include({net.x[k], net.y[k], net.z[k]});
+  return box;
+}
+
 Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net) {
   if (net.rows != u.control_point_count() || net.columns != v.control_point_count()) {
     return Error{"control net of " + std::to_string(net.rows) + " x " + std::to_string(net.columns) +

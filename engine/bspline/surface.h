@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "engine/base/box.h"
 #include "engine/base/pose.h"
 #include "engine/base/result.h"
 #include "engine/bspline/knot_vector.h"
@@ -31,6 +32,9 @@ struct ControlNet {
     z[index(i, j)] = p.z();
   }
 };
+
+// Returns the box about the control points, in which the surface is as well.
+Box box_of(const ControlNet& net);
 
 // A plain value with one owner. `net` may be changed in place; its size must stay what the knots ask for.
 struct Surface {

@@ -38,10 +38,6 @@ inline constexpr std::size_t trim_chord_count_limit = 20000;
 Result<TrimLoop> make_trim_loop(const KnotVector& along_u, const KnotVector& along_v, KnotVector knots,
                                 std::vector<double> u, std::vector<double> v);
 
-// The polygon through the points, the last of which is joined to the first.
-Result<TrimLoop> make_polygon_loop(const KnotVector& along_u, const KnotVector& along_v,
-                                   const std::vector<Eigen::Vector2d>& points);
-
 // The point of the curve at a parameter of its own domain.
 Eigen::Vector2d position(const TrimLoop& loop, double parameter);
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/box.h"
 #include "engine/base/number_text.h"
 #include "engine/bspline/polygon_crossing.h"
 
@@ -35,13 +36,9 @@ double inside(const KnotVector& knots, double parameter) {
 }
 
 bool reaches_into(const Polygon& polygon, const KnotVector& along_u, const KnotVector& along_v) {
-  Eigen::Vector2d low = polygon.front(), high = polygon.front();
-  for (const Eigen::Vector2d& corner : polygon) {
-    low = low.cwiseMin(corner);
-    high = high.cwiseMax(corner);
-  }
-  return high.x() > along_u.domain_start() && low.x() < along_u.domain_end() &&
-         high.y() > along_v.domain_start() && low.y() < along_v.domain_end();
+  const Box2 box = box_about(polygon);
+  return box.high.x() > along_u.domain_start() && box.low.x() < along_u.domain_end() &&
+         box.high.y() > along_v.domain_start() && box.low.y() < along_v.domain_end();
 }
 
 // The polygon wherever it lies in the domain, once for each period that it reaches into.

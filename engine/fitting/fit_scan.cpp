@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/box.h"
 #include "engine/fitting/bridging.h"
 #include "engine/fitting/islands.h"
 #include "engine/fitting/profile_map.h"
@@ -15,24 +16,6 @@ namespace {
 // An island has 30 nodes at least, and a node of a cloud three points.
 constexpr std::size_t least_cloud_points = 90;
 
-struct Box {
-  Vector3 low, high;
-};
-
-Box box_of(const std::vector<Vector3>& points_m) {
-  Box box{points_m.front(), points_m.front()};
-  for (const Vector3& point : points_m) {
-    box.low = box.low.cwiseMin(point);
-    box.high = box.high.cwiseMax(point);
-  }
-  return box;
-}
-
-Vector3 extent_of(const std::vector<Vector3>& points_m) {
-  const Box box = box_of(points_m);
-  return box.high - box.low;
-}
-
 Result<FittedBody> fit_from(FitPoints island, const Parameterisation& start, FitSettings settings,
                             const Progress& progress) {
   settings.progress = progress;
@@ -43,7 +26,7 @@ Result<FittedBody> fit_from(FitPoints island, const Parameterisation& start, Fit
   body.surface = std::move(fit->surface);
   body.folds = std::move(fit->folds);
   body.kind = start.kind;
-  body.size_m = extent_of(island.given_m);
+  body.size_m = box_about(island.given_m).extent();
   body.points_m = std::move(island.given_m);
   return body;
 }
@@ -101,8 +84,8 @@ Status choose_islands(std::vector<FitPoints>& islands, IslandChoice choice, Scan
 }
 
 UnfittedIsland unfitted_island(const FitPoints& island) {
-  const Box box = box_of(island.given_m);
-  return {island.given_m.size(), box.high - box.low, 0.5 * (box.low + box.high), {}};
+  const Box box = box_about(island.given_m);
+  return {island.given_m.size(), box.extent(), box.centre(), {}};
 }
 
 Status fit_islands(std::vector<FitPoints> islands, const FitRequest& request, ScanFit& result) {

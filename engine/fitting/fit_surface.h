@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include "engine/base/progress.h"
 #include "engine/fitting/fit_points.h"
 #include "engine/fitting/folds.h"
 #include "engine/fitting/parameterisation.h"

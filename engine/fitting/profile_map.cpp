@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/base/box.h"
 #include "engine/fitting/nearest_points.h"
 #include "engine/fitting/quantiles.h"
 
@@ -53,20 +54,18 @@ std::optional<Axis> round_axis(const std::vector<Vector3>& points_m) {
 // Distance from the axis and height along it, of each point.
 struct Profile {
   std::vector<Vector2> places;
-  Vector2 low = Vector2::Zero(), high = Vector2::Zero();
+  Box2 box;  // from the axis outwards
 };
 
 Profile profile_of(const std::vector<Vector3>& points_m, const Axis& axis) {
   Profile profile;
-  profile.low = {0.0, 1e300};
-  profile.high = {0.0, -1e300};
+  profile.box.low.x() = profile.box.high.x() = 0.0;
   for (const Vector3& point : points_m) {
     const Vector3 way = point - axis.middle;
     const double height = way.dot(axis.along);
     const Vector2 place((way - height * axis.along).norm(), height);
     profile.places.push_back(place);
-    profile.low = profile.low.cwiseMin(place);
-    profile.high = profile.high.cwiseMax(place);
+    profile.box.include(place);
   }
   return profile;
 }
@@ -74,11 +73,11 @@ Profile profile_of(const std::vector<Vector3>& points_m, const Axis& axis) {
 // Cells of the half plane beside the axis, which is the left side of column 0; with a margin elsewhere.
 class Picture {
  public:
-  Picture(const Profile& profile, double cell_m) : cell_m_(cell_m), low_(profile.low) {
+  Picture(const Profile& profile, double cell_m) : cell_m_(cell_m), low_(profile.box.low) {
     constexpr int margin = dilation + 2;
     low_.y() -= margin * cell_m;
-    columns_ = static_cast<int>((profile.high.x() - profile.low.x()) / cell_m) + 1 + margin;
-    rows_ = static_cast<int>((profile.high.y() - low_.y()) / cell_m) + 1 + margin;
+    columns_ = static_cast<int>((profile.box.high.x() - profile.box.low.x()) / cell_m) + 1 + margin;
+    rows_ = static_cast<int>((profile.box.high.y() - low_.y()) / cell_m) + 1 + margin;
     std::vector<int> counts(static_cast<std::size_t>(columns_) * rows_, 0);
     for (const Vector2& place : profile.places) ++counts[index(column_of(place), row_of(place))];
     filled_.assign(counts.size(), false);
@@ -227,7 +226,7 @@ std::optional<ProfileMap> profile_map(const std::vector<Vector3>& points_m) {
   const auto axis = round_axis(points_m);
   if (!axis) return {};
   const Profile profile = profile_of(points_m, *axis);
-  const double size = (profile.high - profile.low).norm();
+  const double size = (profile.box.high - profile.box.low).norm();
   const double cell =
       size * std::clamp(3.0 * points_a_cell / static_cast<double>(points_m.size()), 1.0 / 250.0, 1.0 / 80.0);
   const Picture picture(profile, cell);

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "engine/base/box.h"
 #include "engine/fitting/harmonic_map.h"
 
 namespace spoonbill {
@@ -183,15 +184,14 @@ std::array<std::size_t, 4> corners_of(const PointGraph& graph, const Rim& rim) {
 Parameterisation plane_start(const FitPoints& island) {
   const Axes axes = axes_of(island.graph);
   Parameterisation start;
-  Vector2 low(1e300, 1e300), high = -low;
+  Box2 box;
   for (const Vector3& point : island.graph.points_m) {
     const Vector2 place((point - axes.middle).dot(axes.axes.col(2)),
                         (point - axes.middle).dot(axes.axes.col(1)));
     start.uv.push_back(place);
-    low = low.cwiseMin(place);
-    high = high.cwiseMax(place);
+    box.include(place);
   }
-  for (Vector2& place : start.uv) place = (place - low).cwiseQuotient((high - low).cwiseMax(1e-12));
+  for (Vector2& place : start.uv) place = (place - box.low).cwiseQuotient(box.extent().cwiseMax(1e-12));
   return start;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/box.h"
+
 namespace spoonbill {
 namespace {
 
@@ -16,8 +18,7 @@ std::uint64_t direction_of(const Vector3& normal) {
 
 std::vector<std::uint64_t> keys_of(const Scan& scan, double side_m) {
   constexpr double most = (1 << 20) - 1;
-  Vector3 low = scan.points_m.front();
-  for (const Vector3& point : scan.points_m) low = low.cwiseMin(point);
+  const Vector3 low = box_about(scan.points_m).low;
   std::vector<std::uint64_t> keys(scan.points_m.size());
   for (std::size_t p = 0; p < keys.size(); ++p) {
     std::uint64_t key = scan.has_normals() ? direction_of(scan.normals[p]) : 0;
@@ -34,12 +35,7 @@ std::vector<std::uint64_t> keys_of(const Scan& scan, double side_m) {
 
 double size_of(const std::vector<Vector3>& points_m) {
   if (points_m.empty()) return 0.0;
-  Vector3 low = points_m.front(), high = low;
-  for (const Vector3& point : points_m) {
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
-  }
-  return (high - low).norm();
+  return box_about(points_m).size();
 }
 
 VoxelGroups group_by_voxels(const Scan& scan, double side_m) {

@@ -4,9 +4,9 @@
 
 #include <optional>
 
+#include "engine/base/progress.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_area.h"
-#include "engine/base/progress.h"
 
 namespace spoonbill {
 

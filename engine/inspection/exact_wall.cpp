@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "engine/collision/surfaces/net_box.h"
 
 namespace spoonbill {
 namespace {

@@ -67,16 +67,11 @@ ParameterPlace search_cell(Candidate from, const std::function<double(double, do
 
 // Whether all control points of an edge are one: of the first or last row (of u) or column.
 bool is_collapsed(const ControlNet& net, bool of_u, bool last) {
-  Vector3 low = net.point(0, 0), high = low;
-  for (int k = 0; k < net.rows * net.columns; ++k) {
-    const Vector3 point = net.point(k / net.columns, k % net.columns);
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
-  }
+  const double size = box_of(net).size();
   const int count = of_u ? net.columns : net.rows, line = last ? (of_u ? net.rows : net.columns) - 1 : 0;
   const auto at = [&](int k) { return of_u ? net.point(line, k) : net.point(k, line); };
   for (int k = 1; k < count; ++k) {
-    if ((at(k) - at(0)).norm() > collapsed * (high - low).norm()) return false;
+    if ((at(k) - at(0)).norm() > collapsed * size) return false;
   }
   return true;
 }

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "engine/bspline/surface.h"
 #include "engine/base/progress.h"
+#include "engine/bspline/surface.h"
 
 namespace spoonbill {
 

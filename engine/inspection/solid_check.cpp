@@ -53,7 +53,8 @@ void find_self_meetings(const TriangleMesh& mesh, const LineExits& exits, double
   std::vector<TriangleCorners> in_order;
   in_order.reserve(order.size());
   for (const std::uint32_t index : order) in_order.push_back(mesh.triangles[index]);
-  const MeshMeetings meetings = self_meetings(mesh.vertices_m, in_order, exits.tree(), most_meetings, progress);
+  const MeshMeetings meetings =
+      self_meetings(mesh.vertices_m, in_order, exits.tree(), most_meetings, progress);
   check.self_meetings_complete = meetings.complete;
   for (const MeshMeeting& meeting : meetings.found) {
     if (!(meeting.depth_m > 2.0 * error_m)) continue;

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/progress.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/inspection/exact_wall.h"
-#include "engine/base/progress.h"
 
 namespace spoonbill {
 

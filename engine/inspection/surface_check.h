@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/progress.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/inspection/closing.h"
 #include "engine/inspection/curvature_range.h"
 #include "engine/inspection/enclosed_mass.h"
-#include "engine/base/progress.h"
 #include "engine/inspection/thickness.h"
 
 namespace spoonbill {

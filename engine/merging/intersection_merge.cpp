@@ -140,7 +140,8 @@ Result<Parts> fitted_parts(const CrossingPatches& patches, const IntersectionReq
     if (part == &of_fillet && request.fillet_m == 0.0) continue;
     const double done = static_cast<double>(parts.surfaces.size());
     const Progress progress = request.join.progress.part(done * fitted_share, (done + 1.0) * fitted_share);
-    auto fitted = fitted_part(first, lines, *part, request.fillet_m > 0.0, request.join.tolerance_m, progress);
+    auto fitted =
+        fitted_part(first, lines, *part, request.fillet_m > 0.0, request.join.tolerance_m, progress);
     if (!fitted) return fitted.error();
     parts.deviation_m = std::max(parts.deviation_m, fitted->deviation_m);
     parts.surfaces.push_back(std::move(fitted->surface));

@@ -14,7 +14,7 @@ struct JoinRequest {
   int largest_count = 200;    // control points a direction
   bool shared_parameters = false;  // of parts made to follow each other across: no seam is looked for
   bool bridges_may_fold = false;   // where edges are held against each other on purpose
-  Progress progress = {};            // of the whole work that the request is given to
+  Progress progress = {};          // of the whole work that the request is given to
 };
 
 }  // namespace spoonbill

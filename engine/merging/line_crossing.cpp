@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/box.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
 #include "engine/collision/meshes/line_triangle.h"
@@ -25,7 +26,7 @@ struct CurvePoint {
 };
 
 Box box_of(const Vector3& a, const Vector3& b) {
-  return {a.cwiseMin(b), a.cwiseMax(b)};
+  return box_about(std::array{a, b});
 }
 
 // Newton leaves rounding alone, which at a grazing crossing is more.

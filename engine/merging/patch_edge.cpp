@@ -15,17 +15,6 @@ constexpr const char* names[] = {"u_start", "u_end", "v_start", "v_end"};
 // Shorter edges are poles.
 constexpr double pole_share = 1e-6;
 
-double reach(const Surface& surface) {
-  Vector3 low = surface.net.point(0, 0), high = low;
-  for (int i = 0; i < surface.net.rows; ++i) {
-    for (int j = 0; j < surface.net.columns; ++j) {
-      low = low.cwiseMin(surface.net.point(i, j));
-      high = high.cwiseMax(surface.net.point(i, j));
-    }
-  }
-  return (high - low).norm();
-}
-
 Vector3 blended(const EdgeCurve& curve, double t, int derivative_order) {
   const BasisFunctions basis = basis_functions(curve.knots, curve.knots.into_domain(t));
   Vector3 sum = Vector3::Zero();
@@ -107,7 +96,7 @@ bool is_joinable(const Surface& surface, Side side) {
   for (const Vector3& point : curve.control_points_m) {
     longest = std::max(longest, (point - curve.control_points_m[0]).norm());
   }
-  return longest > pole_share * reach(surface);
+  return longest > pole_share * box_of(surface.net).size();
 }
 
 Vector3 outward(const Surface& surface, Side side) {

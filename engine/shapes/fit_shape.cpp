@@ -32,7 +32,7 @@ using Lines = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 // The progress of a fit whose number of rounds shows only at the last.
 class FitRounds {
  public:
-  explicit FitRounds(const ShapeFit& fit) : progress_(&fit.rounds) {}
+  explicit FitRounds(const ShapeFit& fit) : progress_(&fit.progress) {}
 
   void step() { done_.step(); }
   bool report() const { return progress_->report(done_.fraction()); }
@@ -290,8 +290,8 @@ Result<FittedShape> fit_shape(const ExactShape& shape, const ShapeFit& fit) {
   FitRounds rounds(fit);
   for (int round = 0; round < most_rounds; ++round) {
     for (const bool along_u : {true, false}) {
-      const Status done = refine_until(shape, along_u, allowed_m, fit, along_u ? v_lines : u_lines,
-                                       along_u ? u : v, rounds);
+      const Status done =
+          refine_until(shape, along_u, allowed_m, fit, along_u ? v_lines : u_lines, along_u ? u : v, rounds);
       if (!done) return done.error();
     }
     auto surface = fit_with(shape, u, v, rounds);

@@ -7,6 +7,7 @@
 #include <array>
 #include <optional>
 
+#include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/shapes/exact_shape.h"

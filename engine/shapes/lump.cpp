@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/base/box.h"
+
 namespace spoonbill {
 
 namespace {
@@ -64,18 +66,16 @@ Result<ExactShape> lump_shape(const LumpSize& size) {
 
 double usual_tolerance_m(const ExactShape& shape) {
   constexpr int steps = 16;
-  Vector3 low = Vector3::Constant(1e30), high = -low;
+  Box box;
   for (int i = 0; i <= steps; ++i) {
     for (int j = 0; j <= steps; ++j) {
       const auto at = [&](const ShapeDirection& direction, int k) {
         return direction.start() + (direction.end() - direction.start()) * k / steps;
       };
-      const Vector3 point = shape.at(at(shape.u, i), at(shape.v, j));
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
+      box.include(shape.at(at(shape.u, i), at(shape.v, j)));
     }
   }
-  const Vector3 size = high - low;
+  const Vector3 size = box.extent();
   return std::min(1e-5 * std::max(1.0, size.minCoeff()), 1e-3 * size.maxCoeff());
 }
 

@@ -84,8 +84,7 @@ void measure(const StaticBody& body, const StaticLoads& loads, RestShape& shape)
 
 }  // namespace
 
-Result<RestShape> rest_shape(const Scene& scene, int body,
-                             const Progress& progress) {
+Result<RestShape> rest_shape(const Scene& scene, int body, const Progress& progress) {
   const Body& as_set = scene.bodies[static_cast<std::size_t>(body)];
   Result<BodyState> state = make_body_state(as_set, scene.planes, InstructionSet::baseline);
   if (!state.ok()) return state.error();

@@ -2,9 +2,9 @@
 // that its material has.
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "engine/base/progress.h"
 #include "engine/material/statics/static_solver.h"
 #include "engine/scene/scene.h"
 
@@ -26,7 +26,6 @@ struct RestShape {
 // By the static solver, on hexahedra. Planes and supports hold, at the end of a ramp and in the middle of an
 // oscillation; the ground and the other bodies do nothing. What flows or creeps counts as elastic. Refused:
 // what make_body_state() refuses, a body that nothing holds, loads under which it finds no rest.
-Result<RestShape> rest_shape(const Scene& scene, int body,
-                             const Progress& progress = {});
+Result<RestShape> rest_shape(const Scene& scene, int body, const Progress& progress = {});
 
 }  // namespace spoonbill

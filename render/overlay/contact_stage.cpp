@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/base/box.h"
 #include "render/overlay/contact_normals.h"
 
 namespace spoonbill {
@@ -127,8 +128,8 @@ std::optional<std::string> stage_caption(const ViewSettings& settings) {
   return std::nullopt;
 }
 
-BoundingBox box_of(const StageShapes& shapes) {
-  BoundingBox box;
+Box box_of(const StageShapes& shapes) {
+  Box box;
   const auto include = [&](const Eigen::Vector3f& point) { box.include(point.cast<double>()); };
   for (const OverlayLine& line : shapes.lines) {
     include(line.start_m);

@@ -51,6 +51,6 @@ std::vector<OverlayArrow> contact_arrows(const Snapshot& snapshot, const ViewSet
 std::optional<std::string> stage_caption(const ViewSettings& settings);
 
 // Around all that stage_shapes() gives.
-BoundingBox box_of(const StageShapes& shapes);
+Box box_of(const StageShapes& shapes);
 
 }  // namespace spoonbill

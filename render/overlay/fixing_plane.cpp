@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/box.h"
+
 namespace spoonbill {
 namespace {
 
@@ -19,39 +21,34 @@ PlaneAxes axes_of(const PlaneSnapshot& plane) {
   return {up, plane.normal.cross(up)};
 }
 
-struct Extent {
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e30), high = Eigen::Vector2d::Constant(-1e30);
+// Along the plane's axes, from its point.
+Eigen::Vector2d place_on(const PlaneAxes& axes, const Vector3& offset) {
+  return {axes.up.dot(offset), axes.across.dot(offset)};
+}
 
-  void include(const PlaneAxes& axes, const Vector3& offset) {
-    const Eigen::Vector2d at(axes.up.dot(offset), axes.across.dot(offset));
-    low = low.cwiseMin(at);
-    high = high.cwiseMax(at);
-  }
-  bool empty() const { return low.x() > high.x(); }
-};
-
-Extent extent_of(const PlaneSnapshot& plane, const BoundingBox& body, const PlaneAxes& axes) {
-  Extent extent;
-  for (int i = 0; i < 8 && !body.empty(); ++i) extent.include(axes, body.corner(i) - plane.point_m);
-  if (extent.empty()) extent.include(axes, Vector3::Zero());
+Box2 extent_of(const PlaneSnapshot& plane, const Box& body, const PlaneAxes& axes) {
+  Box2 extent;
+  for (int i = 0; i < 8 && !body.is_empty(); ++i)
+    extent.include(place_on(axes, body.corner(i) - plane.point_m));
+  if (extent.is_empty()) extent.include(place_on(axes, Vector3::Zero()));
   return extent;
 }
 
-Extent extent_of(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies, const BoundingBox& body,
-                 const PlaneAxes& axes) {
-  Extent extent;
+Box2 extent_of(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies, const Box& body,
+               const PlaneAxes& axes) {
+  Box2 extent;
   for (const BodySnapshot& held : bodies) {
     const LatticeSnapshot& lattice = held.lattice;
     for (std::size_t i = 0; i < lattice.x.size(); ++i) {
       if (lattice.fixed[i] == 0) continue;
-      extent.include(axes, Vector3(lattice.x[i], lattice.y[i], lattice.z[i]) - plane.point_m);
+      extent.include(place_on(axes, Vector3(lattice.x[i], lattice.y[i], lattice.z[i]) - plane.point_m));
     }
   }
-  return extent.empty() ? extent_of(plane, body, axes) : extent;
+  return extent.is_empty() ? extent_of(plane, body, axes) : extent;
 }
 
-PlaneCorners corners_of(const PlaneSnapshot& plane, const PlaneAxes& axes, Extent extent, double share) {
-  const double overhang = share * (extent.high - extent.low).maxCoeff();
+PlaneCorners corners_of(const PlaneSnapshot& plane, const PlaneAxes& axes, Box2 extent, double share) {
+  const double overhang = share * extent.extent().maxCoeff();
   extent.low.array() -= overhang;
   extent.high.array() += overhang;
   const auto at = [&](double up, double across) {
@@ -64,12 +61,12 @@ PlaneCorners corners_of(const PlaneSnapshot& plane, const PlaneAxes& axes, Exten
 }  // namespace
 
 PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies,
-                                  const BoundingBox& body) {
+                                  const Box& body) {
   const PlaneAxes axes = axes_of(plane);
   return corners_of(plane, axes, extent_of(plane, bodies, body, axes), fixing_overhang_share);
 }
 
-PlaneCorners corners_around(const PlaneSnapshot& plane, const BoundingBox& body, double overhang_share) {
+PlaneCorners corners_around(const PlaneSnapshot& plane, const Box& body, double overhang_share) {
   const PlaneAxes axes = axes_of(plane);
   return corners_of(plane, axes, extent_of(plane, body, axes), overhang_share);
 }

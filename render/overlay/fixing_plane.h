@@ -15,10 +15,10 @@ using PlaneCorners = std::array<Vector3, 4>;  // in order around the rectangle
 // Upright, sized by the fixed nodes, which do not move while the rest bends; by the body's box where none are
 // fixed.
 PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies,
-                                  const BoundingBox& body);
+                                  const Box& body);
 
 // The same around the body's box alone, larger than it by `overhang_share` of the larger side, on each side.
-PlaneCorners corners_around(const PlaneSnapshot& plane, const BoundingBox& body, double overhang_share);
+PlaneCorners corners_around(const PlaneSnapshot& plane, const Box& body, double overhang_share);
 
 // Where the arrow along the plane's normal ends.
 Vector3 plane_arrow_tip(const PlaneCorners& corners, const PlaneSnapshot& plane);

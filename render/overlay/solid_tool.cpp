@@ -4,52 +4,43 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/box.h"
+
 namespace spoonbill {
 namespace {
 
-BoundingBox about_origin(const Vector3& half) {
+Box about_origin(const Vector3& half) {
   return {-half, half};
 }
 
 struct BoxOfShape {
-  BoundingBox operator()(const SphereShape& shape) const {
-    return about_origin(Vector3::Constant(shape.radius_m));
-  }
-  BoundingBox operator()(const EllipsoidShape& shape) const { return about_origin(shape.semi_axes_m); }
-  BoundingBox operator()(const CylinderShape& shape) const {
+  Box operator()(const SphereShape& shape) const { return about_origin(Vector3::Constant(shape.radius_m)); }
+  Box operator()(const EllipsoidShape& shape) const { return about_origin(shape.semi_axes_m); }
+  Box operator()(const CylinderShape& shape) const {
     return about_origin({shape.radius_m, shape.half_length_m, shape.radius_m});
   }
-  BoundingBox operator()(const CapsuleShape& shape) const {
+  Box operator()(const CapsuleShape& shape) const {
     return about_origin({shape.radius_m, shape.half_length_m + shape.radius_m, shape.radius_m});
   }
-  BoundingBox operator()(const BoxShape& shape) const { return about_origin(shape.half_extents_m); }
-  BoundingBox operator()(const ConeShape& shape) const {
+  Box operator()(const BoxShape& shape) const { return about_origin(shape.half_extents_m); }
+  Box operator()(const ConeShape& shape) const {
     return {{-shape.base_radius_m, 0.0, -shape.base_radius_m},
             {shape.base_radius_m, shape.height_m, shape.base_radius_m}};
   }
-  BoundingBox operator()(const TorusShape& shape) const {
+  Box operator()(const TorusShape& shape) const {
     const double out = shape.ring_radius_m + shape.tube_radius_m;
     return about_origin({out, shape.tube_radius_m, out});
   }
-  BoundingBox operator()(const HalfSpaceShape& /*shape*/) const {
+  Box operator()(const HalfSpaceShape& /*shape*/) const {
     return about_origin({half_space_radius_m, 0.0, half_space_radius_m});
   }
-  BoundingBox operator()(const SuperquadricShape& shape) const { return about_origin(shape.semi_axes_m); }
+  Box operator()(const SuperquadricShape& shape) const { return about_origin(shape.semi_axes_m); }
 };
 
 struct BoxOfSolid {
-  BoundingBox operator()(const ImplicitShape& shape) const { return std::visit(BoxOfShape{}, shape); }
-  BoundingBox operator()(const MeshSolid& solid) const {
-    BoundingBox box;
-    for (const Vector3& vertex : solid.mesh.mesh.vertices_m) box.include(vertex);
-    return box;
-  }
-  BoundingBox operator()(const SurfaceSolid& solid) const {
-    BoundingBox box;
-    const ControlNet& net = solid.surface.net;
-    for (std::size_t i = 0; i < net.size(); ++i) box.include({net.x[i], net.y[i], net.z[i]});
-    return box;
-  }
+  Box operator()(const ImplicitShape& shape) const { return std::visit(BoxOfShape{}, shape); }
+  Box operator()(const MeshSolid& solid) const { return box_about(solid.mesh.mesh.vertices_m); }
+  Box operator()(const SurfaceSolid& solid) const { return spoonbill::box_of(solid.surface.net); }
 };
 
 }  // namespace
@@ -62,7 +53,7 @@ bool is_soft(const ToolSnapshot& tool) {
   return tool.kind == ToolKind::solid && tool.body && tool.body->soft;
 }
 
-BoundingBox box_of(const ToolSolid& solid) {
+Box box_of(const ToolSolid& solid) {
   return std::visit(BoxOfSolid{}, solid);
 }
 
@@ -79,9 +70,9 @@ ToolFrame mirrored_tool_frame(const Snapshot& snapshot) {
           snapshot.mirrored_proxy.position_m};
 }
 
-Vector3 way_out(const BoundingBox& box, const ToolFrame& frame, const Vector3& direction) {
+Vector3 way_out(const Box& box, const ToolFrame& frame, const Vector3& direction) {
   const Vector3 local = frame.axes.transpose() * direction;
-  const Vector3 middle = 0.5 * (box.low_m + box.high_m), half = 0.5 * (box.high_m - box.low_m);
+  const Vector3 middle = box.centre(), half = 0.5 * box.extent();
   double length = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
     if (local[axis] != 0.0) length = std::min(length, half[axis] / std::abs(local[axis]));

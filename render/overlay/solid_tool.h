@@ -16,7 +16,7 @@ bool is_soft(const ToolSnapshot& tool);
 inline constexpr double half_space_radius_m = 0.05;
 
 // Around the solid in its own frame; around the control points where it is a surface, which lies within.
-BoundingBox box_of(const ToolSolid& solid);
+Box box_of(const ToolSolid& solid);
 
 // From the tool's frame to the world: world = axes * local + origin_m. The axes are orthonormal, and
 // left-handed where the tool is the mirror image.
@@ -28,6 +28,6 @@ ToolFrame tool_frame(const Snapshot& snapshot);
 ToolFrame mirrored_tool_frame(const Snapshot& snapshot);
 
 // Where a ray from the middle of the box, along a unit direction of the world, leaves it.
-Vector3 way_out(const BoundingBox& box, const ToolFrame& frame, const Vector3& direction);
+Vector3 way_out(const Box& box, const ToolFrame& frame, const Vector3& direction);
 
 }  // namespace spoonbill

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/box.h"
 #include "render/overlay/palette.h"
 
 namespace spoonbill {
@@ -17,7 +18,7 @@ constexpr double dot_start = 0.72, dot_end = 0.83;
 
 }  // namespace
 
-PlaneCorners symmetry_plane_corners(const PlaneSnapshot& plane, const BoundingBox& body) {
+PlaneCorners symmetry_plane_corners(const PlaneSnapshot& plane, const Box& body) {
   return corners_around(plane, body, overhang_share);
 }
 

@@ -3,11 +3,12 @@
 
 #include <vector>
 
+#include "engine/base/box.h"
 #include "render/overlay/fixing_plane.h"
 
 namespace spoonbill {
 
-PlaneCorners symmetry_plane_corners(const PlaneSnapshot& plane, const BoundingBox& body);
+PlaneCorners symmetry_plane_corners(const PlaneSnapshot& plane, const Box& body);
 
 void append_symmetry_plane(const PlaneCorners& corners, std::vector<OverlayLine>& lines);
 

@@ -1,5 +1,7 @@
 #include "render/passes/body_meshes.h"
 
+#include "engine/base/box.h"
+
 namespace spoonbill {
 
 Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level) {
@@ -18,10 +20,9 @@ Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, boo
       if (Status updated = surfaces_[i].update(body.surface, level); !updated) return updated;
     }
     buffers_[i].upload(surfaces_[i]);
-    const BoundingBox one = surfaces_[i].bounds();
-    if (one.empty()) continue;
-    bounds_.include(one.low_m);
-    bounds_.include(one.high_m);
+    const Box one = surfaces_[i].bounds();
+    if (one.is_empty()) continue;
+    bounds_.join(one);
   }
   return {};
 }

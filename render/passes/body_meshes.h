@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "engine/base/box.h"
 #include "engine/base/result.h"
 #include "engine/simulation/snapshot.h"
 #include "render/passes/surface_buffers.h"
@@ -20,13 +21,13 @@ class BodyMeshes {
 
   const std::vector<TessellatedSurface>& surfaces() const { return surfaces_; }
   const std::vector<SurfaceBuffers>& buffers() const { return buffers_; }
-  const BoundingBox& bounds() const { return bounds_; }
+  const Box& bounds() const { return bounds_; }
 
  private:
   const GlFunctions* gl_;
   std::vector<TessellatedSurface> surfaces_;
   std::vector<SurfaceBuffers> buffers_;
-  BoundingBox bounds_;
+  Box bounds_;
 };
 
 }  // namespace spoonbill

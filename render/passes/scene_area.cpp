@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "engine/base/box.h"
 #include "render/overlay/contact_normals.h"
 #include "render/overlay/contact_stage.h"
 #include "render/overlay/fixing_plane.h"
@@ -30,29 +31,24 @@ class Strips {
   class Hull {
    public:
     explicit Hull(Strips& strips) : strips_(strips) {}
-    ~Hull() { strips_.mark(low_, high_); }
+    ~Hull() { strips_.mark(box_.low, box_.high); }
     Hull(const Hull&) = delete;
     Hull& operator=(const Hull&) = delete;
 
-    void include(const Eigen::Vector3f& point_m) {
-      const Eigen::Vector2f pixel = strips_.project(point_m);
-      low_ = low_.cwiseMin(pixel);
-      high_ = high_.cwiseMax(pixel);
-    }
+    void include(const Eigen::Vector3f& point_m) { box_.include(strips_.project(point_m)); }
 
    private:
     Strips& strips_;
-    Eigen::Vector2f low_ = Eigen::Vector2f::Constant(1e30F);
-    Eigen::Vector2f high_ = Eigen::Vector2f::Constant(-1e30F);
+    FloatBox2 box_;
   };
 
-  void include(const BoundingBox& box) {
-    if (box.empty()) return;
+  void include(const Box& box) {
+    if (box.is_empty()) return;
     Hull hull(*this);
     for (int i = 0; i < 8; ++i) hull.include(box.corner(i).cast<float>());
   }
   void include_sphere(const Vector3& centre_m, double radius_m) {
-    BoundingBox box;
+    Box box;
     box.include(centre_m - Vector3::Constant(radius_m));
     box.include(centre_m + Vector3::Constant(radius_m));
     include(box);
@@ -134,15 +130,15 @@ class Strips {
 };
 
 // Its lines join points that lie far from each other.
-BoundingBox net_box(const SurfaceSnapshot& surface) {
-  BoundingBox box;
+Box net_box(const SurfaceSnapshot& surface) {
+  Box box;
   for (std::size_t i = 0; i < surface.x.size(); ++i) {
     box.include(Vector3(surface.x[i], surface.y[i], surface.z[i]));
   }
   return box;
 }
 
-void include_planes(const Snapshot& snapshot, const Overlays& on, const BoundingBox& body, Strips& strips) {
+void include_planes(const Snapshot& snapshot, const Overlays& on, const Box& body, Strips& strips) {
   if (on.fixing_planes) {
     for (const PlaneSnapshot& plane : snapshot.planes) {
       const PlaneCorners corners = fixing_plane_corners(plane, snapshot.bodies, body);
@@ -162,7 +158,7 @@ void include_planes(const Snapshot& snapshot, const Overlays& on, const Bounding
 void include_tools(const Snapshot& snapshot, Strips& strips) {
   const ToolSnapshot& tool = snapshot.tool;
   const ToolBody* body = rigid_body(tool);
-  const BoundingBox box = body != nullptr ? box_of(body->solid) : BoundingBox();
+  const Box box = body != nullptr ? box_of(body->solid) : Box();
   const auto include = [&](const ToolFrame& frame) {
     if (body == nullptr) return strips.include_sphere(frame.origin_m, tool.radius_m);
     Strips::Hull hull(strips);
@@ -178,13 +174,12 @@ std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& 
                                   const FrameView& view, const std::vector<TessellatedSurface>& bodies) {
   const Overlays& on = settings.overlays;
   Strips strips(view);
-  BoundingBox body;
+  Box body;
   for (const TessellatedSurface& surface : bodies) {
     strips.include_triangles(surface);
-    const BoundingBox box = surface.bounds();
-    if (box.empty()) continue;
-    body.include(box.low_m);
-    body.include(box.high_m);
+    const Box box = surface.bounds();
+    if (box.is_empty()) continue;
+    body.join(box);
   }
   for (const BodySnapshot& each : snapshot.bodies) {
     const LatticeSnapshot& lattice = each.lattice;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/box.h"
 #include "render/overlay/cell_lines.h"
 #include "render/overlay/contact_normals.h"
 #include "render/overlay/contact_stage.h"
@@ -42,9 +43,9 @@ float pixels_at(const FrameView& view, const Eigen::Vector3f& point_m, float pix
 }
 
 // What a solid darkens: as the ball in the middle of its box does.
-ToolSphere ball_within(const BoundingBox& box, const ToolFrame& frame) {
-  const Vector3 middle = frame.origin_m + frame.axes * (0.5 * (box.low_m + box.high_m));
-  return {middle.cast<float>(), static_cast<float>(0.5 * (box.high_m - box.low_m).minCoeff())};
+ToolSphere ball_within(const Box& box, const ToolFrame& frame) {
+  const Vector3 middle = frame.origin_m + frame.axes * box.centre();
+  return {middle.cast<float>(), static_cast<float>(0.5 * box.extent().minCoeff())};
 }
 
 ToolSphere tool_sphere(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) {
@@ -66,8 +67,8 @@ SurfaceLook look_of(const BodySnapshot& body, const ViewSettings& settings) {
   return look;
 }
 
-BoundingBox box_of(const ToolSphere& tool) {
-  BoundingBox box;
+Box box_of(const ToolSphere& tool) {
+  Box box;
   if (tool.radius_m <= 0.0f) return box;
   box.include((tool.centre_m.array() - tool.radius_m).matrix().cast<double>());
   box.include((tool.centre_m.array() + tool.radius_m).matrix().cast<double>());
@@ -193,7 +194,7 @@ void ScenePasses::draw_overlays(const FrameView& view, const Snapshot& snapshot,
   passes_.mark.draw(view, marks_, lift);
 }
 
-void ScenePasses::draw_planes(const FrameView& view, const Snapshot& snapshot, const BoundingBox& body) {
+void ScenePasses::draw_planes(const FrameView& view, const Snapshot& snapshot, const Box& body) {
   lines_.clear();
   for (const PlaneSnapshot& plane : snapshot.planes) {
     const PlaneCorners corners = fixing_plane_corners(plane, snapshot.bodies, body);
@@ -205,7 +206,7 @@ void ScenePasses::draw_planes(const FrameView& view, const Snapshot& snapshot, c
   passes_.line.draw(view, lines_, 0.0f);
 }
 
-void ScenePasses::draw_symmetry(const FrameView& view, const Snapshot& snapshot, const BoundingBox& body) {
+void ScenePasses::draw_symmetry(const FrameView& view, const Snapshot& snapshot, const Box& body) {
   if (!snapshot.symmetric) return;
   lines_.clear();
   append_symmetry_plane(symmetry_plane_corners(snapshot.symmetry, body), lines_);

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "engine/base/box.h"
 #include "engine/base/result.h"
 #include "engine/simulation/snapshot.h"
 #include "render/passes/background_pass.h"
@@ -61,8 +62,8 @@ class ScenePasses {
   void draw_scale_bar(const FrameView& view, const ViewSettings& settings);
   void draw_force(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) const;
   void draw_overlays(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings);
-  void draw_planes(const FrameView& view, const Snapshot& snapshot, const BoundingBox& body);
-  void draw_symmetry(const FrameView& view, const Snapshot& snapshot, const BoundingBox& body);
+  void draw_planes(const FrameView& view, const Snapshot& snapshot, const Box& body);
+  void draw_symmetry(const FrameView& view, const Snapshot& snapshot, const Box& body);
   void draw_tools(const FrameView& view, const Snapshot& snapshot);
   void draw_tool(const FrameView& view, const ToolSnapshot& tool, const ToolFrame& frame);
   void draw_stage(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) const;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/box.h"
+
 namespace spoonbill {
 namespace {
 
@@ -30,19 +32,17 @@ Eigen::Matrix4f ground_projection(const ShadowArea& area, const Eigen::Vector3f&
 
 // The rectangle of the ground that shadows and contact shadows reach.
 struct Footprint {
-  Eigen::Vector2f low = Eigen::Vector2f::Constant(1e30f);
-  Eigen::Vector2f high = Eigen::Vector2f::Constant(-1e30f);
+  FloatBox2 box;
 
-  void include_shadow(const BoundingBox& box, float ground_y_m, const Eigen::Vector3f& toward_key) {
+  void include_shadow(const Box& caster, float ground_y_m, const Eigen::Vector3f& toward_key) {
     for (int i = 0; i < 8; ++i) {
-      const Eigen::Vector3f corner = box.corner(i).cast<float>();
+      const Eigen::Vector3f corner = caster.corner(i).cast<float>();
       const float height = std::max(0.0f, corner.y() - ground_y_m);
       const Eigen::Vector2f below(corner.x(), corner.z());
       const Eigen::Vector2f cast =
           below - Eigen::Vector2f(toward_key.x(), toward_key.z()) * (height / toward_key.y());
       const Eigen::Vector2f soft = Eigen::Vector2f::Constant(key_light_spread * height + contact_margin_m);
-      low = low.cwiseMin(below.cwiseMin(cast) - soft);
-      high = high.cwiseMax(below.cwiseMax(cast) + soft);
+      box.join({below.cwiseMin(cast) - soft, below.cwiseMax(cast) + soft});
     }
   }
 };
@@ -55,14 +55,14 @@ float quantised_size(float size) {
 
 }  // namespace
 
-ShadowArea shadow_area(const BoundingBox& body, const BoundingBox& tool, float ground_y_m,
-                       const Eigen::Vector3f& toward_key, int map_side_px) {
-  BoundingBox box = body;
-  if (box.empty()) box.include(Vector3(0.0, ground_y_m, 0.0));
+ShadowArea shadow_area(const Box& body, const Box& tool, float ground_y_m, const Eigen::Vector3f& toward_key,
+                       int map_side_px) {
+  Box box = body;
+  if (box.is_empty()) box.include(Vector3(0.0, ground_y_m, 0.0));
   Footprint footprint;
   footprint.include_shadow(box, ground_y_m, toward_key);
-  if (!tool.empty()) footprint.include_shadow(tool, ground_y_m, toward_key);
-  const Eigen::Vector2f low = footprint.low, high = footprint.high;
+  if (!tool.is_empty()) footprint.include_shadow(tool, ground_y_m, toward_key);
+  const Eigen::Vector2f low = footprint.box.low, high = footprint.box.high;
   ShadowArea area;
   area.side_m = quantised_size((high - low).maxCoeff());
   const float step = area.side_m / 64.0f;
@@ -71,8 +71,8 @@ ShadowArea shadow_area(const BoundingBox& body, const BoundingBox& tool, float g
   const float snap = std::max(1.0f, std::round(step / texel)) * texel;
   area.corner_m = (low / snap).array().floor().matrix() * snap;
   area.used_share = ((high - area.corner_m) / area.side_m).cwiseMin(1.0f);
-  area.low_m = static_cast<float>(box.low_m.y()) - ground_y_m - 0.001f;
-  area.high_m = static_cast<float>(box.high_m.y()) - ground_y_m + 0.001f;
+  area.low_m = static_cast<float>(box.low.y()) - ground_y_m - 0.001f;
+  area.high_m = static_cast<float>(box.high.y()) - ground_y_m + 0.001f;
   area.key_to_clip = ground_projection(area, toward_key, ground_y_m, 1.0f);
   area.sky_to_clip = ground_projection(area, Eigen::Vector3f::UnitY(), ground_y_m, -1.0f);
   return area;

@@ -26,7 +26,7 @@ inline constexpr float key_light_spread = 0.17f;
 // Corner and side move in steps of the map's texels and of eighths of the size, so that edges do not crawl
 // while the scene moves a little. The tool needs room on the ground but is not in the map. Either box may be
 // empty. toward_key points above the horizon.
-ShadowArea shadow_area(const BoundingBox& body, const BoundingBox& tool, float ground_y_m,
-                       const Eigen::Vector3f& toward_key, int map_side_px);
+ShadowArea shadow_area(const Box& body, const Box& tool, float ground_y_m, const Eigen::Vector3f& toward_key,
+                       int map_side_px);
 
 }  // namespace spoonbill

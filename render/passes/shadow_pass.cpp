@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/box.h"
 #include "render/gl/pipeline_state.h"
 #include "render/passes/lighting_glsl.h"
 #include "render/passes/shadow_glsl.h"
@@ -90,8 +91,8 @@ int ShadowPass::key_map_side_px() {
   return key_side_px;
 }
 
-void ShadowPass::draw(const FrameView& view, const std::vector<SurfaceBuffers>& bodies,
-                      const BoundingBox& body_box, const BoundingBox& tool_box, const ToolSphere& tool) {
+void ShadowPass::draw(const FrameView& view, const std::vector<SurfaceBuffers>& bodies, const Box& body_box,
+                      const Box& tool_box, const ToolSphere& tool) {
   area_ = shadow_area(body_box, tool_box, view.ground_y_m, view.toward_key, key_side_px);
   draw_key_map(bodies);
   draw_cover(view, bodies);

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "engine/base/box.h"
 #include "engine/base/result.h"
 #include "render/gl/functions.h"
 #include "render/gl/handle.h"
@@ -28,8 +29,8 @@ class ShadowPass {
   static Result<ShadowPass> make(const GlFunctions& gl);
 
   // Draws the maps. The bound framebuffer, viewport and state are changed.
-  void draw(const FrameView& view, const std::vector<SurfaceBuffers>& bodies, const BoundingBox& body_box,
-            const BoundingBox& tool_box, const ToolSphere& tool);
+  void draw(const FrameView& view, const std::vector<SurfaceBuffers>& bodies, const Box& body_box,
+            const Box& tool_box, const ToolSphere& tool);
 
   // Of the last draw().
   const ShadowArea& area() const { return area_; }

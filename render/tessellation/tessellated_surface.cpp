@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/box.h"
+
 namespace spoonbill {
 namespace {
 
@@ -160,8 +162,8 @@ void TessellatedSurface::fill_cut_vertices() {
   }
 }
 
-BoundingBox TessellatedSurface::bounds() const {
-  BoundingBox box;
+Box TessellatedSurface::bounds() const {
+  Box box;
   if (samples_.x.empty()) return box;
   if (trim_) {
     for (const std::uint32_t i : indices_) box.include(vertex(samples_, i));
@@ -170,15 +172,15 @@ BoundingBox TessellatedSurface::bounds() const {
   const std::vector<float>* axes[3] = {&samples_.x, &samples_.y, &samples_.z};
   for (int axis = 0; axis < 3; ++axis) {
     const auto [low, high] = std::minmax_element(axes[axis]->begin(), axes[axis]->end());
-    box.low_m[axis] = *low;
-    box.high_m[axis] = *high;
+    box.low[axis] = *low;
+    box.high[axis] = *high;
   }
   return box;
 }
 
-BoundingBox drawn_bounds(const Snapshot& snapshot) {
+Box drawn_bounds(const Snapshot& snapshot) {
   constexpr int fine_enough = 4;
-  BoundingBox box;
+  Box box;
   for (const BodySnapshot& body : snapshot.bodies) {
     const SurfaceSnapshot& surface = body.surface;
     TessellatedSurface tessellated;
@@ -188,10 +190,9 @@ BoundingBox drawn_bounds(const Snapshot& snapshot) {
                !tessellated.update(surface, uniform_sampling_level(surface, fine_enough))) {
       continue;
     }
-    const BoundingBox one = tessellated.bounds();
-    if (one.empty()) continue;
-    box.include(one.low_m);
-    box.include(one.high_m);
+    const Box one = tessellated.bounds();
+    if (one.is_empty()) continue;
+    box.join(one);
   }
   return box;
 }

@@ -53,7 +53,7 @@ class TessellatedSurface {
   // Whether triangles are cut along trim loops; samples that no triangle has are then not of the surface.
   bool is_trimmed() const { return trim_ != nullptr; }
 
-  BoundingBox bounds() const;
+  Box bounds() const;
 
  private:
   Status rebuild(const SurfaceSnapshot& surface, const SamplingLevel& level);
@@ -82,6 +82,6 @@ class TessellatedSurface {
 // The box around all surfaces of a snapshot, evaluated rather than taken from the control nets, which reach
 // farther. Meant for framing and for the ground, not for every frame. Surfaces that cannot be evaluated are
 // left out.
-BoundingBox drawn_bounds(const Snapshot& snapshot);
+Box drawn_bounds(const Snapshot& snapshot);
 
 }  // namespace spoonbill

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <utility>
 
+#include "engine/base/box.h"
 #include "render/overlay/solid_tool.h"
 #include "render/tessellation/shape_mesh.h"
 #include "render/tessellation/tessellated_surface.h"
@@ -54,8 +55,8 @@ struct MeshOfSolid {
 
   Result<ToolMesh> operator()(const SurfaceSolid& solid) const {
     const SurfaceSnapshot snapshot = snapshot_of(solid.surface);
-    const BoundingBox box = box_of(ToolSolid(solid));
-    const double pixels_per_metre = surface_px / (box.high_m - box.low_m).norm();
+    const Box box = box_of(ToolSolid(solid));
+    const double pixels_per_metre = surface_px / box.size();
     TessellatedSurface surface;
     const Status updated = surface.update(snapshot, choose_sampling_level(snapshot, pixels_per_metre, {}));
     if (!updated) return Error{"tool: " + updated.error().message};

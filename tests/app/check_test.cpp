@@ -9,6 +9,7 @@
 #include "app/program.h"
 #include "engine/exchange/document.h"
 #include "tests/app/workplace.h"
+#include "tests/engine/trims/loops.h"
 
 namespace spoonbill {
 namespace {

@@ -10,6 +10,7 @@
 #include "engine/exchange/document.h"
 #include "engine/simulation/simulation.h"
 #include "tests/app/workplace.h"
+#include "tests/engine/trims/loops.h"
 
 namespace spoonbill {
 namespace {

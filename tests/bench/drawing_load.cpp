@@ -32,7 +32,7 @@ void DrawingLoad::draw() {
     return;
   }
   ViewSettings settings;
-  const BoundingBox box = drawn_bounds(snapshots_.front());
+  const Box box = drawn_bounds(snapshots_.front());
   settings.ground_y_m = ground_below(box);
   settings.camera =
       frame(look_from({}, StandardView::perspective), box, make_viewport(width_px, height_px, {}));

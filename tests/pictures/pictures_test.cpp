@@ -15,6 +15,7 @@
 #include "app/frames/frame_painter.h"
 #include "app/panel/session_panel.h"
 #include "app/session/lockstep.h"
+#include "engine/base/box.h"
 #include "engine/exchange/document.h"
 #include "engine/merging/merge.h"
 #include "haptic/devices/playback_device.h"
@@ -53,7 +54,7 @@ class MomentPictures : public ::testing::Test {
     Session session;
     FramePainter painter;
     Snapshot snapshot;
-    BoundingBox framed;
+    Box framed;
   };
 
   static Stage stage_of(const Moment& moment) {
@@ -66,7 +67,7 @@ class MomentPictures : public ::testing::Test {
     Snapshot snapshot;
     write_snapshot(session.value(), snapshot);
     auto painter = FramePainter::make(width_px, height_px);
-    const BoundingBox framed = framed_box(snapshot);
+    const Box framed = framed_box(snapshot);
     EXPECT_TRUE(painter) << painter.error().message;
 
     PlaybackDevice device(recording->header.device, recording->readings);
@@ -94,7 +95,7 @@ class MomentPictures : public ::testing::Test {
     write_snapshot(session.value(), snapshot);
     auto painter = FramePainter::make(width_px, height_px);
     EXPECT_TRUE(painter) << painter.error().message;
-    const BoundingBox framed = framed_box(snapshot);
+    const Box framed = framed_box(snapshot);
     return {std::move(session).value(), std::move(painter).value(), std::move(snapshot), framed};
   }
 

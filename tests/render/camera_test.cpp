@@ -13,25 +13,20 @@ const std::vector<StandardView> views = {StandardView::perspective, StandardView
                                          StandardView::left,        StandardView::right, StandardView::top,
                                          StandardView::bottom};
 
-BoundingBox handle_box() {
-  BoundingBox box;
+Box handle_box() {
+  Box box;
   box.include({0.0, 0.0, -0.006});
   box.include({0.1, 0.005, 0.006});
   return box;
 }
 
-struct Pixels {
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e30), high = Eigen::Vector2d::Constant(-1e30);
-};
-
-Pixels projected(const BoundingBox& box, const Camera& camera, const Viewport& viewport) {
-  Pixels pixels;
+Box2 projected(const Box& box, const Camera& camera, const Viewport& viewport) {
+  Box2 pixels;
   for (int i = 0; i < 8; ++i) {
     const auto at = project(camera, viewport, box.corner(i));
     EXPECT_TRUE(at.has_value());
     if (!at) continue;
-    pixels.low = pixels.low.cwiseMin(*at);
-    pixels.high = pixels.high.cwiseMax(*at);
+    pixels.include(*at);
   }
   return pixels;
 }
@@ -81,7 +76,7 @@ TEST(Camera, FramesTheBoxInTwoThirdsOfTheFreeRectangle) {
     EXPECT_NEAR(viewport.free_px.width, 1280.0 - panel, 1e-12);
     for (const StandardView view : views) {
       const Camera camera = frame(look_from({}, view), handle_box(), viewport);
-      const Pixels pixels = projected(handle_box(), camera, viewport);
+      const Box2 pixels = projected(handle_box(), camera, viewport);
       const Rectangle& free = viewport.free_px;
       EXPECT_GE(pixels.low.x(), free.x);
       EXPECT_LE(pixels.high.x(), free.x + free.width);
@@ -90,7 +85,7 @@ TEST(Camera, FramesTheBoxInTwoThirdsOfTheFreeRectangle) {
       const double share = std::max((pixels.high.x() - pixels.low.x()) / free.width,
                                     (pixels.high.y() - pixels.low.y()) / free.height);
       EXPECT_NEAR(share, 2.0 / 3.0, 0.01);
-      const Eigen::Vector2d middle = 0.5 * (pixels.low + pixels.high);
+      const Eigen::Vector2d middle = pixels.centre();
       EXPECT_NEAR(middle.x(), free.x + 0.5 * free.width, 1.0);
       EXPECT_NEAR(middle.y(), free.y + 0.5 * free.height, 1.0);
     }
@@ -106,7 +101,7 @@ TEST(Camera, LeavesRoomBesideAPanelOnTheRight) {
 TEST(Camera, AnEmptyBoxMovesNothing) {
   Camera camera;
   camera.distance_m = 0.123;
-  const Camera framed = frame(camera, BoundingBox{}, make_viewport(640, 480, {}));
+  const Camera framed = frame(camera, Box{}, make_viewport(640, 480, {}));
   EXPECT_EQ(framed.distance_m, camera.distance_m);
   EXPECT_EQ(framed.target_m, camera.target_m);
 }

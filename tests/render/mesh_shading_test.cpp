@@ -67,7 +67,7 @@ TEST(MeshShading, IsSmoothOnABallAndFollowsItsShape) {
         Eigen::Vector3f(each.position.x(), 16.0f * each.position.y(), each.position.z()).normalized();
     EXPECT_GT(each.normal.dot(wanted), 0.98f);
   }
-  EXPECT_NEAR(surface.bounds().high_m.y(), 0.25, 1e-6);
+  EXPECT_NEAR(surface.bounds().high.y(), 0.25, 1e-6);
 }
 
 }  // namespace

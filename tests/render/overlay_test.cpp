@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "engine/base/box.h"
 #include "render/overlay/cell_lines.h"
 #include "render/overlay/fixing_plane.h"
 #include "render/overlay/force_arrow.h"
@@ -20,7 +21,7 @@ namespace {
 ViewSettings framed(const Snapshot& snapshot) {
   ViewSettings settings;
   settings.panel_px = {0, 0, 300, 720};
-  const BoundingBox box = drawn_bounds(snapshot);
+  const Box box = drawn_bounds(snapshot);
   settings.ground_y_m = ground_below(box);
   settings.camera =
       frame(look_from({}, StandardView::perspective), box, make_viewport(1280, 720, settings.panel_px));
@@ -155,17 +156,17 @@ TEST(FixingPlane, LiesInItsPlaneAroundTheFixedNodes) {
   const Snapshot snapshot = sample_scene();
   const PlaneCorners corners =
       fixing_plane_corners(snapshot.planes[0], snapshot.bodies, drawn_bounds(snapshot));
-  BoundingBox box;
+  Box box;
   for (const Vector3& corner : corners) {
     EXPECT_NEAR((corner - snapshot.planes[0].point_m).dot(snapshot.planes[0].normal), 0.0, 1e-12);
     box.include(corner);
   }
-  EXPECT_GT(box.high_m.z() - box.low_m.z(), 0.012);
-  EXPECT_LT(box.high_m.z() - box.low_m.z(), 0.040);
+  EXPECT_GT(box.high.z() - box.low.z(), 0.012);
+  EXPECT_LT(box.high.z() - box.low.z(), 0.040);
 }
 
 TEST(ShadowArea, HoldsWhatTheLightCarriesToTheGround) {
-  BoundingBox body;
+  Box body;
   body.include({0.0, 0.01, -0.006});
   body.include({0.1, 0.03, 0.006});
   const Eigen::Vector3f toward_key = Eigen::Vector3f(-0.4f, 0.8f, 0.4f).normalized();

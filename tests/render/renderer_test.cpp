@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/box.h"
 #include "render/gl/osmesa_context.h"
 #include "render/image/png.h"
 #include "render/interface_fonts.h"
@@ -41,7 +42,7 @@ class Rendering : public ::testing::Test {
     ASSERT_TRUE(renderer) << renderer.error().message;
     renderer_ = std::make_unique<Renderer>(std::move(renderer).value());
     snapshot_ = sample_scene({.bend_rad = 0.4});
-    const BoundingBox box = drawn_bounds(snapshot_);
+    const Box box = drawn_bounds(snapshot_);
     settings_.ground_y_m = ground_below(box);
     settings_.camera =
         frame(look_from({}, StandardView::perspective), box, make_viewport(width_px, height_px, {}));
@@ -218,8 +219,8 @@ TEST_F(Rendering, TheMirroredToolShowsFarFromTheOther) {
   const Image without = picture();
   snapshot_.symmetric = true;
   snapshot_.mirrored_proxy = snapshot_.tool.proxy;
-  const BoundingBox body = drawn_bounds(snapshot_);
-  snapshot_.mirrored_proxy.position_m = body.low_m - 0.2 * (body.high_m - body.low_m);
+  const Box body = drawn_bounds(snapshot_);
+  snapshot_.mirrored_proxy.position_m = body.low - 0.2 * body.extent();
   EXPECT_GT(worst_block_difference(without, picture())->worst, tolerance);
 }
 

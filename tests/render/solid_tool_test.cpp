@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/box.h"
 #include "engine/simulation/symmetry.h"
 #include "render/gl/osmesa_context.h"
 #include "render/overlay/force_arrow.h"
@@ -109,7 +110,7 @@ class SolidToolPicture : public ::testing::Test {
 };
 
 // Where the corners of a box at a frame appear.
-Changed projected(const BoundingBox& box, const ToolFrame& frame) {
+Changed projected(const Box& box, const ToolFrame& frame) {
   const ViewSettings settings = plain_view();
   const Viewport viewport = make_viewport(width_px, height_px, settings.panel_px);
   Changed bounds;
@@ -196,7 +197,7 @@ TEST_F(SolidToolPicture, ASoftMeshIsDrawnWhereItsVerticesAre) {
   }
   Snapshot snapshot = scene_with(ImplicitShape(BoxShape{half_m}), oblique);
   const ToolFrame frame = tool_frame(snapshot);
-  const BoundingBox box{-half_m, half_m};
+  const Box box{-half_m, half_m};
   snapshot = without_bodies(std::move(snapshot));
   snapshot.tool.body = std::make_shared<ToolBody>(ToolBody{ImplicitShape(BoxShape{half_m}), SoftTool{}});
   BodySnapshot& body = snapshot.bodies.emplace_back();

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/base/box.h"
 #include "engine/bspline/surface.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/render/sample_scene.h"
@@ -179,9 +180,9 @@ TEST(Tessellation, AnOpenSheetKeepsItsEdges) {
   sheet.z.assign(net.z.begin(), net.z.end());
   const auto surface = tessellated(sheet, 5000.0);
   EXPECT_FALSE(surface.is_closed());
-  const BoundingBox box = surface.bounds();
-  EXPECT_NEAR(box.high_m.x(), 0.04, 1e-7);
-  EXPECT_NEAR(box.high_m.z(), 0.03, 1e-7);
+  const Box box = surface.bounds();
+  EXPECT_NEAR(box.high.x(), 0.04, 1e-7);
+  EXPECT_NEAR(box.high.z(), 0.03, 1e-7);
 }
 
 TEST(Tessellation, ANetThatDoesNotFitItsKnotsIsRefused) {
@@ -194,10 +195,10 @@ TEST(Tessellation, ANetThatDoesNotFitItsKnotsIsRefused) {
 
 TEST(DrawnBounds, AreThoseOfTheSurfaceNotOfItsNet) {
   const Snapshot snapshot = sample_scene();
-  const BoundingBox box = drawn_bounds(snapshot);
-  EXPECT_NEAR(box.high_m.x() - box.low_m.x(), 0.100, 1e-4);
+  const Box box = drawn_bounds(snapshot);
+  EXPECT_NEAR(box.high.x() - box.low.x(), 0.100, 1e-4);
   EXPECT_GT(
-      box.low_m.y(),
+      box.low.y(),
       *std::min_element(snapshot.bodies[0].surface.y.begin(), snapshot.bodies[0].surface.y.end()) + 1e-6);
 }
 

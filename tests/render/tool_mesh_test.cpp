@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/box.h"
 #include "render/overlay/solid_tool.h"
 #include "render/tessellation/facing_order.h"
 #include "tests/render/sample_scene.h"
@@ -196,24 +197,24 @@ TEST(ToolMesh, FillsTheBoxOfTheShape) {
   auto solids = implicit_solids();
   solids.push_back({"bracket", bracket()});
   for (const NamedSolid& each : solids) {
-    BoundingBox extent;
+    Box extent;
     for (const ToolVertex& vertex : mesh_of(each.solid).vertices) {
       extent.include(vertex.position_m.cast<double>());
     }
-    const BoundingBox box = box_of(each.solid);
+    const Box box = box_of(each.solid);
     // Single precision.
-    EXPECT_LT((extent.low_m - box.low_m).norm(), 1e-8) << each.name;
-    EXPECT_LT((extent.high_m - box.high_m).norm(), 1e-8) << each.name;
+    EXPECT_LT((extent.low - box.low).norm(), 1e-8) << each.name;
+    EXPECT_LT((extent.high - box.high).norm(), 1e-8) << each.name;
   }
 }
 
 TEST(ToolMesh, OfASurfaceLiesWithinTheBoxOfItsControlPoints) {
   const SurfaceSolid solid = tube();
-  const BoundingBox box = box_of(ToolSolid(solid));
+  const Box box = box_of(ToolSolid(solid));
   for (const ToolVertex& vertex : mesh_of(solid).vertices) {
     const Vector3 at = vertex.position_m.cast<double>();
-    ASSERT_TRUE((at.array() >= box.low_m.array() - 1e-8).all());
-    ASSERT_TRUE((at.array() <= box.high_m.array() + 1e-8).all());
+    ASSERT_TRUE((at.array() >= box.low.array() - 1e-8).all());
+    ASSERT_TRUE((at.array() <= box.high.array() + 1e-8).all());
   }
 }
 

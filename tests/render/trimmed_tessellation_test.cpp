@@ -11,6 +11,7 @@
 
 #include "engine/bspline/trimmed_area.h"
 #include "render/tessellation/tessellated_surface.h"
+#include "tests/engine/trims/loops.h"
 #include "tests/render/sample_scene.h"
 
 namespace spoonbill {

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "engine/base/box.h"
 #include "render/gl/glfw_window.h"
 #include "render/gl/osmesa_context.h"
 #include "render/renderer.h"
@@ -24,7 +25,7 @@ constexpr double tolerance = 2.0;
 
 ViewSettings settings_for(const Snapshot& snapshot, int width_px, int height_px) {
   ViewSettings settings;
-  const BoundingBox box = drawn_bounds(snapshot);
+  const Box box = drawn_bounds(snapshot);
   settings.ground_y_m = ground_below(box);
   settings.camera =
       frame(look_from({}, StandardView::perspective), box, make_viewport(width_px, height_px, {}));

@@ -91,12 +91,9 @@ void ElementTree::take_strip(SurfaceLevels& levels, int element_u) {
 Box ElementTree::hull_of(const ControlNet& net, int element_u, int element_v) const {
   const int* const rows = u_.control.data() + u_.first_control[element_u];
   const int* const columns = v_.control.data() + v_.first_control[element_v];
-  Box box{net.point(rows[0], columns[0]), net.point(rows[0], columns[0])};
+  Box box;
   for (int i = 0; i <= u_.degree; ++i) {
-    for (int j = 0; j <= v_.degree; ++j) {
-      const Vector3 control = net.point(rows[i], columns[j]);
-      box = {box.low.cwiseMin(control), box.high.cwiseMax(control)};
-    }
+    for (int j = 0; j <= v_.degree; ++j) box.include(net.point(rows[i], columns[j]));
   }
   return box;
 }

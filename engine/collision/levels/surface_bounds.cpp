@@ -205,10 +205,7 @@ void SurfaceBounds::take_boxes(const ControlNet& net) {
 Box SurfaceBounds::row_box(int element_u) const {
   const int last = span_u_[element_u];
   Box box = row_boxes_[control_u_[last]];
-  for (int i = last - degree_u_; i < last; ++i) {
-    const Box& row = row_boxes_[control_u_[i]];
-    box = {box.low.cwiseMin(row.low), box.high.cwiseMax(row.high)};
-  }
+  for (int i = last - degree_u_; i < last; ++i) box.join(row_boxes_[control_u_[i]]);
   return box;
 }
 

@@ -6,6 +6,7 @@
 
 #include "engine/collision/meshes/mesh_edges.h"
 #include "engine/collision/meshes/nearest_on_triangle.h"
+#include "engine/collision/meshes/triangle.h"
 
 namespace spoonbill {
 namespace {
@@ -14,20 +15,16 @@ constexpr std::uint32_t leaf_size = 4;
 // Nearer than this the way to the surface has no direction worth the name.
 constexpr double on_surface_m = 1e-12;
 
-Box box_about(const std::vector<Vector3>& vertices, const TriangleCorners& corners) {
-  const Vector3 &a = vertices[corners[0]], &b = vertices[corners[1]], &c = vertices[corners[2]];
-  return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+Box box_of_corners(const std::vector<Vector3>& vertices, const TriangleCorners& corners) {
+  return box_of(Triangle{vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]});
 }
 
 std::vector<Box> boxes_of(const TriangleMesh& mesh) {
   std::vector<Box> boxes;
   boxes.reserve(mesh.triangles.size());
-  for (const TriangleCorners& corners : mesh.triangles) boxes.push_back(box_about(mesh.vertices_m, corners));
+  for (const TriangleCorners& corners : mesh.triangles)
+    boxes.push_back(box_of_corners(mesh.vertices_m, corners));
   return boxes;
-}
-
-double squared_distance(const Box& box, const Vector3& point) {
-  return (box.low - point).cwiseMax(point - box.high).cwiseMax(0.0).squaredNorm();
 }
 
 // Within 2e-8 of the arc tangent of 0 to 1 (Abramowitz and Stegun 1964, 4.4.49): the library's differs in its
@@ -86,7 +83,7 @@ DeformingMesh::DeformingMesh(const TriangleMesh& mesh)
 }
 
 void DeformingMesh::settle() {
-  tree_.refit([&](std::uint32_t place) { return box_about(vertices_m_, triangles_[place]); });
+  tree_.refit([&](std::uint32_t place) { return box_of_corners(vertices_m_, triangles_[place]); });
 }
 
 Vector3 DeformingMesh::face_normal(std::uint32_t triangle) const {
@@ -119,9 +116,9 @@ std::optional<NearestOnMesh> DeformingMesh::nearest(const Vector3& point_m, doub
   bool found = false;
   const std::vector<BoxTree::Node>& nodes = tree_.nodes();
   tree_.search(
-      [&](std::uint32_t index) { return squared_distance(nodes[index].box, point_m) < best.squared; },
+      [&](std::uint32_t index) { return nodes[index].box.squared_distance(point_m) < best.squared; },
       [&](std::uint32_t left, std::uint32_t right) {
-        return squared_distance(nodes[right].box, point_m) < squared_distance(nodes[left].box, point_m);
+        return nodes[right].box.squared_distance(point_m) < nodes[left].box.squared_distance(point_m);
       },
       [&](std::uint32_t first, std::uint32_t count) {
         for (std::uint32_t t = first; t < first + count; ++t) {

@@ -80,11 +80,8 @@ std::vector<std::uint32_t> by_part(const Flood& flood, std::vector<MeshPart>& pa
 }
 
 Box box_of(const TriangleMesh& mesh, const MeshPart& part) {
-  Box box{mesh.vertices_m[part.first_vertex], mesh.vertices_m[part.first_vertex]};
-  for (std::uint32_t v = part.first_vertex; v < part.end_vertex; ++v) {
-    box.low = box.low.cwiseMin(mesh.vertices_m[v]);
-    box.high = box.high.cwiseMax(mesh.vertices_m[v]);
-  }
+  Box box;
+  for (std::uint32_t v = part.first_vertex; v < part.end_vertex; ++v) box.include(mesh.vertices_m[v]);
   return box;
 }
 

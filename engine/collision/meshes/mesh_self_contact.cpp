@@ -14,10 +14,6 @@ constexpr double left_out = 1e-6;
 constexpr std::size_t pairs_a_triangle = 200;
 constexpr std::size_t looks_between_stops = 4096;
 
-bool overlap(const Box& a, const Box& b) {
-  return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
-}
-
 Triangle shrunk(const Triangle& triangle) {
   const Vector3 middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
   Triangle smaller = triangle;
@@ -55,7 +51,7 @@ class SelfContact {
       const auto [a, b] = waiting_.back();
       waiting_.pop_back();
       const BoxTree::Node &first = tree_.nodes()[a], &second = tree_.nodes()[b];
-      if (a != b && !overlap(first.box, second.box)) continue;
+      if (a != b && !first.box.overlaps(second.box)) continue;
       if (first.is_leaf() && second.is_leaf()) {
         meet(first, second);
       } else if (a == b) {
@@ -86,7 +82,7 @@ class SelfContact {
           return;
         }
         const Triangle b = triangle(t);
-        if (!overlap(around, box_of(b))) continue;
+        if (!around.overlaps(box_of(b))) continue;
         const bool neighbours = have_common_corner(triangles_[s], triangles_[t]);
         if (!(neighbours ? triangles_meet(shrunk(a), shrunk(b)) : triangles_meet(a, b))) continue;
         if (meetings_.found.size() == most_) {

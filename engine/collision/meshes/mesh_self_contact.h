@@ -3,9 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
+#include "engine/base/progress.h"
 #include "engine/collision/meshes/box_tree.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 

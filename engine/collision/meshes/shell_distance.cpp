@@ -8,6 +8,7 @@
 #include "engine/collision/meshes/mesh_edges.h"
 #include "engine/collision/meshes/mesh_self_contact.h"
 #include "engine/collision/meshes/nearest_on_triangle.h"
+#include "engine/collision/meshes/triangle.h"
 
 namespace spoonbill {
 namespace {
@@ -24,14 +25,9 @@ std::vector<Box> boxes_of(const std::vector<Vector3>& vertices,
   std::vector<Box> boxes;
   boxes.reserve(triangles.size());
   for (const auto& [i, j, k] : triangles) {
-    const Vector3 &a = vertices[i], &b = vertices[j], &c = vertices[k];
-    boxes.push_back({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)});
+    boxes.push_back(box_of(Triangle{vertices[i], vertices[j], vertices[k]}));
   }
   return boxes;
-}
-
-double squared_distance(const Box& box, const Vector3& point) {
-  return (box.low - point).cwiseMax(point - box.high).cwiseMax(0.0).squaredNorm();
 }
 
 std::vector<std::uint32_t> corners_at_vertices(const std::vector<TriangleCorners>& triangles,
@@ -122,9 +118,9 @@ Vector3 ShellDistance::normal_at(const Nearest& nearest) const {
 ShellDistance::Nearest ShellDistance::nearest(const Vector3& point) const {
   Nearest best;
   const std::vector<BoxTree::Node>& nodes = tree_.nodes();
-  tree_.search([&](std::uint32_t index) { return squared_distance(nodes[index].box, point) < best.squared; },
+  tree_.search([&](std::uint32_t index) { return nodes[index].box.squared_distance(point) < best.squared; },
                [&](std::uint32_t left, std::uint32_t right) {
-                 return squared_distance(nodes[right].box, point) < squared_distance(nodes[left].box, point);
+                 return nodes[right].box.squared_distance(point) < nodes[left].box.squared_distance(point);
                },
                [&](std::uint32_t first, std::uint32_t count) {
                  for (std::uint32_t t = first; t < first + count; ++t) {

@@ -39,13 +39,9 @@ Status check_numbers(const TriangleMesh& mesh, const std::string& source, std::s
 
 // Of the vertices that triangles have; a file may hold others.
 Box used_box(const TriangleMesh& mesh) {
-  const Vector3& any = mesh.vertices_m[mesh.triangles[0][0]];
-  Box box{any, any};
+  Box box;
   for (const TriangleCorners& corners : mesh.triangles) {
-    for (const std::uint32_t corner : corners) {
-      box.low = box.low.cwiseMin(mesh.vertices_m[corner]);
-      box.high = box.high.cwiseMax(mesh.vertices_m[corner]);
-    }
+    for (const std::uint32_t corner : corners) box.include(mesh.vertices_m[corner]);
   }
   return box;
 }

@@ -6,6 +6,8 @@
 #include <map>
 #include <numbers>
 
+#include "engine/base/box.h"
+
 namespace spoonbill {
 namespace {
 
@@ -20,18 +22,17 @@ using Edge = std::array<int, 2>;
 using Face = std::array<int, 3>;
 
 std::vector<Steps> rounded(const std::vector<Vector3>& points_m) {
-  Vector3 low = points_m.front(), high = low;
+  Box box;
   for (const Vector3& point : points_m) {
     if (!point.allFinite()) return {};
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
+    box.include(point);
   }
-  const double side = (high - low).maxCoeff();
+  const double side = box.extent().maxCoeff();
   if (!(side > 0.0) || !std::isfinite(steps_a_side / side)) return {};
   std::vector<Steps> steps;
   steps.reserve(points_m.size());
   for (const Vector3& point : points_m) {
-    const Vector3 share = (point - low) * (steps_a_side / side);
+    const Vector3 share = (point - box.low) * (steps_a_side / side);
     steps.emplace_back(std::llround(share.x()), std::llround(share.y()), std::llround(share.z()));
   }
   return steps;

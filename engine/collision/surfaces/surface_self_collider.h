@@ -6,9 +6,9 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
+#include "engine/base/progress.h"
 #include "engine/collision/levels/element_tree.h"
 #include "engine/collision/surfaces/contact_regions.h"
 #include "engine/collision/surfaces/pair_contact.h"

@@ -210,7 +210,8 @@ Result<CadModel> read(const std::filesystem::path& file, const CadReading& readi
   say_unit(content->unit, reading, model);
   say_losses(content.value(), model);
   say_solids(named, model);
-  const Status taken = take_faces(faces, scale_of(content->unit, reading), reading, take, progress.part(share_of_transfer, 1.0), model);
+  const Status taken = take_faces(faces, scale_of(content->unit, reading), reading, take,
+                                  progress.part(share_of_transfer, 1.0), model);
   if (!taken) return taken.error();
   return model;
 }

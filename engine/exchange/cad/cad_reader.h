@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/exchange/cad/cad_writer.h"
 #include "engine/exchange/cad_model.h"

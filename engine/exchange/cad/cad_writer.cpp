@@ -193,8 +193,7 @@ Result<CadFileContent> write_iges(const CadModel& model, const Progress& progres
 
 }  // namespace
 
-Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writing,
-                                 const Progress& progress) {
+Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writing, const Progress& progress) {
   choose_unit(writing.unit);
   try {
     return writing.format == FileFormat::step ? write_step(model, writing, progress)

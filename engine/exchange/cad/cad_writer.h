@@ -1,7 +1,7 @@
 // CAD models to the text of STEP and IGES files.
 #pragma once
 
-
+#include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
 

@@ -125,8 +125,7 @@ Result<CadSolids> mesh_all(const CadModel& model, const SolidMeshing& meshing, c
 
 }  // namespace
 
-Result<CadSolids> mesh_solids(const CadModel& model, const SolidMeshing& meshing,
-                              const Progress& progress) {
+Result<CadSolids> mesh_solids(const CadModel& model, const SolidMeshing& meshing, const Progress& progress) {
   try {
     return mesh_all(model, meshing, progress);
   } catch (const Standard_Failure& failure) {

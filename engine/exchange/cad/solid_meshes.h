@@ -1,6 +1,7 @@
 // The solids that are joined of a model's faces, as watertight meshes.
 #pragma once
 
+#include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/exchange/cad/cad_writer.h"
 #include "engine/exchange/cad_model.h"

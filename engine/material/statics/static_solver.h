@@ -1,7 +1,7 @@
 // The shape in which a body rests under its loads.
 #pragma once
 
-
+#include "engine/base/progress.h"
 #include "engine/material/statics/static_body.h"
 
 namespace spoonbill {
@@ -10,7 +10,8 @@ struct StaticSettings {
   // Of the forces that the cells exert on the nodes: what may be left unbalanced.
   double tolerance = 1e-8;
   int step_limit = 400;  // Newton steps in all
-  // After each of them; may go back where the loads must grow more slowly. Stops the search, which is then an error.
+  // After each of them; may go back where the loads must grow more slowly. Stops the search, which is then an
+  // error.
   Progress progress = {};
 };
 

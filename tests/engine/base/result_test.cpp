@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/base/work_watch.h"
+#include "engine/base/progress.h"
 #include "tests/engine/throwing_asserts.h"
 
 namespace spoonbill {
@@ -18,9 +18,9 @@ TEST(Result, AssertsThatItHoldsWhatIsTaken) {
   EXPECT_THROW(Status().error(), FailedAssertion);
 }
 
-TEST(WorkWatch, AssertsThatPartsRunForwards) {
+TEST(Progress, AssertsThatPartsRunForwards) {
   const ThrowingAsserts throwing;
-  EXPECT_THROW(WorkWatch().part(0.5, 0.2), FailedAssertion);
+  EXPECT_THROW(Progress().part(0.5, 0.2), FailedAssertion);
   EXPECT_THROW(RoundsDone(1.0), FailedAssertion);
 }
 

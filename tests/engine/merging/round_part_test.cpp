@@ -12,6 +12,7 @@
 #include "engine/inspection/surface_check.h"
 #include "engine/merging/merge.h"
 #include "engine/merging/trimmed_patch.h"
+#include "tests/engine/trims/loops.h"
 
 namespace spoonbill {
 namespace {

@@ -8,6 +8,7 @@
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
 #include "engine/merging/merge.h"
+#include "tests/engine/trims/loops.h"
 
 namespace spoonbill {
 namespace {

@@ -40,6 +40,22 @@ std::vector<Eigen::Vector2d> backwards(std::vector<Eigen::Vector2d> points) {
   return points;
 }
 
+Result<TrimLoop> make_polygon_loop(const KnotVector& along_u, const KnotVector& along_v,
+                                   const std::vector<Eigen::Vector2d>& points) {
+  const int count = static_cast<int>(points.size());
+  if (count < 3) return Error{"a trim loop of " + std::to_string(count) + " points encloses nothing; give 3"};
+  std::vector<double> u, v, ends{0.0};
+  for (int i = 0; i <= count; ++i) {
+    u.push_back(points[i % count].x());
+    v.push_back(points[i % count].y());
+    ends.push_back(i);
+  }
+  ends.push_back(count);
+  auto knots = KnotVector::open(1, std::move(ends));
+  if (!knots) return knots.error();
+  return make_trim_loop(along_u, along_v, std::move(knots).value(), std::move(u), std::move(v));
+}
+
 TrimLoop polygon_loop(const KnotVector& u, const KnotVector& v, const std::vector<Eigen::Vector2d>& points) {
   auto loop = make_polygon_loop(u, v, points);
   EXPECT_TRUE(loop.ok()) << (loop ? "" : loop.error().message);

@@ -16,6 +16,10 @@ KnotVector periodic_domain(double start, double end);
 std::vector<Eigen::Vector2d> rectangle(double low_u, double low_v, double high_u, double high_v);
 std::vector<Eigen::Vector2d> backwards(std::vector<Eigen::Vector2d> points);
 
+// The polygon through the points, the last of which is joined to the first. Refused: what make_trim_loop()
+// refuses.
+Result<TrimLoop> make_polygon_loop(const KnotVector& along_u, const KnotVector& along_v,
+                                   const std::vector<Eigen::Vector2d>& points);
 TrimLoop polygon_loop(const KnotVector& u, const KnotVector& v, const std::vector<Eigen::Vector2d>& points);
 
 // A periodic cubic over equal knots, its `count` control points evenly on a circle. Clockwise for a hole.

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "loops.h"
+#include "tests/engine/trims/loops.h"
 
 namespace spoonbill {
 namespace {
