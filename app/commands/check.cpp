@@ -140,7 +140,8 @@ Status check_meetings(FactSheet& facts, const std::vector<std::size_t>& solids, 
   std::vector<const Surface*> surfaces;
   surfaces.reserve(solids.size());
   for (const std::size_t place : solids) surfaces.push_back(&all[place].surface);
-  const auto meetings = find_body_meetings(surfaces, [&](double) { return !interrupt.requested(); });
+  const auto meetings =
+      find_body_meetings(surfaces, Progress([&](double) { return !interrupt.requested(); }));
   if (!meetings) {
     interrupt.answer();
     return Error{"stopped"};

@@ -54,8 +54,8 @@ class HapticSide {
   // its replay would not know where the tick broke off.
   void tick(const LoopTick& tick) noexcept;
 
-  // When the thread has stopped: leaves the device without force, ends a recording as stop_recording does, and
-  // hands the journal the last changes.
+  // When the thread has stopped: leaves the device without force, ends a recording as stop_recording does,
+  // and hands the journal the last changes.
   void close();
 
   const Session* session() const { return lent_.session.get(); }

@@ -11,6 +11,7 @@
 
 namespace spoonbill {
 
+using Vector2 = Eigen::Vector2d;
 using Vector3 = Eigen::Vector3d;
 using Quaternion = Eigen::Quaterniond;
 

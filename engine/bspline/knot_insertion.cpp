@@ -12,17 +12,17 @@ namespace spoonbill {
 
 namespace {
 
-using Line = std::vector<double>;  // the coordinates of all control points with one index
+using ControlLine = std::vector<double>;  // the coordinates of all control points with one index
 
 // Control point i, a line, reaches from knots[i] to knots[i + degree + 1].
 struct Sequence {
   int degree;
   std::vector<double> knots;
-  std::vector<Line> lines;
+  std::vector<ControlLine> lines;
 };
 
-Line mix(const Line& a, const Line& b, double weight_of_b) {
-  Line mixed(a.size());
+ControlLine mix(const ControlLine& a, const ControlLine& b, double weight_of_b) {
+  ControlLine mixed(a.size());
   for (std::size_t k = 0; k < a.size(); ++k) mixed[k] = (1.0 - weight_of_b) * a[k] + weight_of_b * b[k];
   return mixed;
 }
@@ -32,7 +32,7 @@ void insert_once(Sequence& sequence, double knot) {
   const auto& knots = sequence.knots;
   const int degree = sequence.degree;
   const int span = static_cast<int>(std::upper_bound(knots.begin(), knots.end(), knot) - knots.begin()) - 1;
-  std::vector<Line> lines(sequence.lines.begin(), sequence.lines.begin() + span - degree + 1);
+  std::vector<ControlLine> lines(sequence.lines.begin(), sequence.lines.begin() + span - degree + 1);
   for (int i = span - degree + 1; i <= span; ++i) {
     // Where the knot is a multiple one, the last of these points have nothing of it to blend.
     const double weight = knots[i] < knot ? (knot - knots[i]) / (knots[i + degree] - knots[i]) : 0.0;
@@ -55,7 +55,8 @@ std::vector<double> with_knot(const KnotVector& knots, double knot) {
 
 // Inserts the knot into as many periods as the control points of one reach, and keeps that one. Further
 // periods on either side make every insertion one of an inner knot.
-std::vector<Line> insert_into_periodic(const KnotVector& knots, const std::vector<Line>& lines, double knot) {
+std::vector<ControlLine> insert_into_periodic(const KnotVector& knots, const std::vector<ControlLine>& lines,
+                                              double knot) {
   const int degree = knots.degree(), count = knots.control_point_count();
   const double start = knots.domain_start(), end = knots.domain_end(), period = end - start;
   const auto in_period = [&](int wrap, double u) {
@@ -85,20 +86,20 @@ int multiplicity_of(const KnotVector& knots, double knot) {
   return multiplicity;
 }
 
-std::vector<Line> lines_of(const ControlNet& net, Direction direction) {
+std::vector<ControlLine> lines_of(const ControlNet& net, Direction direction) {
   const bool along_u = direction == Direction::u;
-  std::vector<Line> lines(static_cast<std::size_t>(along_u ? net.rows : net.columns));
+  std::vector<ControlLine> lines(static_cast<std::size_t>(along_u ? net.rows : net.columns));
   for (int i = 0; i < net.rows; ++i) {
     for (int j = 0; j < net.columns; ++j) {
       const std::size_t k = net.index(i, j);
-      Line& line = lines[along_u ? i : j];
+      ControlLine& line = lines[along_u ? i : j];
       line.insert(line.end(), {net.x[k], net.y[k], net.z[k]});
     }
   }
   return lines;
 }
 
-ControlNet net_of(const std::vector<Line>& lines, Direction direction) {
+ControlNet net_of(const std::vector<ControlLine>& lines, Direction direction) {
   const int count = static_cast<int>(lines.size()), across = static_cast<int>(lines[0].size() / 3);
   const bool along_u = direction == Direction::u;
   ControlNet net(along_u ? count : across, along_u ? across : count);
@@ -135,7 +136,7 @@ Result<Surface> insert_knot(const Surface& surface, Direction direction, double 
                  status.error().message};
   }
   knot = knots.into_domain(knot);
-  std::vector<Line> lines = lines_of(surface.net, direction);
+  std::vector<ControlLine> lines = lines_of(surface.net, direction);
   while (multiplicity_of(knots, knot) < multiplicity) {
     if (knots.is_periodic()) {
       lines = insert_into_periodic(knots, lines, knot);

@@ -21,7 +21,7 @@ double v_at(const TrimmedArea::Edge& edge, double u) {
 }
 
 // A side of a piece of a cell: a v at each of two lines of u.
-struct Side {
+struct CutSide {
   double v_first, v_last;
 };
 
@@ -59,22 +59,22 @@ class Cutter {
   // Between two lines of u, edges lie above each other.
   void take_slab(int i, int j, double first, double last) {
     const double v0 = v_.at(j), v1 = v_.at(j + 1);
-    std::vector<Side> sides{{v0, v0}, {v1, v1}};
+    std::vector<CutSide> sides{{v0, v0}, {v1, v1}};
     for (const TrimmedArea::Edge& edge : cells_.edges(i, j)) {
       const auto [low, high] = std::minmax(edge.from.x(), edge.to.x());
       if (low > first || high < last) continue;
       sides.push_back({std::clamp(v_at(edge, first), v0, v1), std::clamp(v_at(edge, last), v0, v1)});
     }
     std::sort(sides.begin(), sides.end(),
-              [](const Side& a, const Side& b) { return a.v_first + a.v_last < b.v_first + b.v_last; });
+              [](const CutSide& a, const CutSide& b) { return a.v_first + a.v_last < b.v_first + b.v_last; });
     for (std::size_t s = 0; s + 1 < sides.size(); ++s) {
-      const Side &low = sides[s], &high = sides[s + 1];
+      const CutSide &low = sides[s], &high = sides[s + 1];
       const double middle = 0.25 * (low.v_first + low.v_last + high.v_first + high.v_last);
       if (area_.contains(0.5 * (first + last), middle)) take_piece(i, j, first, last, low, high);
     }
   }
 
-  void take_piece(int i, int j, double first, double last, const Side& low, const Side& high) {
+  void take_piece(int i, int j, double first, double last, const CutSide& low, const CutSide& high) {
     Piece piece{i, j, {}};
     for (const Eigen::Vector2d& corner :
          {Eigen::Vector2d(first, low.v_first), Eigen::Vector2d(last, low.v_last),

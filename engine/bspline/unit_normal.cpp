@@ -24,7 +24,7 @@ constexpr double hole = 1e-6;
 constexpr double steps_inside[] = {0x1p-14, 0x1p-10, 0x1p-6};
 
 // Derivatives by parameters that run over a domain of length 1, and the bound that they are compared with.
-struct Tangents {
+struct LimitTangents {
   Vector3 du = Vector3::Zero(), dv = Vector3::Zero();
   Vector3 duu = Vector3::Zero(), duv = Vector3::Zero(), dvv = Vector3::Zero();
   double product_bound = 0.0;
@@ -41,8 +41,8 @@ double length_of(const KnotVector& knots) {
 }
 
 template <class Real>
-Tangents tangents_at(const KnotVector& u_knots, const KnotVector& v_knots, const NetView<Real>& net, double u,
-                     double v) {
+LimitTangents tangents_at(const KnotVector& u_knots, const KnotVector& v_knots, const NetView<Real>& net,
+                          double u, double v) {
   const BasisFunctions bu = basis_functions(u_knots, u), bv = basis_functions(v_knots, v);
   const auto control = [&](int i, int j) {
     const int index = u_knots.control_index(bu.span, i) * net.columns + v_knots.control_index(bv.span, j);
@@ -50,7 +50,7 @@ Tangents tangents_at(const KnotVector& u_knots, const KnotVector& v_knots, const
   };
   // Relative to one control point, so that a distant origin adds no rounding noise.
   const Vector3 origin = control(0, 0);
-  Tangents tangents;
+  LimitTangents tangents;
   double reach = 0.0;
   for (int i = 0; i <= u_knots.degree(); ++i) {
     Vector3 value = Vector3::Zero(), dv = Vector3::Zero(), dvv = Vector3::Zero();
@@ -98,7 +98,7 @@ struct Growth {
   Vector3 by_u = Vector3::Zero(), by_v = Vector3::Zero();
 };
 
-Growth growth_from_edge(const Tangents& t, int inward_u, int inward_v) {
+Growth growth_from_edge(const LimitTangents& t, int inward_u, int inward_v) {
   return {inward_u * (t.duu.cross(t.dv) + t.du.cross(t.duv)),
           inward_v * (t.duv.cross(t.dv) + t.du.cross(t.dvv))};
 }
@@ -116,7 +116,7 @@ Vector3 unit_normal(const KnotVector& u_knots, const KnotVector& v_knots, const 
                     double v) {
   u = u_knots.into_domain(u);
   v = v_knots.into_domain(v);
-  const Tangents here = tangents_at(u_knots, v_knots, net, u, v);
+  const LimitTangents here = tangents_at(u_knots, v_knots, net, u, v);
   const Vector3 product = here.du.cross(here.dv);
   const Growth growth = growth_from_edge(here, inward(u_knots, u), inward(v_knots, v));
   const double threshold = noise<Real> * here.product_bound;
@@ -130,7 +130,7 @@ Vector3 unit_normal(const KnotVector& u_knots, const KnotVector& v_knots, const 
     const double u_inside = step_from(u_knots, u, step), v_inside = step_from(v_knots, v, step);
     const double neighbours[][2] = {{u, v_inside}, {u_inside, v}, {u_inside, v_inside}};
     for (const auto& [nu, nv] : neighbours) {
-      const Tangents there = tangents_at(u_knots, v_knots, net, nu, nv);
+      const LimitTangents there = tangents_at(u_knots, v_knots, net, nu, nv);
       const Vector3 product_there = there.du.cross(there.dv);
       if (exceeds(product_there, noise<Real> * there.product_bound)) return direction_of(product_there);
     }

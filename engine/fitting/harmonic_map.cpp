@@ -132,11 +132,11 @@ Vector3 across(const PointGraph& graph, std::uint32_t node) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
 }
 
-enum class Side : unsigned char { none, left, right };
+enum class SquareSide : unsigned char { none, left, right };
 
 // A cut along the shortest way between the ends: to which side of it nodes near it lie.
 struct Cut {
-  std::vector<Side> side;
+  std::vector<SquareSide> side;
   std::vector<bool> near_pole;
 };
 
@@ -182,7 +182,7 @@ std::vector<Vector3> lefts_of(const PointGraph& graph, const std::vector<std::ui
 Cut cut_between(const PointGraph& graph, const ShapeEnds& ends) {
   const std::vector<std::uint32_t> path = shortest_path(graph, ends);
   const std::vector<Vector3> lefts = lefts_of(graph, path);
-  Cut cut{std::vector<Side>(graph.size(), Side::none), std::vector<bool>(graph.size(), false)};
+  Cut cut{std::vector<SquareSide>(graph.size(), SquareSide::none), std::vector<bool>(graph.size(), false)};
   std::vector<double> distance(graph.size(), std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < path.size(); ++k) {
     const Vector3& at = graph.points_m[path[k]];
@@ -190,14 +190,14 @@ Cut cut_between(const PointGraph& graph, const ShapeEnds& ends) {
       const double away = graph.length(node, path[k]);
       if (away >= distance[node]) return;
       distance[node] = away;
-      cut.side[node] = (graph.points_m[node] - at).dot(lefts[k]) > 0.0 ? Side::left : Side::right;
+      cut.side[node] = (graph.points_m[node] - at).dot(lefts[k]) > 0.0 ? SquareSide::left : SquareSide::right;
     };
     for (const std::uint32_t other : graph.of(path[k])) {
       offer(other);
       for (const std::uint32_t further : graph.of(other)) offer(further);
     }
   }
-  for (const std::uint32_t node : path) cut.side[node] = Side::right;
+  for (const std::uint32_t node : path) cut.side[node] = SquareSide::right;
   for (const auto* end : {&ends.start, &ends.end}) {
     if (end->size() == 1) mark_around(graph, end->front(), 2, cut.near_pole);
   }
@@ -208,8 +208,8 @@ std::optional<std::vector<double>> turning_u(const PointGraph& graph, const Shap
   const Cut cut = cut_between(graph, ends);
   const auto use = [&](std::uint32_t a, std::uint32_t b) { return !cut.near_pole[a] && !cut.near_pole[b]; };
   const auto jump = [&](std::uint32_t a, std::uint32_t b) {
-    if (cut.side[a] == Side::right && cut.side[b] == Side::left) return -1.0;
-    if (cut.side[a] == Side::left && cut.side[b] == Side::right) return 1.0;
+    if (cut.side[a] == SquareSide::right && cut.side[b] == SquareSide::left) return -1.0;
+    if (cut.side[a] == SquareSide::left && cut.side[b] == SquareSide::right) return 1.0;
     return 0.0;
   };
   std::vector<double> fixed(graph.size(), not_a_number);

@@ -1,13 +1,12 @@
 // Where points lie in the (u, v) square of a surface that is still to be fitted to them.
 #pragma once
 
-#include <Eigen/Core>
 #include <string_view>
 #include <vector>
 
-namespace spoonbill {
+#include "engine/base/pose.h"
 
-using Vector2 = Eigen::Vector2d;
+namespace spoonbill {
 
 enum class ShapeKind { sheet, tube, closed };
 

@@ -52,13 +52,13 @@ std::optional<Axis> round_axis(const std::vector<Vector3>& points_m) {
 }
 
 // Distance from the axis and height along it, of each point.
-struct Profile {
+struct AxisProfile {
   std::vector<Vector2> places;
   Box2 box;  // from the axis outwards
 };
 
-Profile profile_of(const std::vector<Vector3>& points_m, const Axis& axis) {
-  Profile profile;
+AxisProfile profile_of(const std::vector<Vector3>& points_m, const Axis& axis) {
+  AxisProfile profile;
   profile.box.low.x() = profile.box.high.x() = 0.0;
   for (const Vector3& point : points_m) {
     const Vector3 way = point - axis.middle;
@@ -73,7 +73,7 @@ Profile profile_of(const std::vector<Vector3>& points_m, const Axis& axis) {
 // Cells of the half plane beside the axis, which is the left side of column 0; with a margin elsewhere.
 class Picture {
  public:
-  Picture(const Profile& profile, double cell_m) : cell_m_(cell_m), low_(profile.box.low) {
+  Picture(const AxisProfile& profile, double cell_m) : cell_m_(cell_m), low_(profile.box.low) {
     constexpr int margin = dilation + 2;
     low_.y() -= margin * cell_m;
     columns_ = static_cast<int>((profile.box.high.x() - profile.box.low.x()) / cell_m) + 1 + margin;
@@ -225,7 +225,7 @@ double seen_all_around(const std::vector<Vector2>& uv, const std::vector<double>
 std::optional<ProfileMap> profile_map(const std::vector<Vector3>& points_m) {
   const auto axis = round_axis(points_m);
   if (!axis) return {};
-  const Profile profile = profile_of(points_m, *axis);
+  const AxisProfile profile = profile_of(points_m, *axis);
   const double size = (profile.box.high - profile.box.low).norm();
   const double cell =
       size * std::clamp(3.0 * points_a_cell / static_cast<double>(points_m.size()), 1.0 / 250.0, 1.0 / 80.0);

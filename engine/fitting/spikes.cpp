@@ -24,7 +24,7 @@ constexpr double least_height = 4.0;
 constexpr double goes_on = 1.2, lies_flat = 0.6;
 constexpr std::size_t most_measured = 1'000'000;
 
-using Ring = std::set<std::uint32_t>;
+using VertexRing = std::set<std::uint32_t>;
 
 double length(const Scan& mesh, std::uint32_t a, std::uint32_t b) {
   return (mesh.points_m[b] - mesh.points_m[a]).norm();
@@ -66,14 +66,14 @@ std::set<std::uint32_t> stand_out(const Scan& mesh) {
 }
 
 // Of each of these vertices, those that it has an edge with.
-std::map<std::uint32_t, Ring> rings_of(const Scan& mesh, const std::set<std::uint32_t>& vertices) {
+std::map<std::uint32_t, VertexRing> rings_of(const Scan& mesh, const std::set<std::uint32_t>& vertices) {
   std::vector<bool> is_asked(mesh.points_m.size(), false);
   for (const std::uint32_t vertex : vertices) is_asked[vertex] = true;
-  std::map<std::uint32_t, Ring> rings;
+  std::map<std::uint32_t, VertexRing> rings;
   for (const TriangleCorners& corners : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (!is_asked[corners[k]]) continue;
-      Ring& ring = rings[corners[k]];
+      VertexRing& ring = rings[corners[k]];
       ring.insert(corners[(k + 1) % 3]);
       ring.insert(corners[(k + 2) % 3]);
     }
@@ -81,8 +81,8 @@ std::map<std::uint32_t, Ring> rings_of(const Scan& mesh, const std::set<std::uin
   return rings;
 }
 
-Ring without(const Ring& ring, const std::set<std::uint32_t>& others) {
-  Ring left;
+VertexRing without(const VertexRing& ring, const std::set<std::uint32_t>& others) {
+  VertexRing left;
   std::set_difference(ring.begin(), ring.end(), others.begin(), others.end(),
                       std::inserter(left, left.end()));
   return left;
@@ -91,7 +91,7 @@ Ring without(const Ring& ring, const std::set<std::uint32_t>& others) {
 class Place {
  public:
   // Of at least three vertices.
-  Place(const Scan& mesh, const Ring& ring) {
+  Place(const Scan& mesh, const VertexRing& ring) {
     for (const std::uint32_t vertex : ring) {
       middle += mesh.points_m[vertex] / static_cast<double>(ring.size());
     }
@@ -107,7 +107,7 @@ class Place {
   }
 
   // Whether these are farther out along the ring's plane, on its longer sides at least where it is stretched.
-  bool goes_on_in(const Scan& mesh, const Ring& behind) const {
+  bool goes_on_in(const Scan& mesh, const VertexRing& behind) const {
     std::vector<double> out, off;
     for (const std::uint32_t vertex : behind) {
       const Vector3 way = mesh.points_m[vertex] - middle;
@@ -129,20 +129,20 @@ class Place {
 
 std::vector<std::uint32_t> level_spikes(Scan& mesh) {
   const std::set<std::uint32_t> tips = stand_out(mesh);
-  const std::map<std::uint32_t, Ring> rings = rings_of(mesh, tips);
+  const std::map<std::uint32_t, VertexRing> rings = rings_of(mesh, tips);
   std::set<std::uint32_t> at_rings;
   for (const auto& [tip, ring] : rings) at_rings.insert(ring.begin(), ring.end());
-  const std::map<std::uint32_t, Ring> next_rings = rings_of(mesh, at_rings);
+  const std::map<std::uint32_t, VertexRing> next_rings = rings_of(mesh, at_rings);
   std::vector<std::pair<std::uint32_t, Vector3>> levelled;
   for (const auto& [tip, whole_ring] : rings) {
-    const Ring ring = without(whole_ring, tips);
+    const VertexRing ring = without(whole_ring, tips);
     if (ring.size() < 3) continue;
     const Place place(mesh, ring);
     const double height = (mesh.points_m[tip] - place.middle).norm();
     if (!(height > least_height * place.radius)) continue;
-    Ring behind;
+    VertexRing behind;
     for (const std::uint32_t vertex : ring) {
-      const Ring& next = next_rings.at(vertex);
+      const VertexRing& next = next_rings.at(vertex);
       behind.insert(next.begin(), next.end());
     }
     behind = without(without(behind, tips), ring);

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "engine/collision/rigid/body_tree.h"
-#include "engine/collision/surfaces/net_box.h"
 #include "engine/collision/surfaces/surface_pair_collider.h"
 
 namespace spoonbill {
@@ -24,7 +23,7 @@ std::optional<BodyMeeting> meeting_of(const SurfacePairCollider& collider, const
 }  // namespace
 
 std::optional<BodyMeetings> find_body_meetings(const std::vector<const Surface*>& bodies,
-                                               const StudyWatch& watch) {
+                                               const Progress& progress) {
   std::vector<Box> boxes;
   boxes.reserve(bodies.size());
   for (const Surface* body : bodies) {
@@ -35,7 +34,7 @@ std::optional<BodyMeetings> find_body_meetings(const std::vector<const Surface*>
   const std::vector<BodyPair> pairs = BodyTree(boxes).near_pairs();
   double done = 0.0;
   for (const auto& [first, second] : pairs) {
-    if (watch && !watch(done++ / static_cast<double>(pairs.size()))) return std::nullopt;
+    if (!progress.report(done++ / static_cast<double>(pairs.size()))) return std::nullopt;
     const Surface &a = *bodies[first], &b = *bodies[second];
     const auto grid_a = make_nested_grid(a.u, a.v, levels), grid_b = make_nested_grid(b.u, b.v, levels);
     if (!grid_a || !grid_b) {

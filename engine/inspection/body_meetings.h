@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/progress.h"
 #include "engine/bspline/surface.h"
-#include "engine/inspection/study_watch.h"
 
 namespace spoonbill {
 
@@ -23,8 +23,8 @@ struct BodyMeetings {
 };
 
 // Each surface bounds a body, closed and with its normals outward. FCL's tree picks the pairs whose boxes are
-// near. Nothing where the watch stopped it.
+// near. Nothing where it was stopped.
 std::optional<BodyMeetings> find_body_meetings(const std::vector<const Surface*>& bodies,
-                                               const StudyWatch& watch = {});
+                                               const Progress& progress = {});
 
 }  // namespace spoonbill

@@ -62,9 +62,9 @@ EdgeMatch match_open(const Edge& a, const Edge& b, std::optional<bool> asked) {
 
 // A ring seen from its middle, so that a gap between rings does not tell how they are turned; the second one
 // as it is when it has been turned towards the first.
-class Ring {
+class EdgeRing {
  public:
-  explicit Ring(const Edge& edge) : curve_(edge.curve), centre_(edge.place.middle_m) {}
+  explicit EdgeRing(const Edge& edge) : curve_(edge.curve), centre_(edge.place.middle_m) {}
   void turn(const Eigen::Matrix3d& turn) { turn_ = turn; }
 
   // At a share of the way around from a parameter, forwards or backwards.
@@ -82,7 +82,7 @@ class Ring {
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
 };
 
-double misfit(const Ring& a, const Ring& b, double seam, bool backwards) {
+double misfit(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards) {
   double sum = 0.0;
   for (int k = 0; k < samples_of_ring; ++k) {
     const double share = static_cast<double>(k) / samples_of_ring;
@@ -93,7 +93,7 @@ double misfit(const Ring& a, const Ring& b, double seam, bool backwards) {
 }
 
 // Gauss and Newton's step of the seam; converges to rounding where the rings are the same one.
-double better_seam(const Ring& a, const Ring& b, double seam, bool backwards) {
+double better_seam(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards) {
   double along = 0.0, squared = 0.0;
   for (int k = 0; k < samples_of_ring; ++k) {
     const double share = static_cast<double>(k) / samples_of_ring;
@@ -112,7 +112,7 @@ struct RingFit {
   double misfit = std::numeric_limits<double>::infinity();
 };
 
-RingFit best_fit(const Ring& a, const Ring& b, std::optional<bool> asked) {
+RingFit best_fit(const EdgeRing& a, const EdgeRing& b, std::optional<bool> asked) {
   RingFit best;
   for (const bool backwards : {false, true}) {
     if (asked.value_or(backwards) != backwards) continue;
@@ -135,8 +135,8 @@ RingFit best_fit(const Ring& a, const Ring& b, std::optional<bool> asked) {
 // Rings that lie upon each other are taken as they lie, which is exact where they are one; others turned.
 RingFit best_turned_fit(const Edge& a, const Edge& b, std::optional<bool> asked) {
   constexpr double upon_share = 0.02;  // of the radius
-  const Ring ring_a(a);
-  Ring ring_b(b);
+  const EdgeRing ring_a(a);
+  EdgeRing ring_b(b);
   const RingFit as_they_lie = best_fit(ring_a, ring_b, asked);
   const double upon_m = upon_share * a.place.radius_m;
   const bool upon = (b.place.middle_m - a.place.middle_m).norm() <= upon_m &&
@@ -151,7 +151,7 @@ RingFit best_turned_fit(const Edge& a, const Edge& b, std::optional<bool> asked)
 EdgeMatch match_rings(const Edge& a, const Edge& b, std::optional<bool> asked) {
   const RingFit best = best_turned_fit(a, b, asked);
   const double seam = b.curve.knots.into_domain(best.seam);
-  const Ring ring_a(a), ring_b(b);
+  const EdgeRing ring_a(a), ring_b(b);
   std::vector<Vector3> along, beside;
   for (int k = 0; k < samples_of_ring; ++k) {
     const double share = static_cast<double>(k) / samples_of_ring;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double rounding_m = 1e-12;
 
-struct Grid {
+struct PatchGrid {
   const std::vector<Surface>& patches;
   const Arrangement& arrangement;
 
@@ -39,7 +39,7 @@ Side own_side(Side in_grid, const Orientation& orientation) {
 }
 
 // From a cell to the next along a direction, which after the last is the first.
-MergedJoint described(const Grid& grid, int a, int b, Direction along, const Joint& joint) {
+MergedJoint described(const PatchGrid& grid, int a, int b, Direction along, const Joint& joint) {
   const Arrangement& all = grid.arrangement;
   const int cell = all.cell(a, b);
   const int next =
@@ -53,7 +53,7 @@ MergedJoint described(const Grid& grid, int a, int b, Direction along, const Joi
 
 // Every row along v is joined; what results lies one after the other along u. A single column is left as it
 // is: it may be closed along v.
-Result<std::vector<Joined>> joined_along_v(const Grid& grid, const JoinRequest& request) {
+Result<std::vector<Joined>> joined_along_v(const PatchGrid& grid, const JoinRequest& request) {
   std::vector<Joined> joined;
   if (grid.arrangement.columns == 1) {
     for (int a = 0; a < grid.arrangement.rows; ++a) joined.push_back({grid.at(a, 0), 0.0, {}});
@@ -114,7 +114,7 @@ Result<Approximation> closed_without_folds(const Surface& surface, Direction dir
 }
 
 // Where the grid is a ring along the direction.
-Status close_ring(const Grid& grid, Direction direction, Steps& steps, Merged& merged) {
+Status close_ring(const PatchGrid& grid, Direction direction, Steps& steps, Merged& merged) {
   const Arrangement& all = grid.arrangement;
   const bool along_u = direction == Direction::u;
   const std::vector<EdgeMatch>& matches = along_u ? all.closing_u : all.closing_v;
@@ -142,7 +142,7 @@ Status close_ring(const Grid& grid, Direction direction, Steps& steps, Merged& m
   return {};
 }
 
-Result<Merged> joined_grid(const Grid& grid, const JoinRequest& request, Steps& steps) {
+Result<Merged> joined_grid(const PatchGrid& grid, const JoinRequest& request, Steps& steps) {
   const Arrangement& all = grid.arrangement;
   auto rows = joined_along_v(grid, all.columns > 1 ? steps.next(0.0) : request);
   if (!rows) return rows.error();
@@ -173,7 +173,7 @@ Result<Merged> joined_grid(const Grid& grid, const JoinRequest& request, Steps& 
   return merged;
 }
 
-Result<Merged> merge_grid(const Grid& grid, const JoinRequest& request) {
+Result<Merged> merge_grid(const PatchGrid& grid, const JoinRequest& request) {
   const Arrangement& all = grid.arrangement;
   int count = 0;
   for (const bool step : {all.columns > 1, all.rows > 1, !all.closing_u.empty(), !all.closing_v.empty()}) {

@@ -16,8 +16,6 @@ namespace spoonbill {
 
 namespace {
 
-using Vector2 = Eigen::Vector2d;
-
 // A rectangle with rounded corners about the origin, from the middle of its side at +x on through +y, by
 // length.
 class RoundedRectangle {

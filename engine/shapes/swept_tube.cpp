@@ -19,7 +19,7 @@ constexpr int frames = 2048;
 // Of the radius of the bend: nearer, the inside of the tube all but folds.
 constexpr double most_of_bend = 0.98;
 
-struct Frame {
+struct SweepFrame {
   Vector3 place, along, across;  // unit
 
   Vector3 up() const { return along.cross(across); }
@@ -31,10 +31,10 @@ Vector3 reflected(const Vector3& vector, const Vector3& by) {
 }
 
 // The frame at another place near by, turned as little as may be.
-Frame carried(const Frame& from, const Vector3& place, const Vector3& along) {
+SweepFrame carried(const SweepFrame& from, const Vector3& place, const Vector3& along) {
   const Vector3 way = place - from.place;
   const Vector3 across = reflected(from.across, way), tangent = reflected(from.along, way);
-  Frame to{place, along, reflected(across, along - tangent)};
+  SweepFrame to{place, along, reflected(across, along - tangent)};
   to.across = (to.across - to.across.dot(along) * along).normalized();
   return to;
 }
@@ -44,8 +44,8 @@ class SweptTube {
   SweptTube(const TubeSize& size) : size_(size), end_m_(std::min(size.half_width_m, size.half_height_m)) {
     const Vector3 along = tangent(0.0);
     const Vector3 level = along.cross(Vector3::UnitY());
-    Frame frame{size.middle.at(0.0), along,
-                level.norm() > 1e-6 ? Vector3(level.normalized()) : Vector3(Vector3::UnitX())};
+    SweepFrame frame{size.middle.at(0.0), along,
+                     level.norm() > 1e-6 ? Vector3(level.normalized()) : Vector3(Vector3::UnitX())};
     frame.across = (frame.across - frame.across.dot(along) * along).normalized();
     frames_.push_back(frame);
     for (int k = 1; k <= frames; ++k) {
@@ -57,7 +57,7 @@ class SweptTube {
   double cap_m() const { return 0.5 * std::numbers::pi * end_m_; }
   double length_m() const { return size_.middle.end() + 2.0 * cap_m(); }
 
-  Frame frame_at(double t) const {
+  SweepFrame frame_at(double t) const {
     const double step = size_.middle.end() / frames;
     const auto k = static_cast<std::size_t>(std::clamp(std::floor(t / step), 0.0, frames - 1.0));
     return carried(frames_[k], size_.middle.at(t), tangent(t));
@@ -65,7 +65,7 @@ class SweptTube {
 
   Vector3 at(double u, double v) const {
     const double distance = v * length_m() - cap_m(), end = size_.middle.end();
-    const Frame frame = frame_at(std::clamp(distance, 0.0, end));
+    const SweepFrame frame = frame_at(std::clamp(distance, 0.0, end));
     const double beyond = distance < 0.0 ? distance : distance > end ? distance - end : 0.0;
     const double angle = beyond / end_m_;
     const double wide = v <= 0.0 || v >= 1.0 ? 0.0 : std::cos(angle), around = 2.0 * std::numbers::pi * u;
@@ -80,7 +80,7 @@ class SweptTube {
     const Vector3 first = size_.middle.first_derivative(t), second = size_.middle.second_derivative(t);
     const double speed = first.squaredNorm();
     const Vector3 bend = (second - second.dot(first) / speed * first) / speed;
-    const Frame frame = frame_at(t);
+    const SweepFrame frame = frame_at(t);
     return std::hypot(size_.half_width_m * bend.dot(frame.across),
                       size_.half_height_m * bend.dot(frame.up()));
   }
@@ -90,7 +90,7 @@ class SweptTube {
 
   TubeSize size_;
   double end_m_;
-  std::vector<Frame> frames_;
+  std::vector<SweepFrame> frames_;
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t none = 0xffffffffU;
 
 // Vertices in the order in which the triangles beside the hole go; the hole's own go the other way.
-using Rim = std::vector<std::uint32_t>;
+using BoundaryLoop = std::vector<std::uint32_t>;
 
 // Cuts the sides of a boundary into rims that meet no vertex twice. Sides of different parts have no vertex
 // in common, so every rim belongs to one part.
@@ -52,7 +52,7 @@ class RimWalk {
  private:
   template <class Take>
   void cut_at(std::uint32_t vertex, const Take& take) {
-    const Rim rim(path_.begin() + place_[vertex], path_.end());
+    const BoundaryLoop rim(path_.begin() + place_[vertex], path_.end());
     for (const std::uint32_t passed : rim) place_[passed] = none;
     path_.resize(path_.size() - rim.size());
     take(rim);
@@ -65,7 +65,7 @@ class RimWalk {
   std::vector<std::uint32_t> path_;
 };
 
-Vector3 middle(const TriangleMesh& mesh, const Rim& rim) {
+Vector3 middle(const TriangleMesh& mesh, const BoundaryLoop& rim) {
   Vector3 sum = Vector3::Zero();
   double length = 0.0;
   for (std::size_t k = 0; k < rim.size(); ++k) {
@@ -77,7 +77,7 @@ Vector3 middle(const TriangleMesh& mesh, const Rim& rim) {
   return sum / length;
 }
 
-double fan_area(const TriangleMesh& mesh, const Rim& rim) {
+double fan_area(const TriangleMesh& mesh, const BoundaryLoop& rim) {
   const Vector3 centre = middle(mesh, rim);
   double sum = 0.0;
   for (std::size_t k = 0; k < rim.size(); ++k) {
@@ -87,12 +87,12 @@ double fan_area(const TriangleMesh& mesh, const Rim& rim) {
 }
 
 struct Openings {
-  std::vector<Rim> rims;
+  std::vector<BoundaryLoop> rims;
   double area_m2 = 0.0;
 };
 
 // A crack's own triangles would have no normal.
-bool is_crack(const TriangleMesh& mesh, const Rim& rim) {
+bool is_crack(const TriangleMesh& mesh, const BoundaryLoop& rim) {
   double longest = 0.0;
   for (std::size_t k = 0; k < rim.size(); ++k) {
     longest = std::max(longest, (mesh.vertices_m[rim[k]] - mesh.vertices_m[rim[0]]).norm());
@@ -100,7 +100,7 @@ bool is_crack(const TriangleMesh& mesh, const Rim& rim) {
   return fan_area(mesh, rim) <= vertex_joining_share * longest * longest;
 }
 
-void add_fan(TriangleMesh& mesh, const Rim& rim) {
+void add_fan(TriangleMesh& mesh, const BoundaryLoop& rim) {
   if (rim.size() == 3) {
     mesh.triangles.push_back({rim[0], rim[2], rim[1]});
     return;
@@ -131,7 +131,7 @@ std::vector<Openings> find_openings(MeshParts& parts) {
     }
   }
   std::vector<Openings> openings(parts.parts.size());
-  RimWalk(mesh, edges.boundary()).walk([&](const Rim& rim) {
+  RimWalk(mesh, edges.boundary()).walk([&](const BoundaryLoop& rim) {
     Openings& mine = openings[part_of_vertex(parts.parts, rim[0])];
     mine.area_m2 += fan_area(mesh, rim);
     mine.rims.push_back(rim);
@@ -146,12 +146,12 @@ std::size_t fill_small_holes(MeshParts& parts) {
   std::size_t filled = 0, cracks = 0;
   for (std::size_t p = 0; p < parts.parts.size(); ++p) {
     MeshPart& part = parts.parts[p];
-    std::vector<Rim>& rims = openings[p].rims;
+    std::vector<BoundaryLoop>& rims = openings[p].rims;
     part.closed = parts.orientable[p] &&
                   (rims.empty() || openings[p].area_m2 <= hole_share * area_of(parts.mesh, part));
     if (!part.closed) rims.clear();
     cracks += rims.size();
-    std::erase_if(rims, [&](const Rim& rim) { return is_crack(parts.mesh, rim); });
+    std::erase_if(rims, [&](const BoundaryLoop& rim) { return is_crack(parts.mesh, rim); });
     cracks -= rims.size();
     filled += rims.size();
   }
@@ -163,7 +163,7 @@ std::size_t fill_small_holes(MeshParts& parts) {
     MeshPart& part = parts.parts[p];
     const std::uint32_t before = part.first_vertex;
     part = append_part(parts.mesh, part, whole);
-    for (Rim& rim : openings[p].rims) {
+    for (BoundaryLoop& rim : openings[p].rims) {
       for (std::uint32_t& vertex : rim) vertex = vertex - before + part.first_vertex;
       add_fan(whole, rim);
     }

@@ -8,7 +8,6 @@
 namespace spoonbill {
 namespace {
 
-using Vector2 = Eigen::Vector2d;
 using Matrix2 = Eigen::Matrix2d;
 
 constexpr int most_steps = 40;

@@ -14,12 +14,12 @@ namespace spoonbill {
 namespace {
 
 using Operator = StepGeom_CartesianTransformationOperator3d;
-using Direction = opencascade::handle<StepGeom_Direction>;
+using UnitDirection = opencascade::handle<StepGeom_Direction>;
 
 // Of files' own rounding.
 constexpr double rounding = 1e-4;
 
-gp_XYZ vector_of(const Direction& direction, const gp_XYZ& otherwise) {
+gp_XYZ vector_of(const UnitDirection& direction, const gp_XYZ& otherwise) {
   if (direction.IsNull() || direction->NbDirectionRatios() < 3) return otherwise;
   return {direction->DirectionRatiosValue(1), direction->DirectionRatiosValue(2),
           direction->DirectionRatiosValue(3)};

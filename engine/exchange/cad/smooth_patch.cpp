@@ -17,9 +17,9 @@ struct Derivatives {
 };
 
 // One direction of a surface over a box.
-class Line {
+class ParameterLine {
  public:
-  Line(const GeomAdaptor_Surface& surface, const ParameterBox& box, bool along_u)
+  ParameterLine(const GeomAdaptor_Surface& surface, const ParameterBox& box, bool along_u)
       : surface_(&surface), box_(box), along_u_(along_u) {}
 
   double start() const { return along_u_ ? box_.u_start : box_.v_start; }
@@ -63,7 +63,7 @@ class Line {
 
 // Up to which order, of 0 to 2, the derivatives just before `left` and just after `right` agree; -1 where not
 // even the points do.
-int continuity_across(const Line& line, double left, double right, double scale) {
+int continuity_across(const ParameterLine& line, double left, double right, double scale) {
   const double step = 1e-9 * (line.end() - line.start());
   const double length = line.end() - line.start();
   int continuity = 2;
@@ -78,7 +78,7 @@ int continuity_across(const Line& line, double left, double right, double scale)
   return continuity;
 }
 
-PatchDirection direction_of(const Line& line, double scale) {
+PatchDirection direction_of(const ParameterLine& line, double scale) {
   PatchDirection direction;
   const std::vector<double> ends = line.interval_ends();
   for (const double parameter : ends) direction.breaks.push_back({parameter, 2});
@@ -103,8 +103,8 @@ Result<PatchFit> approximate_patch(const opencascade::handle<Geom_Surface>& surf
                                    double scale, double tolerance_m) {
   const GeomAdaptor_Surface adaptor(surface, box.u_start, box.u_end, box.v_start, box.v_end);
   Patch patch;
-  patch.u = direction_of(Line(adaptor, box, true), scale);
-  patch.v = direction_of(Line(adaptor, box, false), scale);
+  patch.u = direction_of(ParameterLine(adaptor, box, true), scale);
+  patch.v = direction_of(ParameterLine(adaptor, box, false), scale);
   patch.at = [&](double u, double v) -> Vector3 {
     const gp_Pnt point = surface->Value(u, v);
     return scale * Vector3(point.X(), point.Y(), point.Z());

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t header_lines_limit = 100;
 constexpr std::size_t field_limit = 64;
 
-struct Field {
+struct PcdField {
   std::string_view name;
   NumberType type = NumberType::float32;
   std::uint64_t count = 1;
@@ -24,7 +24,7 @@ struct Field {
 };
 
 struct Header {
-  std::vector<Field> fields;
+  std::vector<PcdField> fields;
   std::uint64_t points = 0;
   std::string_view data;  // how: "ascii", "binary", "binary_compressed"
   std::string_view body;
@@ -84,7 +84,7 @@ Result<Header> header_from(const HeaderLines& lines, std::string_view data, std:
     }
     header.fields.push_back({lines.fields[k], *type, *numbers});
   }
-  const auto is_empty = [](const Field& field) { return field.count == 0; };
+  const auto is_empty = [](const PcdField& field) { return field.count == 0; };
   if (std::all_of(header.fields.begin(), header.fields.end(), is_empty)) {
     return Error{"its fields hold nothing: each COUNT is 0"};
   }
@@ -116,7 +116,7 @@ Result<Header> header_of(std::string_view bytes) {
 }
 
 // The places of x, y, z and of a normal's among the fields; -1 for those that are not there.
-std::array<int, 6> places_of(const std::vector<Field>& fields) {
+std::array<int, 6> places_of(const std::vector<PcdField>& fields) {
   static constexpr std::array<std::string_view, 6> names{"x", "y", "z", "normal_x", "normal_y", "normal_z"};
   std::array<int, 6> places;
   places.fill(-1);
@@ -161,7 +161,7 @@ Result<PointCloud> gather(const Header& header, const Number& number) {
 
 Result<PointCloud> text_body(Header header) {
   std::size_t numbers = 0;
-  for (Field& field : header.fields) {
+  for (PcdField& field : header.fields) {
     field.offset = numbers;
     numbers += field.count;
   }
@@ -192,14 +192,14 @@ constexpr bool swapped = std::endian::native == std::endian::big;
 // One point after another.
 Result<PointCloud> binary_body(Header header) {
   std::size_t stride = 0;
-  for (Field& field : header.fields) {
+  for (PcdField& field : header.fields) {
     field.offset = stride;
     stride += field.count * bytes_of(field.type);
   }
   const std::uint64_t held = stride == 0 ? 0 : header.body.size() / stride;
   if (header.points <= point_limit && header.points > held) return ends_early(held, header.points);
   return gather(header, [&](std::uint64_t point, std::size_t field) -> std::optional<double> {
-    const Field& of = header.fields[field];
+    const PcdField& of = header.fields[field];
     return number_at(header.body.data() + point * stride + of.offset, of.type, swapped);
   });
 }
@@ -212,7 +212,7 @@ Result<PointCloud> compressed_body(Header header) {
   std::memcpy(lengths.data(), header.body.data(), sizeof lengths);
   header.body.remove_prefix(sizeof lengths);
   std::size_t size = 0;
-  for (Field& field : header.fields) {
+  for (PcdField& field : header.fields) {
     field.offset = size;
     size += header.points * field.count * bytes_of(field.type);
   }
@@ -224,7 +224,7 @@ Result<PointCloud> compressed_body(Header header) {
     return Error{"its compressed data cannot be unpacked; it is damaged"};
   }
   return gather(header, [&](std::uint64_t point, std::size_t field) -> std::optional<double> {
-    const Field& of = header.fields[field];
+    const PcdField& of = header.fields[field];
     return number_at(bytes.data() + of.offset + point * of.count * bytes_of(of.type), of.type, swapped);
   });
 }

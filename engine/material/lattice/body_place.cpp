@@ -6,11 +6,10 @@
 #include <utility>
 
 #include "engine/collision/meshes/nearest_on_triangle.h"
+#include "engine/collision/meshes/triangle.h"
 
 namespace spoonbill {
 namespace {
-
-using Triangle = std::array<Vector3, 3>;
 
 // Both halves of the quad of four nodes; none of what has no area, as at a pole.
 void add_quad(const std::array<Vector3, 4>& corners, std::vector<Triangle>& triangles) {

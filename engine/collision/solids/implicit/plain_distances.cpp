@@ -7,7 +7,7 @@ namespace spoonbill {
 namespace {
 
 // A point of the half-plane that turns about y.
-struct Meridian {
+struct MeridianDirection {
   double out, up;
 };
 
@@ -16,7 +16,7 @@ double from_axis(const Vector3& point) {
 }
 
 // On the axis every way out is as good.
-Vector3 turned(const Meridian& direction, const Vector3& point) {
+Vector3 turned(const MeridianDirection& direction, const Vector3& point) {
   const double out = from_axis(point);
   if (!(out > 0.0)) return {direction.out, direction.up, 0.0};
   return {direction.out * (point.x() / out), direction.up, direction.out * (point.z() / out)};
@@ -30,7 +30,7 @@ Box about_axis(double radius, double low, double high) {
   return {{-radius, low, -radius}, {radius, high, radius}};
 }
 
-DistanceSample from_point(const Meridian& away, double radius, const Vector3& point) {
+DistanceSample from_point(const MeridianDirection& away, double radius, const Vector3& point) {
   const double length = std::sqrt(away.out * away.out + away.up * away.up);
   if (!(length > 0.0)) return {-radius, Vector3::UnitY()};
   return {length - radius, turned({away.out / length, away.up / length}, point)};
