@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <span>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include "app/panel/rows.h"
 #include "app/report/quantity_text.h"
@@ -13,29 +16,6 @@
 
 namespace spoonbill {
 namespace {
-
-constexpr std::array<QuantityUnit, 3> length_units = {{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}}};
-constexpr std::array<QuantityUnit, 4> modulus_units = {
-    {{"Pa", 1.0}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}}};
-constexpr std::array<QuantityUnit, 4> density_units = {
-    {{"g/cm\u00b3", 1e3}, {"g/cm3", 1e3}, {"kg/m\u00b3", 1.0}, {"kg/m3", 1.0}}};
-constexpr std::array<QuantityUnit, 1> no_unit = {{{"", 1.0}}};
-constexpr std::array<QuantityUnit, 1> per_second = {{{"/s", 1.0}}};
-constexpr std::array<QuantityUnit, 2> times = {{{"\u00d7", 1.0}, {"x", 1.0}}};
-
-// The sliders are narrower than what files may hold: what a hand can tell apart.
-constexpr Quantity radius{
-    "Radius", {0.001, 0.05}, tool_radius_range_m, SliderScale::logarithmic, length_units};
-constexpr Quantity modulus{
-    "E", {1e3, 1e12}, youngs_modulus_range_pa, SliderScale::logarithmic, modulus_units};
-constexpr Quantity poissons_ratio{"Poisson", poissons_ratio_range, poissons_ratio_range, SliderScale::linear,
-                                  no_unit};
-constexpr Quantity density{
-    "Density", {50.0, 20000.0}, density_range_kg_per_m3, SliderScale::logarithmic, density_units};
-constexpr Quantity damping{
-    "Damping", {0.0, 100.0}, sculpting_damping_range_per_s, SliderScale::linear, per_second};
-constexpr Quantity force_scale{
-    "Force scale", {0.01, 100.0}, force_scale_range, SliderScale::logarithmic, times};
 
 std::string rounded(double number, int decimals, const char* unit) {
   std::array<char, 48> text{};
@@ -63,24 +43,53 @@ void draw_title(const PanelModel& model, const Theme& theme, PanelAnswer& answer
   ImGui::EndDisabled();
 }
 
+// The row of a field that has a slider; nothing of one that has none. `text` stands in for the value's own.
+template <class Object>
+bool field_row(const Field<Object>& field, Object& object, std::string& refusal, const char* text = nullptr) {
+  const FieldForm& form = field.form;
+  if (form.slider.label == nullptr) return false;
+  const auto shown = [&](const std::string& own) { return text == nullptr ? own : std::string(text); };
+  if (const auto* number = std::get_if<double Object::*>(&field.member)) {
+    double& value = object.**number;
+    return quantity_row(form, value, shown(quantity_text(form, value)), refusal);
+  }
+  if (const auto* number = std::get_if<int Object::*>(&field.member)) {
+    int& value = object.**number;
+    const char* unit = form.unit == FieldUnit::per_tick ? " a tick" : "";
+    return slider_row(form, value, shown(std::to_string(value) + unit));
+  }
+  return false;
+}
+
+template <class Object, class Value>
+bool is_field(const Field<Object>& field, Value Object::*member) {
+  const auto* found = std::get_if<Value Object::*>(&field.member);
+  return found != nullptr && *found == member;
+}
+
+// Only a sphere shows its radius, whatever the action.
+bool goes_by(const Tool& tool, const Field<Tool>& field) {
+  if (parameter_of(tool.action, field.form.name) == nullptr) return false;
+  return tool.kind == ToolKind::sphere || !is_field(field, &Tool::radius_m);
+}
+
 void draw_tool(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
+  constexpr const char* kinds[] = {"Point", "Sphere", "Solid"};
   const RowGroup group("Tool", theme);
   if (!group) return;
   Tool tool = model.tool;
   int kind = static_cast<int>(tool.kind);
   int action = static_cast<int>(tool.action);
-  bool changed = tool.body ? choice_row("Kind", kind, {"Point", "Sphere", "Solid"})
-                           : choice_row("Kind", kind, {"Point", "Sphere"});
-  changed |= choice_row("Action", action, {"Push", "Pull", "Smooth"});
+  bool changed = choice_row("Kind", kind, std::span(kinds).first(tool.body ? 3 : 2));
+  changed |= choice_row("Action", action, tool_action_labels);
   tool.kind = static_cast<ToolKind>(kind);
   tool.action = static_cast<ToolAction>(action);
-  const bool is_sphere = tool.kind == ToolKind::sphere;
-  ImGui::BeginDisabled(!is_sphere);
-  changed |=
-      quantity_row(radius, tool.radius_m, is_sphere ? millimetres_text(tool.radius_m) : "-", answer.refusal);
-  ImGui::EndDisabled();
-  changed |= slider_row("Iterations", tool.iterations, tool_iterations_range,
-                        std::to_string(tool.iterations) + " a tick");
+  for (const Field<Tool>& field : fields_of<Tool>) {
+    const bool offered = goes_by(tool, field);
+    ImGui::BeginDisabled(!offered);
+    changed |= field_row(field, tool, answer.refusal, offered ? nullptr : "-");
+    ImGui::EndDisabled();
+  }
   if (changed) answer.requests.emplace_back(Command(SetTool{tool}));
 }
 
@@ -141,15 +150,11 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
   Material material = model.material;
   Sculpting sculpting = model.sculpting;
   bool changed = draw_presets(model, material);
-  changed |= quantity_row(modulus, material.youngs_modulus_pa, modulus_text(material.youngs_modulus_pa),
-                          answer.refusal);
-  fact_row("Felt E", felt_text(model));
-  changed |= quantity_row(poissons_ratio, material.poissons_ratio, rounded(material.poissons_ratio, 2, ""),
-                          answer.refusal);
-  changed |= quantity_row(density, material.density_kg_per_m3, density_text(material.density_kg_per_m3),
-                          answer.refusal);
-  bool steadied = quantity_row(damping, sculpting.damping_per_s, rounded(sculpting.damping_per_s, 1, " /s"),
-                               answer.refusal);
+  for (const Field<Material>& field : fields_of<Material>) {
+    changed |= field_row(field, material, answer.refusal);
+    if (is_field(field, &Material::youngs_modulus_pa)) fact_row("Felt E", felt_text(model));
+  }
+  bool steadied = field_row(field_of(&Sculpting::damping_per_s), sculpting, answer.refusal);
   steadied |= switch_row("After touch", after_touch_text(material), "settles", sculpting.settles);
   fact_row("Mass", mass_text(model));
   if (changed) ask_for(std::move(material), answer);
@@ -219,8 +224,7 @@ void draw_device(const PanelModel& model, const Theme& theme, PanelAnswer& answe
     Sculpting sculpting = model.sculpting;
     gauge_row("Force", model.force_limit_n > 0.0 ? model.force_n / model.force_limit_n : 0.0,
               rounded(model.force_n, 2, "") + " of " + newtons_text(model.force_limit_n));
-    if (quantity_row(force_scale, sculpting.force_scale, rounded(sculpting.force_scale, 2, " \u00d7"),
-                     answer.refusal)) {
+    if (field_row(field_of(&Sculpting::force_scale), sculpting, answer.refusal)) {
       answer.requests.emplace_back(Command(SetSculpting{sculpting}));
     }
     fact_row("Rate", rounded(model.rate_hz, 0, model.rate_is_nominal ? " Hz (nominal)" : " Hz") + ", " +

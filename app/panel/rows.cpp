@@ -31,14 +31,14 @@ std::string as_format(const std::string& text) {
 enum Entry : int { entry_closed, entry_opens, entry_open };
 
 // Ctrl and a click turn the slider into a field, and do not move it.
-bool slide(const Quantity& quantity, const std::string& name, double& value, const std::string& text,
+bool slide(const FieldForm& form, const std::string& name, double& value, const std::string& text,
            int& entry) {
-  const ImGuiSliderFlags flags =
-      ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat | ImGuiSliderFlags_NoInput |
-      (quantity.scale == SliderScale::logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+  const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat |
+                                 ImGuiSliderFlags_NoInput |
+                                 (form.slider.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
   double moved = value;
-  const bool changed = ImGui::SliderScalar(name.c_str(), ImGuiDataType_Double, &moved, &quantity.slider.low,
-                                           &quantity.slider.high, as_format(text).c_str(), flags);
+  const bool changed = ImGui::SliderScalar(name.c_str(), ImGuiDataType_Double, &moved, &form.slider.range.low,
+                                           &form.slider.range.high, as_format(text).c_str(), flags);
   if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && ImGui::GetIO().KeyCtrl) {
     entry = entry_opens;
     return false;
@@ -86,15 +86,15 @@ RowGroup::~RowGroup() {
   if (open_) ImGui::EndTable();
 }
 
-bool quantity_row(const Quantity& quantity, double& value, const std::string& text, std::string& refusal) {
-  begin_row(quantity.label);
-  const std::string name = hidden_name(quantity.label);
+bool quantity_row(const FieldForm& form, double& value, const std::string& text, std::string& refusal) {
+  begin_row(form.slider.label);
+  const std::string name = hidden_name(form.slider.label);
   int* entry = ImGui::GetStateStorage()->GetIntRef(ImGui::GetID(name.c_str()), entry_closed);
-  if (*entry == entry_closed) return slide(quantity, name, value, text, *entry);
+  if (*entry == entry_closed) return slide(form, name, value, text, *entry);
   std::array<char, 64> typed{};
   text.copy(typed.data(), typed.size() - 1);
   if (!type_in(name, typed, *entry)) return false;
-  const Result<double> read = read_quantity(quantity, typed.data(), text);
+  const Result<double> read = read_quantity(form, typed.data(), text);
   if (!read.ok()) {
     refusal = read.error().message;
     return false;
@@ -103,13 +103,15 @@ bool quantity_row(const Quantity& quantity, double& value, const std::string& te
   return true;
 }
 
-bool slider_row(const char* label, int& value, Range<int> range, const std::string& text) {
+bool slider_row(const FieldForm& form, int& value, const std::string& text) {
+  const char* label = form.slider.label;
+  const Range<int> range = whole(form.slider.range);
   begin_row(label);
   return ImGui::SliderInt(hidden_name(label).c_str(), &value, range.low, range.high, as_format(text).c_str(),
                           ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
 }
 
-bool choice_row(const char* label, int& chosen, std::initializer_list<const char*> names) {
+bool choice_row(const char* label, int& chosen, std::span<const char* const> names) {
   begin_row(label);
   bool changed = false;
   int index = 0;

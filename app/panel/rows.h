@@ -3,13 +3,13 @@
 // the value.
 #pragma once
 
-#include <initializer_list>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "app/panel/quantity.h"
 #include "app/panel/theme.h"
-#include "engine/base/range.h"
+#include "engine/base/field.h"
 
 namespace spoonbill {
 
@@ -27,13 +27,14 @@ class RowGroup {
   bool open_;
 };
 
-// `text` is what the slider shows for the value it has now. With Ctrl and a click a value can be typed, as
-// read_quantity() takes it; where that refuses, the value stays and `refusal` says why.
-bool quantity_row(const Quantity& quantity, double& value, const std::string& text, std::string& refusal);
-bool slider_row(const char* label, int& value, Range<int> range, const std::string& text);
+// A field with a slider. `text` is what the slider shows for the value it has now. With Ctrl and a click a
+// value can be typed, as read_quantity() takes it; where that refuses, the value stays and `refusal` says
+// why.
+bool quantity_row(const FieldForm& form, double& value, const std::string& text, std::string& refusal);
+bool slider_row(const FieldForm& form, int& value, const std::string& text);
 
 // One of a few choices side by side.
-bool choice_row(const char* label, int& chosen, std::initializer_list<const char*> names);
+bool choice_row(const char* label, int& chosen, std::span<const char* const> names);
 
 // One of many, in a list that opens.
 bool list_row(const char* label, int& chosen, const std::vector<const char*>& names);
