@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "app/session/lockstep.h"
 #include "engine/base/number_text.h"
 #include "engine/exchange/file_format.h"
+#include "engine/scene/tool_actions.h"
 #include "haptic/devices/playback_device.h"
 #include "haptic/devices/scripted_device.h"
 
@@ -174,6 +176,16 @@ Status record(const RecordOptions& options, Console& console) {
   return Error{options.source.string() + ": is neither a script nor a recording"};
 }
 
+std::string tool_action_lines() {
+  std::string lines;
+  for (const ToolActionRow& row : tool_actions) {
+    std::string name = row.name;
+    name.resize(std::max<std::size_t>(name.size() + 1, 10), ' ');
+    lines += "  " + name + row.help + "\n";
+  }
+  return lines;
+}
+
 }  // namespace
 
 CommandEntry add_record(OptionSet root) {
@@ -186,6 +198,8 @@ CommandEntry add_record(OptionSet root) {
       "that results is recorded, tick by tick, with the model. A recording as the source keeps its path and "
       "gets\n"
       "this version's states: do that when `replay` says that another version made it.\n"
+      "What a tool may do, the \"action\" of a script's `set_tool`:\n" +
+      tool_action_lines() +
       "Example: spoonbill record assets/recordings/spoon-handle-bend.script.json --out bend.recording.jsonl");
   parser.add_option("SOURCE", options->source, "A script (.json), or a recording").require();
   parser.add_option("--out", options->out, "The recording to write").require();

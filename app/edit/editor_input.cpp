@@ -9,7 +9,6 @@
 namespace spoonbill {
 namespace {
 
-constexpr Range<double> radius_range_m{0.001, 0.05};
 constexpr Range<double> strength_range_m{0.0002, 0.02};
 constexpr double drag_growth_per_px = 0.01;
 
@@ -24,8 +23,7 @@ double dragged(double value, double moved_px, Range<double> range) {
 // What a stroke does that begins with these keys held: Shift smooths, Ctrl inverts push and pull.
 ToolAction action_for_stroke(ToolAction action, const Pointer& pointer) {
   if (pointer.shift) return ToolAction::smooth;
-  if (!pointer.ctrl || action == ToolAction::smooth) return action;
-  return action == ToolAction::push ? ToolAction::pull : ToolAction::push;
+  return pointer.ctrl ? row_of(action).inverse : action;
 }
 
 }  // namespace
@@ -53,7 +51,12 @@ void Editor::take_keys(const LiveFrame& frame) {
     for (const KeyBinding& binding : key_bindings()) {
       const bool meant =
           binding.key == press.key && binding.ctrl == press.ctrl && binding.shift == press.shift;
-      if (meant) act(binding.action, frame);
+      if (!meant) continue;
+      if (binding.action == EditAction::choose_tool) {
+        set_tool(frame, binding.kind, binding.tool_action);
+      } else {
+        act(binding.action, frame);
+      }
     }
   }
 }
@@ -86,7 +89,7 @@ void Editor::drag_setting(const Pointer& pointer, const LiveFrame& frame) {
   }
   Tool tool = frame.facts.tool;
   if (tool.kind == ToolKind::point) return;
-  tool.radius_m = dragged(tool.radius_m, pointer.moved_px.x(), radius_range_m);
+  tool.radius_m = dragged(tool.radius_m, pointer.moved_px.x(), field_of(&Tool::radius_m).form.slider.range);
   ask(Command(SetTool{tool}));
 }
 
@@ -118,12 +121,8 @@ void Editor::stroke(const Pointer& pointer, const LiveFrame& frame, const Viewpo
   }
   if (!hand_.pressing()) pick_.update(frame.snapshot);
   const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
-  hand_.set_frame({pointer,
-                   held,
-                   shown_.camera,
-                   viewport,
-                   &pick_,
-                   {radius, strength_m_, tool.action == ToolAction::pull}});
+  hand_.set_frame(
+      {pointer, held, shown_.camera, viewport, &pick_, {radius, strength_m_, row_of(tool.action).grips}});
   inputs_.update(hand_, seconds);
 }
 
@@ -193,21 +192,6 @@ void Editor::act(EditAction action, const LiveFrame& frame) {
       break;
     case EditAction::keep_shape:
       ask(Command(KeepShape{}));
-      break;
-    case EditAction::tool_push_sphere:
-      set_tool(frame, ToolKind::sphere, ToolAction::push);
-      break;
-    case EditAction::tool_pull_sphere:
-      set_tool(frame, ToolKind::sphere, ToolAction::pull);
-      break;
-    case EditAction::tool_push_point:
-      set_tool(frame, ToolKind::point, ToolAction::push);
-      break;
-    case EditAction::tool_pull_point:
-      set_tool(frame, ToolKind::point, ToolAction::pull);
-      break;
-    case EditAction::tool_smooth:
-      set_tool(frame, ToolKind::sphere, ToolAction::smooth);
       break;
     default:
       act_on_view(action);

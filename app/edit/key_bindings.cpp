@@ -2,14 +2,16 @@
 
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 
 namespace spoonbill {
 namespace {
 
 using Action = EditAction;
 
-constexpr std::array<KeyBinding, 34> bindings = {{
+constexpr auto before_tools = std::to_array<KeyBinding>({
     {Action::show_keys, GLFW_KEY_F1, false, false, "F1", "Show or hide these keys"},
     {Action::open, GLFW_KEY_O, true, false, "Ctrl+O", "Open a model"},
     {Action::new_document, GLFW_KEY_N, true, false, "Ctrl+N", "Begin anew with the spoon handle"},
@@ -21,11 +23,9 @@ constexpr std::array<KeyBinding, 34> bindings = {{
     {Action::redo, GLFW_KEY_Z, true, true, "Ctrl+Shift+Z", "Redo it"},
     {Action::redo, GLFW_KEY_Y, true, false, "Ctrl+Y", "Redo it"},
     {Action::cancel, GLFW_KEY_ESCAPE, false, false, "Esc", "Cancel the stroke, or close what is open"},
-    {Action::tool_push_sphere, GLFW_KEY_1, false, false, "1", "Sphere that pushes"},
-    {Action::tool_pull_sphere, GLFW_KEY_2, false, false, "2", "Sphere that pulls"},
-    {Action::tool_push_point, GLFW_KEY_3, false, false, "3", "Point that pushes"},
-    {Action::tool_pull_point, GLFW_KEY_4, false, false, "4", "Point that pulls"},
-    {Action::tool_smooth, GLFW_KEY_5, false, false, "5", "Sphere that smooths"},
+});
+
+constexpr auto after_tools = std::to_array<KeyBinding>({
     {Action::toggle_symmetry, GLFW_KEY_X, false, false, "X", "Symmetry on or off"},
     {Action::place_plane, GLFW_KEY_P, false, false, "P", "Fix the model behind a plane at the tool"},
     {Action::remove_planes, GLFW_KEY_P, false, true, "Shift+P", "Remove the fixing planes"},
@@ -44,7 +44,38 @@ constexpr std::array<KeyBinding, 34> bindings = {{
     {Action::toggle_recording, GLFW_KEY_F9, false, false, "F9", "Start or stop recording"},
     {Action::quit, GLFW_KEY_Q, true, false, "Ctrl+Q", "Quit"},
     {Action::show_keys, GLFW_KEY_SLASH, false, true, "?", "Show or hide these keys"},
-}};
+});
+
+constexpr std::size_t tool_key_count = [] {
+  std::size_t count = 0;
+  for (const ToolActionRow& row : tool_actions) {
+    count += std::count_if(row.keys.begin(), row.keys.end(), [](const ToolKey& key) { return key.key; });
+  }
+  return count;
+}();
+
+// In the order of their keys; GLFW names digits and letters by their characters.
+constexpr auto tool_bindings = [] {
+  std::array<KeyBinding, tool_key_count> made{};
+  auto next = made.begin();
+  for (const ToolActionRow& row : tool_actions) {
+    for (const ToolKey& key : row.keys) {
+      if (key.key == nullptr) continue;
+      *next++ = {Action::choose_tool, key.key[0], false, false, key.key, key.help, key.kind, row.action};
+    }
+  }
+  std::sort(made.begin(), made.end(),
+            [](const KeyBinding& one, const KeyBinding& other) { return one.key < other.key; });
+  return made;
+}();
+
+constexpr auto bindings = [] {
+  std::array<KeyBinding, before_tools.size() + tool_bindings.size() + after_tools.size()> all{};
+  auto next = std::copy(before_tools.begin(), before_tools.end(), all.begin());
+  next = std::copy(tool_bindings.begin(), tool_bindings.end(), next);
+  std::copy(after_tools.begin(), after_tools.end(), next);
+  return all;
+}();
 
 constexpr std::array<HeldKey, 7> held = {{
     {"Left button", "Stroke: press in, drag along the screen"},

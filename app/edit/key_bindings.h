@@ -1,8 +1,9 @@
-// The keys, in one table: what they do and what F1 shows.
+// The keys, in one table: what they do and what F1 shows. Those of tools come with their actions.
 #pragma once
 
-#include <optional>
 #include <span>
+
+#include "engine/scene/tool_actions.h"
 
 namespace spoonbill {
 
@@ -28,11 +29,7 @@ enum class EditAction {
   view_right,
   view_top,
   view_perspective,
-  tool_push_sphere,
-  tool_pull_sphere,
-  tool_push_point,
-  tool_pull_point,
-  tool_smooth,
+  choose_tool,
   quit,
 };
 
@@ -43,6 +40,9 @@ struct KeyBinding {
   bool shift;
   const char* chord;  // as a person reads it
   const char* text;
+  // Of choose_tool.
+  ToolKind kind = ToolKind::sphere;
+  ToolAction tool_action = ToolAction::push;
 };
 
 // In the order in which F1 shows them.

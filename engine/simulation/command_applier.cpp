@@ -62,7 +62,7 @@ Status CommandApplier::operator()(const SetTool& command) {
     take_model(std::move(model).value());
   }
   state.scene.tool = tool;
-  const bool grips = tool.action == ToolAction::pull;
+  const bool grips = row_of(tool.action).grips;
   for (BodyState& body : state.scene_bodies()) {
     if (body.core_rests != grips) body.rest_core(grips);
   }

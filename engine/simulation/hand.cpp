@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/simulation/symmetry.h"
+#include "engine/simulation/tool_kernel.h"
 
 namespace spoonbill {
 
@@ -36,7 +37,7 @@ ToolMotion motion_of(const Simulation::State& s, const Pose& from, const Pose& t
   motion.orientation = to.orientation;
   motion.radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
   motion.coupling_n_per_m = coupling_of(s, coupling_n_per_m) / softest_ratio(s);
-  motion.body_yields = tool.action != ToolAction::smooth;
+  motion.body_yields = kernel_of(tool.action).body_yields;
   return motion;
 }
 

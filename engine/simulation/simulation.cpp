@@ -15,6 +15,7 @@
 #include "engine/simulation/simulation_state.h"
 #include "engine/simulation/snapshot_parts.h"
 #include "engine/simulation/state_hash.h"
+#include "engine/simulation/tool_kernel.h"
 
 namespace spoonbill {
 
@@ -51,7 +52,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   for (const Body& body : scene.bodies) {
     Result<BodyState> state = make_body_state(body, scene.planes, set, watch);
     if (!state.ok()) return about(body, scene, state.error());
-    state->rest_core(scene.tool.action == ToolAction::pull);
+    state->rest_core(row_of(scene.tool.action).grips);
     bodies.push_back(std::move(state).value());
   }
   Result<ToolModel> model = make_tool_model(scene.tool, set);
@@ -90,22 +91,6 @@ Status Simulation::apply(const Command& command) {
 }
 
 namespace {
-
-// The surface under the tool, as far as the tool reaches, or as a few cells do where it is small.
-void smooth(Simulation::State& s, const HeldTool& held) {
-  constexpr double least_reach_cells = 2.5;
-  const int number = held.contact.deepest_body();
-  BodyState& body = s.bodies[static_cast<std::size_t>(number)];
-  const CollisionResult& collision = held.contact.collision(number);
-  const ContactConstraints& constraints = held.contact.constraints();
-  const bool rests_on_it = constraints.acted() || (collision.found && collision.nearest.depth_m >= 0.0);
-  if (constraints.count() == 0 || !rests_on_it) return;
-  const Tool& tool = s.scene.tool;
-  const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
-  const double least = least_reach_cells * static_cast<double>(body.lattice.cell_size_m());
-  body.smoothing.apply(body.lattice, {collision.nearest.point_m, std::max(radius, least)}, s.tick);
-  if (body.mover()) body.mover()->take_moved_nodes(body.lattice);
-}
 
 bool is_tool(const Simulation::State& s, std::size_t body) {
   return body >= s.scene.bodies.size();
@@ -215,9 +200,9 @@ Reaction Simulation::advance(const ToolInput& input) {
   }
   find_contacts_between(s, hold);
   relax_bodies(s, {tools.data(), both ? std::size_t{2} : std::size_t{1}});
-  if (s.scene.tool.action == ToolAction::smooth) {
-    smooth(s, s.tool);
-    if (both) smooth(s, s.mirrored);
+  if (const auto reform = kernel_of(s.scene.tool.action).reform) {
+    reform(s, s.tool);
+    if (both) reform(s, s.mirrored);
   }
   for (std::size_t b = 0; b < s.stepped(); ++b) s.bodies[b].update_skin();
   measure_residuals(s);

@@ -4,6 +4,7 @@
 
 #include "engine/simulation/body_pair_contact.h"
 #include "engine/simulation/shell_gap.h"
+#include "engine/simulation/tool_kernel.h"
 
 namespace spoonbill {
 namespace {
@@ -95,16 +96,22 @@ void ToolContact::prepare(std::span<const BodyState> bodies, const Tool& tool, c
     near |= collision.found && -collision.nearest.depth_m <= margin_of(bodies[b]);
   }
   if (!acts(inside, near, hold)) return release();
-  const bool pulls = tool.action == ToolAction::pull;
-  if (pulls && !hold.gripping) return release();
-  const bool grips = pulls && !gripped_ && inside;
-  if (!pulls || grips) constraints_.clear();
+  kernel_of(tool.action).constrain(*this, {bodies, hold, inside});
+}
+
+void ToolContact::push(std::span<const BodyState> bodies, const ToolHold& hold) {
+  constraints_.clear();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const int body = static_cast<int>(b);
-    if (!pulls && contacts_[b].collision.found) add_pushes(body, bodies[b], hold);
-    if (grips && is_inside(contacts_[b].collision)) add_grips(body, bodies[b], hold.pose);
+    if (contacts_[b].collision.found) add_pushes(static_cast<int>(b), bodies[b], hold);
   }
-  gripped_ |= grips;
+}
+
+void ToolContact::grip(std::span<const BodyState> bodies, const ToolHold& hold) {
+  constraints_.clear();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (is_inside(contacts_[b].collision)) add_grips(static_cast<int>(b), bodies[b], hold.pose);
+  }
+  gripped_ = true;
 }
 
 // A body that the tool has just pressed lies against it, and quivers: the tool has left when it is a margin

@@ -31,9 +31,8 @@ class ToolContact {
  public:
   ToolContact(std::span<const BodyState> bodies, const ToolModel& model);
 
-  // Finds the contacts of the tool and sets the constraints of this tick. A push lets go as the tool leaves,
-  // and so does smoothing, which slides; a pull grips what it first touches while `gripping` and holds it
-  // until the button is released.
+  // Finds the contacts of the tool, and has the kernel of its action (tool_kernel.h) set the constraints of
+  // this tick.
   // While `hovering`, and then until it is outside the bodies, the tool acts on nothing.
   void prepare(std::span<const BodyState> bodies, const Tool& tool, const ToolModel& model,
                const ToolHold& hold);
@@ -42,6 +41,15 @@ class ToolContact {
   // Whether the tool acts in this tick, of which it is known whether it is inside a body and near one.
   bool acts(bool inside, bool near, const ToolHold& hold);
   void release();
+
+  // For the kernels, on what prepare() has found. The surface of the bodies stays out of the tool in this
+  // tick, and slides along it.
+  void push(std::span<const BodyState> bodies, const ToolHold& hold);
+  // What of the surface is in the tool keeps its place in the tool's frame, in this tick and in those after
+  // it, until release().
+  void grip(std::span<const BodyState> bodies, const ToolHold& hold);
+  bool gripped() const { return gripped_; }
+
   // Acts on nothing from the next prepare() on until the button is free and the tool has left the bodies, by
   // a margin or hovering.
   void lift();
