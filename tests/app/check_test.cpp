@@ -190,7 +190,7 @@ TEST(Check, TellsWhichBodiesAreInEachOther) {
   EXPECT_NEAR(meeting["depth_m"].get<double>() / size, 0.1, 2e-3);
   EXPECT_NE(run({"check", place.text("three.json")}).out.find("a and b, "), std::string::npos);
 
-  for (double& x : bodies[2].surface.net.x) x = 0.4 * (x - 2.0 * size);
+  for (double& x : bodies[2].surface.net.x) x = 0.4 * (x - 2.0 * size) + 0.2 * size;
   for (double& y : bodies[2].surface.net.y) y *= 0.4;
   for (double& z : bodies[2].surface.net.z) z *= 0.4;
   bodies.erase(bodies.begin() + 1);
