@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -135,6 +137,7 @@ Eigen::Matrix4d view_matrix(const Camera& camera) {
 }
 
 Eigen::Matrix4d projection_matrix(const Camera& camera, const Viewport& viewport) {
+  SPOONBILL_ASSERT(viewport.width_px > 0 && viewport.height_px > 0);
   const double focal = focal_px(camera, viewport);
   const Eigen::Vector2d centre = free_centre(viewport);
   const double near_m = near_share * camera.distance_m;
@@ -156,6 +159,7 @@ double pixels_per_metre(const Camera& camera, const Viewport& viewport) {
 
 std::optional<Eigen::Vector2d> project(const Camera& camera, const Viewport& viewport,
                                        const Vector3& point_m) {
+  SPOONBILL_ASSERT(viewport.width_px > 0 && viewport.height_px > 0);
   const Vector3 local = eye_axes(camera).transpose() * (point_m - eye_position(camera));
   const double depth = -local.z();
   if (depth <= 1e-9) return std::nullopt;

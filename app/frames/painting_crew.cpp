@@ -6,6 +6,8 @@
 #include <thread>
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -105,10 +107,12 @@ bool PaintingCrew::is_full() const {
 }
 
 void PaintingCrew::start(PaintingJob job) {
+  SPOONBILL_ASSERT(!is_full());
   painters_[started_++ % painter_count]->add(std::move(job));
 }
 
 Result<PaintedFrame> PaintingCrew::take() {
+  SPOONBILL_ASSERT(taken_ < started_);
   return painters_[taken_++ % painter_count]->take();
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "app/process/child_process.h"
+#include "engine/base/assert.h"
 #include "engine/base/output_file.h"
 
 namespace spoonbill {
@@ -56,6 +57,8 @@ bool VideoEncoder::available() {
 
 Result<VideoEncoder> VideoEncoder::start(const std::filesystem::path& file, int width_px, int height_px,
                                          int rate_numerator, int rate_denominator) {
+  SPOONBILL_ASSERT(width_px > 0 && height_px > 0);
+  SPOONBILL_ASSERT(rate_numerator > 0 && rate_denominator > 0);
   // ffmpeg takes the format from the ending, which must therefore stay last.
   std::filesystem::path unfinished = file;
   unfinished.replace_filename(file.stem().string() + ".unfinished" + file.extension().string());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -61,6 +63,7 @@ void derivatives_of_one(const Table& table, int degree, int r, int highest, Basi
 }  // namespace
 
 void basis_values(const KnotVector& knots, double u, BasisFunctions& basis) {
+  SPOONBILL_ASSERT_DEBUG(u >= knots.domain_start() && u <= knots.domain_end());
   const int degree = knots.degree();
   basis.span = knots.find_span(u);
   const double* at = knots.extended_knots().data() + basis.span;
@@ -79,6 +82,7 @@ void basis_values(const KnotVector& knots, double u, BasisFunctions& basis) {
 }
 
 BasisFunctions basis_functions(const KnotVector& knots, double u) {
+  SPOONBILL_ASSERT_DEBUG(u >= knots.domain_start() && u <= knots.domain_end());
   const int degree = knots.degree();
   BasisFunctions basis;
   basis.span = knots.find_span(u);

@@ -1,10 +1,13 @@
 #include "engine/bspline/blending_matrix.h"
 
+#include "engine/base/assert.h"
 #include "engine/bspline/basis.h"
 
 namespace spoonbill {
 
 Eigen::MatrixXd BlendingMatrix::dense() const {
+  SPOONBILL_ASSERT(first.size() == static_cast<std::size_t>(rows) &&
+                   values.size() == first.size() * bandwidth);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, columns);
   for (int row = 0; row < rows; ++row) {
     for (int k = 0; k < bandwidth; ++k) matrix(row, column(row, k)) += values[row * bandwidth + k];
@@ -14,6 +17,8 @@ Eigen::MatrixXd BlendingMatrix::dense() const {
 
 BlendingMatrix blending_matrix(const KnotVector& knots, std::span<const double> parameters,
                                int derivative_order) {
+  SPOONBILL_ASSERT(derivative_order >= 0 && derivative_order <= max_basis_derivative);
+  SPOONBILL_ASSERT(knots.control_point_count() > 0);
   BlendingMatrix matrix;
   matrix.rows = static_cast<int>(parameters.size());
   matrix.columns = knots.control_point_count();

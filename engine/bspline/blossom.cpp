@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -27,6 +29,9 @@ BlossomWeights blossom_of_own_degree(const KnotVector& knots, int span, std::spa
 
 BlossomWeights blossom(const KnotVector& knots, int span, std::span<const double> arguments) {
   const int degree = knots.degree(), count = static_cast<int>(arguments.size());
+  SPOONBILL_ASSERT(count >= degree && count <= max_degree);
+  SPOONBILL_ASSERT(span >= degree && span + degree + 1 < static_cast<int>(knots.extended_knots().size()));
+  SPOONBILL_ASSERT_DEBUG(knots.extended_knots()[span] < knots.extended_knots()[span + 1]);
   if (count == degree) return blossom_of_own_degree(knots, span, arguments);
   BlossomWeights mean{};
   int choices = 0;

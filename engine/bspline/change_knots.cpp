@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/blossom.h"
@@ -271,6 +272,8 @@ const KnotVector& knots_along(const Surface& surface, Direction direction) {
 
 Surface mixed_along(const Surface& surface, Direction direction, const Eigen::MatrixXd& weights,
                     const KnotVector& knots) {
+  SPOONBILL_ASSERT(weights.rows() == knots.control_point_count());
+  SPOONBILL_ASSERT(weights.cols() == knots_along(surface, direction).control_point_count());
   const bool along_u = direction == Direction::u;
   const int count = static_cast<int>(weights.rows());
   ControlNet net(along_u ? count : surface.net.rows, along_u ? surface.net.columns : count);
@@ -289,6 +292,7 @@ Surface mixed_along(const Surface& surface, Direction direction, const Eigen::Ma
 }
 
 Result<Surface> over_finer_knots(const Surface& surface, Direction direction, const KnotVector& finer) {
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   const KnotVector& from = knots_along(surface, direction);
   if (from == finer) return surface;
   if (Status status = check_holds_all(from, finer); !status) {
@@ -299,6 +303,7 @@ Result<Surface> over_finer_knots(const Surface& surface, Direction direction, co
 
 Result<Approximation> over_coarser_knots(const Surface& surface, Direction direction,
                                          const KnotVector& coarser) {
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   auto fit = fitted(surface, direction, coarser);
   if (!fit) return fit.error();
   return Approximation{std::move(fit->surface), largest_of(fit->difference)};
@@ -306,6 +311,7 @@ Result<Approximation> over_coarser_knots(const Surface& surface, Direction direc
 
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
                                    double tolerance_m, int largest_count, const Progress& progress) {
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   KnotVector knots = first;
   for (RoundsDone done(0.3);; done.step()) {
     if (!progress.report(done.fraction())) return Progress::stopped();
@@ -327,6 +333,7 @@ Result<Approximation> approximated(const Surface& surface, Direction direction, 
 
 Result<Approximation> without_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
                                           const Progress& progress) {
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   Approximation best{surface, 0.0};
   for (RoundsDone done(0.2);; done.step()) {
     // As many of the cheapest as can go together; what they cost then is another matter, so once more.

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/least_squares.h"
 
@@ -9,6 +10,10 @@ namespace spoonbill {
 
 Result<Eigen::MatrixXd> constrained_inverse(const KnotVector& knots, std::span<const double> parameters,
                                             const RefitConstraints& constraints) {
+  SPOONBILL_ASSERT(constraints.held_columns.empty() ||
+                   constraints.held_columns.size() == static_cast<std::size_t>(knots.control_point_count()));
+  SPOONBILL_ASSERT(!(constraints.keep_first || constraints.keep_last) || !knots.is_periodic());
+  SPOONBILL_ASSERT(!(constraints.keep_first || constraints.keep_last) || !parameters.empty());
   const bool constrained =
       constraints.keep_first || constraints.keep_last || !constraints.held_columns.empty();
   if (!constrained) return pseudo_inverse(knots, parameters);

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 DerivativeBound::DerivativeBound(const KnotVector& knots) {
+  SPOONBILL_ASSERT(knots.control_point_count() > 0);
   const std::vector<double>& extended = knots.extended_knots();
   const int degree = knots.degree(), last_span = static_cast<int>(extended.size()) - degree - 2;
   const auto control = [&](int basis) {

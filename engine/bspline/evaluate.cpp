@@ -5,6 +5,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -149,6 +151,7 @@ GridEvaluator<Real>::GridEvaluator(const Grid& grid, InstructionSet set)
       u_bound_(grid.u.knots),
       v_bound_(grid.v.knots),
       blocks_(blocks_for(grid.columns() + 2)) {
+  SPOONBILL_ASSERT(grid.rows() >= 2 && grid.columns() >= 2);
   set_up_rows(grid.u);
   set_up_columns(grid.v);
   const std::size_t blocks = static_cast<std::size_t>(blocks_);
@@ -197,6 +200,8 @@ void GridEvaluator<Real>::set_up_columns(const GridDirection& v) {
 template <class Real>
 void GridEvaluator<Real>::points_and_normals(const Real* x, const Real* y, const Real* z,
                                              GridSamples<Real>& samples) {
+  SPOONBILL_ASSERT(samples.x.size() >= static_cast<std::size_t>(grid_->rows()) * grid_->columns());
+  SPOONBILL_ASSERT(samples.nz.size() == samples.x.size());
   const NetView<Real> net{x, y, z, grid_->v.knots.control_point_count()};
   const NetExtent<Real> extent = extent_of(net, grid_->u.knots.control_point_count() * net.columns);
   const CollapsedEdges edges = collapsed_edges(net, extent.reach);
@@ -221,6 +226,7 @@ void GridEvaluator<Real>::points_and_normals(const Real* x, const Real* y, const
 
 template <class Real>
 void GridEvaluator<Real>::points(const Real* x, const Real* y, const Real* z, GridSamples<Real>& samples) {
+  SPOONBILL_ASSERT(samples.z.size() >= static_cast<std::size_t>(grid_->rows()) * grid_->columns());
   blend_control_rows({x, y, z, grid_->v.knots.control_point_count()});
   const int columns = grid_->columns(), whole = columns / evaluate_block;
   const EvaluateOutput<Real> spare = spare_row(spare_);

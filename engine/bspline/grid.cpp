@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 
 namespace spoonbill {
@@ -54,6 +55,7 @@ Result<Grid> make_grid(const KnotVector& u, const KnotVector& v, std::vector<dou
 }
 
 std::vector<double> uniform_parameters(const KnotVector& knots, int count) {
+  SPOONBILL_ASSERT(count >= 0);
   std::vector<double> parameters;
   parameters.reserve(static_cast<std::size_t>(std::max(count, 0)));
   for (int i = 0; i < count; ++i) {
@@ -63,6 +65,7 @@ std::vector<double> uniform_parameters(const KnotVector& knots, int count) {
 }
 
 std::vector<double> uniform_parameters_without_seam(const KnotVector& knots, int count) {
+  SPOONBILL_ASSERT(count >= 0);
   std::vector<double> parameters;
   parameters.reserve(static_cast<std::size_t>(std::max(count, 0)));
   for (int i = 0; i < count; ++i) {
@@ -72,6 +75,8 @@ std::vector<double> uniform_parameters_without_seam(const KnotVector& knots, int
 }
 
 NestedParameters nested_parameters(const KnotVector& knots, int pieces_per_span, int levels) {
+  SPOONBILL_ASSERT(pieces_per_span >= 1);
+  SPOONBILL_ASSERT(levels >= 0 && levels < 31);
   NestedParameters nested;
   nested.levels = levels;
   const std::vector<double> breaks = knots.breakpoints();

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/constrained_inverse.h"
 
@@ -99,6 +100,7 @@ Result<Surface> fit_grid(const KnotVector& u, const KnotVector& v, const PointGr
 }
 
 PointGrid point_grid(const Surface& surface, std::vector<double> u, std::vector<double> v) {
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   const Lines samples = sampled(surface, u, v);
   PointGrid grid{std::move(u), std::move(v), {}};
   grid.points_m.reserve(grid.u.size() * grid.v.size());
@@ -111,6 +113,7 @@ PointGrid point_grid(const Surface& surface, std::vector<double> u, std::vector<
 }
 
 double largest_deviation_m(const Surface& surface, const PointGrid& points) {
+  SPOONBILL_ASSERT(points.points_m.size() == points.u.size() * points.v.size());
   const Lines difference = sampled(surface, points.u, points.v) - lines_of(points);
   double largest = 0.0;
   for (Eigen::Index i = 0; i < difference.rows(); ++i) {

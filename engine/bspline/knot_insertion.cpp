@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 
 namespace spoonbill {
@@ -130,6 +131,7 @@ Status check(const KnotVector& knots, double knot, int multiplicity) {
 }  // namespace
 
 Result<Surface> insert_knot(const Surface& surface, Direction direction, double knot, int multiplicity) {
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   KnotVector knots = direction == Direction::u ? surface.u : surface.v;
   if (Status status = check(knots, knot, multiplicity); !status) {
     return Error{std::string("direction ") + (direction == Direction::u ? "u: " : "v: ") +

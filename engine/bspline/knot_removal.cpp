@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 
 namespace spoonbill {
@@ -41,6 +42,8 @@ Result<KnotVector> fewer_knots(const KnotVector& knots, std::vector<KnotMultipli
 
 Result<Approximation> without_knot(const Surface& surface, Direction direction, double parameter,
                                    int copies) {
+  SPOONBILL_ASSERT(copies >= 1);
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   const KnotVector& knots = knots_along(surface, direction);
   const double near = same_knot_share * (knots.domain_end() - knots.domain_start());
   const double wanted = knots.is_periodic() && parameter >= knots.domain_end() - near

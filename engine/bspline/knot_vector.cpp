@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 
 namespace spoonbill {
@@ -169,12 +170,14 @@ Result<KnotVector> KnotVector::periodic_uniform(int degree, int control_point_co
 }
 
 std::vector<double> KnotVector::breakpoints() const {
+  SPOONBILL_ASSERT(control_point_count_ > 0);
   std::vector<double> distinct(extended_.begin() + degree_, extended_.end() - degree_);
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   return distinct;
 }
 
 double KnotVector::into_domain(double u) const {
+  SPOONBILL_ASSERT_DEBUG(control_point_count_ > 0);
   const double start = domain_start(), end = domain_end();
   if (!periodic_) return u > start ? std::min(u, end) : start;
   if (u >= start && u < end) return u;
@@ -185,12 +188,15 @@ double KnotVector::into_domain(double u) const {
 }
 
 int KnotVector::find_span(double u) const {
+  SPOONBILL_ASSERT_DEBUG(u >= domain_start() && u <= domain_end());
   const auto first = extended_.begin() + degree_, last = extended_.end() - 1 - degree_;
   const auto after = u < *last ? std::upper_bound(first, last, u) : std::lower_bound(first, last, *last);
   return static_cast<int>(after - extended_.begin()) - 1;
 }
 
 int KnotVector::control_index(int span, int j) const {
+  SPOONBILL_ASSERT_DEBUG(j >= 0 && j <= degree_);
+  SPOONBILL_ASSERT_DEBUG(span >= degree_ && span + degree_ + 1 < static_cast<int>(extended_.size()));
   if (!periodic_) return span - degree_ + j;
   const int index = (span - 2 * degree_ + j) % control_point_count_;
   return index < 0 ? index + control_point_count_ : index;

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -99,6 +101,7 @@ Eigen::MatrixXd inverse_from(const PivotedQr& qr) {
 }  // namespace
 
 std::optional<Eigen::MatrixXd> least_squares_inverse(const Eigen::MatrixXd& matrix) {
+  SPOONBILL_ASSERT_DEBUG(matrix.allFinite());
   const Eigen::Index columns = matrix.cols();
   if (columns == 0 || matrix.rows() < columns) return std::nullopt;
   const PivotedQr qr = factorize(matrix);

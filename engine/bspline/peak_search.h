@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 // By ever smaller steps, from halves of the samples' distances on; never less than the value at the sample.
-// `value` must bear parameters outside of what was sampled by as much.
+// `value` must bear parameters outside of what was sampled by as much. No step is negative.
 template <class Value>
 double peak_near(const Value& value, double u, double v, double step_u, double step_v) {
+  SPOONBILL_ASSERT(step_u >= 0.0 && step_v >= 0.0);
   constexpr int halvings = 10;
   constexpr std::array<std::array<int, 2>, 4> ways{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
   double largest = value(u, v);

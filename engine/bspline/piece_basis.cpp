@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -71,6 +73,7 @@ int PieceBasis::piece_of(double u) const {
 }
 
 void PieceBasis::take(double u, Values& values) const {
+  SPOONBILL_ASSERT_DEBUG(u >= breaks_.front() && u <= breaks_.back());
   const int piece = piece_of(u);
   values.controls = controls_.data() + piece * (degree_ + 1);
   const double* row = coefficients_.data() + piece * (degree_ + 1) * padded_;
@@ -94,6 +97,7 @@ void PieceBasis::take(double u, Values& values) const {
 }
 
 void PieceBasis::take_values_only(double u, Values& values) const {
+  SPOONBILL_ASSERT_DEBUG(u >= breaks_.front() && u <= breaks_.back());
   const int piece = piece_of(u);
   values.controls = controls_.data() + piece * (degree_ + 1);
   const double* row = coefficients_.data() + piece * (degree_ + 1) * padded_;
@@ -109,6 +113,7 @@ void PieceBasis::take_values_only(double u, Values& values) const {
 }
 
 SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v) {
+  SPOONBILL_ASSERT_DEBUG(surface.surface != nullptr && surface.u != nullptr && surface.v != nullptr);
   const Surface& whole = *surface.surface;
   PieceBasis::Values bu, bv;
   surface.u->take(whole.u.into_domain(u), bu);
@@ -144,6 +149,7 @@ SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v) {
 }
 
 Vector3 position(const PiecewiseSurface& surface, double u, double v) {
+  SPOONBILL_ASSERT_DEBUG(surface.surface != nullptr && surface.u != nullptr && surface.v != nullptr);
   const Surface& whole = *surface.surface;
   PieceBasis::Values bu, bv;
   surface.u->take_values_only(whole.u.into_domain(u), bu);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -56,6 +58,7 @@ bool cross_each_other(const Edge& a, const Edge& b) {
 
 std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen::Vector2d>>& polygons,
                                              const Eigen::Vector2d& tolerance) {
+  SPOONBILL_ASSERT(tolerance.x() > 0.0 && tolerance.y() > 0.0);
   const std::vector<Edge> edges = edges_of(polygons, tolerance);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const double high_x = edges[i].high_x(), low_y = edges[i].low_y(), high_y = edges[i].high_y();

@@ -13,8 +13,8 @@ struct PolygonCrossing {
   Eigen::Vector2d near;
 };
 
-// Edges that only touch, within `tolerance` along each axis, do not cross. The time grows as edges times
-// those that lie beside them in x.
+// Edges that only touch, within `tolerance` (above 0) along each axis, do not cross. The time grows as edges
+// times those that lie beside them in x.
 std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen::Vector2d>>& polygons,
                                              const Eigen::Vector2d& tolerance);
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/constrained_inverse.h"
 #include "engine/bspline/refit_kernels.h"
 
@@ -68,6 +70,8 @@ Result<DisplacementRefit> DisplacementRefit::make(const Grid& grid, const RefitC
 }
 
 void DisplacementRefit::control_displacement(const float* sample, float* control) {
+  SPOONBILL_ASSERT(sample != nullptr && control != nullptr);
+  SPOONBILL_ASSERT(reinterpret_cast<std::uintptr_t>(sample) % cache_line_bytes == 0);
   const MultiplyInOrder multiply = multiply_for(set_);
   multiply(u_inverse_.data(), sample, half_.data(), control_rows_, sample_rows_, sample_stride_);
   multiply(half_.data(), v_inverse_transposed_.data(), padded_control_.data(), control_rows_, sample_stride_,

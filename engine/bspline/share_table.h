@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 struct ShareTable {
@@ -12,6 +14,7 @@ struct ShareTable {
 
   // Outside the table, its nearest end.
   double at(double x) const {
+    SPOONBILL_ASSERT_DEBUG(!from.empty() && from.size() == to.size());
     const auto upper = std::upper_bound(from.begin(), from.end(), x);
     if (upper == from.begin()) return to.front();
     if (upper == from.end()) return to.back();

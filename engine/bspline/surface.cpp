@@ -1,9 +1,11 @@
 #include "engine/bspline/surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/bspline/basis.h"
 #include "engine/bspline/unit_normal.h"
@@ -49,13 +51,30 @@ Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net) {
   return Surface{std::move(u), std::move(v), std::move(net)};
 }
 
+bool has_size_of_knots(const Surface& surface) {
+  const ControlNet& net = surface.net;
+  return net.rows > 0 && net.rows == surface.u.control_point_count() &&
+         net.columns == surface.v.control_point_count() && net.x.size() == net.size() &&
+         net.y.size() == net.size() && net.z.size() == net.size();
+}
+
+bool is_valid(const Surface& surface) {
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  return has_size_of_knots(surface) && std::all_of(surface.net.x.begin(), surface.net.x.end(), is_finite) &&
+         std::all_of(surface.net.y.begin(), surface.net.y.end(), is_finite) &&
+         std::all_of(surface.net.z.begin(), surface.net.z.end(), is_finite);
+}
+
 Surface placed(Surface surface, const Pose& pose) {
+  SPOONBILL_ASSERT(has_size_of_knots(surface));
   place(surface.net, pose.orientation.toRotationMatrix(), pose.position_m, surface.net);
   return surface;
 }
 
 void place(const ControlNet& net, const Eigen::Matrix3d& turn, const Vector3& position_m,
            ControlNet& placed) {
+  SPOONBILL_ASSERT(placed.rows == net.rows && placed.columns == net.columns);
+  SPOONBILL_ASSERT(net.z.size() == net.size() && placed.z.size() == net.size());
   for (int i = 0; i < net.rows; ++i) {
     for (int j = 0; j < net.columns; ++j) {
       placed.set_point(i, j, turn * net.point(i, j) + position_m);
@@ -64,6 +83,7 @@ void place(const ControlNet& net, const Eigen::Matrix3d& turn, const Vector3& po
 }
 
 SurfacePoint evaluate(const Surface& surface, double u, double v) {
+  SPOONBILL_ASSERT_DEBUG(has_size_of_knots(surface));
   const BasisFunctions bu = basis_functions(surface.u, surface.u.into_domain(u));
   const BasisFunctions bv = basis_functions(surface.v, surface.v.into_domain(v));
   SurfacePoint point{Vector3::Zero(), Vector3::Zero(), Vector3::Zero(),
@@ -88,6 +108,7 @@ SurfacePoint evaluate(const Surface& surface, double u, double v) {
 }
 
 Vector3 position(const Surface& surface, double u, double v) {
+  SPOONBILL_ASSERT_DEBUG(has_size_of_knots(surface));
   // Only values[0] is ever read.
   BasisFunctions bu, bv;
   basis_values(surface.u, surface.u.into_domain(u), bu);
@@ -107,6 +128,7 @@ Vector3 position(const Surface& surface, double u, double v) {
 }
 
 Vector3 unit_normal(const Surface& surface, double u, double v) {
+  SPOONBILL_ASSERT_DEBUG(has_size_of_knots(surface));
   return unit_normal(
       surface.u, surface.v,
       NetView<double>{surface.net.x.data(), surface.net.y.data(), surface.net.z.data(), surface.net.columns},

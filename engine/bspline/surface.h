@@ -43,6 +43,10 @@ struct Surface {
   ControlNet net;
 };
 
+// Whether the net has the size that the knots ask for, and whether its coordinates are finite besides.
+bool has_size_of_knots(const Surface& surface);
+bool is_valid(const Surface& surface);
+
 // Refused: a net whose size differs from the knots' control point counts, non-finite coordinates.
 Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net);
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/bspline/basis.h"
 #include "engine/bspline/knot_vectors.h"
@@ -134,6 +135,11 @@ std::vector<double>& along(TrimLoop& loop, Direction direction) {
   return direction == Direction::u ? loop.u : loop.v;
 }
 
+bool has_size_of_knots(const TrimLoop& loop) {
+  const auto count = static_cast<std::size_t>(loop.knots.control_point_count());
+  return count > 0 && loop.u.size() == count && loop.v.size() == count;
+}
+
 TrimLoop run_backwards(TrimLoop loop) {
   // A periodic basis function ends degree + 1 knots after it starts, and so becomes another one.
   const int count = loop.knots.control_point_count();
@@ -187,6 +193,7 @@ Result<TrimLoop> make_trim_loop(const KnotVector& along_u, const KnotVector& alo
 }
 
 Eigen::Vector2d position(const TrimLoop& loop, double parameter) {
+  SPOONBILL_ASSERT_DEBUG(has_size_of_knots(loop));
   const BasisFunctions basis = basis_functions(loop.knots, loop.knots.into_domain(parameter));
   Eigen::Vector2d point = Eigen::Vector2d::Zero();
   for (int j = 0; j <= loop.knots.degree(); ++j) {
@@ -198,6 +205,7 @@ Eigen::Vector2d position(const TrimLoop& loop, double parameter) {
 
 std::vector<Eigen::Vector2d> polygon_of(const TrimLoop& loop, const KnotVector& along_u,
                                         const KnotVector& along_v) {
+  SPOONBILL_ASSERT(has_size_of_knots(loop));
   const Eigen::Vector2d lengths(length_of(along_u), length_of(along_v));
   std::vector<Eigen::Vector2d> polygon;
   const auto corners = corners_of(loop, lengths);
@@ -211,6 +219,7 @@ std::vector<Eigen::Vector2d> polygon_of(const TrimLoop& loop, const KnotVector& 
 }
 
 double polygon_error_share(const TrimLoop& loop, const KnotVector& along_u, const KnotVector& along_v) {
+  SPOONBILL_ASSERT(has_size_of_knots(loop));
   const Eigen::Vector2d lengths(length_of(along_u), length_of(along_v));
   const std::vector<double> ends = loop.knots.breakpoints();
   double largest = 0.0;
@@ -222,6 +231,7 @@ double polygon_error_share(const TrimLoop& loop, const KnotVector& along_u, cons
 }
 
 double signed_area(const std::vector<Eigen::Vector2d>& polygon) {
+  SPOONBILL_ASSERT(!polygon.empty());
   double twice = 0.0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Eigen::Vector2d a = polygon[i] - polygon[0];
@@ -232,6 +242,7 @@ double signed_area(const std::vector<Eigen::Vector2d>& polygon) {
 }
 
 TrimLoop reversed(const TrimLoop& loop, Direction direction, const KnotVector& knots) {
+  SPOONBILL_ASSERT(has_size_of_knots(loop));
   TrimLoop mirrored = loop;
   for (double& value : along(mirrored, direction)) {
     value = knots.domain_end() - (value - knots.domain_start());
@@ -240,6 +251,7 @@ TrimLoop reversed(const TrimLoop& loop, Direction direction, const KnotVector& k
 }
 
 TrimLoop exchanged(const TrimLoop& loop) {
+  SPOONBILL_ASSERT(has_size_of_knots(loop));
   TrimLoop mirrored = loop;
   std::swap(mirrored.u, mirrored.v);
   return run_backwards(std::move(mirrored));
@@ -247,6 +259,7 @@ TrimLoop exchanged(const TrimLoop& loop) {
 
 TrimLoop with_domain(const TrimLoop& loop, Direction direction, const KnotVector& knots, double start,
                      double end) {
+  SPOONBILL_ASSERT(start < end);
   TrimLoop stretched = loop;
   const double scale = (end - start) / length_of(knots);
   for (double& value : along(stretched, direction)) value = start + (value - knots.domain_start()) * scale;
@@ -254,6 +267,8 @@ TrimLoop with_domain(const TrimLoop& loop, Direction direction, const KnotVector
 }
 
 TrimLoop with_seam_at(const TrimLoop& loop, Direction direction, const KnotVector& knots, double seam) {
+  SPOONBILL_ASSERT(knots.is_periodic());
+  SPOONBILL_ASSERT(has_size_of_knots(loop));
   TrimLoop moved = loop;
   std::vector<double>& values = along(moved, direction);
   const double start = knots.domain_start(), length = length_of(knots);

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/box.h"
 #include "engine/base/number_text.h"
 #include "engine/bspline/polygon_crossing.h"
@@ -61,6 +62,7 @@ std::vector<Polygon> copies_of(const Polygon& polygon, const KnotVector& along_u
 
 Result<TrimmedArea> TrimmedArea::make(const KnotVector& along_u, const KnotVector& along_v,
                                       const std::vector<TrimLoop>& loops) {
+  SPOONBILL_ASSERT(along_u.control_point_count() > 0 && along_v.control_point_count() > 0);
   TrimmedArea area;
   area.along_u_ = along_u;
   area.along_v_ = along_v;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -52,6 +54,10 @@ bool cuts_a_cell(const Edge& part, const GridLines& u, const GridLines& v) {
 
 GridLines::GridLines(const GridDirection& direction)
     : at_(direction.parameters), samples_(static_cast<int>(direction.parameters.size())) {
+  SPOONBILL_ASSERT(direction.parameters.size() >= 2);
+  SPOONBILL_ASSERT(direction.knots.is_periodic() ||
+                   (direction.parameters.front() == direction.knots.domain_start() &&
+                    direction.parameters.back() == direction.knots.domain_end()));
   const KnotVector& knots = direction.knots;
   if (knots.is_periodic() && at_.back() < knots.domain_end()) at_.push_back(knots.domain_end());
   snap_ = snap_share * (knots.domain_end() - knots.domain_start());
@@ -80,6 +86,7 @@ double GridLines::joined(double parameter) const {
 
 TrimmedCells::TrimmedCells(const GridLines& u, const GridLines& v, const TrimmedArea& area)
     : columns_(v.cells()) {
+  SPOONBILL_ASSERT(u.cells() > 0 && v.cells() > 0);
   const std::size_t count = static_cast<std::size_t>(u.cells()) * static_cast<std::size_t>(v.cells());
   std::vector<std::pair<std::size_t, Edge>> found;
   for (const Edge& edge : area.edges()) {

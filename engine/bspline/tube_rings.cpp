@@ -7,6 +7,7 @@
 #include <complex>
 #include <numbers>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/share_table.h"
 
 namespace spoonbill {
@@ -192,6 +193,7 @@ double parameter_at(const KnotVector& knots, double share) {
 }
 
 Ring sample_ring(const Surface& surface, double v) {
+  SPOONBILL_ASSERT(surface.u.is_periodic());
   Ring ring;
   for (int s = 0; s < ring_samples; ++s) {
     const SurfacePoint point =
@@ -207,6 +209,7 @@ Ring sample_ring(const Surface& surface, double v) {
 }
 
 Profile sample_profile(const Surface& surface) {
+  SPOONBILL_ASSERT(surface.u.is_periodic() && !surface.v.is_periodic());
   Profile profile;
   Vector3 previous = Vector3::Zero();
   for (int s = 0; s <= along_samples; ++s) {
@@ -223,10 +226,12 @@ Profile sample_profile(const Surface& surface) {
 }
 
 Rims near_rims(const Profile& profile) {
+  SPOONBILL_ASSERT(!profile.v.empty() && profile.perimeter.size() == profile.distance.size());
   return {near_rim(profile, false), near_rim(profile, true)};
 }
 
 Rims shoulder_rims(const Profile& profile) {
+  SPOONBILL_ASSERT(!profile.v.empty() && profile.perimeter.size() == profile.distance.size());
   return {shoulder(profile, false), shoulder(profile, true)};
 }
 
@@ -235,6 +240,7 @@ Rims further_rims(const Rims& a, const Rims& b) {
 }
 
 CrossSection principal_axes(const Ring& ring, const Vector3& axis) {
+  SPOONBILL_ASSERT(ring.points.size() == ring_samples);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Vector3& p : ring.points) {
     const Vector3 d = (p - ring.centre) - axis * axis.dot(p - ring.centre);
@@ -267,6 +273,7 @@ CrossSection principal_axes(const Ring& ring, const Vector3& axis) {
 
 Extents extents_to_fill(const Surface& surface, const Profile& profile, const Rims& rims,
                         const CrossSection& middle) {
+  SPOONBILL_ASSERT(rims.first <= rims.last && rims.last < profile.v.size());
   constexpr double much = 2.5;
   constexpr std::size_t stations = 24;
   Extents least{middle.width, middle.thickness}, most = least;
@@ -288,6 +295,8 @@ Extents extents_to_fill(const Surface& surface, const Profile& profile, const Ri
 
 RingParameters ring_parameters(const Surface& surface, const Ring& ring, const CrossSection& section, int ni,
                                int nj) {
+  SPOONBILL_ASSERT(ni >= 2 && nj >= 2);
+  SPOONBILL_ASSERT(ring.points.size() == ring_samples);
   const RingArc arc = section.bent ? bent_arc(surface, ring, section) : ring_arc(surface, ring, section);
   const double along_narrow = nj - 1, along_wide = ni - 1;
   std::array<double, 5> corner{};
@@ -319,6 +328,7 @@ double ring_position(double s, double t, int ni, int nj) {
 }
 
 double ring_parameter_at(const Surface& surface, const RingParameters& ring, double position) {
+  SPOONBILL_ASSERT_DEBUG(!ring.u.empty() && position >= 0.0);
   const auto count = static_cast<int>(ring.u.size());
   const int low = static_cast<int>(std::floor(position)) % count;
   const double share = position - std::floor(position);

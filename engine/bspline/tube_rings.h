@@ -20,6 +20,7 @@ struct Ring {
   double perimeter = 0.0;
 };
 
+// The surface is periodic along u.
 Ring sample_ring(const Surface& surface, double v);
 
 // The body's middle line: v against distance from the first pole, and each station's perimeter and middle.

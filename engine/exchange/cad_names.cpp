@@ -5,6 +5,8 @@
 #include <set>
 #include <string_view>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -41,6 +43,7 @@ bool is_control(std::string_view letter) {
 }  // namespace
 
 std::string clean_cad_name(const std::string& name, const std::string& instead, std::size_t longest) {
+  SPOONBILL_ASSERT(longest > 0);
   std::string clean;
   for (std::size_t k = 0; k < name.size();) {
     const std::size_t count = letter_bytes(name, k);

@@ -23,7 +23,8 @@ std::string json_to_line(const Json& json);
 // For people: what fits stands on one line, the rest is indented by two; ends with a newline.
 std::string json_to_page(const Json& json);
 
-// Whole numbers without a fraction ("8", not "8.0"). Must be finite.
+// Whole numbers without a fraction ("8", not "8.0"). What is not finite is written as null, which no reader
+// takes.
 Json number_to_json(double number);
 
 // A value as messages show it: on one line and at most 40 characters.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/fitting/nearest_points.h"
 #include "engine/fitting/opening.h"
 #include "engine/fitting/shape_start.h"
@@ -172,6 +173,7 @@ std::size_t open_beside_gaps(const std::vector<FitPoints>& islands) {
 }
 
 Result<FitPoints> bridged(std::vector<FitPoints> islands) {
+  SPOONBILL_ASSERT(!islands.empty());
   for (FitPoints& island : islands) span_all_holes(island);
   FitPoints whole = std::move(islands.front());
   islands.erase(islands.begin());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/base/assert.h"
 #include "engine/fitting/closest_parameters.h"
 #include "engine/fitting/nearest_points.h"
 
@@ -129,6 +130,8 @@ Deviation deviation_of(std::vector<double> distances_m) {
 }
 
 FitErrors measure_errors(const FittedSurface& fit, const FitPoints& points) {
+  SPOONBILL_ASSERT(fit.uv.size() == points.scan.points_m.size());
+  SPOONBILL_ASSERT(fit.trust.size() == fit.uv.size());
   FitErrors errors;
   measure_data(fit, points, errors);
   measure_surface(fit, points, errors);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/vertex_join.h"
 #include "engine/fitting/gaps.h"
 #include "engine/fitting/nearest_points.h"
@@ -196,6 +197,7 @@ void make_nodes(FitPoints& fit) {
 }  // namespace
 
 Result<FitPoints> make_fit_points(Scan scan) {
+  SPOONBILL_ASSERT(!scan.has_normals() || scan.normals.size() == scan.points_m.size());
   const bool is_mesh = !scan.triangles.empty();
   FitPoints fit;
   fit.is_mesh = is_mesh;
@@ -235,6 +237,7 @@ Result<FitPoints> make_fit_points(Scan scan) {
 }
 
 std::vector<Vector2> take_points_as_nodes(FitPoints& points, const std::vector<Vector2>& uv) {
+  SPOONBILL_ASSERT(uv.size() == points.scan.points_m.size());
   const std::size_t count = points.scan.points_m.size(), stride = 1 + count / (4 * node_target);
   std::vector<Vector3> nodes, places;
   std::vector<Vector2> node_uv;
@@ -255,6 +258,7 @@ std::vector<Vector2> take_points_as_nodes(FitPoints& points, const std::vector<V
 
 void add_spanning_nodes(FitPoints& points, const std::vector<Vector3>& places_m,
                         const std::vector<Vector3>& normals, const std::vector<NodePair>& pairs) {
+  SPOONBILL_ASSERT(normals.empty() || normals.size() == places_m.size());
   std::vector<NodePair> all = pairs;
   for (std::uint32_t n = 0; n < points.graph.size(); ++n) {
     for (const std::uint32_t other : points.graph.of(n)) {

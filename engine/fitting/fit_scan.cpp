@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/box.h"
 #include "engine/fitting/bridging.h"
 #include "engine/fitting/islands.h"
@@ -115,6 +116,9 @@ Status fit_islands(std::vector<FitPoints> islands, const FitRequest& request, Sc
 }  // namespace
 
 Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
+  SPOONBILL_ASSERT_DEBUG(std::all_of(scan.points_m.begin(), scan.points_m.end(),
+                                     [](const Vector3& at) { return at.allFinite(); }));
+  SPOONBILL_ASSERT(!scan.has_normals() || scan.normals.size() == scan.points_m.size());
   if (scan.triangles.empty() && scan.points_m.size() < least_cloud_points) {
     return Error{"has too few points for a fit: " + std::to_string(scan.points_m.size()) + " of at least " +
                  std::to_string(least_cloud_points) + "; a closed shape takes some 200"};

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/fitting/closest_parameters.h"
 #include "engine/fitting/estimated_normals.h"
@@ -322,6 +323,8 @@ Result<FittedSurface> SurfaceFitter::run() {
 // which fairness.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings) {
+  SPOONBILL_ASSERT(start.uv.size() == points.graph.size());
+  SPOONBILL_ASSERT(settings.tolerance_m >= 0.0);
   struct Trial {
     double agreement, fairness_factor;
     std::size_t cusps;   // no more trials where there are no more of them, no folds,

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/piece_basis.h"
 #include "engine/fitting/nearest_points.h"
 #include "engine/fitting/scattered_fit.h"
@@ -106,6 +107,7 @@ void count_cusps(const Surface& surface, FoldCheck& check) {
 }  // namespace
 
 FoldCheck check_folds(const Surface& surface, const NormalsAtParameters& data) {
+  SPOONBILL_ASSERT(data.normals.empty() || data.normals.size() >= data.uv.size());
   const NormalGrid grid = sample(surface, samples_a_span);
   const DataNormals data_normals(surface, data);
   const std::size_t v_spans = grid.columns / samples_a_span;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/fitting/islands.h"
 #include "engine/fitting/quantiles.h"
 
@@ -127,6 +128,7 @@ std::vector<std::uint32_t> bodies_of(const GraphParts& parts, const std::vector<
 
 std::vector<NodePair> without_gaps(const std::vector<Vector3>& points_m, const VoxelGroups& groups,
                                    const std::vector<Vector3>& nodes_m, std::vector<NodePair> pairs) {
+  SPOONBILL_ASSERT(groups.group_of.size() == points_m.size() && groups.count == nodes_m.size());
   if (pairs.empty()) return pairs;
   const std::vector<double> lengths = lengths_of(nodes_m, pairs);
   const double doubtful = doubtful_length * median_of(lengths);

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <optional>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -235,6 +237,7 @@ std::optional<std::vector<double>> turning_u(const PointGraph& graph, const Shap
 }  // namespace
 
 Result<std::vector<Vector2>> harmonic_tube_map(const PointGraph& graph, const ShapeEnds& ends) {
+  SPOONBILL_ASSERT(!ends.start.empty() && !ends.end.empty());
   const auto v = rising_v(graph, ends);
   if (!v) return Error{"its points do not hang together from end to end"};
   const auto u = turning_u(graph, ends);
@@ -247,6 +250,8 @@ Result<std::vector<Vector2>> harmonic_tube_map(const PointGraph& graph, const Sh
 Result<std::vector<Vector2>> harmonic_square_map(const PointGraph& graph,
                                                  const std::vector<std::uint32_t>& rim,
                                                  const std::array<std::size_t, 4>& corners) {
+  SPOONBILL_ASSERT(rim.size() >= 4);
+  SPOONBILL_ASSERT_DEBUG(std::is_sorted(corners.begin(), corners.end()));
   static const std::array<Vector2, 4> square{Vector2(0, 0), Vector2(1, 0), Vector2(1, 1), Vector2(0, 1)};
   std::array<std::vector<double>, 2> fixed;
   fixed.fill(std::vector<double>(graph.size(), not_a_number));
@@ -277,6 +282,7 @@ Result<std::vector<Vector2>> harmonic_square_map(const PointGraph& graph,
 }
 
 ShapeEnds farthest_ends(const PointGraph& graph) {
+  SPOONBILL_ASSERT(graph.size() > 0);
   // The middle of the nodes that are nearly as far as the farthest: that one itself may be any corner.
   constexpr double nearly = 0.04;
   const auto farthest = [&](std::uint32_t from) {

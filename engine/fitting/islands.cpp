@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -44,6 +46,7 @@ FitPoints island_of(const FitPoints& whole, const std::vector<std::uint32_t>& pa
 }  // namespace
 
 Islands split_islands(const FitPoints& points) {
+  SPOONBILL_ASSERT(points.node_of.size() == points.scan.points_m.size());
   const GraphParts parts = connected_parts(points.graph);
   std::vector<double> weights(parts.sizes.size(), 0.0);
   std::vector<std::size_t> counts(parts.sizes.size(), 0);

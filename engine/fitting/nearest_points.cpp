@@ -1,7 +1,10 @@
 #include "engine/fitting/nearest_points.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nanoflann.hpp>
+
+#include "engine/base/assert.h"
 
 namespace spoonbill {
 
@@ -27,7 +30,11 @@ struct NearestPoints::Tree {
   Index index;
 };
 
-NearestPoints::NearestPoints(std::span<const Vector3> points) : tree_(std::make_unique<Tree>(points)) {}
+NearestPoints::NearestPoints(std::span<const Vector3> points) : tree_(std::make_unique<Tree>(points)) {
+  SPOONBILL_ASSERT(!points.empty());
+  SPOONBILL_ASSERT_DEBUG(
+      std::all_of(points.begin(), points.end(), [](const Vector3& at) { return at.allFinite(); }));
+}
 NearestPoints::~NearestPoints() = default;
 NearestPoints::NearestPoints(NearestPoints&&) noexcept = default;
 NearestPoints& NearestPoints::operator=(NearestPoints&&) noexcept = default;

@@ -7,6 +7,7 @@
 #include <queue>
 #include <tuple>
 
+#include "engine/base/assert.h"
 #include "engine/fitting/nearest_points.h"
 #include "engine/fitting/quantiles.h"
 
@@ -132,6 +133,7 @@ class SpanningForest {
 
 std::vector<bool> turned_to_agree(const std::vector<Vector3>& points_m, const std::vector<Vector3>& normals,
                                   const std::vector<NodePair>& pairs) {
+  SPOONBILL_ASSERT(points_m.size() == normals.size());
   const PointGraph graph = make_point_graph(points_m, pairs);
   return SpanningForest(graph, normals).turned();
 }

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/fitting/nearest_points.h"
 
 namespace spoonbill {
@@ -146,6 +147,7 @@ bool runs_counterclockwise(const FitPoints& points, const std::vector<std::uint3
 }  // namespace
 
 Opening opened_at(const FitPoints& whole, std::uint32_t node, const Vector3& towards) {
+  SPOONBILL_ASSERT(node < whole.graph.size());
   const double reach = opening_share * size_of(whole.graph.points_m);
   const ShortestWays ways = shortest_ways(whole.graph, std::array<std::uint32_t, 1>{node});
   std::vector<std::uint32_t> kept, ring, place(whole.graph.size(), no_point);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/base/assert.h"
 #include "engine/fitting/nearest_points.h"
 
 namespace spoonbill {
@@ -110,6 +111,7 @@ void keep_surfaces(const std::vector<Vector3>& points_m, const NearestPoints& ne
 }  // namespace
 
 std::vector<bool> lie_apart(const std::vector<Vector3>& points_m, const std::vector<double>& counts) {
+  SPOONBILL_ASSERT(counts.size() == points_m.size());
   const NearestPoints nearest(points_m);
   std::vector<bool> apart = are_sparse(reaches(points_m, nearest), counts);
   const bool is_thinned = std::any_of(counts.begin(), counts.end(), [](double count) { return count > 1.0; });

@@ -6,9 +6,14 @@
 #include <queue>
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 PointGraph make_point_graph(std::vector<Vector3> points_m, const std::vector<NodePair>& pairs) {
+  SPOONBILL_ASSERT_DEBUG(std::all_of(pairs.begin(), pairs.end(), [&](const NodePair& pair) {
+    return pair.first < points_m.size() && pair.second < points_m.size();
+  }));
   std::vector<NodePair> both;
   both.reserve(2 * pairs.size());
   for (const auto& [a, b] : pairs) {
@@ -31,6 +36,8 @@ PointGraph make_point_graph(std::vector<Vector3> points_m, const std::vector<Nod
 }
 
 PointGraph part_of(const PointGraph& graph, const std::vector<std::uint32_t>& nodes) {
+  SPOONBILL_ASSERT_DEBUG(
+      std::all_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) { return node < graph.size(); }));
   constexpr std::uint32_t none = 0xffffffffU;
   std::vector<std::uint32_t> place(graph.size(), none);
   std::vector<Vector3> points;
@@ -81,6 +88,8 @@ GraphParts connected_parts(const PointGraph& graph) {
 }
 
 ShortestWays shortest_ways(const PointGraph& graph, std::span<const std::uint32_t> sources) {
+  SPOONBILL_ASSERT_DEBUG(
+      std::all_of(sources.begin(), sources.end(), [&](std::uint32_t node) { return node < graph.size(); }));
   ShortestWays ways;
   ways.length.assign(graph.size(), std::numeric_limits<double>::infinity());
   ways.before.resize(graph.size());
@@ -107,6 +116,7 @@ ShortestWays shortest_ways(const PointGraph& graph, std::span<const std::uint32_
 }
 
 double mean_edge_length(const PointGraph& graph) {
+  SPOONBILL_ASSERT(graph.first.size() == graph.size() + 1);
   double sum = 0.0;
   for (std::uint32_t node = 0; node < graph.size(); ++node) {
     for (const std::uint32_t other : graph.of(node)) sum += graph.length(node, other);

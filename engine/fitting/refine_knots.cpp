@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -49,6 +51,8 @@ KnotVector knots_of(const KnotVector& like, const std::vector<Span>& spans) {
 
 KnotVector with_knots_for_errors(const KnotVector& knots, int direction, int count,
                                  std::span<const Vector2> uv, std::span<const double> weighted_squares) {
+  SPOONBILL_ASSERT(direction == 0 || direction == 1);
+  SPOONBILL_ASSERT(uv.size() == weighted_squares.size());
   std::vector<Span> spans = spans_with_errors(knots, direction, uv, weighted_squares);
   const double length = knots.domain_end() - knots.domain_start();
   for (int missing = count - knots.control_point_count(); missing > 0; --missing) {

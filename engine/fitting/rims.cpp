@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/fitting/side_cutting.h"
 
 namespace spoonbill {
@@ -221,6 +222,8 @@ std::vector<std::uint32_t> step_by_step(const PointGraph& graph, const std::vect
 
 std::vector<Rim> rims_of_mesh(const std::vector<TriangleCorners>& triangles,
                               const std::vector<std::uint32_t>& node_of, const PointGraph& graph) {
+  SPOONBILL_ASSERT_DEBUG(
+      std::all_of(node_of.begin(), node_of.end(), [&](std::uint32_t node) { return node < graph.size(); }));
   std::map<NodePair, int> sides;  // from, to: how many more triangles have it this way round
   for (const TriangleCorners& t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {

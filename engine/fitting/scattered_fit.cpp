@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/basis.h"
 #include "engine/bspline/piece_basis.h"
 
@@ -264,6 +265,8 @@ std::size_t span_count(const KnotVector& knots) {
 Result<std::vector<Surface>> fit_scattered_at(const SurfaceStructure& structure, const ScatteredData& data,
                                               std::span<const double> fairness,
                                               std::span<const double> factors) {
+  SPOONBILL_ASSERT(data.uv.size() == data.points_m.size() && data.weights.size() == data.points_m.size());
+  SPOONBILL_ASSERT(fairness.size() == span_count(structure.u) * span_count(structure.v));
   const std::size_t spans = span_count(structure.u) * span_count(structure.v);
   const double weight = span_weight(data, spans);
   if (!(weight > 0.0)) return Error{"no points are left to fit"};
@@ -293,6 +296,8 @@ Result<std::vector<Surface>> fit_scattered_at(const SurfaceStructure& structure,
 
 Result<Surface> fit_scattered(const SurfaceStructure& structure, const ScatteredData& data,
                               std::span<const double> fairness) {
+  SPOONBILL_ASSERT(data.uv.size() == data.points_m.size() && data.weights.size() == data.points_m.size());
+  SPOONBILL_ASSERT(fairness.size() == span_count(structure.u) * span_count(structure.v));
   constexpr std::array as_it_is{1.0};
   auto surfaces = fit_scattered_at(structure, data, fairness, as_it_is);
   if (!surfaces) return surfaces.error();

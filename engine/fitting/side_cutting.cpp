@@ -5,6 +5,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -57,6 +59,7 @@ class SideCutter {
 
 void cut_long_sides(std::vector<Vector3>& points_m, std::vector<TriangleCorners>& triangles, double longest_m,
                     std::size_t triangle_limit) {
+  SPOONBILL_ASSERT(longest_m > 0.0);
   // Each round halves what is too long.
   for (int round = 0; round < 16 && triangles.size() < triangle_limit; ++round) {
     SideCutter cutter(points_m, longest_m);

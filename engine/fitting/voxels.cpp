@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/box.h"
 
 namespace spoonbill {
@@ -39,6 +40,7 @@ double size_of(const std::vector<Vector3>& points_m) {
 }
 
 VoxelGroups group_by_voxels(const Scan& scan, double side_m) {
+  SPOONBILL_ASSERT(side_m > 0.0);
   const std::vector<std::uint64_t> keys = keys_of(scan, side_m);
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order(keys.size());
   for (std::uint32_t p = 0; p < keys.size(); ++p) order[p] = {keys[p], p};
@@ -53,6 +55,7 @@ VoxelGroups group_by_voxels(const Scan& scan, double side_m) {
 }
 
 double voxel_side_for(const Scan& scan, std::size_t groups) {
+  SPOONBILL_ASSERT(groups >= 1);
   const double size = size_of(scan.points_m);
   double side = 1.5 * size / std::sqrt(static_cast<double>(groups));
   // The number of cells that a surface meets goes with the inverse square of their side.
@@ -67,6 +70,7 @@ double voxel_side_for(const Scan& scan, std::size_t groups) {
 }
 
 Scan middles_of(const Scan& scan, const VoxelGroups& groups) {
+  SPOONBILL_ASSERT(groups.group_of.size() == scan.points_m.size());
   Scan middles;
   middles.points_m.assign(groups.count, Vector3::Zero());
   if (scan.has_normals()) middles.normals.assign(groups.count, Vector3::Zero());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/trimmed_grid.h"
 #include "engine/inspection/piece_quadrature.h"
@@ -46,6 +47,7 @@ void visit_triangle(const Surface& surface, const std::array<Parameters, 3>& cor
 }  // namespace
 
 void visit_area(const Surface& surface, const TrimmedArea& area, const AreaVisitor& visit) {
+  SPOONBILL_ASSERT(static_cast<bool>(visit));
   if (area.is_whole()) return visit_whole(surface, visit);
   const std::vector<double> u = nested_parameters(surface.u, 1, 1).parameters;
   const std::vector<double> v = nested_parameters(surface.v, 1, 1).parameters;

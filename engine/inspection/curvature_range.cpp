@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/assert.h"
 #include "engine/inspection/piece_sampling.h"
 
 namespace spoonbill {
@@ -32,6 +33,7 @@ std::optional<PrincipalCurvatures> principal_curvatures(const SurfacePoint& poin
 }
 
 CurvatureRange curvature_range(const Surface& surface, const TrimmedArea& area, const Progress& progress) {
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   const std::vector<PieceCell> cells = piece_cells(surface, parts);
   const auto extreme = [&](bool largest) {
     const auto value = [&](double u, double v) {
@@ -51,6 +53,7 @@ CurvatureRange curvature_range(const Surface& surface, const TrimmedArea& area, 
 }
 
 double bending_measure(const Surface& surface, const TrimmedArea& area) {
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   double sum = 0.0;
   for (const PieceCell& cell : piece_cells(surface, 2 * parts)) {
     if (!area.contains(cell.middle_u(), cell.middle_v())) continue;

@@ -1,10 +1,12 @@
 #include "engine/inspection/enclosed_mass.h"
 
+#include "engine/base/assert.h"
 #include "engine/inspection/area_quadrature.h"
 
 namespace spoonbill {
 
 EnclosedMass enclosed_mass(const Surface& surface, const TrimmedArea& area) {
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   // From a point of the body, so that digits are not lost to where it lies.
   const Vector3 origin = surface.net.point(0, 0);
   EnclosedMass mass;

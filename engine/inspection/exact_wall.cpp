@@ -1,6 +1,9 @@
 #include "engine/inspection/exact_wall.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "engine/base/assert.h"
 
 namespace spoonbill {
 namespace {
@@ -11,6 +14,9 @@ constexpr double rounding_m = 1e-8;
 
 ExactWalls::ExactWalls(const std::vector<const Surface*>& surfaces, double error_m)
     : reach_m_(2.0 * error_m + rounding_m) {
+  SPOONBILL_ASSERT(error_m >= 0.0);
+  SPOONBILL_ASSERT_DEBUG(
+      std::none_of(surfaces.begin(), surfaces.end(), [](const Surface* one) { return one == nullptr; }));
   faces_.reserve(surfaces.size());
   for (const Surface* surface : surfaces) {
     faces_.push_back({surface, box_of(surface->net), ThicknessSearch(*surface)});

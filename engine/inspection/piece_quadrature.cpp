@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -37,6 +39,7 @@ Quadrature gauss_legendre(int count) {
 }  // namespace
 
 PieceQuadrature piece_quadrature(const KnotVector& knots, int nodes) {
+  SPOONBILL_ASSERT(nodes >= 1);
   const Quadrature rule = gauss_legendre(nodes);
   const std::vector<double> pieces = knots.breakpoints();
   PieceQuadrature result;

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -98,6 +100,7 @@ std::vector<std::array<double, 2>> intervals(const Surface& surface, bool of_u, 
 }  // namespace
 
 std::vector<PieceCell> piece_cells(const Surface& surface, int parts) {
+  SPOONBILL_ASSERT(parts >= 1);
   std::vector<PieceCell> cells;
   const auto in_v = intervals(surface, false, parts);
   for (const auto& [u0, u1] : intervals(surface, true, parts)) {
@@ -108,6 +111,7 @@ std::vector<PieceCell> piece_cells(const Surface& surface, int parts) {
 
 ParameterPlace least_place(const std::vector<PieceCell>& cells,
                            const std::function<double(double u, double v)>& value, const Progress& progress) {
+  SPOONBILL_ASSERT(static_cast<bool>(value));
   const ParameterPlace none{0.0, 0.0, std::numeric_limits<double>::infinity()};
   std::vector<Candidate> candidates;
   candidates.reserve(cells.size());

@@ -1,11 +1,13 @@
 #include "engine/inspection/shell_mass.h"
 
+#include "engine/base/assert.h"
 #include "engine/inspection/area_quadrature.h"
 #include "engine/inspection/curvature_range.h"
 
 namespace spoonbill {
 
 ShellMass shell_mass(const Surface& surface, double thickness_m, const TrimmedArea& area) {
+  SPOONBILL_ASSERT(thickness_m > 0.0);
   const Vector3 origin = surface.net.point(0, 0);
   const double t = thickness_m;
   ShellMass mass;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/line_exit.h"
 #include "engine/collision/meshes/line_triangle.h"
 #include "engine/collision/meshes/mesh_self_contact.h"
@@ -191,6 +192,7 @@ class Thinnest {
 
 std::optional<SolidCheck> check_solid(const TriangleMesh& mesh, const std::vector<const Surface*>& surfaces,
                                       double error_m, const Progress& progress) {
+  SPOONBILL_ASSERT(error_m >= 0.0 && !mesh.triangles.empty());
   SolidCheck check;
   bool goes_on = true;
   const Progress asked([&](double fraction) { return goes_on = goes_on && progress.report(fraction); });

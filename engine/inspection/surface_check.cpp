@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/knot_vectors.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 #include "engine/inspection/piece_sampling.h"
@@ -138,6 +139,7 @@ void find_self_meetings(const Surface& surface, const TrimmedArea& area, const P
 
 std::optional<SurfaceCheck> check_surface(const Surface& surface, const TrimmedArea& area,
                                           const Progress& progress) {
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   bool goes_on = true;
   const Progress asked([&](double fraction) { return goes_on = goes_on && progress.report(fraction); });
   SurfaceCheck check;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -30,7 +32,9 @@ std::vector<double> cut_evenly(const std::vector<double>& ends) {
 }  // namespace
 
 ThicknessSearch::ThicknessSearch(const Surface& surface)
-    : surface_(&surface), cells_(piece_cells(surface, parts)), exits_(facets()) {}
+    : surface_(&surface), cells_(piece_cells(surface, parts)), exits_(facets()) {
+  SPOONBILL_ASSERT(has_size_of_knots(surface));
+}
 
 std::vector<Triangle> ThicknessSearch::facets() {
   const std::vector<double> u = cut_evenly(surface_->u.breakpoints());
@@ -59,6 +63,7 @@ std::optional<Thickness> ThicknessSearch::at(double u, double v) const {
 }
 
 std::optional<SurfaceExit> ThicknessSearch::exit(const Vector3& from, const Vector3& direction) const {
+  SPOONBILL_ASSERT(std::abs(direction.squaredNorm() - 1.0) < 1e-6);
   const auto met = exits_.first(from, direction);
   if (!met || !leaves_a_wall(exits_.triangles()[met->triangle], direction)) return std::nullopt;
   return settled(*met, from, direction);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 
 namespace spoonbill {
@@ -48,6 +49,7 @@ Status take_friction(const MaterialRegion& region, const std::vector<BodyPlace>&
 
 Result<LatticeMaterials> lattice_materials(const LatticeMesh& mesh, const Material& own,
                                            std::span<const MaterialRegion> regions) {
+  SPOONBILL_ASSERT(regions.size() < 256);
   LatticeMaterials materials(own);
   if (const Status status =
           check_range("regions", static_cast<int>(regions.size()), material_region_count_range);
@@ -73,6 +75,7 @@ Result<LatticeMaterials> lattice_materials(const LatticeMesh& mesh, const Materi
 }
 
 Status check_materials(const LatticeMaterials& materials) {
+  SPOONBILL_ASSERT(!materials.materials.empty());
   for (const Material& material : materials.materials) {
     if (Status status = check_material(material); !status.ok()) return status;
   }
@@ -91,6 +94,7 @@ bool are_plainly_elastic(const LatticeMaterials& materials) {
 }
 
 double largest_youngs_modulus_pa(const LatticeMaterials& materials) {
+  SPOONBILL_ASSERT(!materials.materials.empty());
   double largest = 0.0;
   for (const Material& material : materials.materials) {
     largest = std::max(largest, material.youngs_modulus_pa);
@@ -99,6 +103,7 @@ double largest_youngs_modulus_pa(const LatticeMaterials& materials) {
 }
 
 double least_poissons_ratio(const LatticeMaterials& materials) {
+  SPOONBILL_ASSERT(!materials.materials.empty());
   double least = poissons_ratio_range.high;
   for (const Material& material : materials.materials) least = std::min(least, material.poissons_ratio);
   return least;

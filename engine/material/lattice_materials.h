@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/result.h"
 #include "engine/material/lattice/body_place.h"
 #include "engine/scene/material.h"
@@ -23,7 +24,10 @@ struct LatticeMaterials {
   std::vector<double> frictions;      // the body's own, then those of its regions
   std::vector<std::uint8_t> friction_of_node;  // which of them; empty: all the first
 
-  const Material& own() const { return materials.front(); }
+  const Material& own() const {
+    SPOONBILL_ASSERT(!materials.empty());
+    return materials.front();
+  }
   std::size_t index_of(std::size_t cell) const { return of_cell.empty() ? 0 : of_cell[cell]; }
   const Material& of(std::size_t cell) const { return materials[index_of(cell)]; }
   double friction(int node) const {
@@ -32,6 +36,7 @@ struct LatticeMaterials {
   bool are_several() const { return !of_cell.empty(); }
   // Makes the rest of the body, beside its regions, of another material.
   void set_own(const Material& material) {
+    SPOONBILL_ASSERT(!materials.empty() && !frictions.empty());
     materials.front() = material;
     frictions.front() = material.friction;
   }

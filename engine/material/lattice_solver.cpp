@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/material/settling.h"
 #include "engine/material/springs/node_motion.h"
 #include "engine/material/supports/support_motion.h"
@@ -330,16 +331,21 @@ void end_core_steps(const Relaxation& relaxation, GroundContacts* ground) {
 }  // namespace
 
 double stable_step_s(double angular_frequency, double damping_ratio) {
+  SPOONBILL_ASSERT_DEBUG(angular_frequency > 0.0 && damping_ratio >= 0.0);
   return 2.0 / angular_frequency * (std::sqrt(1.0 + damping_ratio * damping_ratio) - damping_ratio);
 }
 
 double felt_modulus_limit_pa(double unit_frequency, double damping_ratio) {
+  SPOONBILL_ASSERT(unit_frequency > 0.0 && damping_ratio >= 0.0);
   const double root = felt_stability_share * stable_step_s(unit_frequency, damping_ratio) / relaxation_step_s;
   return root * root;
 }
 
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
                   std::span<const TouchingTool> tools, BodyContacts* between, GroundContacts* ground) {
+  SPOONBILL_ASSERT(!lattices.empty() && lattices.size() <= static_cast<std::size_t>(lattice_capacity));
+  SPOONBILL_ASSERT(settings.iterations >= 1 && settings.step_s > 0.0);
+  SPOONBILL_ASSERT(settings.damping_per_s >= 0.0);
   Relaxation relaxation{lattices, {}, {}, {}, {}, 0.0};
   const bool flows = settings.tick % 2 == 1;
   for (std::size_t at = 0; at < lattices.size(); ++at) relaxation.view[at] = lattices[at].lattice->view();

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/reparameterise.h"
 
 namespace spoonbill {
@@ -150,6 +151,7 @@ TurnedSide turned(Side side, const Orientation& orientation) {
 }
 
 Result<Arrangement> arrange(const std::vector<Surface>& patches, const std::vector<EdgeMatch>& matches) {
+  SPOONBILL_ASSERT(!patches.empty());
   auto places = places_of(patches.size(), matches);
   int low_a = 0, low_b = 0, high_a = 0, high_b = 0;
   for (std::size_t p = 0; p < places.size(); ++p) {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/bspline/basis.h"
 #include "engine/bspline/blossom.h"
@@ -119,6 +120,8 @@ BridgeForm form_between(const Surface& before, const Surface& after) {
 
 Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, int continuity,
                                    bool may_fold) {
+  SPOONBILL_ASSERT(continuity >= 0);
+  SPOONBILL_ASSERT(before.u.is_periodic() == after.u.is_periodic());
   auto even = at_even_speed(before, after);
   if (!even) return even.error();
   BridgeLength length = even.value();
@@ -140,6 +143,9 @@ Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, 
 }
 
 Result<Surface> bridge(const Surface& before, const Surface& after, int continuity) {
+  SPOONBILL_ASSERT(continuity >= 0);
+  SPOONBILL_ASSERT(before.u.control_point_count() == after.u.control_point_count() &&
+                   before.v.degree() == after.v.degree());
   const int degree = before.v.degree();
   // More continuity than asked where the degree gives it without further pieces.
   const int order = std::max(continuity, degree / 2);

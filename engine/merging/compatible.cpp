@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/constrained_inverse.h"
@@ -257,6 +258,8 @@ Status match_parameters(std::vector<Surface>& patches, const JoinRequest& reques
 }  // namespace
 
 Result<CompatiblePatches> compatible_along_v(std::vector<Surface> patches, const JoinRequest& request) {
+  SPOONBILL_ASSERT(!patches.empty());
+  SPOONBILL_ASSERT(request.continuity >= 0);
   int degree_u = 1, degree_v = request.continuity + 1;
   for (const Surface& patch : patches) {
     degree_u = std::max(degree_u, patch.u.degree());

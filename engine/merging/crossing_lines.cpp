@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/place_text.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
@@ -234,6 +235,7 @@ Result<CrossingPatches> facing_each_other(const Surface& first, const Surface& s
 
 CornerLines::CornerLines(const CrossingPatches& patches, double fillet_m)
     : patches_(&patches), second_(patches.second), fillet_m_(fillet_m) {
+  SPOONBILL_ASSERT(fillet_m >= 0.0);
   choose_sides();
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/merging/ring_bend.h"
 
 namespace spoonbill {
@@ -231,10 +232,13 @@ std::string text_of(PatchEdge edge) {
 
 Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b,
                               std::optional<bool> reversed) {
+  SPOONBILL_ASSERT(a.patch >= 0 && a.patch < static_cast<int>(patches.size()));
+  SPOONBILL_ASSERT(b.patch >= 0 && b.patch < static_cast<int>(patches.size()));
   return match_prepared(prepared(patches, a), prepared(patches, b), reversed);
 }
 
 Result<std::vector<EdgeMatch>> matches_of(const std::vector<Surface>& patches, double together_m) {
+  SPOONBILL_ASSERT(together_m >= 0.0);
   const std::vector<EdgeMatch> all = candidates(patches);
   std::vector<EdgeMatch> taken;
   Groups groups(patches.size());

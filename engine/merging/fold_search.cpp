@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/knot_vectors.h"
@@ -117,6 +118,7 @@ bool folds_in_strip(const NormalGrid& normals, std::size_t i, std::size_t j) {
 }  // namespace
 
 std::optional<Vector3> place_of_fold(const Surface& surface) {
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   const Cells along_u = cells_along(surface.u), along_v = cells_along(surface.v);
   const NormalGrid normals(surface, along_u.middles, along_v.middles);
   const std::size_t rows = along_u.middles.size(), columns = along_v.middles.size();
@@ -132,6 +134,7 @@ std::optional<Vector3> place_of_fold(const Surface& surface) {
 }
 
 std::optional<Vector3> place_of_fold_between(const Surface& surface, double start, double end) {
+  SPOONBILL_ASSERT(start <= end);
   const NormalGrid normals(surface, lines_across(surface.u), steps_along(surface.v, start, end));
   for (std::size_t i = 0; i < normals.u().size(); ++i) {
     for (std::size_t j = 0; j < normals.v().size(); ++j) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/base/place_text.h"
 #include "engine/bspline/reparameterise.h"
@@ -211,6 +212,8 @@ Result<IntersectionMerge> merge_outward(const Surface& first, const Surface& sec
 
 Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
                                          const IntersectionRequest& request) {
+  SPOONBILL_ASSERT(request.fillet_m >= 0.0);
+  SPOONBILL_ASSERT_DEBUG(is_valid(first) && is_valid(second));
   const bool first_inward = is_inward(first), second_inward = is_inward(second);
   auto merged = merge_outward(first_inward ? reversed(first, Direction::u) : first,
                               second_inward ? reversed(second, Direction::u) : second, request);

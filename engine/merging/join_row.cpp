@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/place_text.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
@@ -202,6 +203,7 @@ constexpr double prepared_share = 0.3, approximated_share = 0.6;
 }  // namespace
 
 Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request) {
+  SPOONBILL_ASSERT(row.joints.size() + 1 == row.patches.size());
   auto placed = placed_in_row(row);
   if (!placed) return placed.error();
   auto strips = with_bridges(placed.value(), row, request.continuity);
@@ -229,6 +231,7 @@ Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request)
 }
 
 Result<Joined> join_row(std::vector<Surface> patches, const JoinRequest& request) {
+  SPOONBILL_ASSERT(!patches.empty());
   JoinRequest preparing = request, joining = request;
   preparing.progress = request.progress.part(0.0, prepared_share);
   joining.progress = request.progress.part(prepared_share, 1.0);

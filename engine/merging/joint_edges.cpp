@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 
@@ -75,18 +76,21 @@ JointEdges joint_edges(const Surface& before, const Surface& after) {
 }
 
 double largest_gap_m(const JointEdges& edges) {
+  SPOONBILL_ASSERT(edges.before.size() == edges.after.size());
   double largest = 0.0;
   for (std::size_t k = 0; k < edges.before.size(); ++k) largest = std::max(largest, gap_m(edges, k));
   return largest;
 }
 
 double mean_gap_m(const JointEdges& edges) {
+  SPOONBILL_ASSERT(edges.before.size() == edges.after.size() && !edges.before.empty());
   double sum = 0.0;
   for (std::size_t k = 0; k < edges.before.size(); ++k) sum += gap_m(edges, k);
   return sum / static_cast<double>(edges.before.size());
 }
 
 double mean_advance_m(const JointEdges& edges) {
+  SPOONBILL_ASSERT(edges.before.size() == edges.after.size() && !edges.before.empty());
   double sum = 0.0;
   for (std::size_t k = 0; k < edges.before.size(); ++k) sum += advance_m(edges, k);
   return sum / static_cast<double>(edges.before.size());
@@ -115,6 +119,7 @@ double stretch_at_edge(const JointEdges& edges) {
 }
 
 bool is_smooth(const Surface& before, const Surface& after, double stretch, int continuity) {
+  SPOONBILL_ASSERT(continuity >= 0);
   const JointEdges edges = joint_edges(before, after);
   for (std::size_t k = 0; k < edges.before.size(); ++k) {
     const SurfacePoint &a = edges.before[k], &b = edges.after[k];
@@ -127,6 +132,7 @@ bool is_smooth(const Surface& before, const Surface& after, double stretch, int 
 }
 
 double mean_speed(const std::vector<SurfacePoint>& points) {
+  SPOONBILL_ASSERT(!points.empty());
   double sum = 0.0;
   for (const SurfacePoint& point : points) sum += point.dv.norm() / static_cast<double>(points.size());
   return sum;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/box.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
@@ -135,6 +136,8 @@ std::vector<LineCrossing> CrossingFinder::of_line(const Surface& surface, double
 
 std::vector<LineCrossing> CrossingFinder::of_ray(const Vector3& from_m, const Vector3& direction,
                                                  double length_m) const {
+  SPOONBILL_ASSERT(std::abs(direction.squaredNorm() - 1.0) < 1e-6);
+  SPOONBILL_ASSERT(length_m >= 0.0);
   const auto curve = [&](double along) { return CurvePoint{from_m + along * direction, direction}; };
   std::vector<LineCrossing> crossings;
   // Short ones, whose boxes hold few cells.

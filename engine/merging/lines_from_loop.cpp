@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -26,6 +28,7 @@ LinesFromLoop::LinesFromLoop(const Surface& body, const std::vector<Eigen::Vecto
       u_length_(body.u.domain_end() - body.u.domain_start()),
       v_start_(body.v.domain_start()),
       v_length_(body.v.domain_end() - body.v.domain_start()) {
+  SPOONBILL_ASSERT(body.u.is_periodic() && loop.size() >= 3);
   double farthest = 0.0;
   for (const Eigen::Vector2d& uv : loop) {
     middle_ += on_plane(uv) / static_cast<double>(loop.size());
@@ -57,6 +60,7 @@ double LinesFromLoop::angle_of(const Eigen::Vector2d& start) const {
 }
 
 Eigen::Vector2d LinesFromLoop::at(const Eigen::Vector2d& start, double share) const {
+  SPOONBILL_ASSERT_DEBUG(share >= 0.0 && share <= 1.0);
   const double angle = 2.0 * pi * angle_of(start);
   Eigen::Vector2d place = Eigen::Vector2d::Zero();
   if (share >= bend_) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/base/place_text.h"
 #include "engine/bspline/grid.h"
@@ -338,6 +339,7 @@ Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
 }  // namespace
 
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request) {
+  SPOONBILL_ASSERT(request.join.tolerance_m >= 0.0 && request.join.blend_m >= 0.0);
   if (Status status = check(patches, request); !status) return status.error();
   if (patches.size() == 1) return Merged{patches[0], 0.0, {}};
   if (!request.join.progress.report(0.0)) return Progress::stopped();

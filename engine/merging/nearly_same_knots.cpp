@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
 
@@ -53,6 +54,7 @@ std::vector<std::pair<double, double>> moves_between(const KnotVector& from, con
 }  // namespace
 
 double seam_at_nearly_same_knots(const KnotVector& first, const KnotVector& second, double seam) {
+  SPOONBILL_ASSERT(first.is_periodic() && second.is_periodic());
   const double length = length_of(second);
   const auto apart = [&](double of_second, double of_first) {
     const double step = (of_second - seam) - (of_first - first.domain_start());

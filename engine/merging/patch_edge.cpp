@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/basis.h"
 #include "engine/bspline/change_knots.h"
 #include "engine/bspline/grid.h"
@@ -65,6 +66,7 @@ const char* side_name(Side side) {
 }
 
 EdgeCurve edge_curve(const Surface& surface, Side side) {
+  SPOONBILL_ASSERT(has_size_of_knots(surface));
   const bool across_u = across(side) == Direction::u;
   const KnotVector& fixed = knots_along(surface, across(side));
   const BasisFunctions basis =
@@ -112,6 +114,7 @@ Vector3 outward(const Surface& surface, Side side) {
 }
 
 EdgeSamples edge_samples(const EdgeCurve& curve, int count) {
+  SPOONBILL_ASSERT(count >= 2);
   const std::vector<double> fine = fine_parameters(curve.knots);
   std::vector<double> lengths{0.0};
   std::vector<Vector3> points;

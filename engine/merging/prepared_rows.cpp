@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/bridge.h"
@@ -168,6 +169,9 @@ Status share_domains(std::vector<std::vector<Surface>>& rows) {
 
 Result<std::vector<PreparedRow>> prepare_rows(std::vector<std::vector<Surface>> rows,
                                               const JoinRequest& request) {
+  SPOONBILL_ASSERT(!rows.empty());
+  SPOONBILL_ASSERT(std::all_of(rows.begin(), rows.end(),
+                               [&](const auto& row) { return row.size() == rows.front().size(); }));
   if (Status status = share_domains(rows); !status) return status.error();
   std::vector<PreparedRow> prepared;
   for (std::vector<Surface>& row : rows) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/grid.h"
 
 namespace spoonbill {
@@ -64,6 +65,7 @@ double bend_stretch(const Eigen::Matrix3d& turn) {
 }
 
 void fill_bend(ControlNet& net, int first, int last, const Vector3& outward, const Eigen::Matrix3d& turn) {
+  SPOONBILL_ASSERT(first >= 0 && first <= last && last < net.columns);
   const Vector3 from = middle_of_column(net, first), to = middle_of_column(net, last);
   const Eigen::AngleAxisd whole(Eigen::Matrix3d(turn.transpose()));
   // The slopes with which Hermite's cubic is nearest to an arc.

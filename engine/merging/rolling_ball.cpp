@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/merging/tube_ends.h"
 
 namespace spoonbill {
@@ -97,6 +98,8 @@ class Corner {
 
 std::optional<BallContact> ball_contact(const Surface& surface, double u, const Surface& other,
                                         const LineCrossing& crossing, BallSides sides, double radius_m) {
+  SPOONBILL_ASSERT(radius_m > 0.0);
+  SPOONBILL_ASSERT(std::abs(sides.of_surface) == 1 && std::abs(sides.of_other) == 1);
   const Corner corner(surface, u, other, sides);
   constexpr int steps = 8;
   std::optional<Places> at = Places{crossing.along, crossing.other_u, crossing.other_v};

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/trim_loop.h"
 
 namespace spoonbill {
@@ -97,6 +98,7 @@ Eigen::Vector2d on_hole(const Polygon& hole, const Eigen::Vector2d& centre, cons
 
 std::optional<Result<FittedShape>> round_part(const Surface& surface, const std::vector<Polygon>& polygons,
                                               double tolerance_m) {
+  SPOONBILL_ASSERT(tolerance_m > 0.0);
   if (polygons.empty() || polygons.size() > 2) return std::nullopt;
   const bool first_is_outer = signed_area(polygons.front()) > 0.0;
   const Polygon& outer = first_is_outer ? polygons.front() : polygons.back();

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/merging/edge_match.h"
 
@@ -43,6 +44,7 @@ Result<KnotVector> period_of(const KnotVector& knots, int continuity) {
 
 Result<Approximation> closed_around(const Surface& surface, Direction direction, int continuity,
                                     double tolerance_m, const Progress& progress) {
+  SPOONBILL_ASSERT(continuity >= 0);
   const KnotVector& knots = knots_along(surface, direction);
   if (knots.is_periodic()) return Error{"the direction is closed already; choose the other one"};
   if (const double gap_m = edge_gap_m(surface, direction); gap_m > tolerance_m) {

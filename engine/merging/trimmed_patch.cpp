@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/merging/join_row.h"
@@ -256,6 +257,7 @@ Result<FittedShape> rectangle_of(const Surface& surface, const Polygons& polygon
 
 Result<FittedShape> untrimmed(const Surface& surface, const std::vector<TrimLoop>& trims,
                               double tolerance_m) {
+  SPOONBILL_ASSERT(tolerance_m > 0.0);
   const auto area = TrimmedArea::make(surface.u, surface.v, trims);
   if (!area) return area.error();
   if (area->is_whole()) return FittedShape{surface, 0.0};

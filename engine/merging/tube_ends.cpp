@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/place_text.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/grid_fit.h"
@@ -117,6 +118,7 @@ bool is_tube(const Surface& surface) {
 }
 
 std::pair<Side, Side> tube_sides(const Surface& surface) {
+  SPOONBILL_ASSERT(is_tube(surface));
   return surface.u.is_periodic() ? std::pair(Side::v_start, Side::v_end)
                                  : std::pair(Side::u_start, Side::u_end);
 }
@@ -135,6 +137,7 @@ TubeEnd tube_end(const Surface& surface, Side side) {
 }
 
 Result<Joined> with_cap(const Surface& surface, Side side, double height_m, const JoinRequest& request) {
+  SPOONBILL_ASSERT(height_m >= 0.0);
   if (!is_tube(surface) || !is_joinable(surface, side)) {
     return Error{std::string(side_name(side)) + " is not the open end of a tube; choose one that is"};
   }
@@ -157,6 +160,7 @@ Result<Joined> with_cap(const Surface& surface, Side side, double height_m, cons
 }
 
 Result<Surface> opened_pole(const Surface& surface, Side side, double wide_enough_m) {
+  SPOONBILL_ASSERT(wide_enough_m >= 0.0);
   if (!is_tube(surface) || !is_pole(surface, side)) {
     return Error{std::string(side_name(side)) + " is not the pole of a tube; choose one that is"};
   }

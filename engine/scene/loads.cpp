@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 
 namespace spoonbill {
@@ -52,6 +53,7 @@ Status check_motion(const SupportMotion& motion) {
 }  // namespace
 
 Vector3 way_at(const SupportMotion& motion, double time_s) {
+  SPOONBILL_ASSERT(time_s >= 0.0);
   if (motion.kind == MotionKind::ramp) return smooth_step(time_s / motion.duration_s) * motion.way_m;
   const double turns = time_s * motion.frequency_hz;
   return smooth_step(turns) * sine_of_turns(turns) * motion.way_m;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/grid_fit.h"
@@ -280,6 +281,9 @@ Status refine_until(const ExactShape& shape, bool along_u, double allowed_m, con
 }  // namespace
 
 Result<FittedShape> fit_shape(const ExactShape& shape, const ShapeFit& fit) {
+  SPOONBILL_ASSERT(shape.at && shape.u.breaks.size() >= 2 && shape.v.breaks.size() >= 2);
+  SPOONBILL_ASSERT(fit.tolerance_m > 0.0 && fit.least_spans >= 1);
+  SPOONBILL_ASSERT(fit.degree >= 1 && fit.degree <= max_degree);
   if (fit.control_counts) return fit_counted(shape, fit);
   ShapeKnots u(shape.u, fit.degree, fit.least_spans), v(shape.v, fit.degree, fit.least_spans);
   if (u.control_count() > most_control_points) return too_fine(fit, "u");

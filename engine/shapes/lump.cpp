@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/base/assert.h"
 #include "engine/base/box.h"
 
 namespace spoonbill {
@@ -65,6 +66,7 @@ Result<ExactShape> lump_shape(const LumpSize& size) {
 }
 
 double usual_tolerance_m(const ExactShape& shape) {
+  SPOONBILL_ASSERT(static_cast<bool>(shape.at));
   constexpr int steps = 16;
   Box box;
   for (int i = 0; i <= steps; ++i) {

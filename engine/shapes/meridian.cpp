@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 
 namespace spoonbill {
@@ -77,6 +78,7 @@ void Meridian::add_arc(const MeridianPoint& centre, double radius, double from, 
 
 Result<Meridian> Meridian::rounded(std::span<const MeridianPoint> vertices,
                                    std::span<const double> roundings) {
+  SPOONBILL_ASSERT(vertices.size() >= 2 && vertices.size() == roundings.size());
   const std::vector<Corner> corners = corners_of(vertices);
   double whole = 0.0;
   for (std::size_t k = 0; k + 1 < vertices.size(); ++k) whole += (vertices[k + 1] - vertices[k]).norm();
@@ -107,12 +109,14 @@ Result<Meridian> Meridian::rounded(std::span<const MeridianPoint> vertices,
 }
 
 Meridian Meridian::half_circle(double radius_m) {
+  SPOONBILL_ASSERT(radius_m > 0.0);
   Meridian meridian;
   meridian.add_arc({0.0, 0.0}, radius_m, -0.5 * std::numbers::pi, std::numbers::pi);
   return meridian;
 }
 
 MeridianPoint Meridian::at(double distance_m) const {
+  SPOONBILL_ASSERT_DEBUG(!pieces_.empty());
   const auto after = std::upper_bound(starts_.begin() + 1, starts_.end() - 1, distance_m);
   const std::size_t k = static_cast<std::size_t>(after - starts_.begin()) - 1;
   const Piece& piece = pieces_[k];
@@ -122,6 +126,7 @@ MeridianPoint Meridian::at(double distance_m) const {
 }
 
 ExactShape revolved_shape(Meridian meridian) {
+  SPOONBILL_ASSERT(meridian.length_m() > 0.0);
   ExactShape shape;
   const double length = meridian.length_m();
   shape.u.periodic = true;

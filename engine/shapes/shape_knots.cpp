@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -25,11 +27,15 @@ ShapeKnots::ShapeKnots(const ShapeDirection& direction, int degree)
       ends_(direction.breaks),
       jumps_(ends_.size(), degree > 2),
       spans_(ends_.size() - 1, 1) {
+  SPOONBILL_ASSERT(direction.breaks.size() >= 2);
+  SPOONBILL_ASSERT_DEBUG(std::is_sorted(direction.breaks.begin(), direction.breaks.end()));
+  SPOONBILL_ASSERT(degree >= 1 && degree <= max_degree);
   jumps_.front() = jumps_.back() = false;
 }
 
 ShapeKnots::ShapeKnots(const ShapeDirection& direction, int degree, int least_spans)
     : ShapeKnots(direction, degree) {
+  SPOONBILL_ASSERT(least_spans >= 1);
   const double longest = (direction.end() - direction.start()) / least_spans;
   for (std::size_t k = spans_.size(); k-- > 0;) {
     const double length = ends_[k + 1] - ends_[k];
@@ -128,6 +134,7 @@ KnotVector ShapeKnots::knots() const {
 }
 
 std::vector<double> ShapeKnots::parameters(int in_each_span) const {
+  SPOONBILL_ASSERT(in_each_span >= 1);
   const std::vector<double> points = breakpoints();
   std::vector<double> parameters;
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
@@ -152,6 +159,8 @@ std::vector<double> ShapeKnots::largest_in_cells(const std::vector<double>& at,
 }
 
 bool ShapeKnots::refine(const std::vector<double>& at, const std::vector<double>& error_m, double allowed_m) {
+  SPOONBILL_ASSERT(at.size() == error_m.size());
+  SPOONBILL_ASSERT(allowed_m > 0.0);
   const std::vector<double> largest = largest_in_cells(at, error_m);
   const double least = ringing_share * *std::max_element(largest.begin(), largest.end());
   bool refined = false;
@@ -166,6 +175,7 @@ bool ShapeKnots::refine(const std::vector<double>& at, const std::vector<double>
 }
 
 void ShapeKnots::refine_worst(const std::vector<double>& at, const std::vector<double>& error_m) {
+  SPOONBILL_ASSERT(at.size() == error_m.size() && !at.empty());
   const std::vector<double> largest = largest_in_cells(at, error_m);
   ++spans_[static_cast<std::size_t>(std::max_element(largest.begin(), largest.end()) - largest.begin())];
 }

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -35,6 +37,7 @@ Step step_about(const ShapeDirection& direction, double parameter) {
 }  // namespace
 
 ShapeTangents tangents(const ExactShape& shape, double u, double v) {
+  SPOONBILL_ASSERT_DEBUG(static_cast<bool>(shape.at));
   const auto at = [&](double a, double b) {
     return shape.at(brought_into(shape.u, a), brought_into(shape.v, b));
   };
@@ -49,6 +52,7 @@ ShapeTangents tangents(const ExactShape& shape, double u, double v) {
 }
 
 double distance_near(const ExactShape& shape, const Vector3& point_m, double u, double v) {
+  SPOONBILL_ASSERT_DEBUG(static_cast<bool>(shape.at));
   double nearest = (shape.at(u, v) - point_m).norm();
   for (int step = 0; step < newton_steps; ++step) {
     const ShapeTangents at = tangents(shape, u, v);
@@ -69,6 +73,7 @@ double distance_near(const ExactShape& shape, const Vector3& point_m, double u, 
 }
 
 std::optional<Vector3> pole_normal(const ExactShape& shape, bool at_start) {
+  SPOONBILL_ASSERT(at_start ? shape.pole_at_start : shape.pole_at_end);
   constexpr int directions = 16;
   std::array<Vector3, directions> ways;
   const double v = at_start ? shape.v.start() : shape.v.end();

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 namespace {
@@ -104,6 +106,9 @@ Result<SmoothCurve> SmoothCurve::through(std::vector<Vector3> points_m, bool clo
 
 SmoothCurve SmoothCurve::at_parameters(std::vector<Vector3> points_m, std::vector<double> parameters,
                                        bool closed, const CurveEnds& first, const CurveEnds& last) {
+  SPOONBILL_ASSERT(points_m.size() >= 2);
+  SPOONBILL_ASSERT(parameters.size() == points_m.size() + (closed ? 1 : 0));
+  SPOONBILL_ASSERT_DEBUG(std::is_sorted(parameters.begin(), parameters.end()));
   SmoothCurve curve;
   curve.closed_ = closed;
   curve.bends_.resize(points_m.size());
@@ -131,6 +136,7 @@ SmoothCurve::Place SmoothCurve::place_of(double t) const {
 }
 
 Vector3 SmoothCurve::at(double t) const {
+  SPOONBILL_ASSERT_DEBUG(!parameters_.empty());
   const auto [k, length, b] = place_of(t);
   const double a = 1.0 - b, scale = length * length / 6.0;
   return a * point(k) + b * point(k + 1) +
@@ -138,6 +144,7 @@ Vector3 SmoothCurve::at(double t) const {
 }
 
 Vector3 SmoothCurve::first_derivative(double t) const {
+  SPOONBILL_ASSERT_DEBUG(!parameters_.empty());
   const auto [k, length, b] = place_of(t);
   const double a = 1.0 - b;
   return (point(k + 1) - point(k)) / length +
@@ -145,6 +152,7 @@ Vector3 SmoothCurve::first_derivative(double t) const {
 }
 
 Vector3 SmoothCurve::second_derivative(double t) const {
+  SPOONBILL_ASSERT_DEBUG(!parameters_.empty());
   const auto [k, length, b] = place_of(t);
   return (1.0 - b) * bend(k) + b * bend(k + 1);
 }

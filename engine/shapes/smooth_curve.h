@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/pose.h"
 #include "engine/base/result.h"
 
@@ -30,7 +31,10 @@ class SmoothCurve {
 
   bool closed() const { return closed_; }
   // The sum of the chords: parameters run from 0 to it.
-  double end() const { return parameters_.back(); }
+  double end() const {
+    SPOONBILL_ASSERT(!parameters_.empty());
+    return parameters_.back();
+  }
 
   Vector3 at(double t) const;
   Vector3 first_derivative(double t) const;

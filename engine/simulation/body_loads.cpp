@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/mesh_parts.h"
 #include "engine/material/lattice/shell_faces.h"
 
@@ -136,6 +137,7 @@ struct BodyLoads::Making {
 
 Result<BodyLoads> BodyLoads::make(const std::vector<Load>& loads, const LatticeMesh& mesh,
                                   const std::function<EmbeddedPoint(double u, double v)>& point_at) {
+  SPOONBILL_ASSERT(static_cast<bool>(point_at));
   if (loads.empty()) return BodyLoads();
   Making making{mesh, point_at, node_places(mesh), shell_faces(mesh)};
   for (std::size_t l = 0; l < loads.size(); ++l) {
@@ -157,6 +159,7 @@ Result<BodyLoads> BodyLoads::make(const std::vector<Load>& loads, const LatticeM
 }
 
 void BodyLoads::apply(double share, SpringLattice& lattice, ImplicitCore* core) {
+  SPOONBILL_ASSERT(share >= 0.0);
   if (empty()) return;
   for (const int n : nodes_) force_n_[static_cast<std::size_t>(n)].setZero();
   for (const NodeForce& force : forces_) {

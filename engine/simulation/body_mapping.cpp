@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/knot_insertion.h"
 
 namespace spoonbill {
@@ -202,6 +203,7 @@ Result<SampledRefit> sampled_refit(const Surface& surface, const RefitConstraint
 Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& current,
                                       const SpringLattice& lattice, const std::vector<FixingPlane>& planes,
                                       InstructionSet set) {
+  SPOONBILL_ASSERT_DEBUG(rest.u == current.u && rest.v == current.v);
   BodyMapping mapping(rest, current, set);
   FixedStretch fixed = fixed_stretch(current, planes);
   for (double* edge : {&fixed.low_end, &fixed.high_start}) {

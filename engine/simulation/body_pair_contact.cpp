@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
 #include "engine/simulation/shell_gap.h"
 
 namespace spoonbill {
@@ -129,6 +130,7 @@ void find_near(MeshProximity& proximity, const BodyState& first, const BodyState
 }  // namespace
 
 BodyPairContact::BodyPairContact(const BodyState& first, const BodyState& second) {
+  SPOONBILL_ASSERT(first.mesh() == nullptr);
   const NestedGrid& grid = first.mapping().nested();
   if (const MeshMapping* const mesh = second.mesh()) {
     proximity_ = std::make_unique<MeshProximity>(grid, mesh->patches());

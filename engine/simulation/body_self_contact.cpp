@@ -1,7 +1,11 @@
 #include "engine/simulation/body_self_contact.h"
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
+
 BodySelfContact::BodySelfContact(const BodyState& body) {
+  SPOONBILL_ASSERT_DEBUG(body.held.size() == static_cast<std::size_t>(body.lattice.mesh().node_count()));
   if (body.mesh() != nullptr || body.lattice.mesh().slender) return;
   proximity_ = std::make_unique<SelfProximity>(body.mapping().nested(), body.mapping().rest(),
                                                static_cast<double>(body.lattice.cell_size_m()));

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/instruction_set.h"
 #include "engine/base/result.h"
 #include "engine/bspline/trimmed_area.h"
@@ -41,6 +42,7 @@ struct BodyState {
   void hold_behind(const std::vector<FixingPlane>& planes);
   // One byte a node.
   void hold(std::vector<std::uint8_t> nodes) {
+    SPOONBILL_ASSERT(nodes.size() == static_cast<std::size_t>(lattice.mesh().node_count()));
     held = std::move(nodes);
     lattice.hold(held);
     if (core) core->hold(held);
@@ -68,8 +70,14 @@ struct BodyState {
   const LatticeReport& report() const { return mover() ? mover()->report() : lattice.report(); }
 
   // What every body has but a tessellated tool that gives way.
-  BodyMapping& mapping() { return *std::get_if<BodyMapping>(&skin); }
-  const BodyMapping& mapping() const { return *std::get_if<BodyMapping>(&skin); }
+  BodyMapping& mapping() {
+    SPOONBILL_ASSERT(mesh() == nullptr);
+    return *std::get_if<BodyMapping>(&skin);
+  }
+  const BodyMapping& mapping() const {
+    SPOONBILL_ASSERT(mesh() == nullptr);
+    return *std::get_if<BodyMapping>(&skin);
+  }
   // Of such a tool; null of any other body.
   const MeshMapping* mesh() const { return std::get_if<MeshMapping>(&skin); }
 

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -40,6 +42,7 @@ Result<BodySupports> BodySupports::make(const std::vector<Support>& supports, co
 }
 
 void BodySupports::take_nodes(const SpringLattice& lattice, std::vector<std::uint8_t>& held) {
+  SPOONBILL_ASSERT(held.size() == static_cast<std::size_t>(lattice.mesh().node_count()));
   for (std::size_t s = supported_.size(); s-- > 0;) {
     SupportedNodes& support = supported_[s];
     find_way(lattice, support);
@@ -63,6 +66,7 @@ void BodySupports::begin_anew(const SpringLattice& before, const SpringLattice& 
 
 std::span<SupportedNodes> BodySupports::begin_tick(const SpringLattice& lattice, double end_s,
                                                    double tick_s) {
+  SPOONBILL_ASSERT(tick_s > 0.0);
   for (std::size_t s = 0; s < supported_.size(); ++s) {
     SupportedNodes& support = supported_[s];
     support.impulse_ns.setZero();

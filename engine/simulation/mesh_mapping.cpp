@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
 #include "engine/material/lattice/box_lattice.h"
 
 namespace spoonbill {
@@ -27,6 +28,7 @@ MeshMapping::MeshMapping(const TriangleMesh& rest, const SpringLattice& lattice)
       triangles_(std::make_shared<const std::vector<TriangleCorners>>(rest.triangles)),
       node_moves_(4 * static_cast<std::size_t>(lattice.mesh().node_count()), 0.0f),
       current_(rest) {
+  SPOONBILL_ASSERT(!rest.triangles.empty());
   embedding_.reserve(rest_m_.size());
   patches_.reserve(rest_m_.size());
   for (const Vector3& vertex : rest_m_) {

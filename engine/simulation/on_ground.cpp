@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -124,6 +126,8 @@ OnGround::BodyFootings OnGround::footings_of(const BodyState& body) {
 
 void OnGround::find(std::span<const BodyState> bodies, const Ground& ground, const Vector3& gravity_m_per_s2,
                     double time_s) {
+  SPOONBILL_ASSERT(bodies.size() == bodies_.size());
+  SPOONBILL_ASSERT(time_s > 0.0);
   contacts_.begin(ground.normal, time_s);
   const double fall_m = time_s * time_s * gravity_m_per_s2.norm();
   for (std::size_t b = 0; b < bodies.size(); ++b) {

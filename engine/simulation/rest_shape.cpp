@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/material/lattice/shell_faces.h"
 #include "engine/simulation/body_state.h"
 
@@ -85,6 +86,7 @@ void measure(const StaticBody& body, const StaticLoads& loads, RestShape& shape)
 }  // namespace
 
 Result<RestShape> rest_shape(const Scene& scene, int body, const Progress& progress) {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(scene.bodies.size()));
   const Body& as_set = scene.bodies[static_cast<std::size_t>(body)];
   Result<BodyState> state = make_body_state(as_set, scene.planes, InstructionSet::baseline);
   if (!state.ok()) return state.error();

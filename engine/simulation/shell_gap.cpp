@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -13,6 +15,7 @@ constexpr double beside_share = 0.2, rounding_m = 1e-6;
 }  // namespace
 
 double far_face_lead_m(double thickness_m, const Vector3& normal, const Vector3& push) {
+  SPOONBILL_ASSERT_DEBUG(thickness_m >= 0.0);
   return thickness_m * std::max(0.0, normal.dot(push));
 }
 
@@ -28,6 +31,7 @@ bool gap_to_shell(const Surface& shell, double thickness_m, double u, double v, 
 }
 
 bool settle_shell_gap(const MaybeShell& of, const MaybeShell& other, double margin_m, NearPoint& near) {
+  SPOONBILL_ASSERT_DEBUG(of.surface != nullptr && other.surface != nullptr);
   if (other.thickness_m > 0.0 &&
       !gap_to_shell(*other.surface, other.thickness_m, near.other_u, near.other_v, near.point_m,
                     margin_m + of.thickness_m, near.normal, near.gap_m)) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/denormals.h"
 #include "engine/simulation/command_applier.h"
 #include "engine/simulation/contact_snapshots.h"
@@ -189,6 +190,7 @@ void measure_residuals(Simulation::State& s) {
 }  // namespace
 
 Reaction Simulation::advance(const ToolInput& input) {
+  SPOONBILL_ASSERT(input.pose.position_m.allFinite() && input.coupling_n_per_m >= 0.0);
   const DenormalsFlushed flushed;
   State& s = *state_;
   const bool both = s.scene.symmetry.on;
@@ -237,23 +239,28 @@ std::uint64_t Simulation::tick() const {
   return state_->tick;
 }
 const SpringLattice& Simulation::lattice(int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   return state_->bodies[static_cast<std::size_t>(body)].lattice;
 }
 Vector3 Simulation::support_force_n(int support, int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   const auto at = static_cast<std::size_t>(body);
   const SupportedNodes& bears = state_->bodies[at].supports.supports()[static_cast<std::size_t>(support)];
   return bears.impulse_ns * (real_over_felt(*state_, at) / std::max(state_->relaxed.material_time_s, tick_s));
 }
 Vector3 Simulation::ground_force_n(int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   if (!state_->scene.ground) return Vector3::Zero();
   const double ratio = real_over_felt(*state_, static_cast<std::size_t>(body));
   return state_->on_ground.contacts().impulse_ns(body) *
          (ratio / std::max(state_->relaxed.material_time_s, tick_s));
 }
 const LatticeReport& Simulation::report(int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   return state_->bodies[static_cast<std::size_t>(body)].report();
 }
 const Surface& Simulation::surface(int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   return state_->bodies[static_cast<std::size_t>(body)].mapping().current();
 }
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -42,6 +44,7 @@ SkinHeights::SkinHeights(NestedGrid nested) : nested_(std::move(nested)) {
 
 bool SkinHeights::take(const Surface& surface, const Vector3& point_m, const Vector3& normal,
                        double reach_m) {
+  SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
   const ControlNet& net = surface.net;
   double lowest = infinite;
   for (std::size_t p = 0; p < control_.size(); ++p) {
@@ -106,6 +109,7 @@ double SkinHeights::dip_along_v(int row, int column) const {
 }
 
 double SkinHeights::lowest_m(int row, int column) const {
+  SPOONBILL_ASSERT_DEBUG(row >= 0 && row < rows() && column >= 0 && column < columns());
   const double here = height(row, column);
   if (here == infinite) return here;
   return here - dip_along_u(row, column) - dip_along_v(row, column);

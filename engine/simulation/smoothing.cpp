@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -166,6 +168,7 @@ Vector3 Smoothing::off_the_middle(const SpringLattice& lattice, int node) const 
 }
 
 void Smoothing::apply(SpringLattice& lattice, const SmoothingBrush& brush, std::uint64_t tick) {
+  SPOONBILL_ASSERT(brush.reach_m >= 0.0);
   const double reach_square = brush.reach_m * brush.reach_m;
   near_.clear();
   for (int n = 0; n < static_cast<int>(shell_.size()); ++n) {

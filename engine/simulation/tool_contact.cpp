@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
 #include "engine/simulation/body_pair_contact.h"
 #include "engine/simulation/shell_gap.h"
 #include "engine/simulation/tool_kernel.h"
@@ -84,6 +85,8 @@ int ToolContact::deepest_body() const {
 
 void ToolContact::prepare(std::span<const BodyState> bodies, const Tool& tool, const ToolModel& model,
                           const ToolHold& hold) {
+  SPOONBILL_ASSERT(bodies.size() == contacts_.size());
+  SPOONBILL_ASSERT(hold.reach_m >= 0.0);
   is_solid_ = tool.kind == ToolKind::solid;
   if (is_surface()) place(model.surface->net, hold.turn, hold.pose.position_m, placed_->net);
   overflow_ = false;

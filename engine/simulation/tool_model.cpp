@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/mesh_distance.h"
 #include "engine/simulation/soft_mesh.h"
 
@@ -81,6 +82,7 @@ struct ModelOf {
 }  // namespace
 
 Result<ToolModel> make_tool_model(const Tool& tool, InstructionSet set) {
+  SPOONBILL_ASSERT(tool.kind != ToolKind::solid || tool.body != nullptr);
   if (tool.kind != ToolKind::solid) return ToolModel{};
   return std::visit(ModelOf{*tool.body, set}, tool.body->solid);
 }

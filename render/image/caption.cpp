@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/file.h"
 
 namespace spoonbill {
@@ -64,6 +65,7 @@ Result<CaptionFont> CaptionFont::load(const std::string& path) {
 }
 
 void CaptionFont::draw(Image& image, const std::string& text, int x_px, int y_px, int size_px) const {
+  SPOONBILL_ASSERT(size_px > 0);
   stbtt_fontinfo font;
   read_font(file_, font);
   const float scale = stbtt_ScaleForPixelHeight(&font, static_cast<float>(size_px));

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -53,6 +55,7 @@ void append_faded_line(int axis, double offset_m, const Vector3& centre, double 
 }  // namespace
 
 double round_length_below(double length) {
+  SPOONBILL_ASSERT(length > 0.0);
   const double decade = std::pow(10.0, std::floor(std::log10(length) + 1e-9));
   for (const double factor : {5.0, 2.0}) {
     if (factor * decade <= length * (1.0 + 1e-9)) return factor * decade;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/mesh_edges.h"
 
 namespace spoonbill {
@@ -41,6 +42,7 @@ class CornerGroups {
 }  // namespace
 
 void MeshShading::make(const MeshSnapshot& mesh) {
+  SPOONBILL_ASSERT(mesh.triangles != nullptr);
   triangles_ = mesh.triangles;
   const auto& triangles = *triangles_;
   const MeshEdges edges(triangles, mesh.x.size());
@@ -68,6 +70,7 @@ void MeshShading::make(const MeshSnapshot& mesh) {
 }
 
 void MeshShading::shade(const MeshSnapshot& mesh, GridSamples<float>& samples) const {
+  SPOONBILL_ASSERT(is_of(mesh));
   samples.resize(vertex_.size());
   for (std::size_t v = 0; v < vertex_.size(); ++v) {
     samples.x[v] = mesh.x[vertex_[v]];

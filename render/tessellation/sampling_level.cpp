@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <iterator>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -134,12 +136,15 @@ void thin(SamplingLevel& level) {
 }  // namespace
 
 SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces) {
+  SPOONBILL_ASSERT(pieces >= 1);
   return {std::vector<int>(surface.u.breakpoints().size() - 1, pieces),
           std::vector<int>(surface.v.breakpoints().size() - 1, pieces)};
 }
 
 SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixels_per_metre,
                                     const SamplingLevel& previous, const SamplingTarget& target) {
+  SPOONBILL_ASSERT(surface.x.size() == static_cast<std::size_t>(surface.u.control_point_count()) *
+                                           surface.v.control_point_count());
   SamplingLevel level{pieces_along(surface, true, pixels_per_metre, previous.u_pieces, target),
                       pieces_along(surface, false, pixels_per_metre, previous.v_pieces, target)};
   thin(level);
@@ -147,6 +152,7 @@ SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixel
 }
 
 std::vector<double> drawing_parameters(const KnotVector& knots, const std::vector<int>& pieces) {
+  SPOONBILL_ASSERT(pieces.size() + 1 == knots.breakpoints().size());
   const std::vector<double> breakpoints = knots.breakpoints();
   std::vector<double> parameters;
   for (std::size_t s = 0; s + 1 < breakpoints.size(); ++s) {

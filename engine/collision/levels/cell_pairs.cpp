@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -40,6 +42,7 @@ void CellPairs::update() {
 }
 
 std::vector<CellPair>& CellPairs::within(double reach_m) {
+  SPOONBILL_ASSERT(reach_m >= 0.0);
   update();
   int level = std::max(first_->nested().levels, second_->nested().levels);
   take_pairs(reach_m, level);
@@ -48,6 +51,8 @@ std::vector<CellPair>& CellPairs::within(double reach_m) {
 }
 
 const std::vector<CellPair>& CellPairs::within_at(double reach_m, int level) {
+  SPOONBILL_ASSERT(reach_m >= 0.0);
+  SPOONBILL_ASSERT(level >= 0);
   update();
   take_pairs(reach_m, level);
   return pairs_;

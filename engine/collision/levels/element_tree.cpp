@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 ElementTree::Direction ElementTree::unroll(const KnotVector& knots) {
@@ -46,6 +48,8 @@ int ElementTree::add(const Node& range) {
 }
 
 void ElementTree::update(SurfaceLevels& levels) {
+  SPOONBILL_ASSERT_DEBUG(levels.surface().u.breakpoints().size() ==
+                         static_cast<std::size_t>(u_.elements()) + 1);
   levels.bounds().update(levels.surface().net);
   for (int e = 0; e < u_.elements(); ++e) take_strip(levels, e);
   join_boxes();
@@ -61,6 +65,7 @@ void ElementTree::join_boxes() {
 }
 
 int ElementTree::leaf_near(const Vector3& point) const {
+  SPOONBILL_ASSERT(!boxes_.empty());
   int nearest = leaf_[0];
   double least = std::numeric_limits<double>::infinity();
   for (const int leaf : leaf_) {

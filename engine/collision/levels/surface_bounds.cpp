@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -64,6 +66,7 @@ SurfaceBounds::SurfaceBounds(const KnotVector& u, const KnotVector& v)
 }
 
 void SurfaceBounds::update(const ControlNet& net) {
+  SPOONBILL_ASSERT(net.z.size() == net.size() && net.rows > 0);
   begin();
   std::fill(column_at_.begin(), column_at_.end(), stamp_);
   std::fill(element_at_.begin(), element_at_.end(), stamp_);
@@ -159,6 +162,7 @@ void SurfaceBounds::take_norms(const ControlNet& net, int j) {
 }
 
 void SurfaceBounds::update(const ControlNet& net, int ev) {
+  SPOONBILL_ASSERT_DEBUG(ev >= 0 && ev < elements_v());
   if (element_at_[ev] == stamp_) return;
   element_at_[ev] = stamp_;
   const int first = span_v_[ev] - degree_v_;
@@ -179,6 +183,7 @@ void SurfaceBounds::update(const ControlNet& net, int ev) {
 }
 
 void SurfaceBounds::take_boxes(const ControlNet& net) {
+  SPOONBILL_ASSERT(net.z.size() == net.size() && net.rows > 0);
   const std::vector<double>* values[3] = {&net.x, &net.y, &net.z};
   for (int axis = 0; axis < 3; ++axis) {
     const double* from = values[axis]->data();
@@ -203,6 +208,7 @@ void SurfaceBounds::take_boxes(const ControlNet& net) {
 }
 
 Box SurfaceBounds::row_box(int element_u) const {
+  SPOONBILL_ASSERT_DEBUG(element_u >= 0 && element_u < elements_u());
   const int last = span_u_[element_u];
   Box box = row_boxes_[control_u_[last]];
   for (int i = last - degree_u_; i < last; ++i) box.join(row_boxes_[control_u_[i]]);
@@ -210,6 +216,7 @@ Box SurfaceBounds::row_box(int element_u) const {
 }
 
 Box SurfaceBounds::box(int element_v) const {
+  SPOONBILL_ASSERT_DEBUG(element_v >= 0 && element_v < elements_v());
   Box box{Vector3::Constant(std::numeric_limits<double>::infinity()),
           Vector3::Constant(-std::numeric_limits<double>::infinity())};
   for (int j = span_v_[element_v] - degree_v_; j <= span_v_[element_v]; ++j) {

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 Result<NestedGrid> make_nested_grid(const KnotVector& u, const KnotVector& v, int levels) {
+  SPOONBILL_ASSERT(levels >= 0);
   NestedParameters in_u = nested_parameters(u, 1, levels), in_v = nested_parameters(v, 1, levels);
   Result<Grid> grid = make_grid(u, v, std::move(in_u.parameters), std::move(in_v.parameters));
   if (!grid.ok()) return grid.error();
@@ -78,6 +81,7 @@ SurfaceLevels::SurfaceLevels(const NestedGrid& nested, InstructionSet set)
       v_pieces_(nested.grid.v.knots),
       u_bands_(bands_of(nested.grid.u, nested.levels)),
       v_bands_(bands_of(nested.grid.v, nested.levels)) {
+  SPOONBILL_ASSERT(nested.levels >= 0 && nested.grid.rows() > 1 && nested.grid.columns() > 1);
   const std::size_t count =
       static_cast<std::size_t>(nested.grid.rows()) * static_cast<std::size_t>(nested.grid.columns());
   for (std::vector<double>* values : {&x_, &y_, &z_}) values->resize(count);
@@ -97,11 +101,16 @@ SurfaceLevels::SurfaceLevels(const NestedGrid& nested, InstructionSet set)
 }
 
 int SurfaceLevels::cell_count(int level) const {
+  SPOONBILL_ASSERT(level >= 0 && level <= nested_->levels);
   return ((nested_->grid.rows() - 1) >> (nested_->levels - level)) *
          ((nested_->grid.columns() - 1) >> (nested_->levels - level));
 }
 
 bool SurfaceLevels::begin(const Surface& surface, const PlanarPoints& samples) {
+  SPOONBILL_ASSERT(surface.net.rows == nested_->grid.u.knots.control_point_count());
+  SPOONBILL_ASSERT(surface.net.columns == nested_->grid.v.knots.control_point_count());
+  SPOONBILL_ASSERT(surface.net.x.size() == surface.net.size());
+  SPOONBILL_ASSERT_DEBUG(surface.u == nested_->grid.u.knots && surface.v == nested_->grid.v.knots);
   surface_ = &surface;
   given_ = samples;
   samples_evaluated_ = 0;
@@ -127,6 +136,8 @@ void SurfaceLevels::set_sample(int index, const Vector3& point) {
 }
 
 Vector3 SurfaceLevels::sample(int index) {
+  SPOONBILL_ASSERT_DEBUG(surface_ != nullptr && index >= 0 &&
+                         index < nested_->grid.rows() * nested_->grid.columns());
   if (given_.x != nullptr) return {given_.x[index], given_.y[index], given_.z[index]};
   if (sampled_at_[index] == begun_) return {x_[index], y_[index], z_[index]};
   const Grid& grid = nested_->grid;
@@ -158,6 +169,8 @@ SurfaceLevels::BandEntry SurfaceLevels::Bands::at(int row) const {
 }
 
 void SurfaceLevels::sample_element(int element_u, int element_v) {
+  SPOONBILL_ASSERT_DEBUG(surface_ != nullptr && element_u >= 0 && element_u < bounds_.elements_u() &&
+                         element_v >= 0 && element_v < bounds_.elements_v());
   if (given_.x != nullptr) return;
   const int columns = nested_->grid.columns(), side = u_bands_.samples;
   std::uint32_t& element_at = element_at_[element_u * ((columns - 1) >> nested_->levels) + element_v];
@@ -175,6 +188,7 @@ void SurfaceLevels::sample_element(int element_u, int element_v) {
 }
 
 void SurfaceLevels::sample_column(int column) {
+  SPOONBILL_ASSERT_DEBUG(surface_ != nullptr && column >= 0 && column < nested_->grid.columns());
   if (given_.x != nullptr || column_at_[column] == begun_) return;
   column_at_[column] = begun_;
   const Grid& grid = nested_->grid;
@@ -202,6 +216,7 @@ void SurfaceLevels::sample_column(int column) {
 }
 
 PatchCorners SurfaceLevels::corners(const LevelCell& cell) {
+  SPOONBILL_ASSERT_DEBUG(cell.level >= 0 && cell.level <= nested_->levels);
   const int columns = nested_->grid.columns(), along = step(cell.level);
   const int index = cell.i * columns + cell.j;
   return {sample(index), sample(index + along), sample(index + along * columns),
@@ -209,6 +224,8 @@ PatchCorners SurfaceLevels::corners(const LevelCell& cell) {
 }
 
 void SurfaceLevels::element_boxes(int element_u, Box* boxes, double* bulges) {
+  SPOONBILL_ASSERT_DEBUG(element_u >= 0 && element_u < bounds_.elements_u() && boxes != nullptr &&
+                         bulges != nullptr);
   const int stride = step(0), columns = nested_->grid.columns(), i = element_u * stride;
   for (int j = 0; j < columns; j += stride) sample_column(j);
   const std::vector<double>& in_u = nested_->grid.u.parameters;
@@ -235,6 +252,7 @@ void SurfaceLevels::element_boxes(int element_u, Box* boxes, double* bulges) {
 }
 
 double SurfaceLevels::bulge(const LevelCell& cell) {
+  SPOONBILL_ASSERT_DEBUG(cell.level >= 0 && cell.level <= nested_->levels);
   const Grid& grid = nested_->grid;
   const int along = step(cell.level), element_v = cell.j >> nested_->levels;
   const double h_u = grid.u.parameters[cell.i + along] - grid.u.parameters[cell.i];
@@ -244,6 +262,7 @@ double SurfaceLevels::bulge(const LevelCell& cell) {
 }
 
 const CoverSphere& SurfaceLevels::cover(const LevelCell& cell) {
+  SPOONBILL_ASSERT_DEBUG(cell.level >= 0 && cell.level <= nested_->levels);
   const int index = cell_index(cell);
   CoverSphere& sphere = covers_[index];
   if (covered_at_[index] == begun_) return sphere;

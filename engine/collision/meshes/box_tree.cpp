@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -54,6 +56,10 @@ void halve(std::vector<Item>& items, const NodeItems& range, std::uint32_t middl
 }  // namespace
 
 BoxTree::BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size) {
+  SPOONBILL_ASSERT(!boxes.empty() && leaf_size >= 1);
+  SPOONBILL_ASSERT_DEBUG(std::all_of(boxes.begin(), boxes.end(), [](const Box& box) {
+    return (box.low.array() <= box.high.array()).all();
+  }));
   std::vector<Item> items = items_of(boxes);
   std::vector<NodeItems> waiting = {{0, static_cast<std::uint32_t>(items.size()), none}};
   while (!waiting.empty()) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/mesh_edges.h"
 #include "engine/collision/meshes/nearest_on_triangle.h"
 #include "engine/collision/meshes/triangle.h"
@@ -65,6 +66,7 @@ struct DeformingMesh::Nearest {
 
 DeformingMesh::DeformingMesh(const TriangleMesh& mesh)
     : vertices_m_(mesh.vertices_m), tree_(boxes_of(mesh), leaf_size) {
+  SPOONBILL_ASSERT(!mesh.triangles.empty());
   triangles_.reserve(mesh.triangles.size());
   for (const std::uint32_t index : tree_.order()) triangles_.push_back(mesh.triangles[index]);
   const MeshEdges edges(triangles_, vertices_m_.size());
@@ -112,6 +114,7 @@ Vector3 DeformingMesh::normal_at(const Nearest& nearest) const {
 }
 
 std::optional<NearestOnMesh> DeformingMesh::nearest(const Vector3& point_m, double reach_m) const {
+  SPOONBILL_ASSERT_DEBUG(reach_m >= 0.0);
   Nearest best{reach_m * reach_m};
   bool found = false;
   const std::vector<BoxTree::Node>& nodes = tree_.nodes();

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/mesh_edges.h"
 
 namespace spoonbill {
@@ -142,6 +143,7 @@ std::vector<Openings> find_openings(MeshParts& parts) {
 }  // namespace
 
 std::size_t fill_small_holes(MeshParts& parts) {
+  SPOONBILL_ASSERT(parts.orientable.size() == parts.parts.size());
   std::vector<Openings> openings = find_openings(parts);
   std::size_t filled = 0, cracks = 0;
   for (std::size_t p = 0; p < parts.parts.size(); ++p) {

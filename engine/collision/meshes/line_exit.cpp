@@ -1,9 +1,11 @@
 #include "engine/collision/meshes/line_exit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/line_triangle.h"
 
 namespace spoonbill {
@@ -40,6 +42,7 @@ LineExits::LineExits(std::vector<Triangle> triangles) : triangles_(std::move(tri
 }
 
 std::optional<LineExit> LineExits::first(const Vector3& from, const Vector3& direction) const {
+  SPOONBILL_ASSERT_DEBUG(std::abs(direction.squaredNorm() - 1.0) < 1e-6);
   std::optional<LineExit> first;
   const auto farthest = [&] { return first ? first->distance_m : std::numeric_limits<double>::infinity(); };
   const auto descend = [&](std::uint32_t index) {
@@ -61,6 +64,7 @@ std::optional<LineExit> LineExits::first(const Vector3& from, const Vector3& dir
 }
 
 bool leaves_a_wall(const Triangle& triangle, const Vector3& direction) {
+  SPOONBILL_ASSERT_DEBUG(std::abs(direction.squaredNorm() - 1.0) < 1e-6);
   const Vector3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
   return normal.dot(direction) >= wall_cosine * normal.norm() * direction.norm();
 }

@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/mesh_parts.h"
 
 namespace spoonbill {
@@ -55,7 +56,10 @@ std::vector<Box> MeshDistance::boxes_of(const std::vector<Solid>& solids) {
 MeshDistance::MeshDistance(const CleanMesh& mesh, double thickness_m)
     : solids_(make_solids(mesh, thickness_m)),
       tree_(boxes_of(solids_), 1),
-      convex_(solids_.size() == 1 && solids_[0].cavities.empty() && solids_[0].outside->is_convex()) {}
+      convex_(solids_.size() == 1 && solids_[0].cavities.empty() && solids_[0].outside->is_convex()) {
+  SPOONBILL_ASSERT(!mesh.parts.empty());
+  SPOONBILL_ASSERT(thickness_m > 0.0);
+}
 
 DistanceSample MeshDistance::Solid::at(const Vector3& point_m) const {
   DistanceSample sample = outside->at(point_m);

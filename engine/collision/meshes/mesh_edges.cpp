@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -35,6 +37,10 @@ std::vector<SideAtVertex> sides_by_vertex(const std::vector<TriangleCorners>& tr
 }  // namespace
 
 MeshEdges::MeshEdges(const std::vector<TriangleCorners>& triangles, std::size_t vertices) {
+  SPOONBILL_ASSERT_DEBUG(std::all_of(triangles.begin(), triangles.end(), [&](const TriangleCorners& t) {
+    return t[0] < vertices && t[1] < vertices && t[2] < vertices && t[0] != t[1] && t[1] != t[2] &&
+           t[2] != t[0];
+  }));
   std::vector<std::uint32_t> first(vertices + 1, 0);
   std::vector<SideAtVertex> sides = sides_by_vertex(triangles, first);
   across_.assign(sides.size(), open);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/box.h"
 #include "engine/collision/meshes/mesh_edges.h"
 #include "engine/collision/meshes/solid_angle.h"
@@ -154,6 +155,7 @@ MeshParts split_into_parts(const TriangleMesh& mesh) {
 }
 
 std::size_t drop_specks(MeshParts& parts) {
+  SPOONBILL_ASSERT(parts.orientable.size() == parts.parts.size());
   double closed = 0.0;
   for (const MeshPart& part : parts.parts) closed += part.closed ? area_of(parts.mesh, part) : 0.0;
   const auto is_speck = [&](const MeshPart& part) {
@@ -177,6 +179,7 @@ double triangle_area(const Vector3& a, const Vector3& b, const Vector3& c) {
 }
 
 double area_of(const TriangleMesh& mesh, const MeshPart& part) {
+  SPOONBILL_ASSERT(part.first_triangle <= part.end_triangle && part.end_triangle <= mesh.triangles.size());
   double sum = 0.0;
   for (std::uint32_t t = part.first_triangle; t < part.end_triangle; ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
@@ -186,6 +189,8 @@ double area_of(const TriangleMesh& mesh, const MeshPart& part) {
 }
 
 MeshPart append_part(const TriangleMesh& from, const MeshPart& part, TriangleMesh& to) {
+  SPOONBILL_ASSERT(part.first_vertex <= part.end_vertex && part.end_vertex <= from.vertices_m.size());
+  SPOONBILL_ASSERT(part.first_triangle <= part.end_triangle && part.end_triangle <= from.triangles.size());
   MeshPart copied = part;
   copied.first_vertex = static_cast<std::uint32_t>(to.vertices_m.size());
   copied.first_triangle = static_cast<std::uint32_t>(to.triangles.size());
@@ -202,6 +207,7 @@ MeshPart append_part(const TriangleMesh& from, const MeshPart& part, TriangleMes
 }
 
 double signed_volume(const TriangleMesh& mesh, const MeshPart& part) {
+  SPOONBILL_ASSERT(part.first_triangle <= part.end_triangle && part.end_triangle <= mesh.triangles.size());
   // About one of its own vertices, so that a small part far away loses no digits.
   const Vector3 origin = mesh.vertices_m[part.first_vertex];
   double six_volumes = 0.0;

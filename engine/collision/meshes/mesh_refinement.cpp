@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/collision/meshes/mesh_edges.h"
 
@@ -61,6 +62,9 @@ void add_pieces(const TriangleMesh& mesh, TriangleCorners corner, std::array<std
 }  // namespace
 
 Result<TriangleMesh> refine_edges(TriangleMesh mesh, double longest_m, std::size_t triangle_limit) {
+  SPOONBILL_ASSERT(longest_m > 0.0);
+  SPOONBILL_ASSERT_DEBUG(!mesh.triangles.empty() &&
+                         MeshEdges(mesh.triangles, mesh.vertices_m.size()).open_count() == 0);
   for (;;) {
     const std::size_t vertices = mesh.vertices_m.size();
     const std::vector<std::uint32_t> middle = cut_edges(mesh, longest_m);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/triangle.h"
 
 namespace spoonbill {
@@ -107,6 +108,7 @@ class SelfContact {
 MeshMeetings self_meetings(const std::vector<Vector3>& vertices_m,
                            const std::vector<TriangleCorners>& triangles, const BoxTree& tree,
                            std::size_t most, const Progress& progress) {
+  SPOONBILL_ASSERT(tree.order().size() == triangles.size());
   return SelfContact(vertices_m, triangles, tree, most).meetings(progress);
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/mesh_edges.h"
 #include "engine/collision/meshes/mesh_self_contact.h"
 #include "engine/collision/meshes/nearest_on_triangle.h"
@@ -74,6 +75,7 @@ ShellDistance::ShellDistance(std::vector<Vector3> vertices_m, std::vector<Triang
       tree_(boxes_of(vertices_m_, triangles), leaf_size),
       kind_(kind),
       size_m_(tree_.nodes()[0].box.size()) {
+  SPOONBILL_ASSERT(!triangles_.empty());
   triangles_.reserve(triangles.size());
   for (const std::uint32_t index : tree_.order()) triangles_.push_back(triangles[index]);
   triangles = {};

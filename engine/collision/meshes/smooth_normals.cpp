@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -30,6 +32,7 @@ Vector3 SmoothNormals::twice_area(std::uint32_t triangle) const {
 }
 
 Vector3 SmoothNormals::at(std::uint32_t triangle, double to_b, double to_c) const {
+  SPOONBILL_ASSERT_DEBUG(triangle < mesh_->triangles.size());
   const Vector3 own = twice_area(triangle).stableNormalized();
   const std::array<double, 3> shares = {1.0 - to_b - to_c, to_b, to_c};
   Vector3 normal = Vector3::Zero();

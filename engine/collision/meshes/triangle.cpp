@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -33,6 +35,7 @@ class Separation {
 }  // namespace
 
 bool triangles_meet(const Triangle& first, const Triangle& second, double slack_m) {
+  SPOONBILL_ASSERT_DEBUG(slack_m >= 0.0);
   // Seen from a corner, so that coordinates far from the origin cost no digits.
   const Vector3& origin = first[0];
   const Triangle a = {Vector3::Zero(), first[1] - origin, first[2] - origin};

@@ -1,8 +1,11 @@
 #include "engine/collision/meshes/vertex_join.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+
+#include "engine/base/assert.h"
 
 namespace spoonbill {
 namespace {
@@ -99,6 +102,9 @@ class NearVertices {
 }  // namespace
 
 JoinedVertices join_vertices(const std::vector<Vector3>& vertices_m, double tolerance_m) {
+  SPOONBILL_ASSERT(tolerance_m > 0.0);
+  SPOONBILL_ASSERT_DEBUG(
+      std::all_of(vertices_m.begin(), vertices_m.end(), [](const Vector3& at) { return at.allFinite(); }));
   JoinedVertices result = join_equal(vertices_m);
   const std::vector<Vector3> distinct = std::move(result.vertices_m);
   result.vertices_m.clear();

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/solid_angle.h"
 
 namespace spoonbill {
@@ -21,6 +22,7 @@ struct Moments {
 WindingNumber::WindingNumber(const std::vector<Vector3>& vertices_m,
                              const std::vector<TriangleCorners>& triangles, const BoxTree& tree)
     : vertices_m_(&vertices_m), triangles_(&triangles), tree_(&tree), dipoles_(tree.nodes().size()) {
+  SPOONBILL_ASSERT(tree.order().size() == triangles.size());
   std::vector<Moments> moments(dipoles_.size());
   for (std::size_t index = dipoles_.size(); index-- > 0;) {
     const BoxTree::Node& node = tree.nodes()[index];

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/collision/proximity/nearest_on_cell.h"
 #include "engine/collision/surfaces/pair_polish.h"
 
@@ -30,6 +31,7 @@ Box net_box(const ControlNet& net) {
 
 MeshProximity::MeshProximity(const NestedGrid& surface, std::vector<int> patches)
     : levels_(surface), tree_(surface.grid.u.knots, surface.grid.v.knots), patches_(std::move(patches)) {
+  SPOONBILL_ASSERT_DEBUG(std::all_of(patches_.begin(), patches_.end(), [](int patch) { return patch >= 0; }));
   const auto samples = static_cast<std::size_t>(surface.grid.rows() * surface.grid.columns());
   sampled_at_.assign(samples, 0);
   const int last_patch = patches_.empty() ? -1 : *std::max_element(patches_.begin(), patches_.end());
@@ -51,6 +53,8 @@ MeshProximity::MeshProximity(const NestedGrid& surface, std::vector<int> patches
 }
 
 void MeshProximity::find(const Surface& surface, const DeformingMesh& mesh, double margin_m) {
+  SPOONBILL_ASSERT(mesh.vertices_m().size() == patches_.size());
+  SPOONBILL_ASSERT(margin_m >= 0.0);
   ++search_;
   least_gap_m_ = infinity;
   overflow_ = false;

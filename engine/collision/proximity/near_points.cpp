@@ -1,8 +1,10 @@
 #include "engine/collision/proximity/near_points.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "engine/base/assert.h"
 #include "engine/collision/proximity/nearest_on_cell.h"
 #include "engine/collision/surfaces/pair_polish.h"
 
@@ -39,6 +41,8 @@ void NearPoints::offer_corners(const LevelCell& cell, SurfaceLevels& other, cons
 
 void NearPoints::offer(int i, int j, const SurfaceLevels& other, const LevelCell& patch,
                        const PatchCorners& corners) {
+  SPOONBILL_ASSERT_DEBUG(i >= 0 && i < levels_.nested().grid.rows() && j >= 0 &&
+                         j < levels_.nested().grid.columns());
   const Grid& grid = levels_.nested().grid;
   const int sample = i * grid.columns() + j;
   const Vector3 point = levels_.sample(sample);
@@ -67,10 +71,14 @@ void NearPoints::offer(int i, int j, const SurfaceLevels& other, const LevelCell
 }
 
 double NearPoints::offered_m(int sample) const {
+  SPOONBILL_ASSERT_DEBUG(sample >= 0 &&
+                         sample < levels_.nested().grid.rows() * levels_.nested().grid.columns());
   return placed_at_[sample] == begun_ ? near_[place_[sample]].gap_m : infinity;
 }
 
 void NearPoints::settle(const SurfaceLevels& other, double outside, double margin_m) {
+  SPOONBILL_ASSERT(std::abs(outside) == 1.0);
+  SPOONBILL_ASSERT(margin_m >= 0.0);
   for (NearPoint& near : near_) {
     const NearestPoint nearest = nearest_point(other.pieces(), near.point_m, near.other_u, near.other_v);
     near.other_u = nearest.u;
@@ -98,6 +106,7 @@ bool NearPoints::is_local_deepest(const NearPoint& near) const {
 // From the nearest samples, on both surfaces themselves. deepest_pair() climbs from before the other surface
 // too, where a gap is a depth below zero.
 void NearPoints::add_between_samples(const SurfaceLevels& other, double outside) {
+  SPOONBILL_ASSERT(std::abs(outside) == 1.0);
   const std::size_t samples = near_.size();
   for (std::size_t s = 0; s < samples; ++s) {
     const NearPoint& near = near_[s];

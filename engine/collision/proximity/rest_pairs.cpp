@@ -7,6 +7,8 @@
 #include <queue>
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -37,6 +39,8 @@ RestPairs::RestPairs(const Grid& grid, Surface rest, double cell_m)
       u_(blocks(rest_.u, most_blocks_u)),
       v_(blocks(rest_.v, most_blocks_v)),
       cell_m_(cell_m) {
+  SPOONBILL_ASSERT(cell_m > 0.0);
+  SPOONBILL_ASSERT_DEBUG(rest_.u == grid.u.knots && rest_.v == grid.v.knots);
   points_.reserve(static_cast<std::size_t>(grid.rows() * grid.columns()));
   for (const double u : grid.u.parameters) {
     for (const double v : grid.v.parameters) points_.push_back(point_at(u, v));

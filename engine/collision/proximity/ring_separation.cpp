@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 RingSeparation::RingSeparation(const KnotVector& v, std::vector<std::array<int, 2>> pairs)
@@ -24,6 +26,8 @@ RingSeparation::RingSeparation(const KnotVector& v, std::vector<std::array<int, 
 
 const std::vector<std::array<int, 2>>& RingSeparation::near(const ControlNet& net, SurfaceBounds& bounds,
                                                             double reach_m) {
+  SPOONBILL_ASSERT(net.columns == columns_);
+  SPOONBILL_ASSERT(reach_m >= 0.0);
   near_.clear();
   bounds.take_boxes(net);
   for (std::size_t ring = 0; ring < boxes_.size(); ++ring) boxes_[ring] = bounds.box(static_cast<int>(ring));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
 #include "engine/collision/levels/patch_distance.h"
 
 namespace spoonbill {
@@ -27,6 +28,8 @@ SelfProximity::SelfProximity(const NestedGrid& nested, const Surface& rest, doub
       rest_(nested.grid, rest, cell_m),
       rings_(rest.v, rings_that_can_meet()),
       cell_m_(cell_m) {
+  SPOONBILL_ASSERT(cell_m > 0.0);
+  SPOONBILL_ASSERT(rest.net.rows == nested.grid.u.knots.control_point_count());
   const SurfaceBounds& bounds = near_.levels().bounds();
   const auto elements = static_cast<std::size_t>(bounds.elements_u() * bounds.elements_v());
   boxes_.resize(elements);
@@ -78,6 +81,7 @@ bool SelfProximity::is_still_clear(const ControlNet& net) const {
 }
 
 void SelfProximity::find(const Surface& surface, double margin_m) {
+  SPOONBILL_ASSERT(margin_m >= 0.0);
   near_.begin(surface);
   missing_elements_ = false;
   if (is_still_clear(surface.net)) return;

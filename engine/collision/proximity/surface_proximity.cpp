@@ -1,6 +1,9 @@
 #include "engine/collision/proximity/surface_proximity.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "engine/base/assert.h"
 
 namespace spoonbill {
 
@@ -9,6 +12,8 @@ SurfaceProximity::SurfaceProximity(const NestedGrid& first, const NestedGrid& se
 
 void SurfaceProximity::find(const Surface& first, const Surface& second, double margin_m,
                             double second_outside) {
+  SPOONBILL_ASSERT(margin_m >= 0.0);
+  SPOONBILL_ASSERT(std::abs(second_outside) == 1.0);
   if (first_.begin(first)) cells_.begin_first();
   if (second_.begin(second)) cells_.begin_second();
   cells_.update();

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -66,6 +68,7 @@ struct Search {
 }  // namespace
 
 SmallestLargest smallest_largest(const Planes& planes, int count, const Matrix2d& quadratic) {
+  SPOONBILL_ASSERT_DEBUG(count >= 1 && count <= most_faces);
   Search search{planes, count, quadratic, quadratic.inverse(), {}};
   search.best.value = std::numeric_limits<double>::infinity();
   for (int i = 0; i < count; ++i) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/collision/solids/smallest_largest.h"
 
 namespace spoonbill {
@@ -216,6 +217,7 @@ class Descent {
 }  // namespace
 
 SurfaceSpot polished_on_solid(const Surface& surface, const ToolShape& tool, const SurfaceSpot& from) {
+  SPOONBILL_ASSERT(tool.is_solid() && tool.made_of != nullptr);
   return Descent(surface, tool, from).run();
 }
 

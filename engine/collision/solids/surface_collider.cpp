@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/assert.h"
 #include "engine/collision/solids/tool_bounds.h"
 
 namespace spoonbill {
@@ -69,6 +70,8 @@ void SurfaceCollider::take_nearer(const ToolShape& tool, double u, double v, con
 
 CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape& tool, double margin_m,
                                          bool closed, const PlanarPoints& samples) {
+  SPOONBILL_ASSERT(margin_m >= 0.0);
+  SPOONBILL_ASSERT(!tool.is_solid() || tool.made_of != nullptr);
   CollisionResult result;
   moved_ |= levels_.begin(surface, samples);
   find_nearest(surface, tool, margin_m, Proof::deepest, result);

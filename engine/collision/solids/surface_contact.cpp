@@ -1,5 +1,7 @@
 #include "engine/collision/solids/surface_contact.h"
 
+#include <cmath>
+
 namespace spoonbill {
 namespace {
 

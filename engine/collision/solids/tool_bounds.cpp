@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -97,6 +99,7 @@ double lower_bound(const ToolShape& tool, const Box& box) {
 // hull is nearer than its foremost corner along any one direction. Unlike a ball's, this bound is off by the
 // square of the patch's size, so that few patches are cut again.
 double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bulge, double enough) {
+  SPOONBILL_ASSERT_DEBUG(bulge >= 0.0);
   if (tool.is_solid()) return solid_bound(tool, corners, enough + bulge) - bulge;
   Vector3 direction = tool.normal;
   if (tool.kind == ToolShape::Kind::sphere) {
@@ -114,6 +117,7 @@ double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bu
 
 // From far away along a direction, the nearest point of a solid is its farthest along that direction.
 double depth_behind(const ToolShape& tool, const Vector3& point, const Vector3& normal) {
+  SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-6);
   if (tool.kind == ToolShape::Kind::half_space) return infinity;
   if (tool.kind == ToolShape::Kind::sphere) return normal.dot(point - tool.centre_m) + tool.radius_m;
   const Box bounds = tool.made_of->bounds();

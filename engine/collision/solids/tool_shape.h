@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/base/pose.h"
 #include "engine/collision/solids/signed_distance.h"
 
@@ -20,12 +22,14 @@ struct ToolShape {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
 
   static ToolShape sphere(const Vector3& centre_m, double radius_m) {
+    SPOONBILL_ASSERT(radius_m >= 0.0);
     ToolShape tool;
     tool.centre_m = centre_m;
     tool.radius_m = radius_m;
     return tool;
   }
   static ToolShape half_space(const Vector3& point_m, const Vector3& normal) {
+    SPOONBILL_ASSERT(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
     ToolShape tool;
     tool.kind = Kind::half_space;
     tool.centre_m = point_m;

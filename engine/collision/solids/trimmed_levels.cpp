@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 TrimmedLevels::TrimmedLevels(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> area)
@@ -25,6 +27,7 @@ TrimmedLevels::TrimmedLevels(const NestedGrid& nested, std::shared_ptr<const Tri
 }
 
 bool TrimmedLevels::is_away(const LevelCell& cell) const {
+  SPOONBILL_ASSERT_DEBUG(cell.level >= 0 && cell.level <= levels_);
   const int step = 1 << (levels_ - cell.level), width = columns_ + 1;
   const auto at = [&](int i, int j) { return present_[static_cast<std::size_t>(i * width + j)]; };
   return at(cell.i + step, cell.j + step) - at(cell.i, cell.j + step) - at(cell.i + step, cell.j) +

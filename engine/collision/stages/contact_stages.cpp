@@ -1,10 +1,12 @@
 #include "engine/collision/stages/contact_stages.h"
 
+#include "engine/base/assert.h"
 #include "engine/collision/stages/hull_facets.h"
 
 namespace spoonbill {
 
 void add_hull(const ControlNet& net, ContactStages& stages) {
+  SPOONBILL_ASSERT(net.z.size() == net.size());
   std::vector<Vector3> points;
   for (std::size_t k = 0; k < net.size(); ++k) points.emplace_back(net.x[k], net.y[k], net.z[k]);
   for (const auto& [a, b] : hull_facets(points).edges) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/collision/stages/element_marks.h"
 
 namespace spoonbill {
@@ -22,6 +23,7 @@ PairStages::PairStages(NestedGrid first, NestedGrid second)
 
 void PairStages::add(const Surface& first, const Surface& second, double margin_m, bool first_closed,
                      bool second_closed, ContactStages& stages) {
+  SPOONBILL_ASSERT(margin_m >= 0.0);
   PairQuery query;
   query.first_closed = first_closed;
   query.second_closed = second_closed;

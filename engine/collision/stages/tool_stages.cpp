@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/collision/stages/element_marks.h"
 
 namespace spoonbill {
@@ -38,6 +39,7 @@ ToolStages::ToolStages(NestedGrid nested) : nested_(std::make_unique<NestedGrid>
 
 void ToolStages::add(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
                      ContactStages& stages, std::shared_ptr<const TrimmedArea> trim) {
+  SPOONBILL_ASSERT(margin_m >= 0.0);
   // A used one looks first where it last found a contact.
   collider_ = std::make_unique<SurfaceCollider>(*nested_, std::move(trim));
   const CollisionResult result = collider_->collide(surface, tool, margin_m, closed);

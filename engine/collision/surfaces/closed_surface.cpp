@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/tube_rings.h"
 #include "engine/bspline/unit_normal.h"
@@ -88,6 +89,8 @@ ClosedSkin skin_of(const Surface& surface) {
 }
 
 ClosedSkin skin_between(const Surface& surface, const std::vector<double>& u, const std::vector<double>& v) {
+  SPOONBILL_ASSERT(u.size() >= 2 && v.size() >= 2);
+  SPOONBILL_ASSERT_DEBUG(std::is_sorted(u.begin(), u.end()) && std::is_sorted(v.begin(), v.end()));
   const std::size_t rows = u.size() - 1, last = v.size() - 1;
   const bool ring = surface.v.is_periodic();
   ClosedSkin skin;

@@ -4,6 +4,8 @@
 #include <array>
 #include <limits>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -79,6 +81,7 @@ Vector3 take_nearest(Simplex& simplex) {
 }  // namespace
 
 bool hulls_are_apart(const ControlNet& first, const ControlNet& second) {
+  SPOONBILL_ASSERT(first.size() > 0 && second.size() > 0);
   Simplex simplex;
   Vector3 nearest(first.x[0] - second.x[0], first.y[0] - second.y[0], first.z[0] - second.z[0]);
   double before = std::numeric_limits<double>::infinity();

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -232,11 +234,13 @@ Matrix2 distance_curvature(const Behind& at) {
 
 double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
                     double outside) {
+  SPOONBILL_ASSERT_DEBUG(std::abs(outside) == 1.0);
   return behind_at(first, second, from, outside).depth;
 }
 
 DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from,
                          double outside, double enough_m) {
+  SPOONBILL_ASSERT_DEBUG(std::abs(outside) == 1.0);
   Behind best = behind_at(first, second, from, outside);
   Problem<2> problem;
   problem.knots = {&first.u->knots(), &first.v->knots()};

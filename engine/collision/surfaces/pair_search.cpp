@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/base/assert.h"
 #include "engine/collision/levels/patch_distance.h"
 
 namespace spoonbill {
@@ -19,6 +20,7 @@ Vector3 centre_of(const PatchCorners& corners) {
 
 PairSearch::PairSearch(SurfaceLevels& first, SurfaceLevels& second, const PairJudge* judge)
     : first_(&first), second_(&second), judge_(judge) {
+  SPOONBILL_ASSERT(&first != &second || judge != nullptr);
   pairs_.reserve(pair_capacity);
 }
 
@@ -56,6 +58,7 @@ double PairSearch::Patch::size() const {
 }
 
 void PairSearch::search(const LevelCell& a, const LevelCell& b, double tolerance_m, double enough_m) {
+  SPOONBILL_ASSERT_DEBUG(tolerance_m > 0.0);
   pairs_.clear();
   pairs_.push_back({patch_of(*first_, a), patch_of(*second_, b), 0});
   while (!pairs_.empty() && best_distance_m_ > enough_m) {

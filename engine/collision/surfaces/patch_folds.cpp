@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -106,6 +108,9 @@ const PatchFolds::Cones& PatchFolds::cones_of(const LevelCell& cell) {
 }
 
 bool PatchFolds::never_meets_itself(std::span<const LevelCell> cells) {
+  SPOONBILL_ASSERT(!cells.empty());
+  SPOONBILL_ASSERT_DEBUG(std::all_of(
+      cells.begin(), cells.end(), [&](const LevelCell& cell) { return cell.level == cells.front().level; }));
   Cones sum;
   for (const LevelCell& cell : cells) {
     const Cones& cones = cones_of(cell);

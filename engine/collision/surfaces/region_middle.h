@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/surfaces/pair_polish.h"
 
@@ -20,7 +21,11 @@ class ParameterMean {
     sum_ += apart;
     ++count_;
   }
-  double mean() const { return knots_->into_domain(first_ + sum_ / count_); }
+  // Of one parameter at least.
+  double mean() const {
+    SPOONBILL_ASSERT(count_ > 0);
+    return knots_->into_domain(first_ + sum_ / count_);
+  }
   // A share of the way from the mean to another parameter.
   double towards(double parameter, double share) const {
     const double from = first_ + sum_ / count_, length = knots_->domain_end() - knots_->domain_start();

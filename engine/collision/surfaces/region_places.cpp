@@ -1,7 +1,10 @@
 #include "engine/collision/surfaces/region_places.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include "engine/base/assert.h"
 
 namespace spoonbill {
 namespace {
@@ -38,10 +41,12 @@ PairParameters RegionCells::middle_of(const CellPair& pair) const {
 
 RegionCells cells_of(const SurfaceLevels& first, const SurfaceLevels& second,
                      const std::vector<CellPair>& pairs, const ContactRegions::Region& region) {
+  SPOONBILL_ASSERT(region.begin < region.end && region.end <= pairs.size());
   return {&first, &second, std::span(pairs).subspan(region.begin, region.end - region.begin)};
 }
 
 RegionRanges ranges_of(const RegionCells& cells) {
+  SPOONBILL_ASSERT(!cells.pairs.empty());
   SampleRange first, second;
   for (const CellPair& pair : cells.pairs) {
     first.widen(pair.first, cells.first->step(pair.first.level));
@@ -51,6 +56,7 @@ RegionRanges ranges_of(const RegionCells& cells) {
 }
 
 PairParameters deepest_place(const RegionCells& cells, const PairParameters& touch, double outside) {
+  SPOONBILL_ASSERT(std::abs(outside) == 1.0);
   const std::size_t seeds = cells.at_most(depth_seeds);
   PairParameters deepest = touch;
   double depth = 0.0;

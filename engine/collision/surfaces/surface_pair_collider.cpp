@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/collision/surfaces/convex_hull.h"
 
 namespace spoonbill {
@@ -48,6 +49,7 @@ SurfacePairCollider::SurfacePairCollider(const NestedGrid& first, const NestedGr
 }
 
 PairResult SurfacePairCollider::collide(const Surface& first, const Surface& second, const PairQuery& query) {
+  SPOONBILL_ASSERT(query.reach_m >= 0.0);
   PairResult result;
   contacts_.clear();
   std::swap(seeds_, last_seeds_);

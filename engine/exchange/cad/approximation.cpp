@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/exchange/cad/closing.h"
@@ -188,6 +189,8 @@ Result<std::optional<PatchFit>> approximate_of_degree(const Patch& patch, double
 }  // namespace
 
 Result<PatchFit> approximate(const Patch& patch, double tolerance_m) {
+  SPOONBILL_ASSERT(patch.u.breaks.size() >= 2 && patch.v.breaks.size() >= 2);
+  SPOONBILL_ASSERT(static_cast<bool>(patch.at));
   for (const int degree : {3, 5, 7}) {
     auto found = approximate_of_degree(patch, tolerance_m, degree);
     if (!found) return found.error();

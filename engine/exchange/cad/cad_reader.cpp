@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/base/pose.h"
 #include "engine/exchange/cad/external_files.h"
@@ -220,6 +221,7 @@ Result<CadModel> read(const std::filesystem::path& file, const CadReading& readi
 
 Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& reading,
                           const TakeSurface& take, const Progress& progress) {
+  SPOONBILL_ASSERT(static_cast<bool>(take));
   try {
     return read(file, reading, take, progress);
   } catch (const Standard_Failure& failure) {

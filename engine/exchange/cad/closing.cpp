@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/inspection/closing.h"
 
@@ -108,6 +109,7 @@ std::vector<double> greville_parameters(const KnotVector& knots) {
 }
 
 Surface closed_where_it_meets(const Surface& surface, Direction direction, double tolerance_m) {
+  SPOONBILL_ASSERT(tolerance_m >= 0.0);
   const KnotVector& open = direction == Direction::u ? surface.u : surface.v;
   if (open.is_periodic()) return surface;
   const Points lines = lines_of(surface, direction);
@@ -130,6 +132,7 @@ Surface closed_where_it_meets(const Surface& surface, Direction direction, doubl
 }
 
 void close_poles(Surface& surface, double tolerance_m) {
+  SPOONBILL_ASSERT(tolerance_m >= 0.0);
   ControlNet& net = surface.net;
   const auto close = [&](int count, const auto& point, const auto& set) {
     Vector3 mean = Vector3::Zero();

@@ -135,6 +135,7 @@ Status write_ply(const std::vector<NamedMesh>& meshes, double unit_m, const Take
 
 Status write_meshes(const std::vector<NamedMesh>& meshes, FileFormat format, double unit_m,
                     const TakeBytes& take) {
+  SPOONBILL_ASSERT(unit_m > 0.0 && static_cast<bool>(take));
   const Counts counts = counts_of(meshes);
   constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
   if (counts.vertices > most || counts.triangles > most) {

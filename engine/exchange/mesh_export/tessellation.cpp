@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/stretch_bound.h"
@@ -289,6 +290,8 @@ Result<Tessellation> finished(const Sheet& sheet, const Surface& surface, const 
 
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
                                 std::size_t triangle_limit, const Progress& progress) {
+  SPOONBILL_ASSERT(chord_m > 0.0);
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   const double edges_m = trim_edge_error_m(surface, trims);
   const double allowed_m = std::max(chord_m - edges_m, least_share_of_cells * chord_m);
   SurfaceBounds bounds(surface.u, surface.v);

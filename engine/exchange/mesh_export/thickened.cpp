@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/base/place_text.h"
 
@@ -42,6 +43,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_of(const TriangleMesh
 }  // namespace
 
 Result<TriangleMesh> thickened(const TriangleMesh& outer, double thickness_m) {
+  SPOONBILL_ASSERT(thickness_m > 0.0);
   const auto count = static_cast<std::uint32_t>(outer.vertices_m.size());
   TriangleMesh shell = outer;
   const std::vector<Vector3> normals = normals_of(outer);

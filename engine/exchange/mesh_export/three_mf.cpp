@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 
 namespace spoonbill {
@@ -167,6 +168,7 @@ class Archive {
 }  // namespace
 
 Status write_three_mf(const std::vector<NamedMesh>& meshes, const TakeBytes& take) {
+  SPOONBILL_ASSERT(static_cast<bool>(take));
   Going going(take);
   const std::string types = content_types, relations = relationships, model = model_xml(meshes, going);
   if (!going.status().ok()) return going.status();

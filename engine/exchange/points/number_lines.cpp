@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -85,6 +87,7 @@ std::size_t bytes_of(NumberType type) {
 }
 
 double number_at(const char* bytes, NumberType type, bool swapped) {
+  SPOONBILL_ASSERT_DEBUG(bytes != nullptr);
   switch (type) {
     case NumberType::int8:
       return read_as<std::int8_t>(bytes, swapped);

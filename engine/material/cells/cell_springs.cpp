@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 // Corner bits: 0 = k, 1 = j, 2 = i.
@@ -138,6 +140,7 @@ Stiffnesses as_vector(const CellSprings& springs) {
 }  // namespace
 
 CellSprings cell_springs(const CellCorners& corners, double shear_modulus_pa) {
+  SPOONBILL_ASSERT(shear_modulus_pa > 0.0);
   CellSprings result;
   result.volume_m3 = cell_volume(corners);
   const ComponentMatrix matrix = spring_components(corners, result.volume_m3);
@@ -150,10 +153,12 @@ CellSprings cell_springs(const CellCorners& corners, double shear_modulus_pa) {
 }
 
 double shear_modulus(double youngs_modulus_pa, double poissons_ratio) {
+  SPOONBILL_ASSERT(poissons_ratio > -1.0);
   return youngs_modulus_pa / (2.0 * (1.0 + poissons_ratio));
 }
 
 double bulk_stiffness(double youngs_modulus_pa, double poissons_ratio) {
+  SPOONBILL_ASSERT(poissons_ratio > -1.0 && poissons_ratio < 0.5);
   return shear_modulus(youngs_modulus_pa, poissons_ratio) * (4.0 * poissons_ratio - 1.0) /
          (1.0 - 2.0 * poissons_ratio);
 }

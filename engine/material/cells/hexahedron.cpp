@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -81,6 +83,9 @@ CellGradients middle_gradients(const CellCorners& corners) {
 }
 
 CellMatrix hexahedron_stiffness(const CellCorners& corners, double youngs_modulus_pa, double poissons_ratio) {
+  SPOONBILL_ASSERT(youngs_modulus_pa > 0.0);
+  SPOONBILL_ASSERT(poissons_ratio > -1.0 && poissons_ratio < 0.5);
+  SPOONBILL_ASSERT_DEBUG(smallest_jacobian_ratio(corners) > 0.0);
   const HexahedronPart whole{-Vector3::Ones(), Vector3::Ones(), youngs_modulus_pa, poissons_ratio};
   return hexahedron_stiffness(corners, {&whole, 1});
 }
@@ -124,6 +129,8 @@ void add_point(const CellCorners& corners, const MiddleJacobian& at_middle, cons
 }  // namespace
 
 CellMatrix hexahedron_stiffness(const CellCorners& corners, std::span<const HexahedronPart> parts) {
+  SPOONBILL_ASSERT(!parts.empty());
+  SPOONBILL_ASSERT_DEBUG(smallest_jacobian_ratio(corners) > 0.0);
   const Eigen::Matrix3d middle = jacobian(corners, natural_gradients(Vector3::Zero()));
   const MiddleJacobian at_middle{middle.inverse(), middle.determinant()};
   Sums sums;
@@ -138,6 +145,7 @@ CellMatrix hexahedron_stiffness(const CellCorners& corners, std::span<const Hexa
 }
 
 std::array<double, 8> part_volumes(const CellCorners& corners, const Vector3& low, const Vector3& high) {
+  SPOONBILL_ASSERT_DEBUG((low.array() <= high.array()).all());
   std::array<double, 8> volumes{};
   visit_points(low, high, [&](const Vector3& at, double weight) {
     const double volume = weight * jacobian(corners, natural_gradients(at)).determinant();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -54,6 +56,7 @@ void add_spring(CellResponse& response, std::size_t spring, const Vector3& force
 SpringCell::SpringCell(const CellCorners& rest, const CellSprings& springs, double bulk_stiffness_pa,
                        double share)
     : bulk_(share * bulk_stiffness_pa * springs.volume_m3), rest_volume_(springs.volume_m3) {
+  SPOONBILL_ASSERT(share > 0.0);
   Vector3 middle = Vector3::Zero();
   for (const Vector3& corner : rest) middle += corner / 8.0;
   for (std::size_t c = 0; c < 8; ++c) rest_[c] = rest[c] - middle;

@@ -1,7 +1,9 @@
 #include "engine/material/contact/body_contacts.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/material/contact/contact_push.h"
 
 namespace spoonbill {
@@ -46,13 +48,17 @@ double friction_between(const BodyPoint& first, const BodyPoint& second) {
 
 }  // namespace
 
-BodyContacts::BodyContacts(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {}
+BodyContacts::BodyContacts(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {
+  SPOONBILL_ASSERT(capacity >= 0);
+}
 
 void BodyContacts::clear() {
   count_ = 0;
 }
 
 bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m) {
+  SPOONBILL_ASSERT_DEBUG(first.lattice != nullptr && second.lattice != nullptr);
+  SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
   if (count_ == static_cast<int>(constraints_.size())) return false;
   const double moved = normal.dot(displacement_now(first) - displacement_now(second));
   constraints_[count_++] = {first.body,    second.body,

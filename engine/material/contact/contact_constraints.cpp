@@ -1,5 +1,8 @@
 #include "engine/material/contact/contact_constraints.h"
 
+#include <cmath>
+
+#include "engine/base/assert.h"
 #include "engine/material/contact/contact_push.h"
 
 namespace spoonbill {
@@ -14,7 +17,9 @@ constexpr double coupling_frequency = 60.0;
 
 }  // namespace
 
-ContactConstraints::ContactConstraints(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {}
+ContactConstraints::ContactConstraints(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {
+  SPOONBILL_ASSERT(capacity >= 0);
+}
 
 void ContactConstraints::clear() {
   count_ = 0;
@@ -26,6 +31,7 @@ bool ContactConstraints::add_push(int body, const SpringLattice& lattice, const 
 
 bool ContactConstraints::add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
                                         const Vector3& normal, double offset_m) {
+  SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
   return add(Kind::plane_push, body, lattice, point, normal, offset_m);
 }
 
@@ -36,6 +42,7 @@ bool ContactConstraints::add_grip(int body, const SpringLattice& lattice, const 
 
 bool ContactConstraints::add(Kind kind, int body, const SpringLattice& lattice, const EmbeddedPoint& point,
                              const Vector3& direction, double offset_m) {
+  SPOONBILL_ASSERT_DEBUG(body >= 0 && body < lattice_capacity);
   if (count_ == static_cast<int>(constraints_.size())) return false;
   constraints_[count_++] = {kind,
                             body,
@@ -50,6 +57,8 @@ bool ContactConstraints::add(Kind kind, int body, const SpringLattice& lattice, 
 }
 
 void ContactConstraints::begin(const ToolMotion& motion, double material_time_s) {
+  SPOONBILL_ASSERT(material_time_s > 0.0);
+  SPOONBILL_ASSERT(motion.radius_m >= 0.0 && motion.coupling_n_per_m >= 0.0);
   motion_ = motion;
   hand_velocity_ = (motion.end_m - motion.start_m) / material_time_s;
   carried_force_.setZero();
@@ -62,6 +71,7 @@ void ContactConstraints::begin(const ToolMotion& motion, double material_time_s)
 
 void ContactConstraints::solve(std::span<const LatticeView> lattices, ToolState& tool, float h,
                                double fraction, std::span<const float> caps) {
+  SPOONBILL_ASSERT_DEBUG(h > 0.0f && fraction >= 0.0 && fraction < 1.0);
   const double damped = 1.0 + static_cast<double>(h) * coupling_frequency;
   answered_compliance_ = tool_compliance_ / (damped * damped);
   follow_hand(tool, h, fraction);

@@ -1,8 +1,10 @@
 #include "engine/material/contact/ground_contacts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
+#include "engine/base/assert.h"
 #include "engine/material/contact/contact_push.h"
 #include "engine/material/springs/node_motion.h"
 
@@ -22,11 +24,14 @@ void remember(GroundContact& contact, double push_n, double h_s) {
 }  // namespace
 
 GroundContacts::GroundContacts(int capacity) : capacity_(static_cast<std::size_t>(capacity)) {
+  SPOONBILL_ASSERT(capacity >= 0);
   contacts_.reserve(capacity_);
   last_.reserve(capacity_);
 }
 
 void GroundContacts::begin(const Vector3& normal, double material_time_s) {
+  SPOONBILL_ASSERT(material_time_s > 0.0);
+  SPOONBILL_ASSERT(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
   std::swap(contacts_, last_);
   contacts_.clear();
   looked_at_ = 0;
@@ -40,6 +45,8 @@ void GroundContacts::forget() {
 }
 
 bool GroundContacts::add(int body, const SpringLattice& lattice, int node, double gap_m, double friction) {
+  SPOONBILL_ASSERT_DEBUG(contacts_.empty() || contacts_.back().body < body ||
+                         (contacts_.back().body == body && contacts_.back().node <= node));
   if (lattice.is_held(node)) return true;
   if (contacts_.size() == capacity_) return false;
   GroundContact contact{body, node, gap_m, lattice.displacement(node), friction};

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 std::vector<BlockMaterials::Part> parts_of(const BlockMaterials& materials, std::size_t cell) {
@@ -10,6 +12,7 @@ std::vector<BlockMaterials::Part> parts_of(const BlockMaterials& materials, std:
 }
 
 CellMatrix BlockCell::stiffness() const {
+  SPOONBILL_ASSERT(!parts.empty() && materials != nullptr);
   std::vector<HexahedronPart> elastic;
   for (const BlockMaterials::Part& part : parts) {
     const Material& material = (*materials)[part.material];

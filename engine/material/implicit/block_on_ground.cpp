@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/material/contact/contact_push.h"
 
 namespace spoonbill {
@@ -36,6 +37,7 @@ Vector3 on_cone(const Vector3& impulse, const Vector3& normal, double friction) 
 
 BlockOnGround::BlockOnGround(int points, double mass_kg)
     : mass_(0.1 * mass_kg), least_mass_(lightest * mass_kg), largest_mass_(heaviest * mass_kg) {
+  SPOONBILL_ASSERT(mass_kg > 0.0);
   wanted_.assign(static_cast<std::size_t>(points), 0.0);
   misses_.assign(static_cast<std::size_t>(points), Vector3::Zero());
   changes_.assign(static_cast<std::size_t>(points), Vector3::Zero());
@@ -43,6 +45,7 @@ BlockOnGround::BlockOnGround(int points, double mass_kg)
 
 void BlockOnGround::take_last(std::span<GroundContact> contacts, std::span<const GridPoint> points,
                               double time_s, std::vector<double>& impulses_ns) {
+  SPOONBILL_ASSERT(time_s > 0.0);
   std::fill(impulses_ns.begin(), impulses_ns.end(), 0.0);
   for (GroundContact& contact : contacts) {
     contact.impulse_ns = time_s * contact.force_n;
@@ -73,6 +76,7 @@ double BlockOnGround::take_changes(std::span<const GroundContact> contacts) {
 void BlockOnGround::solve(const GroundContacts& ground, std::span<GroundContact> contacts,
                           std::span<const GridPoint> points, double time_s, double cap_m_per_s,
                           ImplicitBody& body, std::vector<double>& impulses_ns) {
+  SPOONBILL_ASSERT(time_s > 0.0);
   normal_ = ground.normal();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const ContactPush push{contacts[c].gap_m, normal_, Vector3::Zero(), 0.0};

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 std::vector<Stretch> stretches(int block_cell, int block_count, int lattice_count) {
+  SPOONBILL_ASSERT(block_count >= 2 && lattice_count >= 2);
+  SPOONBILL_ASSERT(block_cell >= 0 && block_cell < block_count - 1);
   // Less of a cell than this is rounding.
   constexpr double least = 1e-9;
   std::vector<Stretch> result;

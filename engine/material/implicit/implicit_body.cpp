@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/material/implicit/block_cell.h"
 
 namespace spoonbill {
@@ -164,6 +165,7 @@ void ImplicitBody::take_damping(const BlockMaterials& materials) {
 }
 
 void ImplicitBody::hold(std::span<const std::uint8_t> held) {
+  SPOONBILL_ASSERT(held.size() == static_cast<std::size_t>(node_count()));
   has_held_nodes_ = std::find(held.begin(), held.end(), std::uint8_t{1}) != held.end();
   for (int n = 0; n < node_count(); ++n) {
     const bool is_first = mesh_.joined(n) == n;  // the second of a place has no coordinates of its own
@@ -335,6 +337,7 @@ double ImplicitBody::rayleigh_quotient() {
 }
 
 ImplicitReport ImplicitBody::solve_velocities(const ImplicitStep& step, std::span<const double> known_ns) {
+  SPOONBILL_ASSERT(step.step_s > 0.0 && step.damping_per_s >= 0.0);
   const double h = step.step_s, inertia = 1.0 + h * step.damping_per_s, stiffness = h * (h + damping_time_);
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {
     force_[n] = applied_[n] + mass3_[n] * step.gravity_m_per_s2[static_cast<Eigen::Index>(n % 3)];
@@ -354,6 +357,7 @@ ImplicitReport ImplicitBody::solve_velocities(const ImplicitStep& step, std::spa
 }
 
 double ImplicitBody::answer(const std::vector<double>& impulses) {
+  SPOONBILL_ASSERT(impulses.size() >= 3 * static_cast<std::size_t>(node_count()));
   std::copy(impulses.begin(), impulses.end(), image_.begin());
   free_only(image_);
   factor_.solve(image_.data(), free_.data(), conditioned_.data());

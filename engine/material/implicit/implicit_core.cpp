@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/material/implicit/grid_stretches.h"
 #include "engine/material/lattice/lattice_counts.h"
 
@@ -192,6 +193,7 @@ Result<ImplicitCore> ImplicitCore::make(const LatticeMesh& mesh, const std::vect
 }
 
 void ImplicitCore::hold(std::span<const std::uint8_t> held) {
+  SPOONBILL_ASSERT(held.size() == followers_.size());
   for (std::size_t b = 0; b < nearest_.size(); ++b) {
     holder_[b] = held[static_cast<std::size_t>(nearest_[b])] != 0 ? nearest_[b] : -1;
   }
@@ -245,6 +247,7 @@ void ImplicitCore::take_node_forces(const SpringLattice& lattice, std::span<cons
 }
 
 void ImplicitCore::move_held(std::span<const int> nodes, const Vector3& velocity_m_per_s) {
+  SPOONBILL_ASSERT_DEBUG(std::is_sorted(nodes.begin(), nodes.end()));
   for (int n = 0; n < body_.node_count(); ++n) {
     if (is_held_by(n, nodes)) body_.move_held(n, velocity_m_per_s);
   }
@@ -267,6 +270,7 @@ Vector3 ImplicitCore::force_on_held(const SpringLattice& lattice, std::span<cons
 
 ImplicitReport ImplicitCore::begin_step(const ImplicitStep& step, SpringLattice& lattice,
                                         std::span<GroundContact> on_ground) {
+  SPOONBILL_ASSERT(step.step_s > 0.0);
   step_s_ = step.step_s;
   std::span<const double> known_ns;
   if (!on_ground.empty()) {

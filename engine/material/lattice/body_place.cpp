@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/collision/meshes/nearest_on_triangle.h"
 #include "engine/collision/meshes/triangle.h"
 
@@ -141,6 +142,7 @@ std::vector<BodyPlace> node_places(const LatticeMesh& mesh) {
 }
 
 BodyPlace mean_place(const LatticeMesh& mesh, const std::vector<BodyPlace>& nodes, std::span<const int> of) {
+  SPOONBILL_ASSERT(!of.empty() && nodes.size() == static_cast<std::size_t>(mesh.node_count()));
   BodyPlace place;
   double weights = 0.0, heaviest = 0.0, from = 0.0;
   for (const int node : of) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
 #include "engine/collision/surfaces/closed_surface.h"
 #include "engine/material/lattice/box_lattice.h"
 
@@ -57,6 +58,7 @@ ClosedSkin coarse_skin(const Surface& surface, double longest_m) {
 
 BodySkin body_skin(const Surface& surface, const LatticeMesh& box,
                    const std::function<BodyPlace(double u, double v)>& place_at) {
+  SPOONBILL_ASSERT(static_cast<bool>(place_at));
   const ClosedSkin coarse = coarse_skin(surface, edge_cells * shortest_edge_m(box));
   BodySkin skin;
   skin.triangles = coarse.mesh.triangles;

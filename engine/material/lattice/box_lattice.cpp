@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 
 namespace spoonbill {
@@ -64,6 +65,8 @@ void find_places(LatticeMesh& box) {
 
 Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
                                 std::span<const Vector3> skin_m, std::array<int, 3> counts) {
+  SPOONBILL_ASSERT(volume_m3 > 0.0);
+  SPOONBILL_ASSERT(counts[0] >= 2 && counts[1] >= 2 && counts[2] >= 2);
   const Box& bounds = inside.bounds();
   const Vector3 size = bounds.high - bounds.low;
   if (!(size.minCoeff() >= least_thickness * size.maxCoeff())) {

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "engine/base/assert.h"
 #include "engine/collision/solids/implicit/exponential.h"
 
 namespace spoonbill {
@@ -187,6 +188,8 @@ CellQuality quality_of(const LatticeMesh& mesh) {
 
 FeatureMapReport order_by_feature_map(LatticeMesh& mesh, const FeatureMapSettings& settings,
                                       const FeatureMapWatch& watch) {
+  SPOONBILL_ASSERT(check_feature_map(settings).ok());
+  SPOONBILL_ASSERT_DEBUG(check_cells(mesh).ok());
   FeatureMapReport report;
   report.before = report.after = quality_of(mesh);
   FeatureMap map(mesh);

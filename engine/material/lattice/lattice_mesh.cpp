@@ -4,9 +4,13 @@
 #include <limits>
 #include <string>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 CellCorners LatticeMesh::cell(int i, int j, int k) const {
+  SPOONBILL_ASSERT_DEBUG(i >= 0 && i + 1 < count[0] && j >= 0 && j + 1 < count[1] && k >= 0 &&
+                         k + 1 < count[2]);
   CellCorners corners;
   for (int c = 0; c < 8; ++c) corners[c] = nodes[index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1))];
   return corners;
@@ -20,6 +24,7 @@ NodePlace LatticeMesh::place_of(int i, int j, int k) const {
 }
 
 double LatticeMesh::mean_edge() const {
+  SPOONBILL_ASSERT(nodes.size() == static_cast<std::size_t>(node_count()) && node_count() > 1);
   double sum = 0.0;
   int edges = 0;
   for (int i = 0; i < count[0]; ++i) {
@@ -109,6 +114,8 @@ CellLocation locate_in_cell(const CellCorners& corners, const Vector3& point) {
 }
 
 LatticeMesh box_mesh(const Vector3& size_m, std::array<int, 3> counts) {
+  SPOONBILL_ASSERT(size_m.minCoeff() > 0.0);
+  SPOONBILL_ASSERT(counts[0] >= 2 && counts[1] >= 2 && counts[2] >= 2);
   LatticeMesh mesh;
   mesh.count = counts;
   mesh.nodes.reserve(static_cast<std::size_t>(mesh.node_count()));
@@ -124,6 +131,7 @@ LatticeMesh box_mesh(const Vector3& size_m, std::array<int, 3> counts) {
 }
 
 Status check_cells(const LatticeMesh& mesh) {
+  SPOONBILL_ASSERT(mesh.nodes.size() == static_cast<std::size_t>(mesh.node_count()));
   double worst = std::numeric_limits<double>::infinity();
   std::array<int, 3> where{};
   for (int i = 0; i + 1 < mesh.count[0]; ++i) {

@@ -1,5 +1,7 @@
 #include "engine/material/lattice/shell_faces.h"
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -35,6 +37,7 @@ std::vector<ShellFace> shell_faces(const LatticeMesh& mesh) {
 
 std::vector<ShellFace> faces_in(const BodyRegion& region, const LatticeMesh& mesh,
                                 const std::vector<ShellFace>& faces, const std::vector<BodyPlace>& places) {
+  SPOONBILL_ASSERT(places.size() == static_cast<std::size_t>(mesh.node_count()));
   std::vector<ShellFace> within;
   for (const ShellFace& face : faces) {
     if (contains(region, mean_place(mesh, places, face))) within.push_back(face);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -104,10 +106,12 @@ Vector3 ShellSurface::normal(const Place& place) const {
 }
 
 std::vector<double> ShellSurface::across_shares(int least) const {
+  SPOONBILL_ASSERT(least >= 1);
   return shares_of(across_knots(), least);
 }
 
 std::vector<double> ShellSurface::along_shares(int least) const {
+  SPOONBILL_ASSERT(least >= 1);
   std::vector<double> shares = shares_of(along_knots(), least);
   if (form_ != Form::bowl || !pole_at_end_) return shares;
   for (double& share : shares) share = 1.0 - share;

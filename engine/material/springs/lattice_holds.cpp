@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "engine/base/assert.h"
 #include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
@@ -11,6 +12,7 @@ float SpringLattice::free_inverse_mass(int node) const {
 }
 
 void SpringLattice::set_contact_inverse_mass(double inverse_mass_per_kg) {
+  SPOONBILL_ASSERT(inverse_mass_per_kg >= 0.0);
   contact_inverse_mass_ = static_cast<float>(inverse_mass_per_kg);
   for (int n = 0; n < mesh_.node_count(); ++n) {
     if (inverse_mass_[n] > 0.0f) inverse_mass_[n] = free_inverse_mass(n);
@@ -18,6 +20,7 @@ void SpringLattice::set_contact_inverse_mass(double inverse_mass_per_kg) {
 }
 
 void SpringLattice::hold(std::span<const std::uint8_t> held) {
+  SPOONBILL_ASSERT(held.size() == static_cast<std::size_t>(mesh_.node_count()));
   held_count_ =
       static_cast<int>(std::count_if(held.begin(), held.end(), [](std::uint8_t is) { return is != 0; }));
   for (int n = 0; n < mesh_.node_count(); ++n) {

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 
 void PressedSkin::press(const BodySkin& skin, std::size_t triangle, double pressure_pa) {
+  SPOONBILL_ASSERT(triangle < skin.triangles.size());
   of_skin_.resize(skin.points.size(), -1);
   Pressed pressed{{}, pressure_pa};
   for (std::size_t c = 0; c < 3; ++c) {

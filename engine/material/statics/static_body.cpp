@@ -1,5 +1,6 @@
 #include "engine/material/statics/static_body.h"
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 
 namespace spoonbill {
@@ -18,6 +19,7 @@ std::variant<SpringCell, CorotatedCell> cell_of(const CellCorners& corners, cons
 }  // namespace
 
 void hold_node(int node, const Vector3& displacement_m, std::vector<HeldAxis>& held) {
+  SPOONBILL_ASSERT(node >= 0);
   for (int axis = 0; axis < 3; ++axis) held.push_back({node, axis, displacement_m[axis]});
 }
 

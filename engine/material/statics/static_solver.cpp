@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/base/assert.h"
 #include "engine/material/statics/static_system.h"
 
 namespace spoonbill {
@@ -144,6 +145,7 @@ StaticResult result_of(StaticSystem& system, const StaticLoads& loads, const std
 
 Result<StaticResult> rest_under_load(const StaticBody& body, const StaticLoads& loads,
                                      const std::vector<HeldAxis>& held, const StaticSettings& settings) {
+  SPOONBILL_ASSERT(settings.tolerance > 0.0 && settings.step_limit >= 1);
   if (const Status status = check_held(body, held); !status.ok()) return status.error();
   StaticSystem system(body, held);
   Equilibrium equilibrium(system, loads, settings);

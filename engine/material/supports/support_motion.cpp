@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
 #include "engine/material/springs/node_motion.h"
 
 namespace spoonbill {
@@ -26,6 +27,7 @@ Vector3 velocity_of(const SupportedNodes& support, double time_s) {
 }  // namespace
 
 bool limit_ways(std::span<SupportedNodes> supports, const SpringLattice& lattice, double reach_m) {
+  SPOONBILL_ASSERT(reach_m >= 0.0);
   const SupportedNodes* const rides_with = ridden(supports, lattice);
   bool limited = false;
   for (SupportedNodes& support : supports) {
@@ -42,11 +44,13 @@ bool limit_ways(std::span<SupportedNodes> supports, const SpringLattice& lattice
 
 Vector3 riding_velocity(std::span<const SupportedNodes> supports, const SpringLattice& lattice,
                         double time_s) {
+  SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
   const SupportedNodes* const rides_with = ridden(supports, lattice);
   return rides_with ? velocity_of(*rides_with, time_s) : Vector3::Zero();
 }
 
 void hand_to_supports(std::span<const SupportedNodes> supports, const LatticeView& view, double time_s) {
+  SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
   for (const SupportedNodes& support : supports) {
     if (!support.moves) continue;
     const Vector3 velocity = velocity_of(support, time_s);

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstdint>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
 namespace {
 
@@ -59,6 +61,7 @@ double stable_exp(double x) {
 
 // log(m) = 2 artanh((m - 1) / (m + 1)), m within sqrt(2) of 1.
 double stable_log(double x) {
+  SPOONBILL_ASSERT_DEBUG(x > 0.0);
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(x), mantissa_bits = (std::uint64_t{1} << 52) - 1;
   int twos = static_cast<int>(bits >> 52) - 1023;
   double mantissa = std::bit_cast<double>((bits & mantissa_bits) | std::bit_cast<std::uint64_t>(1.0));

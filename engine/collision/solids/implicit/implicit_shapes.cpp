@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "engine/base/assert.h"
 #include "engine/base/number_text.h"
 #include "engine/collision/solids/implicit/ellipsoid_distance.h"
 #include "engine/collision/solids/implicit/plain_distances.h"
@@ -56,6 +57,7 @@ Status check_implicit_shape(const ImplicitShape& shape) {
 }
 
 std::shared_ptr<const SignedDistance> make_signed_distance(const ImplicitShape& shape) {
+  SPOONBILL_ASSERT(check_implicit_shape(shape).ok());
   using Made = std::shared_ptr<const SignedDistance>;
   const Visitor make{
       [](const SphereShape& s) -> Made { return std::make_shared<SphereDistance>(s); },
