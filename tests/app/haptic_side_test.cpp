@@ -55,7 +55,7 @@ class Side {
       return Status();
     };
     ASSERT_TRUE(exchange_->commands.push(AskedWork{work, true}));
-    for (int i = 0; i < 10000 && !frame().recording; ++i) {
+    for (int i = 0; i < 300'000 && !frame().recording; ++i) {
       tick(4);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -127,7 +127,7 @@ TEST(HapticSide, AfterALoanTheForceComesBackByTheRamp) {
   EXPECT_EQ(side.frame().safety_flags, 0U);
   side.ask(Command(PlacePlane{{Vector3(0.025, 0, 0), Vector3::UnitX()}}));
   side.tick(1);
-  for (int i = 0; i < 10000 && side.frame().snapshot.planes.size() != 2; ++i) {
+  for (int i = 0; i < 300'000 && side.frame().snapshot.planes.size() != 2; ++i) {
     side.tick(4);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

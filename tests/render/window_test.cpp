@@ -48,10 +48,10 @@ Image drawn_offscreen(const Snapshot& snapshot) {
   return drawn_by(renderer.value(), snapshot, width, height);
 }
 
-// The display answers in its own time; ten seconds are more than any load takes.
+// The display answers in its own time; five minutes are more than any load takes.
 template <class Condition>
 bool comes_true(GlfwWindow& window, const Condition& condition) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(300);
   while (!condition() && std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     window.poll_events();
