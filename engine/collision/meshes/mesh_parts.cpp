@@ -80,7 +80,7 @@ std::vector<std::uint32_t> by_part(const Flood& flood, std::vector<MeshPart>& pa
   return order;
 }
 
-Box box_of(const TriangleMesh& mesh, const MeshPart& part) {
+Box box_of_part(const TriangleMesh& mesh, const MeshPart& part) {
   Box box;
   for (std::uint32_t v = part.first_vertex; v < part.end_vertex; ++v) box.include(mesh.vertices_m[v]);
   return box;
@@ -108,7 +108,7 @@ void find_cavities(const TriangleMesh& mesh, std::vector<MeshPart>& parts,
   std::size_t work = 0;
   for (const int p : closed) {
     const bool outward = volumes[p] > 0.0;
-    const Box box = box_of(mesh, parts[p]);
+    const Box box = box_of_part(mesh, parts[p]);
     for (const auto& [holder, around] : holders[outward ? 0 : 1]) {
       if (++work > cavity_work) return;
       if (!around.holds(box)) continue;
