@@ -117,7 +117,8 @@ TEST(SolidCheck, WhatTheMeshMayHaveWrongIsNoMeeting) {
 }
 
 TEST(SolidCheck, StopsWhenAsked) {
-  EXPECT_FALSE(check_solid(ball_mesh(12, 24, 0.05), {}, 0.0, [](double share) { return share < 0.3; }));
+  EXPECT_FALSE(
+      check_solid(ball_mesh(12, 24, 0.05), {}, 0.0, Progress([](double share) { return share < 0.3; })));
 }
 
 }  // namespace

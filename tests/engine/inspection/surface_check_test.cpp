@@ -201,17 +201,17 @@ TEST(SurfaceCheck, TellsHowFarItIsAndStops) {
   const Surface torus = fitted(torus_shape({0.04, 0.01})).surface;
   double last = 0.0;
   int asked = 0;
-  ASSERT_TRUE(check_surface(torus, {}, [&](double share) {
-    EXPECT_GE(share, last);
-    last = share;
-    ++asked;
-    return true;
-  }));
+  ASSERT_TRUE(check_surface(torus, {}, Progress([&](double share) {
+                              EXPECT_GE(share, last);
+                              last = share;
+                              ++asked;
+                              return true;
+                            })));
   EXPECT_GT(last, 0.6);
   EXPECT_LE(last, 1.0);
   for (int stop = 1; stop <= asked; ++stop) {
     int left = stop;
-    EXPECT_FALSE(check_surface(torus, {}, [&](double) { return --left > 0; })) << stop;
+    EXPECT_FALSE(check_surface(torus, {}, Progress([&](double) { return --left > 0; }))) << stop;
   }
 }
 

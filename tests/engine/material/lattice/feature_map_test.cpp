@@ -85,11 +85,11 @@ TEST(FeatureMap, CanBeStopped) {
   double last = -1.0;
   int done = 0;
   const FeatureMapReport report = order_by_feature_map(mesh, {},
-                                                       {[&last](double share) {
+                                                       {Progress([&last](double share) {
                                                           EXPECT_GT(share, last);
                                                           last = share;
                                                           return share < 0.1;
-                                                        },
+                                                        }),
                                                         [&done](const FeatureMapReport&) { ++done; }});
   EXPECT_EQ(done, 0);
   EXPECT_EQ(mesh.nodes, before);
@@ -102,10 +102,10 @@ TEST(FeatureMap, TellsHowItComesAlongAndWhatItMade) {
   double last = -1.0;
   FeatureMapReport told;
   const FeatureMapReport report = order_by_feature_map(mesh, {},
-                                                       {[&last](double share) {
+                                                       {Progress([&last](double share) {
                                                           last = share;
                                                           return true;
-                                                        },
+                                                        }),
                                                         [&told](const FeatureMapReport& of) { told = of; }});
   EXPECT_EQ(last, 1.0);
   EXPECT_EQ(told.share, report.share);
