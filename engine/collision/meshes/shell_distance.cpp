@@ -75,7 +75,7 @@ ShellDistance::ShellDistance(std::vector<Vector3> vertices_m, std::vector<Triang
       tree_(boxes_of(vertices_m_, triangles), leaf_size),
       kind_(kind),
       size_m_(tree_.nodes()[0].box.size()) {
-  SPOONBILL_ASSERT(!triangles_.empty());
+  SPOONBILL_ASSERT(!triangles.empty());
   triangles_.reserve(triangles.size());
   for (const std::uint32_t index : tree_.order()) triangles_.push_back(triangles[index]);
   triangles = {};
