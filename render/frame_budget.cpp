@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "engine/base/assert.h"
-
 namespace spoonbill {
 namespace {
 
@@ -31,7 +29,6 @@ FrameQuality neighbour(FrameQuality quality, int step) {
 }  // namespace
 
 void FrameBudget::add_frame(double took_s) {
-  SPOONBILL_ASSERT(took_s >= 0.0);
   ++frames_here_;
   if (frames_here_ == trial_frames && on_trial_) {
     on_trial_ = false;

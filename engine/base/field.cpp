@@ -10,11 +10,14 @@ std::string name_in_si(const FieldForm& form) {
   return in_millimetres ? std::string(name.substr(0, name.size() - 2)) + "m" : std::string(name);
 }
 
+// Names are made of what is refused alone: a tool is set between two ticks, where nothing is allocated.
 Status check_value(const std::string& about, const FieldForm& form, double value, Range<double> range) {
+  if (range.contains(value)) return {};
   return check_range(about + name_in_si(form), value, range);
 }
 
 Status check_value(const std::string& about, const FieldForm& form, int value, Range<double> range) {
+  if (whole(range).contains(value)) return {};
   return check_range(about + name_in_si(form), value, whole(range));
 }
 
@@ -25,6 +28,7 @@ Status check_value(const std::string& about, const FieldForm& form, const Vector
     return check_range(about + "length of " + name, value.norm(), Range<double>{0.0, form.length_limit});
   }
   for (int axis = 0; axis < 3; ++axis) {
+    if (form.range.contains(value[axis])) continue;
     const std::string component = about + name + "[" + std::to_string(axis) + "]";
     if (Status status = check_range(component, value[axis], form.range); !status.ok()) return status;
   }

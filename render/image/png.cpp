@@ -86,13 +86,12 @@ void PngEncoder::append_chunk(const char* type, std::span<const std::uint8_t> da
 }
 
 Result<std::span<const std::uint8_t>> PngEncoder::encode(const Image& image) {
-  SPOONBILL_ASSERT(image.width > 0 && image.height > 0);
-  SPOONBILL_ASSERT(image.rgba.size() == image.row_bytes() * static_cast<std::size_t>(image.height));
   if (image.width < 1 || image.height < 1) return Error{"an empty picture cannot be a PNG file"};
   if (image.width > largest_side_px || image.height > largest_side_px) {
     return Error{"a picture of " + std::to_string(image.width) + "x" + std::to_string(image.height) +
                  ": choose sides of at most " + std::to_string(largest_side_px) + " pixels"};
   }
+  SPOONBILL_ASSERT(image.rgba.size() == image.row_bytes() * static_cast<std::size_t>(image.height));
   const int channels = is_opaque(image) ? 3 : 4;
   filter(image, channels);
   const auto size = compress();
