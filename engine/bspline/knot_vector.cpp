@@ -196,8 +196,10 @@ int KnotVector::find_span(double u) const {
 
 int KnotVector::control_index(int span, int j) const {
   SPOONBILL_ASSERT_DEBUG(j >= 0 && j <= degree_);
-  SPOONBILL_ASSERT_DEBUG(span >= degree_ && span + degree_ + 1 < static_cast<int>(extended_.size()));
-  if (!periodic_) return span - degree_ + j;
+  if (!periodic_) {
+    SPOONBILL_ASSERT_DEBUG(span - degree_ + j >= 0 && span - degree_ + j < control_point_count_);
+    return span - degree_ + j;
+  }
   const int index = (span - 2 * degree_ + j) % control_point_count_;
   return index < 0 ? index + control_point_count_ : index;
 }
