@@ -22,7 +22,7 @@ struct BodyBoxes {
 // The box about another that is turned.
 Box box_about(const Box& box, const Pose& pose);
 
-// What is found of several pairs of bodies, as one answer: they touch where a pair does, and of others the
+// Joins the answers of several pairs of bodies into one: they touch where a pair does, and of others the
 // nearest counts.
 class BodiesAnswer {
  public:

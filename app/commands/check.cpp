@@ -134,7 +134,7 @@ Result<CheckedBodies> check_bodies(FactSheet& facts, const std::vector<Body>& al
   return checked;
 }
 
-// Where solid bodies are in each other.
+// Adds where solid bodies are in each other.
 Status check_meetings(FactSheet& facts, const std::vector<std::size_t>& solids, const std::vector<Body>& all,
                       InterruptWatch& interrupt) {
   std::vector<const Surface*> surfaces;

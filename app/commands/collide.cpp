@@ -36,7 +36,7 @@ struct CollideOptions {
 // Cells a quarter of an element wide: regions are told that closely.
 constexpr int levels = 2;
 
-// What a file holds for collide: the bodies of a document, or a mesh.
+// One side of a collision: the bodies of a document, or a mesh.
 struct Model {
   std::vector<Surface> bodies;
   std::vector<std::string> names;  // of the bodies; empty where there is one
@@ -77,7 +77,7 @@ struct MeshLabel {
   const char* whose;
 };
 
-// What the mesh is goes to the facts.
+// Reads and cleans a mesh, and adds what was cleaned to the facts.
 Result<Model> read_mesh(const std::filesystem::path& file, const std::optional<LengthUnit>& unit,
                         const MeshLabel& label, FactSheet& facts) {
   MeshReading reading;

@@ -7,7 +7,7 @@
 //   info.add_flag("--json", json, "Print one JSON object");
 //   const CommandLine::Parsed parsed = line.parse(arguments);
 //
-// What an option writes to, and what a function that it calls refers to, must live until parse() has
+// The targets that options write to, and all that their functions refer to, must live until parse() has
 // returned. All calls come from one thread.
 #pragma once
 
@@ -89,7 +89,7 @@ class OptionSet {
   void set_final_check(const std::function<Status()>& check) const;
 
   std::string name() const;
-  // Whether the command line named this command; valid after parse().
+  // Returns true where the command line named this command; valid after parse().
   bool is_chosen() const;
 
  private:

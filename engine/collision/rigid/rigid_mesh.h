@@ -1,5 +1,5 @@
 // Triangles that keep their shape, in FCL's tree of boxes: how far apart two of them are and which triangles
-// cross. FCL tests surfaces alone: one inside the other is apart (its issue 492). For loading, checking and
+// cross. FCL tests surfaces alone: one inside the other is apart (FCL bug 492). For loading, checking and
 // reports; never in the tick, for queries allocate.
 #pragma once
 
