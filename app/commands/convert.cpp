@@ -26,7 +26,7 @@ struct ConvertOptions {
 
 Status convert(const ConvertOptions& options, Console& console) {
   InterruptWatch interrupt;
-  Result<ConversionReport> report = Error{};
+  Result<ConversionReport> report = Error{ErrorCode::internal, "not converted"};
   {
     ProgressBar bar(console, "Converting", options.progress);
     report = convert_file(options.request, Progress([&](double fraction) {

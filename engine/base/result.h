@@ -1,9 +1,10 @@
-// The engine's errors are values: a Result holds either what was asked for or an Error whose message names
-// the file or object, the field, and the remedy. Nothing in the engine throws for bad input.
+// The engine's errors are values: a Result holds either the value or an Error, whose message names the file or
+// object, the field, and the remedy. Nothing in the engine throws for bad input.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -11,9 +12,43 @@
 
 namespace spoonbill {
 
-// One line for the person at the program, without a trailing full stop or newline.
+// The kind of a fault, for callers and tests that react to it. The message is for people.
+enum class ErrorCode {
+  missing,            // a required file, field, option or part is absent
+  unknown,            // a name, field, kind or option that does not exist
+  duplicate,          // a name or field given twice
+  wrong_type,         // a field of another type, such as text where a number belongs
+  malformed,          // text or bytes that cannot be parsed
+  out_of_range,       // a value outside its range, or not finite
+  inconsistent,       // values that contradict each other
+  too_many,           // more items, bytes or memory than the limit
+  too_few,            // fewer items than the method needs
+  degenerate,         // geometry without length, area, volume or direction
+  self_intersecting,  // a result that would fold over or pass through itself
+  mismatch,           // parts that do not meet, edges or bodies that do not fit together
+  not_converged,      // an iteration or fit that misses its tolerance
+  unsupported,        // valid input of a kind that the program does not handle
+  unreadable,         // a file or device that cannot be opened or read
+  unwritable,         // a file or device that cannot be written
+  in_use,             // a file or device that another program holds
+  cancelled,          // stopped by the user
+  unavailable,        // a library, driver, display or permission that this machine lacks
+  process_failed,     // a child process that crashed, hung or exceeded its limits
+  internal            // a fault of the program itself
+};
+
 struct Error {
-  std::string message;
+  // `field` is the JSON field, option or parameter at fault, such as "radius_mm"; empty where no single one is.
+  Error(ErrorCode error_code, std::string error_message, std::string field_name = {})
+      : code(error_code), message(std::move(error_message)), field(std::move(field_name)) {}
+  explicit Error(std::string error_message) : message(std::move(error_message)) {}
+
+  // The same error with "context: " before its message.
+  Error in(std::string_view context) const { return {code, std::string(context) + ": " + message, field}; }
+
+  ErrorCode code = ErrorCode::internal;
+  std::string message;  // one line, without a trailing full stop or newline
+  std::string field;
 };
 
 template <class T>
