@@ -6,8 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/base/pose.h"
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {

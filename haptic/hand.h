@@ -3,8 +3,7 @@
 
 #include <cstdint>
 
-#include "engine/base/pose.h"
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {

@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-#include "engine/base/denormals.h"
+#include "engine/base/processor.h"
 #include "haptic/duration_histogram.h"
 #include "haptic/real_time.h"
 

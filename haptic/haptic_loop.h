@@ -14,7 +14,7 @@
 #include <memory>
 #include <string>
 
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {

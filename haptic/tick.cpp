@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/base/denormals.h"
+#include "engine/base/processor.h"
 
 namespace spoonbill {
 namespace {

@@ -5,8 +5,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "engine/base/box.h"
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/collision/stages/contact_stages.h"
 #include "render/camera.h"
 

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "app/report/contact_facts.h"
-#include "engine/base/box.h"
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {

@@ -16,7 +16,7 @@
 #include "app/files/document_file.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/cad_names.h"
 
 namespace spoonbill {

@@ -130,7 +130,7 @@ Result<CollisionAnswer> collide_with_itself(const Surface& body) {
 std::vector<Box> boxes_of(const std::vector<Surface>& bodies) {
   std::vector<Box> boxes;
   boxes.reserve(bodies.size());
-  for (const Surface& body : bodies) boxes.push_back(box_of(body.net));
+  for (const Surface& body : bodies) boxes.push_back(bounding_box(body.net));
   return boxes;
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "app/commands/option_set.h"
-#include "engine/base/excerpt.h"
+#include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 
 namespace spoonbill {

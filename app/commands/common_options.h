@@ -5,7 +5,7 @@
 #include <string>
 
 #include "app/commands/option_set.h"
-#include "engine/base/instruction_set.h"
+#include "engine/base/processor.h"
 
 namespace spoonbill {
 

@@ -19,7 +19,7 @@
 #include "app/interrupt.h"
 #include "app/report/fit_facts.h"
 #include "app/report/progress_bar.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/file_format.h"
 

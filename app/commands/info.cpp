@@ -16,7 +16,7 @@
 #include "app/report/map_progress.h"
 #include "app/report/progress_bar.h"
 #include "app/session/session.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 #include "engine/material/lattice/lattice_of.h"
 #include "haptic/devices/virtual_device.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/inspection/curvature_range.h"
 
 namespace spoonbill {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/report/contact_facts.h"
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/solids/signed_distance.h"

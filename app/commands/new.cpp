@@ -21,13 +21,12 @@
 #include "app/report/surface_extent.h"
 #include "app/start/shipped_materials.h"
 #include "app/start/starting_document.h"
-#include "engine/base/number_text.h"
-#include "engine/base/place_text.h"
+#include "engine/base/text.h"
 #include "engine/base/progress.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 #include "engine/inspection/enclosed_mass.h"
 #include "engine/shapes/fit_shape.h"
-#include "engine/shapes/lump.h"
+#include "engine/shapes/stock_shapes.h"
 
 namespace spoonbill {
 namespace {
@@ -81,7 +80,7 @@ Status check_apart(const Surface& surface, bool closed, Making& making) {
   const SelfResult result = collider.collide(surface, query);
   if (result.stopped || !result.touching) return {};
   if (collider.contacts().empty()) return Error{"the shape passes through itself; make it thinner or wider"};
-  return Error{"the shape passes through itself near " + place_text(collider.contacts()[0].pair.first_m) +
+  return Error{"the shape passes through itself near " + position_text(collider.contacts()[0].pair.first_m) +
                "; make it thinner or its line wider there"};
 }
 
@@ -121,7 +120,7 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   auto made = kind.make();
   if (!made) return made.error();
   ShapeFit fit;
-  fit.tolerance_m = options.tolerance_m.value_or(usual_tolerance_m(made->shape));
+  fit.tolerance_m = options.tolerance_m.value_or(default_tolerance_m(made->shape));
   if (options.control) fit.control_counts = {{options.control->width, options.control->height}};
   auto fitted = fit_with_progress(options, made.value(), fit, console);
   if (!fitted) return fitted.error();

@@ -8,8 +8,8 @@
 #include "app/commands/parsed_option.h"
 #include "engine/material/lattice/shell_lattice.h"
 #include "engine/scene/scene.h"
-#include "engine/shapes/lump.h"
-#include "engine/shapes/shape_sizes.h"
+#include "engine/shapes/stock_shapes.h"
+#include "engine/shapes/exact_shape.h"
 
 namespace spoonbill {
 namespace {
@@ -27,8 +27,8 @@ std::shared_ptr<std::vector<double>> add_size(OptionSet parser, std::size_t coun
   return size;
 }
 
-Result<NewShape> new_shape(const LumpSize& size) {
-  auto shape = lump_shape(size);
+Result<NewShape> new_shape(const StockShapeSize& size) {
+  auto shape = stock_shape(size);
   if (!shape) return shape.error();
   return NewShape{std::move(shape).value(), {}, reach_m(size)};
 }
@@ -49,7 +49,7 @@ NewKind add_box(OptionSet root) {
                  "fifths of it");
   return {parser, [=] {
             BoxSize size{{(*sides)[0], (*sides)[1], (*sides)[2]}};
-            size.rounding_m = rounding->value_or(usual_rounding_m(size));
+            size.rounding_m = rounding->value_or(default_rounding_m(size));
             return new_shape(size);
           }};
 }
@@ -65,7 +65,7 @@ NewKind add_cylinder(OptionSet root) {
             CylinderSize size;
             size.radius_m = radius->value_or(size.radius_m);
             size.height_m = height->value_or(size.height_m);
-            size.rounding_m = rounding->value_or(usual_rounding_m(size));
+            size.rounding_m = rounding->value_or(default_rounding_m(size));
             return new_shape(size);
           }};
 }
@@ -83,7 +83,7 @@ NewKind add_cone(OptionSet root) {
             size.radius_m = radius->value_or(size.radius_m);
             size.height_m = height->value_or(size.height_m);
             size.top_radius_m = top->value_or(0.0);
-            size.rounding_m = rounding->value_or(usual_rounding_m(size));
+            size.rounding_m = rounding->value_or(default_rounding_m(size));
             return new_shape(size);
           }};
 }
@@ -102,7 +102,7 @@ NewKind add_plate(OptionSet root) {
   return {parser, [=]() -> Result<NewShape> {
             PlateSize size{(*sides)[0], (*sides)[1]};
             size.thickness_m = thickness->value_or(size.thickness_m);
-            size.corner_m = corner->value_or(usual_corner_m(size));
+            size.corner_m = corner->value_or(default_corner_m(size));
             if (!*sheet) return new_shape(size);
             if (Status status = check_length("thickness", size.thickness_m, shell_thickness_range_m);
                 !status) {

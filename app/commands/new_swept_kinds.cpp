@@ -9,9 +9,8 @@
 #include "engine/material/lattice/shell_lattice.h"
 #include "engine/scene/scene.h"
 #include "engine/shapes/lathe.h"
-#include "engine/shapes/loft.h"
-#include "engine/shapes/shape_sizes.h"
-#include "engine/shapes/swept_tube.h"
+#include "engine/shapes/swept_shapes.h"
+#include "engine/shapes/exact_shape.h"
 
 namespace spoonbill {
 namespace {

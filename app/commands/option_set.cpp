@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "app/console.h"
-#include "engine/base/excerpt.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {

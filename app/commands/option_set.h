@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace CLI {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/scene/scene.h"
 
 namespace spoonbill {

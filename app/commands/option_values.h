@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "app/files/length_unit.h"
-#include "engine/base/excerpt.h"
-#include "engine/base/pose.h"
-#include "engine/base/range.h"
+#include "engine/base/text.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/merging/patch_edge.h"
 

@@ -15,7 +15,7 @@
 #include "app/report/map_progress.h"
 #include "app/report/progress_bar.h"
 #include "app/session/lockstep.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 #include "engine/scene/tool_actions.h"
 #include "haptic/devices/playback_device.h"

@@ -17,7 +17,7 @@
 #include "app/report/map_progress.h"
 #include "app/report/progress_bar.h"
 #include "app/session/lockstep.h"
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "haptic/devices/playback_device.h"
 #include "render/gl/allocator_thresholds.h"
 

@@ -10,8 +10,7 @@
 #include "app/report/fact_sheet.h"
 #include "app/report/progress_bar.h"
 #include "app/report/quantity_text.h"
-#include "engine/base/number_text.h"
-#include "engine/base/place_text.h"
+#include "engine/base/text.h"
 #include "engine/base/progress.h"
 #include "engine/simulation/rest_shape.h"
 
@@ -38,14 +37,14 @@ void add_body(FactSheet& facts, const Body& body, const RestShape& shape, Json& 
   facts.add("Body", body.name, "", nullptr);
   facts.add("  Held nodes",
             std::to_string(shape.held_nodes) + " of " + std::to_string(shape.mesh.node_count()), "", nullptr);
-  facts.add("  Displaced", "at most " + short_length_text(displacement.norm()) + ", at " + place_text(place),
+  facts.add("  Displaced", "at most " + short_length_text(displacement.norm()) + ", at " + position_text(place),
             "", nullptr);
   facts.add("  Loads", newtons_text(shape.load_n.norm()) + " together", "", nullptr);
   facts.add("  Reactions", newtons_text(shape.reaction_n.norm()) + " together", "", nullptr);
   facts.add("  Strain",
             "at most " + percent_text(std::abs(shape.largest_strain)) +
                 (shape.largest_strain < 0.0 ? " pressed" : " stretched") + ", at " +
-                place_text(shape.strained_m),
+                position_text(shape.strained_m),
             "", nullptr);
   add_if_not_elastic(body.material, facts);
   for (const MaterialRegion& region : body.regions) {

@@ -10,7 +10,7 @@
 #include "app/commands/option_values.h"
 #include "app/files/document_file.h"
 #include "app/interrupt.h"
-#include "engine/base/output_file.h"
+#include "engine/base/file.h"
 #include "engine/bspline/evaluate.h"
 
 namespace spoonbill {

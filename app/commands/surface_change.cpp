@@ -8,9 +8,8 @@
 #include <utility>
 
 #include "app/commands/option_values.h"
-#include "engine/base/excerpt.h"
-#include "engine/base/number_text.h"
-#include "engine/bspline/knot_removal.h"
+#include "engine/base/text.h"
+#include "engine/bspline/change_knots.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/seam.h"
 #include "engine/merging/tube_ends.h"
@@ -118,7 +117,7 @@ Result<ChangedSurfaces> split(const Surface& surface, const AskedChange& asked, 
 
 Result<ChangedSurfaces> insert(const Surface& surface, const AskedChange& asked, const Allowed&) {
   const KnotVector& knots = knots_along(surface, asked.direction);
-  const double near = same_knot_share * (knots.domain_end() - knots.domain_start());
+  const double near = same_knot_fraction * (knots.domain_end() - knots.domain_start());
   for (const double knot : knots.breakpoints()) {
     if (knot == asked.parameter || std::abs(knot - asked.parameter) > near) continue;
     return Error{"a knot at " + number_text(asked.parameter) + " is too near the one at " +
@@ -128,7 +127,7 @@ Result<ChangedSurfaces> insert(const Surface& surface, const AskedChange& asked,
 }
 
 Result<ChangedSurfaces> remove(const Surface& surface, const AskedChange& asked, const Allowed& allowed) {
-  auto fewer = without_knot(surface, asked.direction, asked.parameter, asked.number);
+  auto fewer = remove_knot(surface, asked.direction, asked.parameter, asked.number);
   if (fewer && fewer->deviation_m > allowed.tolerance_m) {
     return Error{"to take the knot at " + number_text(asked.parameter) + " out leaves a deviation of " +
                  short_length_text(fewer->deviation_m) + "; allow a larger tolerance than " +
@@ -140,16 +139,16 @@ Result<ChangedSurfaces> remove(const Surface& surface, const AskedChange& asked,
 Result<ChangedSurfaces> set_degree(const Surface& surface, const AskedChange& asked, const Allowed& allowed) {
   const KnotVector& knots = knots_along(surface, asked.direction);
   if (asked.number >= knots.degree()) {
-    const auto higher = elevated(knots, asked.number);
+    const auto higher = elevate_degree(knots, asked.number);
     if (!higher) return higher.error();
     if (higher->control_point_count() > control_points_limit) {
       return Error{"degree " + std::to_string(asked.number) + " takes " +
                    std::to_string(higher->control_point_count()) + " control points, a document holds " +
                    std::to_string(control_points_limit) + "; simplify first, or ask for less"};
     }
-    return exactly(over_finer_knots(surface, asked.direction, higher.value()), true);
+    return exactly(convert_to_finer_knots(surface, asked.direction, higher.value()), true);
   }
-  const auto lower = reduced(knots, asked.number);
+  const auto lower = reduce_degree(knots, asked.number);
   if (!lower) return lower.error();
   return nearly(approximated(surface, asked.direction, lower.value(), allowed.tolerance_m,
                              control_points_limit, allowed.progress));
@@ -157,9 +156,9 @@ Result<ChangedSurfaces> set_degree(const Surface& surface, const AskedChange& as
 
 Result<ChangedSurfaces> simplify(const Surface& surface, const AskedChange&, const Allowed& allowed) {
   auto along_u =
-      without_spare_knots(surface, Direction::u, 0.5 * allowed.tolerance_m, allowed.progress.part(0.0, 0.5));
+      remove_spare_knots(surface, Direction::u, 0.5 * allowed.tolerance_m, allowed.progress.part(0.0, 0.5));
   if (!along_u) return along_u.error();
-  auto both = without_spare_knots(along_u->surface, Direction::v, 0.5 * allowed.tolerance_m,
+  auto both = remove_spare_knots(along_u->surface, Direction::v, 0.5 * allowed.tolerance_m,
                                   allowed.progress.part(0.5, 1.0));
   if (!both) return both.error();
   return ChangedSurfaces{{std::move(both->surface)}, {}, along_u->deviation_m + both->deviation_m, true};

@@ -8,8 +8,8 @@
 #include "app/convert/cad_document.h"
 #include "app/convert/model_meshes.h"
 #include "app/report/quantity_text.h"
-#include "engine/base/number_text.h"
-#include "engine/base/output_file.h"
+#include "engine/base/text.h"
+#include "engine/base/file.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/file_format.h"
@@ -18,7 +18,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double usual_chord_m = 5e-5, usual_tolerance_m = 1e-5;
+constexpr double usual_chord_m = 5e-5, default_tolerance_m = 1e-5;
 // Of the whole work; writing takes the rest.
 constexpr double share_of_reading = 0.5, share_of_solids = 0.7;
 
@@ -113,7 +113,7 @@ Result<CadModel> read_model(const Job& job, const CadChild& child) {
   }
   CadReading reading;
   reading.format = job.in;
-  reading.tolerance_m = request.tolerance_m.value_or(usual_tolerance_m);
+  reading.tolerance_m = request.tolerance_m.value_or(default_tolerance_m);
   if (request.unit) reading.unit_m = request.unit->metres;
   auto model = read_cad_file(request.in, reading, child);
   if (!model) return model.error();

@@ -12,7 +12,7 @@
 #include "app/panel/panel.h"
 #include "app/panel/session_panel.h"
 #include "engine/base/assert.h"
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "haptic/safety.h"
 #include "render/gl/allocator_thresholds.h"
 #include "render/overlay/labels.h"
@@ -46,7 +46,7 @@ std::vector<Material> read_presets() {
 
 // Above the model, where it touches nothing.
 Vector3 resting_place(const Surface& surface) {
-  const Box box = box_of(surface.net);
+  const Box box = bounding_box(surface.net);
   Vector3 place = box.centre();
   place.y() = box.high.y() + 0.25 * box.size();
   return place;

@@ -20,7 +20,7 @@
 #include "app/edit/prompts.h"
 #include "app/view/shown_stages.h"
 #include "app/view/view_choice.h"
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "haptic/devices/hand_inputs.h"
 #include "haptic/devices/space_mouse.h"
 #include "render/frame_budget.h"

@@ -13,7 +13,7 @@
 
 #include "app/files/foreign_child.h"
 #include "engine/base/file.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/cad_solid_stream.h"
 #include "engine/exchange/cad_stream.h"

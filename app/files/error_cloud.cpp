@@ -5,8 +5,8 @@
 #include <string>
 
 #include "app/report/colour_scale.h"
-#include "engine/base/number_text.h"
-#include "engine/base/output_file.h"
+#include "engine/base/text.h"
+#include "engine/base/file.h"
 
 namespace spoonbill {
 namespace {

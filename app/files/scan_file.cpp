@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "app/files/cloud_file.h"
-#include "engine/base/number_text.h"
-#include "engine/base/pose.h"
+#include "engine/base/text.h"
+#include "engine/base/geometry.h"
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/points/point_cloud.h"
 

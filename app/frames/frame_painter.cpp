@@ -4,7 +4,7 @@
 
 #include "app/panel/font_file.h"
 #include "app/panel/panel.h"
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "render/overlay/labels.h"
 
 namespace spoonbill {

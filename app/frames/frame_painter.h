@@ -9,7 +9,7 @@
 #include "app/panel/panel_model.h"
 #include "app/view/shown_stages.h"
 #include "app/view/view_choice.h"
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "render/gl/osmesa_context.h"
 #include "render/image/image.h"
 #include "render/renderer.h"

@@ -15,7 +15,7 @@
 
 #include "app/process/child_process.h"
 #include "engine/base/assert.h"
-#include "engine/base/output_file.h"
+#include "engine/base/file.h"
 
 namespace spoonbill {
 namespace {
@@ -115,7 +115,7 @@ Status VideoEncoder::finish() {
     return Error{file_.string() + ": ffmpeg failed with exit code " + std::to_string(code) +
                  "; is the folder writable and the ending known?"};
   }
-  Status placed = put_in_place(unfinished_, file_);
+  Status placed = publish_file(unfinished_, file_);
   if (!placed) std::filesystem::remove(unfinished_, ignored);
   return placed;
 }

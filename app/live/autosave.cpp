@@ -4,7 +4,6 @@
 
 #include "app/report/hash_text.h"
 #include "engine/base/file.h"
-#include "engine/base/output_file.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/simulation/state_hash.h"
 

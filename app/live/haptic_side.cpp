@@ -118,7 +118,7 @@ void HapticSide::take_back_if_done() {
     ++document_count_;
     // A virtual handle's workspace moves along to the body that is shaped now.
     if (lent_.session->device.workspace_follows_model) {
-      const Box box = box_of(lent_.session->simulation.surface().net);
+      const Box box = bounding_box(lent_.session->simulation.surface().net);
       safe_device_.set_workspace_centre(box.centre());
     }
     lent_.other_document = false;

@@ -11,7 +11,7 @@ namespace {
 // A virtual handle reaches as far as the body needs.
 DeviceSpecification fitted(DeviceSpecification device, const Surface& surface) {
   if (!device.workspace_follows_model) return device;
-  const Box box = box_of(surface.net);
+  const Box box = bounding_box(surface.net);
   const double reach = box.size();
   device.workspace_radius_m = std::clamp(reach, device.workspace_radius_m, device_workspace_range_m.high);
   return device;

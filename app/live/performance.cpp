@@ -6,7 +6,7 @@
 
 #include "app/frames/frame_painter.h"
 #include "app/panel/session_panel.h"
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "haptic/devices/steered_device.h"
 #include "render/gl/allocator_thresholds.h"
 

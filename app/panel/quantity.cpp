@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "app/report/quantity_text.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {

@@ -7,8 +7,7 @@
 
 #include "app/report/closing_text.h"
 #include "app/report/quantity_text.h"
-#include "engine/base/number_text.h"
-#include "engine/base/place_text.h"
+#include "engine/base/text.h"
 #include "engine/inspection/material_mix.h"
 #include "engine/inspection/shell_mass.h"
 
@@ -36,7 +35,7 @@ Json radius_json(double curvature_per_m) {
 
 void add_radius(FactSheet& facts, const char* label, double curvature_per_m, const CurvaturePlace& place) {
   if (!(curvature_per_m > least_curvature_per_m)) return;
-  facts.add(label, short_length_text(1.0 / curvature_per_m) + " at " + place_text(place.position_m), "",
+  facts.add(label, short_length_text(1.0 / curvature_per_m) + " at " + position_text(place.position_m), "",
             nullptr);
 }
 
@@ -56,7 +55,7 @@ void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
   const Thickness& thin = *check.thinnest;
   // Where sides meet, rounding alone is between them.
   const double thickness_m = thin.thickness_m > 1e-12 ? thin.thickness_m : 0.0;
-  facts.add("  Thinnest", short_length_text(thickness_m) + " at " + place_text(thin.position_m), "", nullptr);
+  facts.add("  Thinnest", short_length_text(thickness_m) + " at " + position_text(thin.position_m), "", nullptr);
   json["smallest_thickness_m"] = thin.thickness_m;
   json["thinnest"] = {{"u", thin.u},
                       {"v", thin.v},
@@ -90,7 +89,7 @@ void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector
   const Vector3 centre_m = middle_m + mix.from_middle_m;
   facts.add("  Volume", volume_text(volume_m3), "", nullptr);
   facts.add("  Mass", grams_text(mass_kg) + " of " + names_text(mix.materials) + remark, "", nullptr);
-  facts.add("  Centre of mass", place_text(centre_m), "", nullptr);
+  facts.add("  Centre of mass", position_text(centre_m), "", nullptr);
   json["volume_m3"] = volume_m3;
   json["mass_kg"] = mass_kg;
   json["materials"] = mix.materials;
@@ -152,7 +151,7 @@ std::vector<std::string> problems_of(const Body& body, CheckedAs as, const Surfa
   if (!check.self_meetings.empty()) {
     problems.push_back("passes through itself in " +
                        count_text(check.self_meetings.size(), "place", "places") + ", one at " +
-                       place_text(check.self_meetings[0].position_m));
+                       position_text(check.self_meetings[0].position_m));
   }
   if (!check.self_meetings_complete) {
     problems.emplace_back("may pass through itself: too many places are near each other to be searched");
@@ -160,7 +159,7 @@ std::vector<std::string> problems_of(const Body& body, CheckedAs as, const Surfa
   if (!check.bad_spots.empty()) {
     const BadSpot& spot = check.bad_spots[0];
     problems.push_back(std::string(spot.folds ? "folds over" : "has no area") + " at " +
-                       place_text(spot.position_m));
+                       position_text(spot.position_m));
   }
   const double sharpest = check.curvature.largest.curvature_per_m;
   if (body.shell_thickness_m && *body.shell_thickness_m * sharpest >= 1.0) {
@@ -198,7 +197,7 @@ Json add_check_facts(FactSheet& facts, const Body& body, CheckedAs as, const Tri
 Json add_meeting_facts(FactSheet& facts, const BodyMeeting& meeting, const Body& first, const Body& second) {
   facts.add("In each other",
             first.name + " and " + second.name + ", " + short_length_text(meeting.depth_m) + " deep at " +
-                place_text(meeting.position_m),
+                position_text(meeting.position_m),
             "", nullptr);
   return {{"a", first.name},
           {"b", second.name},

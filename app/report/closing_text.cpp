@@ -1,6 +1,6 @@
 #include "app/report/closing_text.h"
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 

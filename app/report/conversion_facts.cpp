@@ -6,7 +6,7 @@
 
 #include "app/report/quantity_text.h"
 #include "app/report/surface_extent.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {

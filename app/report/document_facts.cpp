@@ -8,9 +8,9 @@
 #include "app/report/quantity_text.h"
 #include "app/report/region_text.h"
 #include "app/report/surface_extent.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/bspline/surface.h"
-#include "engine/bspline/trimmed_grid.h"
+#include "engine/bspline/trimmed_area.h"
 #include "engine/exchange/region_json.h"
 
 namespace spoonbill {
@@ -65,7 +65,7 @@ std::string decimals_text(double value, int decimals) {
 void add_trim_facts(FactSheet& facts, const Body& body, Json& json) {
   const auto trim = trim_of(body);
   if (!trim || !trim.value()) return;
-  const double away = 1.0 - kept_area_share(body.surface, *trim.value());
+  const double away = 1.0 - remaining_area_fraction(body.surface, *trim.value());
   const std::string loops = body.trims.size() == 1 ? " loop" : " loops";
   facts.add("Trimmed",
             "by " + std::to_string(body.trims.size()) + loops + ", " + decimals_text(100.0 * away, 1) +
@@ -79,7 +79,7 @@ void add_region_facts(FactSheet& facts, const Body& body, Json& json) {
   add_material_regions(body.regions, json);
   for (std::size_t r = 0; r < body.regions.size(); ++r) {
     const MaterialRegion& region = body.regions[r];
-    facts.add("Region " + std::to_string(r + 1), place_text(region.region) + ": " + made_of_text(region), "",
+    facts.add("Region " + std::to_string(r + 1), position_text(region.region) + ": " + made_of_text(region), "",
               nullptr);
   }
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "app/report/fact_sheet.h"
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/exchange/document.h"
 #include "engine/material/lattice/feature_map.h"
 #include "engine/simulation/simulation.h"

@@ -6,9 +6,8 @@
 #include <utility>
 
 #include "app/report/quantity_text.h"
-#include "engine/base/box.h"
-#include "engine/base/number_text.h"
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/simulation/snapshot.h"
 
 namespace spoonbill {

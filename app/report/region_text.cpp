@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "app/report/quantity_text.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {
@@ -25,7 +25,7 @@ std::string made_of_text(const MaterialRegion& region) {
   return text + (text.empty() ? "friction " : ", friction ") + number_text(friction);
 }
 
-std::string place_text(const BodyRegion& region) {
+std::string position_text(const BodyRegion& region) {
   const BodyRegion whole;
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };

@@ -10,6 +10,6 @@ namespace spoonbill {
 // "silicone-soft, friction 0.9": of a friction without a material, "friction 0.9".
 std::string made_of_text(const MaterialRegion& region);
 // "50 to 100 % along, 0 to 2.0 mm deep": what is all of the body is left out.
-std::string place_text(const BodyRegion& region);
+std::string position_text(const BodyRegion& region);
 
 }  // namespace spoonbill

@@ -6,8 +6,7 @@
 
 #include "app/report/check_facts.h"
 #include "app/report/quantity_text.h"
-#include "engine/base/number_text.h"
-#include "engine/base/place_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {
@@ -44,7 +43,7 @@ std::vector<std::string> problems_of(const SolidCheck& check) {
   std::vector<std::string> problems;
   if (!check.self_meetings.empty()) {
     const SolidMeeting& deepest = check.self_meetings.front();
-    problems.push_back("passes through itself at " + place_text(deepest.position_m) + ", by at least " +
+    problems.push_back("passes through itself at " + position_text(deepest.position_m) + ", by at least " +
                        short_length_text(deepest.depth_m));
   }
   if (!check.self_meetings_complete) {
@@ -73,7 +72,7 @@ void add_thickness(FactSheet& facts, const CadSolid& solid, const SolidCheck& ch
   const double error_m = 2.0 * solid.chord_error_m;
   const std::string within =
       error_m > least_gap_m ? ", nowhere less by more than " + short_length_text(error_m) : "";
-  facts.add("  Thinnest", short_length_text(thin.thickness_m) + " at " + place_text(thin.position_m) + within,
+  facts.add("  Thinnest", short_length_text(thin.thickness_m) + " at " + position_text(thin.position_m) + within,
             "", nullptr);
   json["smallest_thickness_m"] = thin.thickness_m;
   json["thickness_error_m"] = error_m;
@@ -102,7 +101,7 @@ Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const SolidC
   json["area_m2"] = solid.area_m2;
   json["volume_m3"] = solid.volume_m3;
   add_mass(facts, solid, bodies, json);
-  facts.add("  Centre of mass", place_text(solid.middle_m), "", nullptr);
+  facts.add("  Centre of mass", position_text(solid.middle_m), "", nullptr);
   json["centre_of_mass_m"] = numbers(solid.middle_m);
   add_thickness(facts, solid, check, json);
   add_self_meetings(check, json);

@@ -1,7 +1,7 @@
 #include "app/report/surface_extent.h"
 
 #include "engine/bspline/grid.h"
-#include "engine/bspline/trimmed_grid.h"
+#include "engine/bspline/trimmed_area.h"
 
 namespace spoonbill {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
 

@@ -9,7 +9,7 @@
 
 #include "app/start/starting_document.h"
 #include "engine/shapes/fit_shape.h"
-#include "engine/shapes/shape_sizes.h"
+#include "engine/shapes/exact_shape.h"
 
 namespace spoonbill {
 namespace {
@@ -30,7 +30,7 @@ const std::array<LumpKind, 6>& kinds() {
 }
 
 struct SizedLump {
-  LumpSize size;
+  StockShapeSize size;
   std::optional<double> shell_thickness_m = {};
 };
 
@@ -78,10 +78,10 @@ Result<Document> lump_document(const LumpChoice& choice, const Material& materia
     Status status = check_length("thickness", *lump.shell_thickness_m, shell_thickness_range_m);
     if (!status) return status.error();
   }
-  const auto shape = lump_shape(lump.size);
+  const auto shape = stock_shape(lump.size);
   if (!shape) return shape.error();
   ShapeFit fit;
-  fit.tolerance_m = std::min(tolerance_m, 10.0 * usual_tolerance_m(shape.value()));
+  fit.tolerance_m = std::min(tolerance_m, 10.0 * default_tolerance_m(shape.value()));
   auto fitted = fit_shape(shape.value(), fit);
   if (!fitted) return fitted.error();
   return starting_document(lower_case(kinds()[choice.kind].name), std::move(fitted->surface), material,

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/exchange/document.h"
-#include "engine/shapes/lump.h"
+#include "engine/shapes/stock_shapes.h"
 
 namespace spoonbill {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "app/files/length_unit.h"
-#include "engine/base/excerpt.h"
+#include "engine/base/text.h"
 #include "engine/base/file.h"
 #include "engine/exchange/points/number_lines.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {

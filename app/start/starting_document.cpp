@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 namespace {
@@ -38,7 +38,7 @@ double rounded_down(double number) {
 
 Document starting_document(const std::string& name, Surface surface, const Material& material,
                            std::optional<double> shell_thickness_m) {
-  const Box box = box_of(surface.net);
+  const Box box = bounding_box(surface.net);
   const Vector3 size = box.extent();
   // The middle one: neither the length of a rod nor the thickness of a plate.
   const double middle = size.sum() - size.maxCoeff() - size.minCoeff();

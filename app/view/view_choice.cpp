@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/length.h"
 #include "engine/scene/scene.h"

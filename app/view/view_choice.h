@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/exchange/json.h"
 #include "render/view_settings.h"

@@ -3,6 +3,15 @@
 #include <string_view>
 
 namespace spoonbill {
+namespace {
+
+// Replaces the field of an error by the field's name in files.
+Status with_field(Status status, const FieldForm& form) {
+  if (status.ok()) return status;
+  return Error{status.error().code, status.error().message, form.name};
+}
+
+}  // namespace
 
 std::string name_in_si(const FieldForm& form) {
   const std::string_view name = form.name;
@@ -10,27 +19,28 @@ std::string name_in_si(const FieldForm& form) {
   return in_millimetres ? std::string(name.substr(0, name.size() - 2)) + "m" : std::string(name);
 }
 
-// Names are made of what is refused alone: a tool is set between two ticks, where nothing is allocated.
+// Names are built only for refused values: a tool is set between two ticks, where nothing may allocate.
 Status check_value(const std::string& about, const FieldForm& form, double value, Range<double> range) {
   if (range.contains(value)) return {};
-  return check_range(about + name_in_si(form), value, range);
+  return with_field(check_range(about + name_in_si(form), value, range), form);
 }
 
 Status check_value(const std::string& about, const FieldForm& form, int value, Range<double> range) {
   if (whole(range).contains(value)) return {};
-  return check_range(about + name_in_si(form), value, whole(range));
+  return with_field(check_range(about + name_in_si(form), value, whole(range)), form);
 }
 
 Status check_value(const std::string& about, const FieldForm& form, const Vector3& value) {
   const std::string name = name_in_si(form);
-  if (form.sense == VectorSense::direction) return check_unit(about + name, value);
+  if (form.sense == VectorSense::direction) return with_field(check_unit(about + name, value), form);
   if (form.length_limit < unlimited) {
-    return check_range(about + "length of " + name, value.norm(), Range<double>{0.0, form.length_limit});
+    const Range<double> lengths{0.0, form.length_limit};
+    return with_field(check_range(about + "length of " + name, value.norm(), lengths), form);
   }
   for (int axis = 0; axis < 3; ++axis) {
     if (form.range.contains(value[axis])) continue;
     const std::string component = about + name + "[" + std::to_string(axis) + "]";
-    if (Status status = check_range(component, value[axis], form.range); !status.ok()) return status;
+    return with_field(check_range(component, value[axis], form.range), form);
   }
   return {};
 }

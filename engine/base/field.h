@@ -1,15 +1,15 @@
-// What the program knows of one field of a plain struct: its name in files, its range, its unit, whether it
-// may be left out. A struct has one constexpr table of these beside it, and reading, writing, commands, the
-// checks, the panel's sliders and the JSON schema all walk that table:
+// Descriptions of the fields of a plain struct: name in files, range, unit, whether optional. Each struct has
+// one constexpr table beside it. Reading, writing, commands, checks, sliders of the panel and the JSON schema
+// all iterate over that table:
 //
 //   template <>
 //   inline constexpr auto fields_of<FixingPlane> = std::to_array<Field<FixingPlane>>({
 //       position_field("point_mm", &FixingPlane::point_m, "Any point of the plane"),
-//       direction_field("normal", &FixingPlane::normal, "Away from what it holds"),
+//       direction_field("normal", &FixingPlane::normal, "Points away from the fixed side"),
 //   });
 //
-// Values are SI; files hold lengths in millimetres, and the field's name says so. The order of a table is
-// that of the fields in files. Nothing here allocates but what makes a message.
+// Values are in SI units; files store lengths in millimetres, and the field's name says so. Fields appear in
+// files in the order of the table. Only error messages allocate.
 #pragma once
 
 #include <array>
@@ -21,8 +21,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "engine/base/pose.h"
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {
@@ -41,47 +40,48 @@ enum class FieldUnit {
   metre_per_s2
 };
 
-// What a vector is: three lengths; a direction, of which files may give any length; or a quantity.
+// Meaning of a vector: three lengths; a direction, which files may give with any length; or a quantity.
 enum class VectorSense { position, direction, quantity };
 
-// How the panel offers a number: the range is what a hand can tell apart, within what the field allows.
+// Slider of a number in the panel; its range is within the field's range and fine enough to set by hand.
 struct FieldSlider {
-  const char* label = nullptr;  // none: the panel does not offer it
+  const char* label = nullptr;  // null: the panel has no slider for the field
   Range<double> range{0.0, 0.0};
   bool logarithmic = false;
 };
 
-// Another name that files may use instead of the field's, for a multiple of its value.
+// An alternative name that files may use instead of the field's, for a multiple of its value.
 struct FieldAlias {
   const char* name = nullptr;
   double factor = 1.0;
   const char* help = "";
 };
 
+// Returns the range with its ends converted to int.
 constexpr Range<int> whole(Range<double> range) {
   return {static_cast<int>(range.low), static_cast<int>(range.high)};
 }
 
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// All of a field but where it is in its struct.
+// Everything about a field except its member.
 struct FieldForm {
-  const char* name = nullptr;  // as files say it
-  const char* help = "";       // a phrase without a full stop; empty where the name says it all
+  const char* name = nullptr;  // name in files
+  const char* help = "";       // a phrase without a full stop; empty if the name is self-explanatory
   FieldUnit unit = FieldUnit::none;
   Range<double> range{-unlimited, unlimited};  // of a number, or of each component of a vector
-  double length_limit = unlimited;             // of a vector
-  VectorSense sense = VectorSense::quantity;   // of a vector
-  // May be left out of files: it has its struct's default, and is written where it has another value.
+  double length_limit = unlimited;             // largest length of a vector
+  VectorSense sense = VectorSense::quantity;   // meaning of a vector
+  // Whether files may omit the field. It then has its struct's default, and it is written only if it differs.
   bool optional = false;
-  // The optional field before it with which this one comes: required where that is given, unknown elsewhere.
+  // An earlier optional field that this one accompanies: required if that one is given, unknown otherwise.
   const char* partner = nullptr;
   FieldAlias alias = {};
   FieldSlider slider = {};
-  std::span<const char* const> choices = {};  // of an enumeration, in the order of its values
+  std::span<const char* const> choices = {};  // names of an enumeration's values, in order
 };
 
-// An enumeration whose values are 0, 1, 2, ...
+// Access to an enumeration whose values are 0, 1, 2, ...
 template <class Object>
 struct ChoiceMember {
   std::size_t (*get)(const Object&);
@@ -95,9 +95,9 @@ struct Field {
 
   FieldForm form;
   Member member;
-  // The range of this object's number where that depends on its other fields; of all objects where null.
+  // Returns the number's range where it depends on the object's other fields; null if it does not.
   Range<double> (*range_by_object)(const Object&) = nullptr;
-  // Whether this object has the field at all; null: every one has.
+  // Returns whether this object has the field at all; null if every object has it.
   bool (*applies_to)(const Object&) = nullptr;
 
   Range<double> range_for(const Object& object) const {
@@ -105,7 +105,7 @@ struct Field {
   }
   bool applies(const Object& object) const { return applies_to == nullptr || applies_to(object); }
 
-  // Each returns the field with one thing changed.
+  // Each of the following returns the field with one property changed.
   constexpr Field optional() const {
     Field field = *this;
     field.form.optional = true;
@@ -138,16 +138,16 @@ struct Field {
   }
 };
 
-// The table of a struct, specialised beside it.
+// The table of a struct; specialised beside the struct.
 struct NoFields {};
 template <class Object>
 inline constexpr NoFields fields_of;
 
-// What files call one of several structs that may stand in the same place.
+// Name in files of one of several structs that are alternatives of each other.
 template <class Object>
 inline constexpr const char* kind_name = nullptr;
 
-// Of all alternatives of a variant, in its order.
+// Names of all alternatives of a variant, in order.
 template <class Variant>
 inline constexpr auto kind_names = nullptr;
 template <class... Alternatives>
@@ -170,7 +170,7 @@ constexpr Field<Object> number_field(const char* name, double Object::*member, R
   return {{.name = name, .help = help, .unit = unit, .range = range}, member};
 }
 
-// `Number` is int or std::uint32_t.
+// Describes a whole number; `Number` must be int or std::uint32_t.
 template <class Object, class Number>
 constexpr Field<Object> whole_number_field(const char* name, Number Object::*member, Range<int> range,
                                            FieldUnit unit = FieldUnit::none, const char* help = "") {
@@ -188,7 +188,7 @@ constexpr Field<Object> position_field(const char* name, Vector3 Object::*member
           member};
 }
 
-// Three lengths, each within the range.
+// Describes three lengths, each within the range.
 template <class Object>
 constexpr Field<Object> lengths_field(const char* name, Vector3 Object::*member, Range<double> range_m,
                                       const char* help = "") {
@@ -205,7 +205,7 @@ constexpr Field<Object> direction_field(const char* name, Vector3 Object::*membe
   return {{.name = name, .help = help, .sense = VectorSense::direction}, member};
 }
 
-// No longer than the limit.
+// Describes a vector whose length is at most `limit`.
 template <class Object>
 constexpr Field<Object> vector_field(const char* name, Vector3 Object::*member, double limit, FieldUnit unit,
                                      const char* help = "") {
@@ -228,7 +228,7 @@ struct MemberParts<Value Owner::*> {
 };
 }  // namespace detail
 
-// `member` is of an enumeration whose values are the places of their names.
+// Describes an enumeration whose values are indices into `names`.
 template <auto member>
 constexpr auto choice_field(const char* name, std::span<const char* const> names, const char* help = "") {
   using Parts = detail::MemberParts<decltype(member)>;
@@ -239,7 +239,7 @@ constexpr auto choice_field(const char* name, std::span<const char* const> names
   return Field<Object>{{.name = name, .help = help, .choices = names}, choice};
 }
 
-// The field of a struct's member; does not compile for one that the table lacks.
+// Returns the field of a struct's member; does not compile if the table has no such field.
 template <class Object, class Value>
 consteval const Field<Object>& field_of(Value Object::*member) {
   for (const Field<Object>& field : fields_of<Object>) {
@@ -249,15 +249,16 @@ consteval const Field<Object>& field_of(Value Object::*member) {
   throw "the table of the struct has no such field";
 }
 
-// As the program's own messages call it: metres in the name of a length.
+// Returns the field's name in the program's messages, with a length in metres: "radius_m" for "radius_mm".
 std::string name_in_si(const FieldForm& form);
 
-// Each names the field, the value and the range; `about` stands before the name: "tool: ".
+// Returns an error that names the field, the value and the range; `about` is put before the name: "tool: ".
+// The error's field is the name in files.
 Status check_value(const std::string& about, const FieldForm& form, double value, Range<double> range);
 Status check_value(const std::string& about, const FieldForm& form, int value, Range<double> range);
 Status check_value(const std::string& about, const FieldForm& form, const Vector3& value);
 
-// The first number or vector that is not within its range; nothing is asked of texts, switches and choices.
+// Returns an error for the first number or vector outside its range. Texts, switches and choices always pass.
 template <class Object>
 Status check_fields(const std::string& about, const Object& object) {
   const auto check = [&](const Field<Object>& field, auto member) -> Status {

@@ -10,7 +10,15 @@
 #include <utility>
 
 namespace spoonbill {
+
 namespace {
+
+constexpr std::size_t buffer_bytes = 65536;
+
+// Returns the error for the system call that has just failed, with the system's own reason (errno).
+Error system_error(ErrorCode code, const std::filesystem::path& file, const char* what) {
+  return {code, file.string() + ": " + what + ": " + std::generic_category().message(errno)};
+}
 
 class OpenFile {
  public:
@@ -23,7 +31,7 @@ class OpenFile {
   }
 
   int descriptor() const { return descriptor_; }
-  std::size_t bytes() const { return bytes_; }  // when it was opened
+  std::size_t bytes() const { return bytes_; }  // size when opened
   void set_bytes(std::size_t bytes) { bytes_ = bytes; }
 
  private:
@@ -31,27 +39,26 @@ class OpenFile {
   std::size_t bytes_ = 0;
 };
 
-Error failure(const std::filesystem::path& file, const char* what) {
-  return Error{file.string() + ": " + what + ": " + std::generic_category().message(errno)};
-}
-
 Error too_large(const std::filesystem::path& file, std::size_t bytes_limit, std::string_view remedy) {
-  return Error{file.string() + ": is larger than " + std::to_string(bytes_limit >> 20) + " MiB" +
-               (remedy.empty() ? "" : "; " + std::string(remedy))};
+  return Error{ErrorCode::too_many, file.string() + ": is larger than " + std::to_string(bytes_limit >> 20) +
+                                        " MiB" + (remedy.empty() ? "" : "; " + std::string(remedy))};
 }
 
-// A regular file. O_NONBLOCK, because opening a pipe would wait for its other end.
+// Opens a regular file. O_NONBLOCK keeps open() from waiting for the other end of a pipe.
 Result<OpenFile> open_regular(const std::filesystem::path& file) {
   OpenFile opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (opened.descriptor() < 0) {
-    if (errno == ENOENT) return Error{file.string() + ": no such file"};
-    return failure(file, "cannot be opened");
+    if (errno == ENOENT) return Error{ErrorCode::missing, file.string() + ": no such file"};
+    return system_error(ErrorCode::unreadable, file, "cannot be opened");
   }
-  struct stat facts {};
-  if (::fstat(opened.descriptor(), &facts) != 0) return failure(file, "cannot be examined");
-  if (S_ISDIR(facts.st_mode)) return Error{file.string() + ": is a folder, name a file in it"};
-  if (!S_ISREG(facts.st_mode)) return Error{file.string() + ": is not a regular file"};
-  opened.set_bytes(static_cast<std::size_t>(facts.st_size));
+  struct stat status {};
+  if (::fstat(opened.descriptor(), &status) != 0)
+    return system_error(ErrorCode::unreadable, file, "cannot be examined");
+  if (S_ISDIR(status.st_mode))
+    return Error{ErrorCode::unreadable, file.string() + ": is a folder, name a file in it"};
+  if (!S_ISREG(status.st_mode))
+    return Error{ErrorCode::unreadable, file.string() + ": is not a regular file"};
+  opened.set_bytes(static_cast<std::size_t>(status.st_size));
   return Result<OpenFile>(std::move(opened));
 }
 
@@ -60,7 +67,7 @@ Result<OpenFile> open_regular(const std::filesystem::path& file) {
 Status check_file(const std::filesystem::path& file, std::size_t bytes_limit, std::string_view remedy) {
   const auto opened = open_regular(file);
   if (!opened) return opened.error();
-  if (opened->bytes() == 0) return Error{file.string() + ": is empty"};
+  if (opened->bytes() == 0) return Error{ErrorCode::malformed, file.string() + ": is empty"};
   if (opened->bytes() > bytes_limit) return too_large(file, bytes_limit, remedy);
   return {};
 }
@@ -75,12 +82,12 @@ Result<std::string> read_file(const std::filesystem::path& file, std::size_t byt
   for (;;) {
     const ssize_t count = ::read(opened->descriptor(), chunk, sizeof chunk);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return failure(file, "cannot be read");
+    if (count < 0) return system_error(ErrorCode::unreadable, file, "cannot be read");
     if (count == 0) break;
     content.append(chunk, static_cast<std::size_t>(count));
     if (content.size() > bytes_limit) return too_large(file, bytes_limit, remedy);
   }
-  if (content.empty()) return Error{file.string() + ": is empty"};
+  if (content.empty()) return Error{ErrorCode::malformed, file.string() + ": is empty"};
   return content;
 }
 
@@ -88,11 +95,11 @@ Result<std::ifstream> open_file(const std::filesystem::path& file) {
   const auto opened = open_regular(file);
   if (!opened) return opened.error();
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) return failure(file, "cannot be opened");
+  if (!stream) return system_error(ErrorCode::unreadable, file, "cannot be opened");
   return stream;
 }
 
-std::string first_bytes(const std::filesystem::path& file, std::size_t count) {
+std::string read_first_bytes(const std::filesystem::path& file, std::size_t count) {
   auto stream = open_file(file);
   if (!stream) return {};
   std::string start(count, '\0');
@@ -101,7 +108,7 @@ std::string first_bytes(const std::filesystem::path& file, std::size_t count) {
   return start;
 }
 
-std::string last_bytes(const std::filesystem::path& file, std::size_t count) {
+std::string read_last_bytes(const std::filesystem::path& file, std::size_t count) {
   auto stream = open_file(file);
   if (!stream) return {};
   stream->seekg(0, std::ios::end);
@@ -111,6 +118,204 @@ std::string last_bytes(const std::filesystem::path& file, std::size_t count) {
   stream->read(end.data(), static_cast<std::streamsize>(end.size()));
   end.resize(static_cast<std::size_t>(stream->gcount()));
   return end;
+}
+
+namespace {
+
+// Flushes the file to the disk. Pipes and read-only file systems have nothing to flush.
+bool flush_descriptor(int descriptor) {
+  return ::fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS;
+}
+
+// Makes a rename in the folder survive a power cut. Errors are ignored: some file systems cannot do this.
+void flush_parent_folder(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+// Saves FILE as FILE.bak: by a hard link, so that FILE is never absent, or by a copy where the file system
+// has no links.
+Status save_backup(const std::filesystem::path& file) {
+  const std::filesystem::path backup = file.string() + ".bak";
+  const std::filesystem::path staged = file.string() + ".bak.new";
+  std::error_code ignored, error;
+  std::filesystem::remove(staged, ignored);
+  std::filesystem::create_hard_link(file, staged, error);
+  if (error) std::filesystem::copy_file(file, staged, error);
+  if (!error) std::filesystem::rename(staged, backup, error);
+  if (error) {
+    std::filesystem::remove(staged, ignored);
+    return Error{ErrorCode::unwritable, backup.string() + ": cannot keep the backup: " + error.message()};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<OutputFile> OutputFile::create(const std::filesystem::path& file) {
+  return create(file, Mode::whole);
+}
+
+Result<OutputFile> OutputFile::create_growing(const std::filesystem::path& file) {
+  return create(file, Mode::growing);
+}
+
+Result<OutputFile> OutputFile::create(const std::filesystem::path& file, Mode mode) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  const bool replaces = std::filesystem::is_regular_file(status);
+  OutputFile out;
+  out.mode_ = mode;
+  out.file_ = out.target_ = file;
+  // A link that cannot be resolved is replaced itself.
+  if (replaces) out.target_ = std::filesystem::canonical(file, ignored);
+  if (ignored) out.target_ = file;
+  out.written_ = out.target_;
+  int flags = O_WRONLY | O_CREAT | O_CLOEXEC | O_TRUNC;
+  if (mode == Mode::growing) {
+    if (replaces) out.written_ += ".part";
+  } else if (replaces || !std::filesystem::exists(status)) {
+    out.written_ += ".new-" + std::to_string(::getpid());
+    ::unlink(out.written_.c_str());  // left by a killed process of the same number
+    flags |= O_EXCL;                 // never follows a link of that name
+  }
+  out.descriptor_ = ::open(out.written_.c_str(), flags, 0666);
+  if (out.descriptor_ < 0) return out.write_error("cannot be written");
+  // open() applies the process's umask, which must not remove permissions of the replaced file.
+  if (replaces && ::fchmod(out.descriptor_, static_cast<mode_t>(status.permissions()) & 0777) != 0) {
+    return out.write_error("cannot be given its permissions");
+  }
+  return Result<OutputFile>(std::move(out));
+}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : file_(std::move(other.file_)),
+      target_(std::move(other.target_)),
+      written_(std::move(other.written_)),
+      buffer_(std::move(other.buffer_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      mode_(other.mode_) {}
+
+OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
+  std::swap(file_, other.file_);
+  std::swap(target_, other.target_);
+  std::swap(written_, other.written_);
+  std::swap(buffer_, other.buffer_);
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(mode_, other.mode_);
+  return *this;
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  if (mode_ == Mode::whole && writes_beside()) ::unlink(written_.c_str());
+}
+
+Error OutputFile::write_error(const char* what) const {
+  return system_error(ErrorCode::unwritable, file_, what);
+}
+
+Status OutputFile::send(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return write_error("cannot be written");
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return {};
+}
+
+Status OutputFile::write(std::string_view bytes) {
+  if (mode_ == Mode::growing) return send(bytes);
+  if (buffer_.size() + bytes.size() < buffer_bytes) {
+    buffer_ += bytes;
+    return {};
+  }
+  if (Status sent = send(buffer_); !sent) return sent;
+  buffer_.clear();
+  return send(bytes);
+}
+
+Status OutputFile::flush() {
+  if (Status sent = send(buffer_); !sent) return sent;
+  buffer_.clear();
+  return flush_descriptor(descriptor_) ? Status() : Status(write_error("cannot be flushed to the disk"));
+}
+
+Status OutputFile::commit(Durability durability) {
+  return finish(durability, false);
+}
+
+Status OutputFile::commit_with_backup() {
+  return finish(Durability::now, true);
+}
+
+Status OutputFile::finish(Durability durability, bool with_backup) {
+  if (Status sent = send(buffer_); !sent) return sent;
+  buffer_.clear();
+  const bool flushes = durability == Durability::now;
+  if (flushes && !flush_descriptor(descriptor_)) return write_error("cannot be flushed to the disk");
+  if (writes_beside()) {
+    std::error_code ignored;
+    if (with_backup && std::filesystem::exists(target_, ignored)) {
+      if (Status saved = save_backup(target_); !saved) return saved;
+    }
+    if (::rename(written_.c_str(), target_.c_str()) != 0) {
+      Error error = write_error("cannot be replaced");
+      if (mode_ == Mode::growing) error.message += "; the new content is " + written_.string();
+      return error;
+    }
+    written_ = target_;
+    if (flushes) flush_parent_folder(target_);
+  }
+  if (::close(std::exchange(descriptor_, -1)) != 0) return write_error("cannot be closed");
+  return {};
+}
+
+Status write_file(const std::filesystem::path& file, std::string_view bytes, Durability durability) {
+  auto out = OutputFile::create(file);
+  if (!out) return out.error();
+  if (Status written = out->write(bytes); !written) return written;
+  return out->commit(durability);
+}
+
+Status replace_file(const std::filesystem::path& file, std::string_view bytes) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return Error{ErrorCode::unwritable, file.string() + ": is not a regular file, choose another name"};
+  }
+  auto out = OutputFile::create(file);
+  if (!out) return out.error();
+  if (Status written = out->write(bytes); !written) return written;
+  return out->commit_with_backup();
+}
+
+Status publish_file(const std::filesystem::path& finished, const std::filesystem::path& file) {
+  const int descriptor = ::open(finished.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return system_error(ErrorCode::unwritable, file, "cannot be written");
+  const bool flushed = flush_descriptor(descriptor);
+  ::close(descriptor);
+  if (!flushed) return system_error(ErrorCode::unwritable, file, "cannot be flushed to the disk");
+  if (::rename(finished.c_str(), file.c_str()) != 0)
+    return system_error(ErrorCode::unwritable, file, "cannot be replaced");
+  flush_parent_folder(file);
+  return {};
+}
+
+Status flush_to_disk(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return system_error(ErrorCode::unwritable, folder, "cannot be opened");
+  const bool flushed = ::syncfs(descriptor) == 0;
+  const int reason = errno;
+  ::close(descriptor);
+  errno = reason;
+  return flushed ? Status()
+                 : Status(system_error(ErrorCode::unwritable, folder, "cannot be flushed to the disk"));
 }
 
 }  // namespace spoonbill

@@ -1,5 +1,5 @@
-// Whole files in memory, with an error line for everything that a file system can do to them. What is written
-// goes through output_file.h.
+// Files: reads whole files or parts of them, and writes files whole or not at all. Errors name the file and
+// the reason that the system gives.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +12,86 @@
 
 namespace spoonbill {
 
-// Checks what read_file() refuses before it reads: a missing file, a folder, a device or pipe, one that this
-// process may not read, an empty one, one of more than `bytes_limit`, of which `remedy` says what to do
-// ("reduce the mesh"). The error begins with the file's name. Does not wait for the other end of a pipe.
+// Returns an error where read_file() would refuse the file before reading it: missing, a folder, a device or
+// pipe, not readable by this process, empty, or larger than `bytes_limit`. `remedy` is appended to the
+// message of the last case, for example "reduce the mesh". Never waits for the other end of a pipe.
 Status check_file(const std::filesystem::path& file, std::size_t bytes_limit, std::string_view remedy = {});
 
-// Returns the file's bytes. Refuses what check_file() refuses, and a file that cannot be read to its end.
+// Returns the file's content. Refuses what check_file() refuses, and a file that cannot be read to its end.
 Result<std::string> read_file(const std::filesystem::path& file, std::size_t bytes_limit,
                               std::string_view remedy = {});
 
-// Opens a regular file that is read in pieces, because it may be larger than the memory that it is worth.
-// Refused: a missing file, a folder, a device or pipe, one that this process may not read.
+// Opens a regular file for reading piece by piece, for files that may be larger than the memory available.
+// Refuses a missing file, a folder, a device or pipe, and a file that this process may not read.
 Result<std::ifstream> open_file(const std::filesystem::path& file);
 
-// Returns at most `count` bytes from the start, or the end, of a regular file, to recognise it by; nothing
-// where it is missing or something else.
-std::string first_bytes(const std::filesystem::path& file, std::size_t count);
-std::string last_bytes(const std::filesystem::path& file, std::size_t count);
+// Returns up to `count` bytes from the start or the end of a regular file, for recognising its format; empty
+// if the file is missing or not regular.
+std::string read_first_bytes(const std::filesystem::path& file, std::size_t count);
+std::string read_last_bytes(const std::filesystem::path& file, std::size_t count);
+
+// Whether commit() waits until the content is on the disk. A sequence of files is committed with `later` and
+// followed by one call of flush_to_disk().
+enum class Durability { now, later };
+
+// A file being written. One owner, one thread; never the haptic thread, because writing may block.
+class OutputFile {
+ public:
+  // Creates a file that appears under its name at commit(), whole; a crash at any moment leaves either the
+  // old content or the new. A replaced file passes on its permissions, and a symbolic link is followed. A
+  // device or pipe is written directly. Writes are buffered, so errors may be reported as late as commit().
+  static Result<OutputFile> create(const std::filesystem::path& file);
+
+  // Creates a file that others may read while it grows: everything that write() has accepted survives a crash
+  // of this program. It grows under its own name if no such file exists, otherwise as FILE.part, which
+  // replaces FILE at commit(). Without commit() it remains as it is.
+  static Result<OutputFile> create_growing(const std::filesystem::path& file);
+
+  OutputFile(OutputFile&& other) noexcept;
+  OutputFile& operator=(OutputFile&& other) noexcept;
+  ~OutputFile();  // removes an uncommitted file of create()
+
+  Status write(std::string_view bytes);
+
+  // Waits until everything written is on the disk; returns at once for a pipe.
+  Status flush();
+
+  // Publishes the file under its name and closes it. No other call may follow.
+  Status commit(Durability durability = Durability::now);
+
+  // Same as commit(), but keeps the replaced content as FILE.bak.
+  Status commit_with_backup();
+
+ private:
+  enum class Mode { whole, growing };
+
+  OutputFile() = default;
+  static Result<OutputFile> create(const std::filesystem::path& file, Mode mode);
+  Error write_error(const char* what) const;
+  Status send(std::string_view bytes);
+  Status finish(Durability durability, bool with_backup);
+  bool writes_beside() const { return written_ != target_; }
+
+  std::filesystem::path file_;     // name as given, for messages
+  std::filesystem::path target_;   // the file itself, links resolved
+  std::filesystem::path written_;  // the file beside the target, or the target itself
+  std::string buffer_;             // unused while the file grows
+  int descriptor_ = -1;
+  Mode mode_ = Mode::whole;
+};
+
+// Writes a whole file as OutputFile::create() does.
+Status write_file(const std::filesystem::path& file, std::string_view bytes,
+                  Durability durability = Durability::now);
+
+// Same as write_file(), but keeps the replaced content as FILE.bak; for files that a user edits. Refuses
+// anything but a regular file.
+Status replace_file(const std::filesystem::path& file, std::string_view bytes);
+
+// Flushes a file that another program has finished and renames it to `file`. Both must be in one folder.
+Status publish_file(const std::filesystem::path& finished, const std::filesystem::path& file);
+
+// Waits until everything written to the file system of that folder is on the disk.
+Status flush_to_disk(const std::filesystem::path& folder);
 
 }  // namespace spoonbill

@@ -1,4 +1,4 @@
-// How work outside the tick reports how much of it is done, and learns that it is to stop.
+// Progress of work outside the tick: reports the fraction done and learns of cancellation.
 #pragma once
 
 #include <functional>
@@ -9,8 +9,8 @@
 
 namespace spoonbill {
 
-// A value. The function that it holds is called on the thread that works; without one, a report costs a
-// comparison.
+// A copyable progress reporter, or a part of one. Its callback runs on the working thread; without a
+// callback, a report costs one comparison.
 //
 //   for (int k = 0; k < count; ++k) {
 //     if (!progress.report(static_cast<double>(k) / count)) return Progress::stopped();
@@ -18,18 +18,19 @@ namespace spoonbill {
 //   }
 class Progress {
  public:
-  // Is told the fraction that is done, 0 to 1, perhaps the same one repeatedly. Returns whether the work goes
-  // on.
+  // Receives the fraction done, 0 to 1, possibly the same one repeatedly. Returns whether the work may
+  // continue.
   using Report = std::function<bool(double fraction)>;
 
-  Progress() = default;  // nobody watches
+  Progress() = default;  // no callback
   explicit Progress(Report report) : report_(std::move(report)) {}
 
-  // Whether the work goes on; otherwise it ends early, with stopped() for an error where it has no result.
+  // Reports a fraction of this part and returns whether the work may continue. If not, the work ends early,
+  // with stopped() as its error if it has no result.
   bool report(double fraction) const { return !report_ || report_(start_ + (end_ - start_) * fraction); }
 
-  // The progress of a part of the work: 0 and 1 of it are the fractions `from` and `to` of this one, which
-  // must not run backwards.
+  // Returns the progress of a part of the work, whose fractions 0 and 1 are `from` and `to` of this one.
+  // Successive parts must not overlap.
   Progress part(double from, double to) const {
     SPOONBILL_ASSERT(0.0 <= from && from <= to);
     Progress part = *this;
@@ -38,19 +39,21 @@ class Progress {
     return part;
   }
 
+  // Returns whether there is a callback.
   bool is_watched() const { return static_cast<bool>(report_); }
 
-  static Error stopped() { return Error{"stopped"}; }
+  static Error stopped() { return Error{ErrorCode::cancelled, "stopped"}; }
 
  private:
   Report report_;
   double start_ = 0.0, end_ = 1.0;
 };
 
-// The fraction done of rounds whose number shows only at the last: each takes its part of what is left.
+// Estimate of the fraction done for a loop whose number of rounds is unknown: each round completes a fixed
+// fraction of the remainder.
 class RoundsDone {
  public:
-  // `part_of_rest` must be between 0 and 1.
+  // `part_of_rest` is the fraction of the remainder that each round completes, strictly between 0 and 1.
   explicit RoundsDone(double part_of_rest) : part_of_rest_(part_of_rest) {
     SPOONBILL_ASSERT(0.0 < part_of_rest && part_of_rest < 1.0);
   }

@@ -1,5 +1,5 @@
-// The engine's errors are values: a Result holds either the value or an Error, whose message names the file or
-// object, the field, and the remedy. Nothing in the engine throws for bad input.
+// Errors as values: a Result is either a value or an Error whose message names the file or object, the field
+// and the remedy. Nothing in the engine throws for bad input.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace spoonbill {
 
-// The kind of a fault, for callers and tests that react to it. The message is for people.
+// Kind of a fault, for callers and tests that react to it. The message is for people.
 enum class ErrorCode {
   missing,            // a required file, field, option or part is absent
   unknown,            // a name, field, kind or option that does not exist
@@ -38,12 +38,13 @@ enum class ErrorCode {
 };
 
 struct Error {
-  // `field` is the JSON field, option or parameter at fault, such as "radius_mm"; empty where no single one is.
+  // `field` is the JSON field, option or parameter at fault, such as "radius_mm"; empty where no single one
+  // is.
   Error(ErrorCode error_code, std::string error_message, std::string field_name = {})
       : code(error_code), message(std::move(error_message)), field(std::move(field_name)) {}
   explicit Error(std::string error_message) : message(std::move(error_message)) {}
 
-  // The same error with "context: " before its message.
+  // Returns the same error with "context: " before its message.
   Error in(std::string_view context) const { return {code, std::string(context) + ": " + message, field}; }
 
   ErrorCode code = ErrorCode::internal;
@@ -52,6 +53,7 @@ struct Error {
 };
 
 template <class T>
+// A value, or the error that prevented it.
 class [[nodiscard]] Result {
  public:
   Result(T value) : content_(std::move(value)) {}
@@ -60,7 +62,7 @@ class [[nodiscard]] Result {
   bool ok() const { return content_.index() == 0; }
   explicit operator bool() const { return ok(); }
 
-  // Valid only when ok().
+  // Returns the value; requires ok().
   T& value() & {
     SPOONBILL_ASSERT(ok());
     return *std::get_if<0>(&content_);
@@ -73,7 +75,7 @@ class [[nodiscard]] Result {
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
 
-  // Valid only when not ok().
+  // Returns the error; requires !ok().
   const Error& error() const {
     SPOONBILL_ASSERT(!ok());
     return *std::get_if<1>(&content_);
@@ -83,7 +85,7 @@ class [[nodiscard]] Result {
   std::variant<T, Error> content_;
 };
 
-// Success, or the Error that prevented it.
+// Success, or the error that prevented it.
 class [[nodiscard]] Status {
  public:
   Status() = default;
@@ -91,7 +93,7 @@ class [[nodiscard]] Status {
 
   bool ok() const { return !error_; }
   explicit operator bool() const { return ok(); }
-  // Valid only when not ok().
+  // Returns the error; requires !ok().
   const Error& error() const {
     SPOONBILL_ASSERT(!ok());
     return *error_;

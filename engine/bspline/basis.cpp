@@ -1,6 +1,8 @@
 #include "engine/bspline/basis.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <utility>
 
 #include "engine/base/assert.h"
@@ -11,8 +13,8 @@ namespace {
 
 using Table = std::array<std::array<double, max_degree + 1>, max_degree + 1>;
 
-// table[j][r], r <= j: the basis functions of degree j. table[j][r], r > j: the knot differences they divide
-// by.
+// Computes basis functions and knot differences in one table: table[j][r] for r <= j is basis function r of
+// degree j; table[j][r] for r > j is a knot difference that it is divided by.
 Table triangular_table(const double* knots, int degree, double u) {
   Table table;
   std::array<double, max_degree + 1> left, right;
@@ -32,8 +34,9 @@ Table triangular_table(const double* knots, int degree, double u) {
   return table;
 }
 
-// The derivatives of basis function r up to `highest`, without the factors degree! / (degree - k)!.
-void derivatives_of_one(const Table& table, int degree, int r, int highest, BasisFunctions& basis) {
+// Computes the derivatives of basis function r up to order `highest`, without the factors degree! / (degree -
+// k)!.
+void compute_derivatives(const Table& table, int degree, int r, int highest, BasisFunctions& basis) {
   std::array<std::array<double, max_degree + 1>, 2> rows;
   std::array<double, max_degree + 1>* current = &rows[0];
   std::array<double, max_degree + 1>* next = &rows[1];
@@ -90,7 +93,7 @@ BasisFunctions basis_functions(const KnotVector& knots, double u) {
   for (int j = 0; j <= degree; ++j) basis.values[0][j] = table[j][degree];
 
   const int highest = std::min(degree, max_basis_derivative);
-  for (int r = 0; r <= degree; ++r) derivatives_of_one(table, degree, r, highest, basis);
+  for (int r = 0; r <= degree; ++r) compute_derivatives(table, degree, r, highest, basis);
   double factor = 1.0;
   for (int k = 1; k <= highest; ++k) {
     factor *= degree - k + 1;
@@ -98,5 +101,86 @@ BasisFunctions basis_functions(const KnotVector& knots, double u) {
   }
   return basis;
 }
+
+namespace {
+
+BlossomWeights blossom_of_own_degree(const KnotVector& knots, int span, std::span<const double> arguments) {
+  const int degree = knots.degree();
+  const auto& t = knots.extended_knots();
+  std::array<BlossomWeights, max_degree + 1> points{};
+  for (int j = 0; j <= degree; ++j) points[j][j] = 1.0;
+  for (int r = 1; r <= degree; ++r) {
+    for (int j = degree; j >= r; --j) {
+      const double low = t[span - degree + j], high = t[span + 1 + j - r];
+      const double fraction = (arguments[r - 1] - low) / (high - low);
+      for (int k = 0; k <= degree; ++k) {
+        points[j][k] = (1.0 - fraction) * points[j - 1][k] + fraction * points[j][k];
+      }
+    }
+  }
+  return points[degree];
+}
+
+}  // namespace
+
+BlossomWeights blossom(const KnotVector& knots, int span, std::span<const double> arguments) {
+  const int degree = knots.degree(), count = static_cast<int>(arguments.size());
+  SPOONBILL_ASSERT(count >= degree && count <= max_degree);
+  SPOONBILL_ASSERT(span >= degree && span + degree + 1 < static_cast<int>(knots.extended_knots().size()));
+  SPOONBILL_ASSERT_DEBUG(knots.extended_knots()[span] < knots.extended_knots()[span + 1]);
+  if (count == degree) return blossom_of_own_degree(knots, span, arguments);
+  BlossomWeights mean{};
+  int choices = 0;
+  for (unsigned choice = 0; choice < 1u << count; ++choice) {
+    if (std::popcount(choice) != degree) continue;
+    std::array<double, max_degree> chosen{};
+    int next = 0;
+    for (int k = 0; k < count; ++k) {
+      if ((choice >> k & 1u) != 0) chosen[next++] = arguments[k];
+    }
+    const BlossomWeights weights = blossom_of_own_degree(knots, span, std::span(chosen).first(degree));
+    for (int j = 0; j <= degree; ++j) mean[j] += weights[j];
+    ++choices;
+  }
+  for (double& weight : mean) weight /= choices;
+  return mean;
+}
+
+DerivativeBound::DerivativeBound(const KnotVector& knots) {
+  SPOONBILL_ASSERT(knots.control_point_count() > 0);
+  const std::vector<double>& extended = knots.extended_knots();
+  const int degree = knots.degree(), last_span = static_cast<int>(extended.size()) - degree - 2;
+  const auto control = [&](int basis) {
+    const int span = std::clamp(basis, degree, last_span);
+    return knots.control_index(span, basis - span + degree);
+  };
+  for (int basis = 0; basis < last_span; ++basis) {
+    const double width = extended[basis + degree + 1] - extended[basis + 1];
+    // A derivative basis function of width zero has no part in the domain.
+    if (width == 0) continue;
+    const double length = knots.domain_end() - knots.domain_start();
+    steps_.push_back({control(basis), control(basis + 1), degree * length / width});
+  }
+}
+
+template <class Real>
+double DerivativeBound::longest(const ControlLines<Real>& net) const {
+  Real longest_squared = 0;
+  for (const Step& step : steps_) {
+    const Real factor = static_cast<Real>(step.factor);
+    for (int line = 0; line < net.lines; ++line) {
+      const int from = step.from * net.along + line * net.across;
+      const int to = step.to * net.along + line * net.across;
+      const Real x = factor * (net.x[to] - net.x[from]);
+      const Real y = factor * (net.y[to] - net.y[from]);
+      const Real z = factor * (net.z[to] - net.z[from]);
+      longest_squared = std::max(longest_squared, x * x + y * y + z * z);
+    }
+  }
+  return std::sqrt(static_cast<double>(longest_squared));
+}
+
+template double DerivativeBound::longest(const ControlLines<float>&) const;
+template double DerivativeBound::longest(const ControlLines<double>&) const;
 
 }  // namespace spoonbill

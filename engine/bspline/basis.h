@@ -1,8 +1,9 @@
-// The nonzero basis functions of one span and their derivatives (Eq. 2 of Pungotra et al. 2013 in degree
-// form, with half-open spans and the last one closed; the paper's closed spans make the sum 2 at knots).
+// B-spline basis functions, blossoms and derivative bounds of one direction.
 #pragma once
 
 #include <array>
+#include <span>
+#include <vector>
 
 #include "engine/bspline/knot_vector.h"
 
@@ -10,17 +11,63 @@ namespace spoonbill {
 
 inline constexpr int max_basis_derivative = 2;
 
+// The nonzero basis functions of one span and their derivatives.
 // values[d][j] is the d-th derivative of the j-th nonzero basis function of `span`, j = 0..degree.
 struct BasisFunctions {
   int span = 0;
   std::array<std::array<double, max_degree + 1>, max_basis_derivative + 1> values{};
 };
 
-// u must lie in the domain. Derivatives above the degree are zero. Allocates nothing (Piegl and Tiller 1997,
-// algorithm A2.3).
+// Returns the nonzero basis functions at u, which must be in the domain; derivatives above the degree are
+// zero (Eq. 2 of Pungotra et al. 2013 with half-open spans, the last one closed; Piegl and Tiller 1997,
+// algorithm A2.3). Does not allocate.
 BasisFunctions basis_functions(const KnotVector& knots, double u);
 
-// Their values alone, to the same bits: values[0], nothing else is set.
+// Computes the span and values[0] alone, to the same bits.
 void basis_values(const KnotVector& knots, double u, BasisFunctions& basis);
+
+// Weights of a span's control points in the order of KnotVector::control_index(); their sum is 1.
+using BlossomWeights = std::array<double, max_degree + 1>;
+
+// Returns the blossom of a polynomial piece at the arguments: the symmetric multi-affine function that equals
+// the polynomial where all arguments are equal. At consecutive knots it gives control points, which converts
+// between knot vectors (Ramshaw 1989). `span` is a result of find_span(). There may be more arguments than
+// the degree, up to max_degree: the piece is then treated as one of that degree, and the blossom is the mean
+// over all choices of as many arguments as the degree. Does not allocate.
+BlossomWeights blossom(const KnotVector& knots, int span, std::span<const double> arguments);
+
+// Parallel lines of control points: the next point of a line is `along` elements further, the next line
+// `across` elements.
+template <class Real>
+struct ControlLines {
+  const Real* x;
+  const Real* y;
+  const Real* z;
+  int along;
+  int lines;
+  int across;
+};
+
+// Bound of a surface's first derivative in one direction: the longest control point of the derivative, degree
+// (P[i+1] - P[i]) / (knot[i+degree+1] - knot[i+1]) (Piegl and Tiller 1997, section 3.3). Immutable once made;
+// any thread may read it.
+class DerivativeBound {
+ public:
+  explicit DerivativeBound(const KnotVector& knots);
+
+  // Returns the bound in metres for a parameter scaled to a domain of length 1.
+  template <class Real>
+  double longest(const ControlLines<Real>& net) const;
+
+ private:
+  struct Step {
+    int from, to;
+    double factor;
+  };
+  std::vector<Step> steps_;
+};
+
+extern template double DerivativeBound::longest(const ControlLines<float>&) const;
+extern template double DerivativeBound::longest(const ControlLines<double>&) const;
 
 }  // namespace spoonbill

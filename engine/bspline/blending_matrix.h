@@ -1,9 +1,12 @@
-// Blending matrices: the basis functions of one direction at given parameters, as a banded matrix A with one
-// row a parameter and one column a control point, so that samples = A * control points (Eq. 4 of Pungotra et
-// al. 2013). They depend on knots, degree and parameters, never on control points.
+// Blending matrices of one direction and their inverses. A blending matrix A has a row for each parameter and
+// a column for each control point, so that samples = A * control points (Eq. 4 of Pungotra et al. 2013). It
+// depends on knots, degree and parameters, never on control points. All functions are pure and run outside
+// the tick; any thread may call them.
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,32 +15,55 @@
 
 namespace spoonbill {
 
-// Row i holds bandwidth = degree + 1 entries from column first[i] on; columns wrap around (modulo columns)
-// where the direction is periodic, and a column may then appear more than once in a row: entries add up.
+// A banded matrix. Row i has bandwidth = degree + 1 entries from column first[i] on. Columns wrap around
+// modulo `columns` in a periodic direction; a column may then occur more than once in a row, and its entries
+// add up.
 struct BlendingMatrix {
   int rows = 0;
   int columns = 0;
   int bandwidth = 0;
-  std::vector<int> first;      // rows
+  std::vector<int> first;      // one for each row
   std::vector<double> values;  // rows * bandwidth, row-major
 
+  // Returns the column of entry k of a row.
   int column(int row, int k) const { return (first[row] + k) % columns; }
+  // Returns the matrix in dense form (rows x columns).
   Eigen::MatrixXd dense() const;
 };
 
-// The derivative_order-th derivatives (0 to 2) of the basis functions at the parameters. A parameter outside
-// the domain is wrapped (periodic) or clamped (open).
+// Returns the derivatives of order 0 to 2 of the basis functions at the parameters. A parameter outside the
+// domain is wrapped (periodic) or clamped (open).
 BlendingMatrix blending_matrix(const KnotVector& knots, std::span<const double> parameters,
                                int derivative_order);
 
-// Whether samples at the parameters determine every control point (Schoenberg and Whitney 1953, wrapped for
-// periodic directions). The message names the first control point without a sample of its own.
+// Returns an error unless samples at the parameters determine every control point (Schoenberg and Whitney
+// 1953, wrapped for periodic directions). The error names the first control point without a sample of its
+// own.
 Status check_schoenberg_whitney(const KnotVector& knots, std::span<const double> parameters);
 
-// The pseudo-inverse A^+ (columns x rows) by QR; never by inverting A^T A, which squares the condition
-// number. Refused when the samples do not determine the control points: fewer rows than columns, a gap, or
-// one of the periodic traps (even count, even degree sampled at knots or odd degree at mid-spans, as many
-// samples as control points).
+// Returns the pseudo-inverse A^+ (columns x rows) by QR; never by inverting A^T A, which squares the
+// condition number. Refuses samples that do not determine the control points: fewer samples than control
+// points, a gap, or a singular periodic sampling. The latter is an even count with as many samples as control
+// points, of even degree sampled at knots or of odd degree sampled at mid-spans.
 Result<Eigen::MatrixXd> pseudo_inverse(const KnotVector& knots, std::span<const double> parameters);
+
+// Constraints of a fit in one direction.
+struct RefitConstraints {
+  // One flag for each control column, 1 for a column that never moves; empty if none is fixed.
+  std::vector<std::uint8_t> fixed_columns;
+  // Whether the first or last sample is interpolated, so that a pole stays a pole; needs clamped knots.
+  bool keep_first = false, keep_last = false;
+};
+
+// Returns the matrix of control points (rows) from samples (columns) under constraints. Fixed rows are zero,
+// interpolated ends copy their sample, and the free rows are A_free^+ (1 - A_ends S), where S selects the end
+// samples. Without constraints it is pseudo_inverse(). Refuses samples that do not determine the control
+// points.
+Result<Eigen::MatrixXd> constrained_inverse(const KnotVector& knots, std::span<const double> parameters,
+                                            const RefitConstraints& constraints);
+
+// Returns the least-squares inverse (A^T A)^-1 A^T of a tall matrix by QR, with the same bits on every
+// machine; nothing if the columns of A are linearly dependent or outnumber the rows.
+std::optional<Eigen::MatrixXd> least_squares_inverse(const Eigen::MatrixXd& matrix);
 
 }  // namespace spoonbill

@@ -6,26 +6,24 @@
 #include <cmath>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
+#include "engine/bspline/basis.h"
 #include "engine/bspline/blending_matrix.h"
-#include "engine/bspline/blossom.h"
-#include "engine/bspline/constrained_inverse.h"
 
 namespace spoonbill {
 
 namespace {
 
-// For each control point the longest piece in its support: blossoms lose digits with the arguments' distance
+// The longest piece in a control point's support: blossoms lose digits with the distance of their arguments
 // from the piece.
 struct Piece {
   double length = 0.0;
   int span = 0;
-  int place = 0;  // which of the span's basis functions
+  int basis = 0;  // index among the span's basis functions
 };
 
 std::vector<Piece> longest_pieces(const KnotVector& knots) {
@@ -41,18 +39,18 @@ std::vector<Piece> longest_pieces(const KnotVector& knots) {
   return longest;
 }
 
-// New control points (rows) from old ones (columns).
+// Returns the matrix of new control points (rows) from old ones (columns).
 Eigen::MatrixXd exact_conversion(const KnotVector& from, const KnotVector& to) {
   Eigen::MatrixXd conversion = Eigen::MatrixXd::Zero(to.control_point_count(), from.control_point_count());
   const auto& t = to.extended_knots();
   const std::vector<Piece> pieces = longest_pieces(to);
   for (int i = 0; i < to.control_point_count(); ++i) {
     const Piece& piece = pieces[i];
-    const double middle = 0.5 * (t[piece.span] + t[piece.span + 1]);
-    const double inside = from.into_domain(middle);
-    const int first = piece.span - to.degree() + piece.place;
+    const double centre = 0.5 * (t[piece.span] + t[piece.span + 1]);
+    const double inside = from.into_domain(centre);
+    const int first = piece.span - to.degree() + piece.basis;
     std::array<double, max_degree> arguments{};
-    for (int k = 0; k < to.degree(); ++k) arguments[k] = t[first + 1 + k] + (inside - middle);
+    for (int k = 0; k < to.degree(); ++k) arguments[k] = t[first + 1 + k] + (inside - centre);
     const int span = from.find_span(inside);
     const BlossomWeights weights = blossom(from, span, std::span(arguments).first(to.degree()));
     for (int j = 0; j <= from.degree(); ++j) conversion(i, from.control_index(span, j)) += weights[j];
@@ -66,45 +64,45 @@ int multiplicity_at(const std::vector<KnotMultiplicity>& all, double knot, doubl
   return found == all.end() ? 0 : found->multiplicity;
 }
 
-Status check_holds_all(const KnotVector& from, const KnotVector& to) {
-  const double length = from.domain_end() - from.domain_start(), nearness = same_knot_share * length;
+Status check_contains_all(const KnotVector& from, const KnotVector& to) {
+  const double length = from.domain_end() - from.domain_start(), nearness = same_knot_fraction * length;
   const double start = to.domain_start(), end = to.domain_end();
-  if (to.degree() < from.degree()) return Error{"the degree to change to is lower; use a fit instead"};
+  if (to.degree() < from.degree())
+    return Error{ErrorCode::unsupported, "the degree to change to is lower; use a fit instead"};
   const bool same_domain =
       std::abs(start - from.domain_start()) <= nearness && std::abs(end - from.domain_end()) <= nearness;
   const bool within = from.is_periodic()
                           ? end - start <= length + nearness
                           : start >= from.domain_start() - nearness && end <= from.domain_end() + nearness;
   if (to.is_periodic() ? !(from.is_periodic() && same_domain) : !within) {
-    return Error{"the knots to change to have another domain; take a part of the surface's own"};
+    return Error{ErrorCode::mismatch,
+                 "the knots to change to have another domain; take a part of the surface's own"};
   }
   const std::vector<KnotMultiplicity> there = knot_multiplicities(to);
   for (const auto& [knot, multiplicity] : knot_multiplicities(from)) {
-    for (const double place : places_from(from, knot, start - nearness)) {
-      if (place >= end - nearness) continue;
-      const bool at_end = !to.is_periodic() && place <= start + nearness;
-      if (at_end || multiplicity_at(there, place, nearness) >= multiplicity + to.degree() - from.degree()) {
+    for (const double position : knot_positions_from(from, knot, start - nearness)) {
+      if (position >= end - nearness) continue;
+      const bool at_end = !to.is_periodic() && position <= start + nearness;
+      if (at_end ||
+          multiplicity_at(there, position, nearness) >= multiplicity + to.degree() - from.degree()) {
         continue;
       }
-      return Error{"the knots to change to lack the surface's knot " + number_text(knot) + "; insert it"};
+      return Error{ErrorCode::mismatch,
+                   "the knots to change to lack the surface's knot " + number_text(knot) + "; insert it"};
     }
   }
   return {};
 }
 
-Error error_along(Direction direction, std::string_view message) {
-  return Error{std::string(direction == Direction::u ? "direction u: " : "direction v: ").append(message)};
-}
-
-// Enough in each piece of either to tell their polynomials apart.
-std::vector<double> telling_parameters(const KnotVector& a, const KnotVector& b) {
+// Returns enough parameters in each piece of either knot vector to distinguish their polynomials.
+std::vector<double> distinguishing_parameters(const KnotVector& a, const KnotVector& b) {
   std::vector<double> ends = a.breakpoints();
   for (const double end : b.breakpoints()) ends.push_back(std::clamp(end, ends.front(), a.domain_end()));
   std::sort(ends.begin(), ends.end());
   const int inside = std::max(a.degree(), b.degree()) + 2;
   std::vector<double> parameters;
   for (std::size_t piece = 0; piece + 1 < ends.size(); ++piece) {
-    if (ends[piece + 1] - ends[piece] <= same_knot_share * (a.domain_end() - a.domain_start())) continue;
+    if (ends[piece + 1] - ends[piece] <= same_knot_fraction * (a.domain_end() - a.domain_start())) continue;
     for (int k = 0; k < inside; ++k) {
       parameters.push_back(ends[piece] + (ends[piece + 1] - ends[piece]) * k / inside);
     }
@@ -113,8 +111,8 @@ std::vector<double> telling_parameters(const KnotVector& a, const KnotVector& b)
   return parameters;
 }
 
-// How far two surfaces, over their common knots, are apart at each control point of a line along the
-// direction.
+// Distances of the control points of two surfaces over their common knots: the largest for each index along
+// the direction.
 struct Difference {
   KnotVector knots;
   std::vector<double> largest_m;
@@ -126,15 +124,15 @@ Result<Difference> difference(const Surface& a, const Surface& b, Direction dire
   const int degree = std::max(ka.degree(), kb.degree());
   const auto prepared = [&](const KnotVector& knots) {
     const auto part = open ? clamped_part(knots, ka.domain_start(), ka.domain_end()) : Result(knots);
-    return part ? elevated(part.value(), degree) : part;
+    return part ? elevate_degree(part.value(), degree) : part;
   };
   const auto of_a = prepared(ka), of_b = prepared(kb);
   if (!of_a) return of_a.error();
   if (!of_b) return of_b.error();
   auto common = knot_union(of_a.value(), of_b.value());
   if (!common) return common.error();
-  const auto fine_a = over_finer_knots(a, direction, common.value());
-  const auto fine_b = over_finer_knots(b, direction, common.value());
+  const auto fine_a = convert_to_finer_knots(a, direction, common.value());
+  const auto fine_b = convert_to_finer_knots(b, direction, common.value());
   if (!fine_a) return fine_a.error();
   if (!fine_b) return fine_b.error();
   std::vector<double> largest(static_cast<std::size_t>(common->control_point_count()));
@@ -147,19 +145,19 @@ Result<Difference> difference(const Surface& a, const Surface& b, Direction dire
   return Difference{std::move(common).value(), std::move(largest)};
 }
 
-std::vector<double> places_above(const Difference& difference, double tolerance_m) {
+std::vector<double> find_spans_above(const Difference& difference, double tolerance_m) {
   const KnotVector& knots = difference.knots;
   const auto& t = knots.extended_knots();
-  std::vector<double> places;
+  std::vector<double> midpoints;
   for (int span = knots.degree(); span + 1 + knots.degree() < static_cast<int>(t.size()); ++span) {
     if (t[span] >= t[span + 1]) continue;
     double largest = 0.0;
     for (int j = 0; j <= knots.degree(); ++j) {
       largest = std::max(largest, difference.largest_m[knots.control_index(span, j)]);
     }
-    if (largest > tolerance_m) places.push_back(0.5 * (t[span] + t[span + 1]));
+    if (largest > tolerance_m) midpoints.push_back(0.5 * (t[span] + t[span + 1]));
   }
-  return places;
+  return midpoints;
 }
 
 struct Fitted {
@@ -169,27 +167,27 @@ struct Fitted {
 
 Result<Fitted> fitted(const Surface& surface, Direction direction, const KnotVector& knots) {
   const KnotVector& from = knots_along(surface, direction);
-  const double nearness = same_knot_share * (from.domain_end() - from.domain_start());
+  const double nearness = same_knot_fraction * (from.domain_end() - from.domain_start());
   if (std::abs(knots.domain_start() - from.domain_start()) > nearness ||
       std::abs(knots.domain_end() - from.domain_end()) > nearness) {
-    return error_along(direction, "the knots to fit to have another domain");
+    return Error{ErrorCode::mismatch, "the knots to fit have another domain"}.in(direction_name(direction));
   }
-  std::vector<double> parameters = telling_parameters(from, knots);
+  std::vector<double> parameters = distinguishing_parameters(from, knots);
   if (knots.is_periodic()) parameters.pop_back();
   const bool open = !knots.is_periodic();
   const bool start = open && knots.knots().front() == knots.domain_start();
   const bool end = open && knots.knots().back() == knots.domain_end();
   const auto inverse = constrained_inverse(knots, parameters, {{}, start, end});
-  if (!inverse) return error_along(direction, inverse.error().message);
+  if (!inverse) return inverse.error().in(direction_name(direction));
   const Eigen::MatrixXd conversion =
       inverse.value().lazyProduct(blending_matrix(from, parameters, 0).dense());
-  Surface fit = mixed_along(surface, direction, conversion, knots);
-  auto apart = difference(surface, fit, direction);
-  if (!apart) return apart.error();
-  return Fitted{std::move(fit), std::move(apart).value()};
+  Surface fit = combine_along(surface, direction, conversion, knots);
+  auto distances = difference(surface, fit, direction);
+  if (!distances) return distances.error();
+  return Fitted{std::move(fit), std::move(distances).value()};
 }
 
-double largest_of(const Difference& difference) {
+double max_deviation(const Difference& difference) {
   return *std::max_element(difference.largest_m.begin(), difference.largest_m.end());
 }
 
@@ -208,7 +206,7 @@ Result<KnotVector> without_knots(const KnotVector& knots, std::span<const SpareK
                              : KnotVector::open(knots.degree(), std::move(fewer));
 }
 
-// The pieces around an inner knot, as far as its removal is felt, and the knot's place in them.
+// The pieces around an inner knot as far as its removal has an effect, and the knot's parameter in them.
 struct Neighbourhood {
   Surface surface;
   double knot;
@@ -223,22 +221,23 @@ Result<Neighbourhood> around_knot(const Surface& surface, Direction direction, i
   const double length = knots.domain_end() - knots.domain_start();
   int first = breakpoint - reach, last = breakpoint + reach;
   const double turn = periodic && first < 0 ? length : 0.0;
-  const auto place = [&](int k) {
+  const auto end_at = [&](int k) {
     return k < 0 ? ends[k + pieces] : k > pieces ? ends[k - pieces] + length : ends[k] + turn;
   };
   if (!periodic) {
     first = std::max(first, 0);
     last = std::min(last, pieces);
   }
-  const auto part = clamped_part(knots, place(first), place(last));
+  const auto part = clamped_part(knots, end_at(first), end_at(last));
   if (!part) return part.error();
-  auto near = over_finer_knots(surface, direction, part.value());
+  auto near = convert_to_finer_knots(surface, direction, part.value());
   if (!near) return near.error();
-  return Neighbourhood{std::move(near).value(), place(breakpoint)};
+  return Neighbourhood{std::move(near).value(), end_at(breakpoint)};
 }
 
-// What each copy of an inner knot costs with those before it, the cheapest first, as far as that is within
-// the tolerance; found in the knot's neighbourhood alone, which is much faster than over the whole direction.
+// Returns the cost of removing each copy of an inner knot together with the copies before it, cheapest first,
+// as far as the cost is within the tolerance. Each is computed in the knot's neighbourhood alone, which is
+// much faster than in the whole direction.
 Result<std::vector<SpareKnot>> spare_knots(const Surface& surface, Direction direction, double tolerance_m,
                                            const Progress& progress) {
   std::vector<SpareKnot> spare;
@@ -253,7 +252,7 @@ Result<std::vector<SpareKnot>> spare_knots(const Surface& surface, Direction dir
     while (static_cast<int>(copies.size()) < all[k].multiplicity) {
       copies.push_back({near->knot, 0.0});
       const auto fewer = without_knots(knots_along(near->surface, direction), copies);
-      const auto fit = fewer ? over_coarser_knots(near->surface, direction, fewer.value()) : fewer.error();
+      const auto fit = fewer ? fit_coarser_knots(near->surface, direction, fewer.value()) : fewer.error();
       if (fit) cost_m = std::max(cost_m, fit->deviation_m);
       if (!fit || cost_m > tolerance_m) break;
       spare.push_back({all[k].knot, cost_m});
@@ -266,12 +265,8 @@ Result<std::vector<SpareKnot>> spare_knots(const Surface& surface, Direction dir
 
 }  // namespace
 
-const KnotVector& knots_along(const Surface& surface, Direction direction) {
-  return direction == Direction::u ? surface.u : surface.v;
-}
-
-Surface mixed_along(const Surface& surface, Direction direction, const Eigen::MatrixXd& weights,
-                    const KnotVector& knots) {
+Surface combine_along(const Surface& surface, Direction direction, const Eigen::MatrixXd& weights,
+                      const KnotVector& knots) {
   SPOONBILL_ASSERT(weights.rows() == knots.control_point_count());
   SPOONBILL_ASSERT(weights.cols() == knots_along(surface, direction).control_point_count());
   const bool along_u = direction == Direction::u;
@@ -291,22 +286,22 @@ Surface mixed_along(const Surface& surface, Direction direction, const Eigen::Ma
   return along_u ? Surface{knots, surface.v, std::move(net)} : Surface{surface.u, knots, std::move(net)};
 }
 
-Result<Surface> over_finer_knots(const Surface& surface, Direction direction, const KnotVector& finer) {
+Result<Surface> convert_to_finer_knots(const Surface& surface, Direction direction, const KnotVector& finer) {
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   const KnotVector& from = knots_along(surface, direction);
   if (from == finer) return surface;
-  if (Status status = check_holds_all(from, finer); !status) {
-    return error_along(direction, status.error().message);
+  if (Status status = check_contains_all(from, finer); !status) {
+    return status.error().in(direction_name(direction));
   }
-  return mixed_along(surface, direction, exact_conversion(from, finer), finer);
+  return combine_along(surface, direction, exact_conversion(from, finer), finer);
 }
 
-Result<Approximation> over_coarser_knots(const Surface& surface, Direction direction,
-                                         const KnotVector& coarser) {
+Result<Approximation> fit_coarser_knots(const Surface& surface, Direction direction,
+                                        const KnotVector& coarser) {
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   auto fit = fitted(surface, direction, coarser);
   if (!fit) return fit.error();
-  return Approximation{std::move(fit->surface), largest_of(fit->difference)};
+  return Approximation{std::move(fit->surface), max_deviation(fit->difference)};
 }
 
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
@@ -317,26 +312,28 @@ Result<Approximation> approximated(const Surface& surface, Direction direction, 
     if (!progress.report(done.fraction())) return Progress::stopped();
     auto fit = fitted(surface, direction, knots);
     if (!fit) return fit.error();
-    const double deviation_m = largest_of(fit->difference);
+    const double deviation_m = max_deviation(fit->difference);
     if (deviation_m <= tolerance_m) return Approximation{std::move(fit->surface), deviation_m};
-    auto finer = with_pieces_halved(knots, places_above(fit->difference, tolerance_m));
+    auto finer = halve_pieces(knots, find_spans_above(fit->difference, tolerance_m));
     if (!finer) return finer.error();
     if (finer->control_point_count() > largest_count || finer.value() == knots) {
-      return error_along(direction, std::to_string(knots.control_point_count()) +
-                                        " control points leave a deviation of " +
-                                        short_length_text(deviation_m) + "; allow a larger one than " +
-                                        short_length_text(tolerance_m));
+      const std::string counted = std::to_string(knots.control_point_count());
+      return Error{ErrorCode::not_converged,
+                   counted + " control points leave a deviation of " + short_length_text(deviation_m) +
+                       "; allow a larger one than " + short_length_text(tolerance_m)}
+          .in(direction_name(direction));
     }
     knots = std::move(finer).value();
   }
 }
 
-Result<Approximation> without_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
-                                          const Progress& progress) {
+Result<Approximation> remove_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
+                                         const Progress& progress) {
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   Approximation best{surface, 0.0};
   for (RoundsDone done(0.2);; done.step()) {
-    // As many of the cheapest as can go together; what they cost then is another matter, so once more.
+    // Removes as many of the cheapest knots as possible at once. The remaining knots then have other costs,
+    // hence the loop.
     const auto spare =
         spare_knots(best.surface, direction, tolerance_m, progress.part(done.fraction(), done.fraction()));
     if (!spare) return spare.error();
@@ -347,7 +344,7 @@ Result<Approximation> without_spare_knots(const Surface& surface, Direction dire
       if (!progress.report(done.fraction())) return Progress::stopped();
       const std::size_t count = (few + many + 1) / 2;
       const auto fewer = without_knots(knots, std::span(spare.value()).first(count));
-      auto fit = fewer ? over_coarser_knots(surface, direction, fewer.value()) : fewer.error();
+      auto fit = fewer ? fit_coarser_knots(surface, direction, fewer.value()) : fewer.error();
       const bool allowed = fit && fit->deviation_m <= tolerance_m;
       if (allowed) {
         best = std::move(fit).value();
@@ -358,6 +355,71 @@ Result<Approximation> without_spare_knots(const Surface& surface, Direction dire
     }
     if (few == 0) return best;
   }
+}
+
+namespace {
+
+Error no_knot_at(double parameter, std::vector<KnotMultiplicity> all, bool periodic) {
+  if (!periodic) all.erase(all.begin());
+  if (all.empty())
+    return Error{ErrorCode::missing, "the direction is one polynomial piece and has no knot to remove"};
+  const auto nearest = std::min_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
+    return std::abs(a.knot - parameter) < std::abs(b.knot - parameter);
+  });
+  return Error{ErrorCode::missing, "there is no knot at " + number_text(parameter) + "; the nearest is at " +
+                                       number_text(nearest->knot)};
+}
+
+Result<KnotVector> fewer_knots(const KnotVector& knots, std::vector<KnotMultiplicity> all, std::size_t index,
+                               int copies) {
+  all[index].multiplicity -= copies;
+  std::vector<double> fewer;
+  for (const auto& [knot, multiplicity] : all) {
+    fewer.insert(fewer.end(), static_cast<std::size_t>(multiplicity), knot);
+  }
+  if (knots.is_periodic()) {
+    fewer.push_back(knots.domain_end());
+    return KnotVector::periodic(knots.degree(), std::move(fewer));
+  }
+  fewer.insert(fewer.end(), static_cast<std::size_t>(knots.degree()) + 1, knots.domain_end());
+  return KnotVector::open(knots.degree(), std::move(fewer));
+}
+
+}  // namespace
+
+Result<Approximation> remove_knot(const Surface& surface, Direction direction, double parameter, int copies) {
+  SPOONBILL_ASSERT(copies >= 1);
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
+  const KnotVector& knots = knots_along(surface, direction);
+  const double near = same_knot_fraction * (knots.domain_end() - knots.domain_start());
+  const double wanted = knots.is_periodic() && parameter >= knots.domain_end() - near
+                            ? parameter - (knots.domain_end() - knots.domain_start())
+                            : parameter;
+  const std::vector<KnotMultiplicity> all = knot_multiplicities(knots);
+  if (!knots.is_periodic()) {
+    for (const double end : {knots.domain_start(), knots.domain_end()}) {
+      if (std::abs(end - wanted) <= near) {
+        return Error{ErrorCode::unsupported,
+                     number_text(end) +
+                         " is an end of the direction, whose knots cannot be removed; name a knot inside"};
+      }
+    }
+  }
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const auto& one) { return std::abs(one.knot - wanted) <= near; });
+  if (found == all.end()) return no_knot_at(parameter, all, knots.is_periodic());
+  if (copies > found->multiplicity) {
+    return Error{ErrorCode::too_few, "the knot at " + number_text(found->knot) + " cannot be removed " +
+                                         std::to_string(copies) + " times; its multiplicity is " +
+                                         std::to_string(found->multiplicity)};
+  }
+  const auto index = static_cast<std::size_t>(found - all.begin());
+  if (knots.is_periodic() && index == 0 && copies == found->multiplicity) {
+    return Error{ErrorCode::unsupported, "the seam needs a knot; move the seam first"};
+  }
+  const auto fewer = fewer_knots(knots, all, index, copies);
+  if (!fewer) return fewer.error();
+  return fit_coarser_knots(surface, direction, fewer.value());
 }
 
 }  // namespace spoonbill

@@ -1,54 +1,57 @@
-// The same surface over another knot vector: exactly over a finer one (more knots, a higher degree, a part of
-// the domain), or as near as a coarser one allows, with a bound of the deviation. Pure functions outside the
-// tick; any thread.
+// Surfaces over other knot vectors: exactly over finer ones (more knots, a higher degree, a part of the
+// domain), or approximately over coarser ones, with a bound of the deviation. Pure functions outside the
+// tick; any thread may call them.
 #pragma once
 
 #include <Eigen/Core>
 
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
-#include "engine/bspline/knot_insertion.h"
-#include "engine/bspline/knot_vectors.h"
+#include "engine/bspline/knot_vector.h"
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {
 
-// Over knots that hold every knot of the surface within their domain, each as many times more often as the
-// degree is higher (elevated, knot_union, clamped_part make such); exact but for rounding. An open target may
-// be a part of a periodic direction. Refused: knots that leave one of the surface's out, which is named.
-// A control point is the blossom of a polynomial piece in its support at its inner knots (Ramshaw 1989), that
-// of a higher degree the mean over the choices of so many of them.
-Result<Surface> over_finer_knots(const Surface& surface, Direction direction, const KnotVector& finer);
+// Converts a surface exactly (but for rounding) to knots that contain every knot of the surface within their
+// domain, with multiplicities raised by the difference of the degrees; elevate_degree(), knot_union() and
+// clamped_part() make such knots. An open target may be a part of a periodic direction. Each control point is
+// the blossom of a polynomial piece in its support (Ramshaw 1989). Refuses knots that lack one of the
+// surface's, and names it.
+Result<Surface> convert_to_finer_knots(const Surface& surface, Direction direction, const KnotVector& finer);
 
-// `deviation_m` is never passed: the largest distance between the control points of both over a common knot
-// vector, and surfaces lie in the hull of those.
+// An approximation. `deviation_m` bounds the distance between both surfaces: it is the largest distance of
+// their control points over a common knot vector, and surfaces are in the convex hull of those.
 struct Approximation {
   Surface surface;
   double deviation_m = 0.0;
 };
 
-// Over any knots of the same domain, by least squares; clamped ends are kept. A periodic surface may become
-// an open one, and an open one whose edges meet a periodic one. Refused: another domain.
-Result<Approximation> over_coarser_knots(const Surface& surface, Direction direction,
-                                         const KnotVector& coarser);
+// Fits a surface over any knots of the same domain by least squares; clamped ends are interpolated. A
+// periodic surface may become an open one, and an open one whose edges meet a periodic one. Refuses another
+// domain.
+Result<Approximation> fit_coarser_knots(const Surface& surface, Direction direction,
+                                        const KnotVector& coarser);
 
-// The same with pieces of `first` halved where the deviation asks, until it is at most `tolerance_m`. Refused
-// where `largest_count` control points do not reach it; the message tells what they reach. Stopped by the
-// progress.
+// Fits a surface over `first`, halving pieces where the deviation is too large, until it is at most
+// `tolerance_m`. Refuses if `largest_count` control points do not suffice; the message states the deviation
+// reached. `progress` can cancel it.
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
                                    double tolerance_m, int largest_count, const Progress& progress = {});
 
-// As few knots as the tolerance allows to remove, the cheapest first. Ends and degree stay. Stopped by the
-// progress.
-Result<Approximation> without_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
-                                          const Progress& progress = {});
+// Removes knots, cheapest first, as long as the deviation stays within the tolerance. Ends and degree stay.
+// `progress` can cancel it.
+Result<Approximation> remove_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
+                                         const Progress& progress = {});
 
-// The knot vector of a direction.
-const KnotVector& knots_along(const Surface& surface, Direction direction);
+// Returns a surface over `knots` whose control points along the direction are weighted sums of the old ones:
+// a row of weights for each new one, a column for each old one. Sums are ordered, so that the bits are the
+// same everywhere.
+Surface combine_along(const Surface& surface, Direction direction, const Eigen::MatrixXd& weights,
+                      const KnotVector& knots);
 
-// Over `knots`, with control points along the direction that are weighted sums of the old ones: a row of
-// weights for each new one, a column for each old one. Summed in order, for the same bits everywhere.
-Surface mixed_along(const Surface& surface, Direction direction, const Eigen::MatrixXd& weights,
-                    const KnotVector& knots);
+// Removes `copies` copies of the knot at the parameter by least squares; exact where the surface is smooth
+// enough there. Refuses a parameter without a knot, more copies than there are, the ends of an open
+// direction, and all copies at the seam of a closed one.
+Result<Approximation> remove_knot(const Surface& surface, Direction direction, double parameter, int copies);
 
 }  // namespace spoonbill

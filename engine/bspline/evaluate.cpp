@@ -12,8 +12,8 @@ namespace spoonbill {
 namespace {
 
 template <class Real>
-const EvaluateKernels<Real>& in_precision(const EvaluateKernels<float>& single,
-                                          const EvaluateKernels<double>& exact) {
+const EvaluateKernels<Real>& select_precision(const EvaluateKernels<float>& single,
+                                              const EvaluateKernels<double>& exact) {
   if constexpr (std::is_same_v<Real, float>) {
     return single;
   } else {
@@ -25,18 +25,19 @@ template <class Real>
 const EvaluateKernels<Real>& kernels_for(InstructionSet set) {
   switch (set) {
     case InstructionSet::avx512:
-      return in_precision<Real>(kernels_avx512::evaluate_kernels_float,
-                                kernels_avx512::evaluate_kernels_double);
+      return select_precision<Real>(kernels_avx512::evaluate_kernels_float,
+                                    kernels_avx512::evaluate_kernels_double);
     case InstructionSet::avx2:
-      return in_precision<Real>(kernels_avx2::evaluate_kernels_float, kernels_avx2::evaluate_kernels_double);
+      return select_precision<Real>(kernels_avx2::evaluate_kernels_float,
+                                    kernels_avx2::evaluate_kernels_double);
     case InstructionSet::baseline:
       break;
   }
-  return in_precision<Real>(kernels_baseline::evaluate_kernels_float,
-                            kernels_baseline::evaluate_kernels_double);
+  return select_precision<Real>(kernels_baseline::evaluate_kernels_float,
+                                kernels_baseline::evaluate_kernels_double);
 }
 
-int blocks_for(int samples) {
+int count_blocks(int samples) {
   return (samples + evaluate_block - 1) / evaluate_block;
 }
 
@@ -50,15 +51,11 @@ std::vector<double> row_magnitudes(const BlendingMatrix& matrix, double length) 
   return sums;
 }
 
-double largest_of(const std::vector<double>& values) {
+double max_value(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
 
-double domain_length(const KnotVector& knots) {
-  return knots.domain_end() - knots.domain_start();
-}
-
-// Whether the first (last) sample is the first (last) control point itself.
+// Returns whether the first (last) sample is the first (last) control point itself.
 bool starts_on_edge(const GridDirection& direction) {
   return !direction.knots.is_periodic() && direction.values.values.front() == 1.0;
 }
@@ -68,12 +65,12 @@ bool ends_on_edge(const GridDirection& direction) {
 
 template <class Real>
 struct NetExtent {
-  Real largest_coordinate;  // magnitude
+  Real largest_coordinate;  // largest magnitude
   Real reach;               // the longest side of the box around the net
 };
 
 template <class Real>
-NetExtent<Real> extent_of(const NetView<Real>& net, int count) {
+NetExtent<Real> measure_extent(const NetView<Real>& net, int count) {
   NetExtent<Real> extent{Real(0), Real(0)};
   for (const Real* values : {net.x, net.y, net.z}) {
     Real lowest = values[0], highest = values[0];
@@ -87,7 +84,7 @@ NetExtent<Real> extent_of(const NetView<Real>& net, int count) {
   return extent;
 }
 
-// Of `count` control points, `step` apart from `first` on.
+// Returns whether `count` control points coincide, starting at `first` and `step` elements apart.
 template <class Real>
 bool coincide(const NetView<Real>& net, int first, int step, int count, Real tolerance) {
   for (const Real* values : {net.x, net.y, net.z}) {
@@ -98,15 +95,15 @@ bool coincide(const NetView<Real>& net, int first, int step, int count, Real tol
   return true;
 }
 
-// What rounding may leave of a derivative that is zero.
+// Returns the largest rounding error of a derivative that is exactly zero.
 template <class Real>
 double noise(double largest_coordinate, double magnitude) {
   return 8.0 * std::numeric_limits<Real>::epsilon() * largest_coordinate * magnitude;
 }
 template <class Real>
 Real noise_squared(double largest_coordinate, double magnitude) {
-  const double of_derivative = noise<Real>(largest_coordinate, magnitude);
-  return static_cast<Real>(of_derivative * of_derivative);
+  const double derivative_noise = noise<Real>(largest_coordinate, magnitude);
+  return static_cast<Real>(derivative_noise * derivative_noise);
 }
 
 template <class Real>
@@ -150,7 +147,7 @@ GridEvaluator<Real>::GridEvaluator(const Grid& grid, InstructionSet set)
       kernels_(&kernels_for<Real>(set)),
       u_bound_(grid.u.knots),
       v_bound_(grid.v.knots),
-      blocks_(blocks_for(grid.columns() + 2)) {
+      blocks_(count_blocks(grid.columns() + 2)) {
   SPOONBILL_ASSERT(grid.rows() >= 2 && grid.columns() >= 2);
   set_up_rows(grid.u);
   set_up_columns(grid.v);
@@ -163,7 +160,7 @@ GridEvaluator<Real>::GridEvaluator(const Grid& grid, InstructionSet set)
 
 template <class Real>
 void GridEvaluator<Real>::set_up_rows(const GridDirection& u) {
-  const double length = domain_length(u.knots);
+  const double length = u.knots.domain_length();
   for (const double value : u.values.values) u_values_.push_back(static_cast<Real>(value));
   for (const double value : u.first_derivatives.values) {
     u_derivatives_.push_back(static_cast<Real>(value * length));
@@ -171,17 +168,17 @@ void GridEvaluator<Real>::set_up_rows(const GridDirection& u) {
   u_magnitude_ = row_magnitudes(u.first_derivatives, length);
 }
 
-// Dense blocks, so that loads are contiguous however few samples a span has. The last column fills its block,
-// so that what pads a row is as regular as the row.
+// Stores A_v as dense blocks, so that loads are contiguous however few samples a span has. The last column
+// fills up its block, so that padding is as regular as the row.
 template <class Real>
 void GridEvaluator<Real>::set_up_columns(const GridDirection& v) {
-  const double length = domain_length(v.knots);
+  const double length = v.knots.domain_length();
   v_magnitude_ = row_magnitudes(v.first_derivatives, length);
   Eigen::MatrixXd values = Eigen::MatrixXd::Zero(blocks_ * evaluate_block, v.values.columns);
   Eigen::MatrixXd derivatives = values;
   values.topRows(v.values.rows) = v.values.dense();
   derivatives.topRows(v.values.rows) = v.first_derivatives.dense() * length;
-  for (int j = v.values.rows; j < blocks_for(v.values.rows) * evaluate_block; ++j) {
+  for (int j = v.values.rows; j < count_blocks(v.values.rows) * evaluate_block; ++j) {
     values.row(j) = values.row(v.values.rows - 1);
     derivatives.row(j) = derivatives.row(v.values.rows - 1);
   }
@@ -203,14 +200,14 @@ void GridEvaluator<Real>::points_and_normals(const Real* x, const Real* y, const
   SPOONBILL_ASSERT(samples.x.size() >= static_cast<std::size_t>(grid_->rows()) * grid_->columns());
   SPOONBILL_ASSERT(samples.nz.size() == samples.x.size());
   const NetView<Real> net{x, y, z, grid_->v.knots.control_point_count()};
-  const NetExtent<Real> extent = extent_of(net, grid_->u.knots.control_point_count() * net.columns);
+  const NetExtent<Real> extent = measure_extent(net, grid_->u.knots.control_point_count() * net.columns);
   const CollapsedEdges edges = collapsed_edges(net, extent.reach);
   blend_control_rows(net);
   for (std::size_t j = 0; j < v_magnitude_.size(); ++j) {
     dv_noise_squared_[j] = noise_squared<Real>(extent.largest_coordinate, v_magnitude_[j]);
   }
   set_up_limit_columns(edges);
-  const Real regular_above = surely_regular(net, extent.largest_coordinate);
+  const Real regular_above = regularity_bound(net, extent.largest_coordinate);
 
   int allowed = extent.reach > 0 ? 4 * (grid_->rows() + grid_->columns()) : 0;
   for (int row = 0; row < grid_->rows(); ++row) {
@@ -218,9 +215,9 @@ void GridEvaluator<Real>::points_and_normals(const Real* x, const Real* y, const
     task.surely_regular = regular_above;
     task.du_noise_squared = noise_squared<Real>(extent.largest_coordinate, u_magnitude_[row]);
     const int degenerate = compute_row(task, row, edges, samples);
-    if (row == 0) take_limit_row(task, row, edges.first_row, samples);
-    if (row == grid_->rows() - 1) take_limit_row(task, row, edges.last_row, samples);
-    if (degenerate > 0) take_unit_normals(net, row, allowed, samples);
+    if (row == 0) compute_limit_row(task, row, edges.first_row, samples);
+    if (row == grid_->rows() - 1) compute_limit_row(task, row, edges.last_row, samples);
+    if (degenerate > 0) fill_missing_normals(net, row, allowed, samples);
   }
 }
 
@@ -256,15 +253,16 @@ auto GridEvaluator<Real>::collapsed_edges(const NetView<Real>& net, Real reach) 
   return edges;
 }
 
-// The kernels compare |du x dv|^2 with noise(du)^2 |dv|^2 + noise(dv)^2 |du|^2. The least normal number
-// stands above whatever underflow may round up.
+// Returns a bound of |du x dv|^2 above which the kernels' test passes for every sample. The test compares |du
+// x dv|^2 with noise(du)^2 |dv|^2 + noise(dv)^2 |du|^2; the least normal number exceeds anything that
+// underflow may round up.
 template <class Real>
-Real GridEvaluator<Real>::surely_regular(const NetView<Real>& net, double largest_coordinate) const {
+Real GridEvaluator<Real>::regularity_bound(const NetView<Real>& net, double largest_coordinate) const {
   const int rows = grid_->u.knots.control_point_count(), columns = net.columns;
   const double du = u_bound_.longest(ControlLines<Real>{net.x, net.y, net.z, columns, columns, 1});
   const double dv = v_bound_.longest(ControlLines<Real>{net.x, net.y, net.z, 1, rows, columns});
-  const double du_noise = noise<Real>(largest_coordinate, largest_of(u_magnitude_));
-  const double dv_noise = noise<Real>(largest_coordinate, largest_of(v_magnitude_));
+  const double du_noise = noise<Real>(largest_coordinate, max_value(u_magnitude_));
+  const double dv_noise = noise<Real>(largest_coordinate, max_value(v_magnitude_));
   const double u_part = du_noise * (dv + dv_noise), v_part = dv_noise * (du + du_noise);
   constexpr double above_rounding = 1.01;
   return static_cast<Real>(std::max<double>(above_rounding * (u_part * u_part + v_part * v_part),
@@ -282,14 +280,14 @@ void GridEvaluator<Real>::blend_control_rows(const NetView<Real>& net) {
   }
 }
 
-// At a collapsed column du vanishes, and a step h inside it is h duv: two further columns, of which only the
-// normals are used, hold that derivative in the place of the values.
+// Fills the two limit columns, of which only the normals are used. At a collapsed column du vanishes, and a
+// step h inside it is h duv, so that derivative replaces the values.
 template <class Real>
 void GridEvaluator<Real>::set_up_limit_columns(const CollapsedEdges& edges) {
   const int columns = grid_->columns();
   const int edge_columns[] = {0, columns - 1};
   const int inward[] = {edges.first_column, edges.last_column};
-  const auto place_of = [](int column) {
+  const auto offset_of_column = [](int column) {
     return column / evaluate_block * evaluate_block_size + column % evaluate_block;
   };
   const std::size_t row_size = static_cast<std::size_t>(blocks_) * evaluate_block_size;
@@ -297,8 +295,8 @@ void GridEvaluator<Real>::set_up_limit_columns(const CollapsedEdges& edges) {
     if (inward[edge] == 0) continue;
     dv_noise_squared_[columns + edge] = dv_noise_squared_[edge_columns[edge]];
     for (Real* row = blended_.data(); row != blended_.data() + blended_.size(); row += row_size) {
-      const Real* derivatives = row + place_of(edge_columns[edge]) + 3 * evaluate_block;
-      Real* const limit = row + place_of(columns + edge);
+      const Real* derivatives = row + offset_of_column(edge_columns[edge]) + 3 * evaluate_block;
+      Real* const limit = row + offset_of_column(columns + edge);
       for (int k = 0; k < 3 * evaluate_block; k += evaluate_block) {
         limit[k] = static_cast<Real>(inward[edge]) * derivatives[k];
         limit[k + 3 * evaluate_block] = derivatives[k];
@@ -323,17 +321,17 @@ EvaluateRow<Real> GridEvaluator<Real>::row_task(int row) const {
           Real(0)};
 }
 
-// A row that is surely regular goes straight to the samples, what pads it over the next row's, which come
-// after. Of others, whole blocks do; the columns left over, and the limit columns, go by way of the spare
-// row. Returns how many samples of the row are left without a normal.
+// Computes a row and returns how many of its samples have no normal. A surely regular row is written
+// directly, its padding over the next row, which is computed later. Otherwise whole blocks are written
+// directly, and the remaining columns and limit columns pass through the spare row.
 template <class Real>
 int GridEvaluator<Real>::compute_row(const EvaluateRow<Real>& task, int row, const CollapsedEdges& edges,
                                      GridSamples<Real>& samples) {
   const int columns = grid_->columns(), whole = columns / evaluate_block;
   const int limits = edges.first_column != 0 || edges.last_column != 0 ? 2 : 0;
-  const int blocks = blocks_for(columns + limits) - whole, left = columns - whole * evaluate_block;
+  const int blocks = count_blocks(columns + limits) - whole, left = columns - whole * evaluate_block;
   const EvaluateOutput<Real> out = sample_row(samples, row, columns), spare = spare_row(spare_);
-  const int padded = blocks_for(columns);
+  const int padded = count_blocks(columns);
   const bool has_room = (grid_->rows() - row) * columns >= padded * evaluate_block;
   if (limits == 0 && has_room && kernels_->points_and_normals_if_regular(task, 0, padded, out)) return 0;
 
@@ -353,10 +351,10 @@ int GridEvaluator<Real>::compute_row(const EvaluateRow<Real>& task, int row, con
   return degenerate;
 }
 
-// As with the limit columns: at a collapsed row dv vanishes, and a step h inside it is h duv.
+// Computes the normals of a collapsed row, where dv vanishes and a step h inside it is h duv.
 template <class Real>
-void GridEvaluator<Real>::take_limit_row(EvaluateRow<Real> task, int row, int inward,
-                                         GridSamples<Real>& samples) {
+void GridEvaluator<Real>::compute_limit_row(EvaluateRow<Real> task, int row, int inward,
+                                            GridSamples<Real>& samples) {
   if (inward == 0) return;
   Real values[max_degree + 1];
   for (int k = 0; k < task.bandwidth; ++k) values[k] = static_cast<Real>(inward) * task.derivatives[k];
@@ -369,8 +367,8 @@ void GridEvaluator<Real>::take_limit_row(EvaluateRow<Real> task, int row, int in
 }
 
 template <class Real>
-void GridEvaluator<Real>::take_unit_normals(const NetView<Real>& net, int row, int& allowed,
-                                            GridSamples<Real>& samples) const {
+void GridEvaluator<Real>::fill_missing_normals(const NetView<Real>& net, int row, int& allowed,
+                                               GridSamples<Real>& samples) const {
   const EvaluateOutput<Real> out = sample_row(samples, row, grid_->columns());
   for (int j = 0; j < grid_->columns() && allowed > 0; ++j) {
     if (has_normal(out, j)) continue;

@@ -1,21 +1,20 @@
-// Evaluation of a surface on a whole grid: M = A_u P A_v^T (Eq. 4 of Pungotra et al. 2013), points and unit
+// Evaluation of surfaces on whole grids: M = A_u P A_v^T (Eq. 4 of Pungotra et al. 2013), points and unit
 // normals into structure-of-arrays buffers.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include "engine/base/aligned_vector.h"
-#include "engine/base/instruction_set.h"
-#include "engine/bspline/derivative_bound.h"
+#include "engine/base/containers.h"
+#include "engine/base/processor.h"
+#include "engine/bspline/basis.h"
 #include "engine/bspline/evaluate_kernels.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/surface.h"
-#include "engine/bspline/unit_normal.h"
 
 namespace spoonbill {
 
-// Rows x columns samples each, in the grid's order.
+// Samples of a grid, rows x columns each, in the grid's order.
 template <class Real>
 struct GridSamples {
   std::vector<Real> x, y, z;     // metres
@@ -26,10 +25,10 @@ struct GridSamples {
   }
 };
 
-// Evaluates surfaces of one grid's knot structure. Holds its working memory: one evaluator a thread, and no
+// Evaluates surfaces of one grid's knot structure. Owns its working memory: one evaluator for each thread, no
 // allocation after construction. The grid must outlive it.
 //
-// A clamped edge whose control points coincide to a millionth of the net's reach counts as collapsed: its
+// A clamped edge whose control points coincide to a millionth of the net's extent counts as collapsed: its
 // samples get the limit of the normal from inside. Other samples where du x dv is rounding noise get
 // unit_normal(), up to a number that bounds the time of a pass, and zero beyond it.
 template <class Real>
@@ -37,16 +36,16 @@ class GridEvaluator {
  public:
   GridEvaluator(const Grid& grid, InstructionSet set);
 
-  // x, y, z: the control points in metres, rows x columns as in ControlNet. samples must have been resized to
-  // grid.rows() * grid.columns().
+  // Computes points and normals from the control points x, y, z in metres, ordered as in ControlNet.
+  // `samples` must have been resized to grid.rows() * grid.columns().
   void points_and_normals(const Real* x, const Real* y, const Real* z, GridSamples<Real>& samples);
 
-  // Points alone: writes samples.x, y, z, to the same bits.
+  // Computes samples.x, y, z alone, to the same bits.
   void points(const Real* x, const Real* y, const Real* z, GridSamples<Real>& samples);
 
  private:
-  // +1 or -1, the way into the surface, where a grid line lies on a clamped edge whose control points
-  // coincide; 0 otherwise.
+  // Inward direction (+1 or -1) of each grid line on a clamped edge whose control points coincide; 0 for
+  // other edges.
   struct CollapsedEdges {
     int first_row = 0, last_row = 0, first_column = 0, last_column = 0;
   };
@@ -57,23 +56,24 @@ class GridEvaluator {
   void blend_control_rows(const NetView<Real>& net);
   void set_up_limit_columns(const CollapsedEdges& edges);
   EvaluateRow<Real> row_task(int row) const;
-  Real surely_regular(const NetView<Real>& net, double largest_coordinate) const;
+  Real regularity_bound(const NetView<Real>& net, double largest_coordinate) const;
   int compute_row(const EvaluateRow<Real>& task, int row, const CollapsedEdges& edges,
                   GridSamples<Real>& samples);
-  void take_limit_row(EvaluateRow<Real> task, int row, int inward, GridSamples<Real>& samples);
-  void take_unit_normals(const NetView<Real>& net, int row, int& allowed, GridSamples<Real>& samples) const;
+  void compute_limit_row(EvaluateRow<Real> task, int row, int inward, GridSamples<Real>& samples);
+  void fill_missing_normals(const NetView<Real>& net, int row, int& allowed,
+                            GridSamples<Real>& samples) const;
 
   const Grid* grid_;
   const EvaluateKernels<Real>* kernels_;
-  std::vector<Real> u_values_, u_derivatives_;     // rows x bandwidth, derivatives by domain length
-  std::vector<double> u_magnitude_, v_magnitude_;  // sums of the derivatives' magnitudes
+  std::vector<Real> u_values_, u_derivatives_;  // rows x bandwidth, derivatives scaled by the domain length
+  std::vector<double> u_magnitude_, v_magnitude_;  // row sums of the derivatives' magnitudes
   DerivativeBound u_bound_, v_bound_;
-  int blocks_ = 0;  // for the columns and two limit columns
+  int blocks_ = 0;  // including two limit columns
   std::vector<EvaluateReach> reaches_;
   AlignedVector<Real> v_values_, v_derivatives_;
   AlignedVector<Real> blended_;           // control rows x blocks
   AlignedVector<Real> dv_noise_squared_;  // columns of all blocks
-  AlignedVector<Real> spare_;             // a row of samples
+  AlignedVector<Real> spare_;             // one row of samples
 };
 
 extern template class GridEvaluator<float>;

@@ -41,8 +41,8 @@ struct Weights {
 };
 
 template <class Real, int bandwidth>
-inline __attribute__((always_inline)) Weights<Real, bandwidth> weights_of(const EvaluateRow<Real>& row,
-                                                                          int first_block) {
+inline __attribute__((always_inline)) Weights<Real, bandwidth> load_weights(const EvaluateRow<Real>& row,
+                                                                            int first_block) {
   Weights<Real, bandwidth> weights;
   int control_row = row.first;
 #pragma GCC unroll 10
@@ -67,7 +67,7 @@ inline __attribute__((always_inline)) Real combine(const Real (&weights)[bandwid
 
 template <class Real, int bandwidth>
 void points_row(const EvaluateRow<Real>& row, int first_block, int blocks, const EvaluateOutput<Real>& out) {
-  const Weights<Real, bandwidth> w = weights_of<Real, bandwidth>(row, first_block);
+  const Weights<Real, bandwidth> w = load_weights<Real, bandwidth>(row, first_block);
   Real* __restrict const x = out.x;
   Real* __restrict const y = out.y;
   Real* __restrict const z = out.z;
@@ -82,13 +82,14 @@ void points_row(const EvaluateRow<Real>& row, int first_block, int blocks, const
   }
 }
 
+// Whether normals of irregular samples are zeroed (full) or left undefined (if_regular).
 enum class Care { full, if_regular };
 
-// Returns the number of irregular samples.
+// Computes points and normals of a row; returns the number of irregular samples.
 template <class Real, int bandwidth, Care care>
 int points_and_normals_row(const EvaluateRow<Real>& row, int first_block, int blocks,
                            const EvaluateOutput<Real>& out) {
-  const Weights<Real, bandwidth> w = weights_of<Real, bandwidth>(row, first_block);
+  const Weights<Real, bandwidth> w = load_weights<Real, bandwidth>(row, first_block);
   const Real du_noise = row.du_noise_squared, surely_regular = row.surely_regular;
   const Real* __restrict const dv_noise = row.dv_noise_squared + first_block * evaluate_block;
   Real* __restrict const x = out.x;

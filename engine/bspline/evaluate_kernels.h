@@ -1,24 +1,26 @@
-// The loops of grid evaluation, compiled once for each instruction set. This header and its source use no
-// standard library and no Eigen: an inline function compiled for AVX-512 here could be the copy that the
-// linker keeps for everybody, and end the program on an older processor.
+// Loops of grid evaluation, compiled once for each instruction set. This header and its source use no
+// standard library and no Eigen: the linker could keep the AVX-512 copy of an inline function for the whole
+// program, which would crash on an older processor.
 #pragma once
 
 namespace spoonbill {
 
-// Columns of samples are handled in whole blocks: no loop has a remainder, on any vector width.
+// Number of sample columns in a block. Columns are processed in whole blocks, so that no loop has a
+// remainder, on any vector width.
 inline constexpr int evaluate_block = 16;
 
-// A blended block: the values x, y, z, then their derivatives by v, evaluate_block of each.
+// Size of a blended block: the values x, y, z, then their derivatives by v, evaluate_block of each.
 inline constexpr int evaluate_block_size = 6 * evaluate_block;
 
-// A block of columns that a control point reaches.
+// A block of columns that a control point affects.
 struct EvaluateReach {
   int control;
   int block;
 };
 
-// A_v: for each reach, evaluate_block values and derivatives of the control point's basis function. Ordered
-// by control points, so that sums into one block lie far apart in time and do not wait for each other.
+// The matrix A_v as blocks: for each reach, evaluate_block values and derivatives of the control point's
+// basis function. Ordered by control point, so that consecutive sums go into different blocks and do not wait
+// for each other.
 template <class Real>
 struct EvaluateBand {
   const EvaluateReach* reaches;
@@ -28,7 +30,7 @@ struct EvaluateBand {
   int blocks;
 };
 
-// One row of A_u, and the blended control rows (those of P A_v^T) that it combines. Row k of the band is
+// One row of A_u and the blended control rows (those of P A_v^T) that it combines. Row k of the band is
 // blended row first + k, wrapped around at `control_rows`.
 template <class Real>
 struct EvaluateRow {
@@ -39,12 +41,12 @@ struct EvaluateRow {
   int bandwidth;  // 2 to 10
   const Real* values;
   const Real* derivatives;
-  Real du_noise_squared;         // rounding error of du in this row
-  const Real* dv_noise_squared;  // of dv in each column
-  Real surely_regular;           // |du x dv|^2 above it is above the rounding error in every column
+  Real du_noise_squared;         // squared rounding error of du in this row
+  const Real* dv_noise_squared;  // squared rounding error of dv in each column
+  Real surely_regular;           // |du x dv|^2 above this exceeds the rounding error in every column
 };
 
-// Where blocks of a row of samples begin. Blocks need not be aligned there.
+// Destinations of a row of samples; no alignment is required.
 template <class Real>
 struct EvaluateOutput {
   Real* x;
@@ -56,18 +58,21 @@ struct EvaluateOutput {
 };
 
 template <class Real>
+// Function table of one instruction set and one precision.
 struct EvaluateKernels {
-  // Blends one control row along v, into band.blocks blocks.
+  // Blends one control row along v into band.blocks blocks.
   void (*blend)(const EvaluateBand<Real>& band, const Real* x, const Real* y, const Real* z, Real* blended);
 
+  // Computes points alone.
   void (*points)(const EvaluateRow<Real>& row, int first_block, int blocks, const EvaluateOutput<Real>& out);
 
-  // Returns the number of samples whose du x dv is no more than rounding error; their normals are zero.
+  // Computes points and unit normals. Returns the number of samples whose du x dv does not exceed the
+  // rounding error; their normals are zero.
   int (*points_and_normals)(const EvaluateRow<Real>& row, int first_block, int blocks,
                             const EvaluateOutput<Real>& out);
 
-  // The same bits at a fraction of the cost where every sample is surely regular, which it returns. Where
-  // not, the normals mean nothing.
+  // Computes the same bits at a fraction of the cost if every sample is surely regular, and returns whether
+  // that is so. Otherwise the normals are undefined.
   bool (*points_and_normals_if_regular)(const EvaluateRow<Real>& row, int first_block, int blocks,
                                         const EvaluateOutput<Real>& out);
 };

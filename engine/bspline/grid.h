@@ -1,17 +1,24 @@
-// A grid: the blending matrices of one knot structure and one sampling, shared by every surface that has that
-// structure. Built once, outside the tick; immutable afterwards, so that any thread may read it.
+// Grids: the blending matrices of one knot structure and one sampling, shared by every surface of that
+// structure, and least-squares fits of surfaces to points and displacements on grids.
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <vector>
 
+#include "engine/base/assert.h"
+#include "engine/base/containers.h"
+#include "engine/base/geometry.h"
+#include "engine/base/processor.h"
 #include "engine/base/result.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/knot_vector.h"
+#include "engine/bspline/surface.h"
 
 namespace spoonbill {
 
-// One direction of a grid.
+// One direction of a grid. Made outside the tick and immutable afterwards, so that any thread may read it.
 struct GridDirection {
   KnotVector knots;
   std::vector<double> parameters;  // strictly increasing, in the domain
@@ -20,7 +27,8 @@ struct GridDirection {
   BlendingMatrix second_derivatives;
 };
 
-// u runs over rows, v over columns: sample (i, j) lies at index i * v.parameters.size() + j.
+// A grid of samples: u runs over rows, v over columns, and sample (i, j) has the index i *
+// v.parameters.size() + j.
 struct Grid {
   GridDirection u;
   GridDirection v;
@@ -29,20 +37,21 @@ struct Grid {
   int columns() const { return static_cast<int>(v.parameters.size()); }
 };
 
-// Any strictly increasing parameters in the domain. Refused: fewer than two, decreasing or non-finite ones.
+// Makes a grid from strictly increasing parameters in the domain. Refuses fewer than two, non-increasing ones
+// and non-finite ones.
 Result<Grid> make_grid(const KnotVector& u, const KnotVector& v, std::vector<double> u_parameters,
                        std::vector<double> v_parameters);
 
-// `count` parameters evenly spaced over the domain, both ends included, the seam of a periodic direction
-// therefore twice.
+// Returns `count` parameters evenly spaced over the domain, both ends included; in a periodic direction the
+// seam occurs twice.
 std::vector<double> uniform_parameters(const KnotVector& knots, int count);
 
-// `count` parameters evenly spaced over one period without repeating the seam.
+// Returns `count` parameters evenly spaced over one period, the seam once.
 std::vector<double> uniform_parameters_without_seam(const KnotVector& knots, int count);
 
-// Parameters for a grid with nested levels: each polynomial piece is cut into pieces_per_span * 2^levels
-// equal parts, both domain ends included. Level l (0 = coarsest) is every 2^(levels - l)-th of them, so that
-// the blending matrices of a coarse level are rows of the finest, and no cell holds a knot inside.
+// Parameters of a grid with nested levels: each polynomial piece is cut into pieces_per_span * 2^levels equal
+// parts, both domain ends included. Level l (0 = coarsest) is every 2^(levels - l)-th parameter, so that the
+// blending matrices of a coarse level are rows of the finest, and no cell has a knot inside.
 struct NestedParameters {
   int levels = 0;
   std::vector<double> parameters;
@@ -51,5 +60,91 @@ struct NestedParameters {
   int count(int level) const { return (static_cast<int>(parameters.size()) - 1) / stride(level) + 1; }
 };
 NestedParameters nested_parameters(const KnotVector& knots, int pieces_per_span, int levels);
+
+// Points at the parameters u[i], v[j], with the index i * v.size() + j. The parameters increase strictly
+// within the domain; at least twice as many as control points keep the fit well conditioned.
+struct PointGrid {
+  std::vector<double> u, v;
+  std::vector<Vector3> points_m;
+};
+
+// Ends that are interpolated instead of fitted; each needs a clamped end and a parameter on it.
+struct InterpolatedEnds {
+  bool u_first = false, u_last = false, v_first = false, v_last = false;
+};
+
+// Returns the surface with the least sum of squared distances at the parameters: P = A_u^+ M (A_v^+)^T (Eq. 5
+// of Pungotra et al. 2013 without inverting A^T A, which squares the condition number). Refuses a number of
+// points that differs from the number of parameter pairs, non-finite points, and parameters that do not
+// determine the control points.
+Result<Surface> fit_grid(const KnotVector& u, const KnotVector& v, const PointGrid& points,
+                         const InterpolatedEnds& interpolated = {});
+
+// Returns the surface's points at the parameters u x v.
+PointGrid sample_grid_points(const Surface& surface, std::vector<double> u, std::vector<double> v);
+
+// Returns the largest distance in metres between a point of the grid and the surface at its parameters.
+double largest_deviation_m(const Surface& surface, const PointGrid& points);
+
+// Returns the largest value of a function of two parameters near a sample, found by ever smaller steps
+// starting from half the sample distances; never less than the value at the sample. `value` must accept
+// parameters outside the sampled range by one step. Steps must not be negative.
+template <class Value>
+double find_peak(const Value& value, double u, double v, double step_u, double step_v) {
+  SPOONBILL_ASSERT(step_u >= 0.0 && step_v >= 0.0);
+  constexpr int halvings = 10;
+  constexpr std::array<std::array<int, 2>, 4> directions{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+  double largest = value(u, v);
+  for (int k = 0; k < halvings; ++k) {
+    step_u *= 0.5;
+    step_v *= 0.5;
+    for (const auto& [along_u, along_v] : directions) {
+      const double at_u = u + along_u * step_u, at_v = v + along_v * step_v;
+      const double there = value(at_u, at_v);
+      if (there <= largest) continue;
+      largest = there;
+      u = at_u;
+      v = at_v;
+    }
+  }
+  return largest;
+}
+
+// Moves control points by the displacement of grid samples, dP = A_u^+ dM (A_v^+)^T. Fitting displacements
+// keeps an untouched surface unchanged to the last bit, where refitting positions (Eq. 5 of Pungotra et al.
+// 2013) would smooth it. Owns both pseudo-inverses in single precision and the working memory; does not
+// allocate after make(). One owner, one thread.
+class DisplacementRefit {
+ public:
+  // Makes a refit without constraints. Refuses a grid whose samples do not determine the control points (see
+  // pseudo_inverse()).
+  static Result<DisplacementRefit> make(const Grid& grid, InstructionSet set);
+
+  // Makes a refit with constraints on the control columns; free columns fit the remainder by least squares.
+  static Result<DisplacementRefit> make(const Grid& grid, const RefitConstraints& constraints,
+                                        InstructionSet set);
+
+  int sample_rows() const { return sample_rows_; }
+  int sample_columns() const { return sample_columns_; }
+
+  // Returns the length of a row of samples in memory; values past grid.columns() have no effect.
+  int sample_stride() const { return sample_stride_; }
+
+  // Computes displacements of the control points (rows x columns) from `sample`, grid.rows() x
+  // sample_stride() displacements of one coordinate in metres at an address that is a multiple of 64 bytes.
+  // Exactly zero input gives exactly zero output.
+  void control_displacement(const float* sample, float* control);
+
+ private:
+  DisplacementRefit() = default;
+
+  InstructionSet set_{};
+  int sample_rows_ = 0, sample_columns_ = 0, sample_stride_ = 0;
+  int control_rows_ = 0, control_columns_ = 0, control_stride_ = 0;
+  std::vector<float> u_inverse_;               // control_rows x sample_rows
+  AlignedVector<float> v_inverse_transposed_;  // sample_stride x control_stride, zero-padded
+  AlignedVector<float> half_;                  // control_rows x sample_stride
+  AlignedVector<float> padded_control_;        // control_rows x control_stride
+};
 
 }  // namespace spoonbill

@@ -1,5 +1,5 @@
-// One direction of a B-spline surface: degree, knots and, by them, the number of control points.
-// A value type, immutable once made; any thread may read it.
+// Knot vectors: one direction of a B-spline surface or curve, and new knot vectors derived from existing
+// ones. All functions are pure; any thread may call them.
 #pragma once
 
 #include <span>
@@ -10,26 +10,37 @@
 
 namespace spoonbill {
 
-// Degrees 1 to max_degree. Above 9 the refit of Eq. 5 loses more digits than a concept needs.
+// Largest degree; the smallest is 1. Above 9 the pseudo-inverse of the refit loses too many digits.
 inline constexpr int max_degree = 9;
 
+// A parameter direction of a surface.
+enum class Direction { u, v };
+
+// Returns "direction u" or "direction v", the context of error messages.
+constexpr const char* direction_name(Direction direction) {
+  return direction == Direction::u ? "direction u" : "direction v";
+}
+
+// Degree, knots and thereby the number of control points of one direction. A value type, immutable once made;
+// any thread may read it.
 class KnotVector {
  public:
-  // No knots, of no surface: to be assigned before anything is asked of it but whether it equals another.
+  // Constructs an empty knot vector, to be assigned before any use other than comparison.
   KnotVector() = default;
 
-  // An open knot vector of n + degree + 1 nondecreasing knots for n control points, clamped or not. The
-  // domain is [knots[degree], knots[n]]. Refused, with the offending knot named: degree out of 1..max_degree,
-  // fewer than degree + 1 control points, a non-finite or decreasing knot, an empty domain, multiplicity
-  // above the degree inside the domain or above degree + 1 at its ends.
+  // Makes an open knot vector from n + degree + 1 nondecreasing knots for n control points, clamped or not.
+  // The domain is [knots[degree], knots[n]]. Refuses a degree outside 1..max_degree, fewer than degree + 1
+  // control points, non-finite or decreasing knots, an empty domain, and a multiplicity above the degree
+  // inside the domain or above degree + 1 at its ends.
   static Result<KnotVector> open(int degree, std::vector<double> knots);
 
-  // A periodic knot vector: the r + 1 knots of one period, the last equal to the first plus the period, for r
-  // control points. B_i starts at knot i, and B_i(u) = B_0((u - i + r) mod r) for uniform knots (Eq. 3 of
-  // Pungotra et al. 2013, whose modulus r + 1 makes the sum fall to 1/3 at the seam). Needs r >= 2.
+  // Makes a periodic knot vector for r >= 2 control points from the r + 1 knots of one period; the last knot
+  // is the first plus the period. B_i starts at knot i, and B_i(u) = B_0((u - i + r) mod r) for uniform knots
+  // (Eq. 3 of Pungotra et al. 2013 with modulus r; their modulus r + 1 makes the sum fall to 1/3 at the
+  // seam).
   static Result<KnotVector> periodic(int degree, std::vector<double> knots);
 
-  // Uniform knots over [0, 1].
+  // Makes uniform knots over [0, 1].
   static Result<KnotVector> clamped_uniform(int degree, int control_point_count);
   static Result<KnotVector> periodic_uniform(int degree, int control_point_count);
 
@@ -38,26 +49,27 @@ class KnotVector {
   bool is_periodic() const { return periodic_; }
   double domain_start() const { return extended_[degree_]; }
   double domain_end() const { return extended_[extended_.size() - 1 - degree_]; }
+  double domain_length() const { return domain_end() - domain_start(); }
 
-  // The knots as given to open() or periodic().
+  // Returns the knots as given to open() or periodic().
   const std::vector<double>& knots() const { return knots_; }
 
-  // The knots that the recursion runs on: knots() itself when open; one period with `degree` further knots on
-  // either side when periodic.
+  // Returns the knots for the Cox-de Boor recursion: knots() if open; one period with `degree` further knots
+  // on either side if periodic.
   const std::vector<double>& extended_knots() const { return extended_; }
 
-  // The distinct knots inside the domain, both ends included: the ends of the polynomial pieces.
+  // Returns the distinct knots in the domain, both ends included: the ends of the polynomial pieces.
   std::vector<double> breakpoints() const;
 
-  // u brought into the domain: wrapped when periodic (the end maps to the start), clamped to it when open.
-  // What is not a number maps to the start, so that no parameter whatever leads out of the knots.
+  // Returns u wrapped (periodic; the end maps to the start) or clamped (open) into the domain. NaN maps to
+  // the start, so that no value leads outside the knots.
   double into_domain(double u) const;
 
-  // The index k into extended_knots() with extended[k] <= u < extended[k + 1], the last span closed.
-  // u must lie in the domain.
+  // Returns the index k into extended_knots() with extended[k] <= u < extended[k + 1]; the last span is
+  // closed. u must be in the domain.
   int find_span(double u) const;
 
-  // The control point that the basis function j of span k (j = 0..degree) belongs to.
+  // Returns the index of the control point that belongs to basis function j (0..degree) of a span.
   int control_index(int span, int j) const;
 
   friend bool operator==(const KnotVector&, const KnotVector&) = default;
@@ -69,5 +81,49 @@ class KnotVector {
   std::vector<double> knots_;
   std::vector<double> extended_;
 };
+
+// Fraction of the domain within which two knots count as one; documents contain no distinct knots nearer than
+// this.
+inline constexpr double same_knot_fraction = 1e-9;
+
+// A distinct knot and its multiplicity.
+struct KnotMultiplicity {
+  double knot;
+  int multiplicity;
+};
+// Returns the distinct knots in the domain, ends included and open ends counted as clamped; of a period, the
+// start alone stands for both ends.
+std::vector<KnotMultiplicity> knot_multiplicities(const KnotVector& knots);
+
+// Returns the positions of a periodic knot in the period that begins at `start`, both ends included; returns
+// an open knot itself.
+std::vector<double> knot_positions_from(const KnotVector& knots, double knot, double start);
+
+// Returns a knot vector of a higher or equal degree that represents every spline over `knots`: each
+// multiplicity grows by the difference of the degrees. Open ends become clamped. Refuses a lower degree and
+// one above max_degree.
+Result<KnotVector> elevate_degree(const KnotVector& knots, int degree);
+
+// Returns a knot vector of a lower or equal degree with the same continuity at every knot, but at most
+// C^(degree - 1). Open ends become clamped.
+Result<KnotVector> reduce_degree(const KnotVector& knots, int degree);
+
+// Returns the union: every knot with the larger of its two multiplicities. Refuses different degrees,
+// periodicity or domains.
+Result<KnotVector> knot_union(const KnotVector& a, const KnotVector& b);
+
+// Returns the part from `start` to `end` as a clamped knot vector. In a periodic direction it may cross the
+// seam, with `end` at most one period beyond `start`. Refuses an empty part and one outside the domain.
+Result<KnotVector> clamped_part(const KnotVector& knots, double start, double end);
+
+// Returns the knots scaled to the domain [start, end]. Refuses unless start < end, both finite.
+Result<KnotVector> with_domain(const KnotVector& knots, double start, double end);
+
+// Returns the knots mirrored within the same domain.
+KnotVector reversed(const KnotVector& knots);
+
+// Returns the knots with one more knot at the midpoint of each polynomial piece that contains a parameter of
+// `where`. Pieces shorter than a millionth of the domain stay as they are.
+Result<KnotVector> halve_pieces(const KnotVector& knots, const std::vector<double>& where);
 
 }  // namespace spoonbill

@@ -9,20 +9,20 @@ namespace spoonbill {
 namespace {
 
 constexpr int vector_width = 4;
-// Below this sine of the angle between the tangents, their product loses too many digits.
-constexpr double least_sine = 1e-5;
+// Smallest sine of the angle between the tangents for which their cross product keeps enough digits.
+constexpr double min_sine = 1e-5;
 
 using Polynomials = std::array<std::array<double, max_degree + 1>, max_degree + 1>;
 
-// The basis functions of a span (Cox and de Boor) as coefficients in x, u = centre + half x: result[j][k]
-// belongs to x^k of the j-th.
-Polynomials polynomials_of(const double* at, int degree, double centre, double half) {
+// Returns the basis functions of a span (Cox-de Boor recursion) as coefficients in x, u = centre + half x:
+// result[j][k] belongs to x^k of the j-th function.
+Polynomials compute_polynomials(const double* at, int degree, double centre, double half) {
   Polynomials result{};
   result[0][0] = 1.0;
   for (int p = 1; p <= degree; ++p) {
     Polynomials next{};
     for (int j = 0; j < p; ++j) {
-      // Function j of degree p - 1 lies on the knots from `low` to `high`.
+      // Function j of degree p - 1 extends over the knots from `low` to `high`.
       const double low = at[j - p + 1], high = at[j + 1], scale = 1.0 / (high - low);
       for (int k = 0; k < p; ++k) {
         const double coefficient = scale * result[j][k];
@@ -53,7 +53,7 @@ PieceBasis::PieceBasis(const KnotVector& knots)
     scales_.push_back(1.0 / half);
     const int span = knots.find_span(centre);
     const Polynomials polynomials =
-        polynomials_of(knots.extended_knots().data() + span, degree_, centre, half);
+        compute_polynomials(knots.extended_knots().data() + span, degree_, centre, half);
     for (int j = 0; j <= degree_; ++j) {
       controls_.push_back(knots.control_index(span, j));
       for (int k = 0; k <= degree_; ++k) {
@@ -63,8 +63,8 @@ PieceBasis::PieceBasis(const KnotVector& knots)
   }
 }
 
-// Evenly spaced knots are found at once, others a few steps farther.
-int PieceBasis::piece_of(double u) const {
+// The estimate is exact for evenly spaced knots; a few steps correct it for others.
+int PieceBasis::find_piece(double u) const {
   const int pieces = static_cast<int>(breaks_.size()) - 1;
   int piece = std::clamp(static_cast<int>((u - breaks_.front()) * pieces_a_unit_), 0, pieces - 1);
   while (piece > 0 && u < breaks_[piece]) --piece;
@@ -74,7 +74,7 @@ int PieceBasis::piece_of(double u) const {
 
 void PieceBasis::take(double u, Values& values) const {
   SPOONBILL_ASSERT_DEBUG(u >= breaks_.front() && u <= breaks_.back());
-  const int piece = piece_of(u);
+  const int piece = find_piece(u);
   values.controls = controls_.data() + piece * (degree_ + 1);
   const double* row = coefficients_.data() + piece * (degree_ + 1) * padded_;
   const double scale = scales_[piece], x = (u - breaks_[piece]) * scale - 1.0;
@@ -96,9 +96,9 @@ void PieceBasis::take(double u, Values& values) const {
   }
 }
 
-void PieceBasis::take_values_only(double u, Values& values) const {
+void PieceBasis::evaluate_values(double u, Values& values) const {
   SPOONBILL_ASSERT_DEBUG(u >= breaks_.front() && u <= breaks_.back());
-  const int piece = piece_of(u);
+  const int piece = find_piece(u);
   values.controls = controls_.data() + piece * (degree_ + 1);
   const double* row = coefficients_.data() + piece * (degree_ + 1) * padded_;
   const double x = (u - breaks_[piece]) * scales_[piece] - 1.0;
@@ -121,7 +121,7 @@ SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v) {
   const double* const controls[3] = {whole.net.x.data(), whole.net.y.data(), whole.net.z.data()};
   SurfacePoint point;
   for (int axis = 0; axis < 3; ++axis) {
-    double sums[6] = {};  // the position, du, dv, duu, duv, dvv
+    double sums[6] = {};  // position, du, dv, duu, duv, dvv
     for (int i = 0; i <= surface.u->degree(); ++i) {
       const double* const row = controls[axis] + bu.controls[i] * whole.net.columns;
       double value = 0.0, dv = 0.0, dvv = 0.0;
@@ -152,8 +152,8 @@ Vector3 position(const PiecewiseSurface& surface, double u, double v) {
   SPOONBILL_ASSERT_DEBUG(surface.surface != nullptr && surface.u != nullptr && surface.v != nullptr);
   const Surface& whole = *surface.surface;
   PieceBasis::Values bu, bv;
-  surface.u->take_values_only(whole.u.into_domain(u), bu);
-  surface.v->take_values_only(whole.v.into_domain(v), bv);
+  surface.u->evaluate_values(whole.u.into_domain(u), bu);
+  surface.v->evaluate_values(whole.v.into_domain(v), bv);
   const double* const controls[3] = {whole.net.x.data(), whole.net.y.data(), whole.net.z.data()};
   Vector3 point = Vector3::Zero();
   for (int i = 0; i <= surface.u->degree(); ++i) {
@@ -170,7 +170,7 @@ Vector3 position(const PiecewiseSurface& surface, double u, double v) {
 Vector3 unit_normal(const PiecewiseSurface& surface, const SurfacePoint& at, double u, double v) {
   const Vector3 across = at.du.cross(at.dv);
   const double squared = across.squaredNorm();
-  if (squared > least_sine * least_sine * at.du.squaredNorm() * at.dv.squaredNorm()) {
+  if (squared > min_sine * min_sine * at.du.squaredNorm() * at.dv.squaredNorm()) {
     return across / std::sqrt(squared);
   }
   return unit_normal(*surface.surface, u, v);

@@ -1,5 +1,5 @@
-// The basis functions of a knot vector as the polynomials that they are between two knots, for evaluating one
-// point after another: no division, and no recursion.
+// Basis functions of a knot vector as the polynomials of its pieces, for fast evaluation of single points: no
+// division and no recursion.
 #pragma once
 
 #include <array>
@@ -10,49 +10,51 @@
 
 namespace spoonbill {
 
-// Immutable once made, so any thread may ask; allocates only when made. Values agree with basis_functions()
-// to rounding, not to the bit.
+// The polynomials of a knot vector, which must outlive this. Allocates only when constructed; immutable
+// afterwards, so that any thread may read it. Values agree with basis_functions() to rounding, not to the
+// bit.
 class PieceBasis {
  public:
   explicit PieceBasis(const KnotVector& knots);
 
   struct Values {
     const int* controls = nullptr;  // degree + 1 indices of control points
-    // value[d][j]: the d-th derivative of the basis function of controls[j].
+    // value[d][j] is the d-th derivative of the basis function of controls[j].
     std::array<std::array<double, 12>, 3> value;
   };
-  // u must lie in the domain.
+  // Computes the values and both derivatives at u, which must be in the domain.
   void take(double u, Values& values) const;
-  void take_values_only(double u, Values& values) const;
+
+  // Computes value[0] alone at u, which must be in the domain.
+  void evaluate_values(double u, Values& values) const;
 
   const KnotVector& knots() const { return *knots_; }
   int degree() const { return degree_; }
 
  private:
-  int piece_of(double u) const;
+  int find_piece(double u) const;
 
   const KnotVector* knots_;
-  int degree_, padded_;  // padded_: degree + 1 rounded up to whole vectors
+  int degree_, padded_;  // padded_ is degree + 1 rounded up to whole vectors
   std::vector<double> breaks_;
   double pieces_a_unit_;
   std::vector<double> scales_;  // dx / du of each piece, see coefficients_
-  std::vector<int> controls_;   // degree + 1 of each piece
-  // Of each piece, in x = -1..1 across it: degree + 1 rows of padded_ coefficients, of the highest power
-  // first.
+  std::vector<int> controls_;   // degree + 1 for each piece
+  // Coefficients in x = -1..1 across each piece: degree + 1 rows of padded_ values, highest power first.
   std::vector<double> coefficients_;
 };
 
-// A surface beside the polynomials of its knots. A view: what it names must outlive it.
+// A surface with the polynomials of its knots. A view: the referenced objects must outlive it.
 struct PiecewiseSurface {
   const Surface* surface;
   const PieceBasis* u;
   const PieceBasis* v;
 };
 
-// As evaluate(), position() and unit_normal() of the surface, to rounding.
+// Same as evaluate() and position() of the surface, to rounding.
 SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v);
 Vector3 position(const PiecewiseSurface& surface, double u, double v);
-// At a point that evaluate() gave for u, v.
+// Returns the unit normal of the surface at u, v, given the result of evaluate() there.
 Vector3 unit_normal(const PiecewiseSurface& surface, const SurfacePoint& at, double u, double v);
 
 }  // namespace spoonbill

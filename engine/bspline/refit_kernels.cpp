@@ -4,7 +4,7 @@ namespace spoonbill::SPOONBILL_KERNELS {
 
 namespace {
 
-// So many factors are added to a sum while it stays in a register, for all rows while they stay in the cache.
+// Number of factors added to a sum while it stays in a register, for all rows while they stay in the cache.
 constexpr int unrolled = 8;
 
 using Lanes = float __attribute__((vector_size(4 * product_lanes)));

@@ -1,14 +1,14 @@
-// The matrix product of the refit, compiled once for each instruction set. No standard library and no Eigen
-// in here, for the reason that evaluate_kernels.h gives.
+// Matrix product of the refit, compiled once for each instruction set. This header and its source use no
+// standard library and no Eigen; evaluate_kernels.h explains why.
 #pragma once
 
 namespace spoonbill {
 
-inline constexpr int product_lanes = 16;  // a whole number of them makes a row of b and out
+inline constexpr int product_lanes = 16;  // rows of b and out are multiples of this length
 
-// out (rows x columns) = a (rows x depth) b (depth x columns), all row-major without gaps, b and out on
-// addresses that are multiples of 64 bytes; out must not overlap a or b. Each entry is summed in order of
-// depth, whatever the vector width.
+// Computes out (rows x columns) = a (rows x depth) b (depth x columns). All are row-major without gaps; b and
+// out are at addresses that are multiples of 64 bytes, and out overlaps neither a nor b. Each entry is summed
+// in order of depth, whatever the vector width.
 using MultiplyInOrder = void (*)(const float* a, const float* b, float* out, int rows, int depth,
                                  int columns);
 

@@ -6,18 +6,168 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/assert.h"
+#include "engine/base/text.h"
+
 namespace spoonbill {
 
 namespace {
 
-Surface with_knots(const Surface& surface, Direction direction, KnotVector knots, ControlNet net) {
+using ControlLine = std::vector<double>;  // coordinates of all control points with one index
+
+// A sequence of lines of control points; the support of line i is from knots[i] to knots[i + degree + 1].
+struct Sequence {
+  int degree;
+  std::vector<double> knots;
+  std::vector<ControlLine> lines;
+};
+
+ControlLine mix(const ControlLine& a, const ControlLine& b, double weight_of_b) {
+  ControlLine mixed(a.size());
+  for (std::size_t k = 0; k < a.size(); ++k) mixed[k] = (1.0 - weight_of_b) * a[k] + weight_of_b * b[k];
+  return mixed;
+}
+
+// Inserts a knot once; it must have `degree` knots on either side.
+void insert_once(Sequence& sequence, double knot) {
+  const auto& knots = sequence.knots;
+  const int degree = sequence.degree;
+  const int span = static_cast<int>(std::upper_bound(knots.begin(), knots.end(), knot) - knots.begin()) - 1;
+  std::vector<ControlLine> lines(sequence.lines.begin(), sequence.lines.begin() + span - degree + 1);
+  for (int i = span - degree + 1; i <= span; ++i) {
+    // At a multiple knot, the last of these points have no part of the new knot to blend.
+    const double weight = knots[i] < knot ? (knot - knots[i]) / (knots[i + degree] - knots[i]) : 0.0;
+    if (weight == 0.0) {
+      lines.push_back(sequence.lines[i - 1]);
+    } else {
+      lines.push_back(mix(sequence.lines[i - 1], sequence.lines[i], weight));
+    }
+  }
+  lines.insert(lines.end(), sequence.lines.begin() + span, sequence.lines.end());
+  sequence.lines = std::move(lines);
+  sequence.knots.insert(sequence.knots.begin() + span + 1, knot);
+}
+
+std::vector<double> with_knot(const KnotVector& knots, double knot) {
+  std::vector<double> more = knots.knots();
+  more.insert(std::upper_bound(more.begin(), more.end(), knot), knot);
+  return more;
+}
+
+// Inserts the knot into as many periods as the control points of one period affect, and returns that period.
+// Further periods on either side make every insertion one of an inner knot.
+std::vector<ControlLine> insert_into_periodic(const KnotVector& knots, const std::vector<ControlLine>& lines,
+                                              double knot) {
+  const int degree = knots.degree(), count = knots.control_point_count();
+  const double start = knots.domain_start(), end = knots.domain_end(), period = end - start;
+  const auto in_period = [&](int wrap, double u) {
+    return (wrap < 1 ? start + wrap * period : end + (wrap - 1) * period) + (u - start);
+  };
+  const int reached = (degree + 1) / count + 1;
+  Sequence sequence{degree, {}, {}};
+  for (int wrap = -2 * reached; wrap <= 2 * reached; ++wrap) {
+    for (int i = 0; i < count; ++i) {
+      sequence.knots.push_back(in_period(wrap, knots.knots()[i]));
+      sequence.lines.push_back(lines[i]);
+    }
+  }
+  sequence.lines.resize(sequence.lines.size() - degree - 1);
+  for (int wrap = -reached; wrap <= reached; ++wrap) insert_once(sequence, in_period(wrap, knot));
+  const auto first_of_period = sequence.lines.begin() + 2 * reached * count + reached;
+  return {first_of_period, first_of_period + count + 1};
+}
+
+int count_multiplicity(const KnotVector& knots, double knot) {
+  const auto& all = knots.knots();
+  int multiplicity = static_cast<int>(std::count(all.begin(), all.end(), knot));
+  // The seam is both ends of the period, with one of its knots at each end.
+  if (knots.is_periodic() && knot == all.front()) {
+    multiplicity += static_cast<int>(std::count(all.begin(), all.end(), all.back())) - 1;
+  }
+  return multiplicity;
+}
+
+std::vector<ControlLine> to_lines(const ControlNet& net, Direction direction) {
+  const bool along_u = direction == Direction::u;
+  std::vector<ControlLine> lines(static_cast<std::size_t>(along_u ? net.rows : net.columns));
+  for (int i = 0; i < net.rows; ++i) {
+    for (int j = 0; j < net.columns; ++j) {
+      const std::size_t k = net.index(i, j);
+      ControlLine& line = lines[along_u ? i : j];
+      line.insert(line.end(), {net.x[k], net.y[k], net.z[k]});
+    }
+  }
+  return lines;
+}
+
+ControlNet to_net(const std::vector<ControlLine>& lines, Direction direction) {
+  const int count = static_cast<int>(lines.size()), across = static_cast<int>(lines[0].size() / 3);
+  const bool along_u = direction == Direction::u;
+  ControlNet net(along_u ? count : across, along_u ? across : count);
+  for (int a = 0; a < count; ++a) {
+    for (int b = 0; b < across; ++b) {
+      const double* const point = &lines[a][3 * b];
+      net.set_point(along_u ? a : b, along_u ? b : a, {point[0], point[1], point[2]});
+    }
+  }
+  return net;
+}
+
+Status check_insertion(const KnotVector& knots, double knot, int multiplicity) {
+  if (multiplicity < 1 || multiplicity > knots.degree()) {
+    return Error{ErrorCode::out_of_range,
+                 "multiplicity " + std::to_string(multiplicity) + " of the knot to insert is outside 1 to " +
+                     std::to_string(knots.degree()) + ", the degree; choose one in that range"};
+  }
+  const bool inside =
+      knots.is_periodic() ? std::isfinite(knot) : knot > knots.domain_start() && knot < knots.domain_end();
+  if (!inside) {
+    return Error{ErrorCode::out_of_range, "knot " + number_text(knot) +
+                                              " to insert is not strictly inside the domain " +
+                                              number_text(knots.domain_start()) + " to " +
+                                              number_text(knots.domain_end()) + "; choose one inside"};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Surface> insert_knot(const Surface& surface, Direction direction, double knot, int multiplicity) {
+  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
+  KnotVector knots = direction == Direction::u ? surface.u : surface.v;
+  if (Status status = check_insertion(knots, knot, multiplicity); !status) {
+    return status.error().in(direction_name(direction));
+  }
+  knot = knots.into_domain(knot);
+  std::vector<ControlLine> lines = to_lines(surface.net, direction);
+  while (count_multiplicity(knots, knot) < multiplicity) {
+    if (knots.is_periodic()) {
+      lines = insert_into_periodic(knots, lines, knot);
+    } else {
+      Sequence sequence{knots.degree(), knots.knots(), std::move(lines)};
+      insert_once(sequence, knot);
+      lines = std::move(sequence.lines);
+    }
+    auto finer = knots.is_periodic() ? KnotVector::periodic(knots.degree(), with_knot(knots, knot))
+                                     : KnotVector::open(knots.degree(), with_knot(knots, knot));
+    if (!finer) return finer.error();
+    knots = std::move(finer).value();
+  }
+  ControlNet net = to_net(lines, direction);
+  return direction == Direction::u ? make_surface(std::move(knots), surface.v, std::move(net))
+                                   : make_surface(surface.u, std::move(knots), std::move(net));
+}
+
+namespace {
+
+Surface replace_knots(const Surface& surface, Direction direction, KnotVector knots, ControlNet net) {
   return direction == Direction::u ? Surface{std::move(knots), surface.v, std::move(net)}
                                    : Surface{surface.u, std::move(knots), std::move(net)};
 }
 
-// Line i of the result is line from(i) of the net.
+// Reorders the lines of a net along a direction: line i of the result is line from(i) of the net.
 template <class From>
-ControlNet reordered(const ControlNet& net, Direction direction, const From& from) {
+ControlNet reorder_lines(const ControlNet& net, Direction direction, const From& from) {
   ControlNet result(net.rows, net.columns);
   for (int i = 0; i < net.rows; ++i) {
     for (int j = 0; j < net.columns; ++j) {
@@ -27,13 +177,13 @@ ControlNet reordered(const ControlNet& net, Direction direction, const From& fro
   return result;
 }
 
-// Of the knots of one period, the first that is not before `seam`.
+// Returns the index of the first knot of the period that is not before `seam`.
 int knot_at(const KnotVector& knots, double seam) {
   const auto& all = knots.knots();
   return static_cast<int>(std::lower_bound(all.begin(), all.end() - 1, seam) - all.begin());
 }
 
-Result<KnotVector> rotated(const KnotVector& knots, int first) {
+Result<KnotVector> rotate_knots(const KnotVector& knots, int first) {
   const auto& all = knots.knots();
   const int count = knots.control_point_count();
   const double start = all.front(), end = all.back();
@@ -41,7 +191,7 @@ Result<KnotVector> rotated(const KnotVector& knots, int first) {
   for (int i = 0; i < count; ++i) {
     const int from = (first + i) % count;
     const bool wrapped = first + i >= count;
-    // The seam's first knot stands at the domain's start to the last bit.
+    // The seam's first knot is at the domain's start to the last bit.
     turned.push_back(wrapped ? (all[from] - start) + (end - all[first]) + start
                              : start + (all[from] - all[first]));
   }
@@ -55,11 +205,11 @@ Surface reversed(const Surface& surface, Direction direction) {
   const KnotVector& knots = knots_along(surface, direction);
   const int count = knots.control_point_count(), degree = knots.degree();
   const auto from = [&](int i) {
-    // A basis function starts at its knot and ends degree + 1 knots later; in a period that decides which
-    // one it becomes.
+    // The support of a basis function ends degree + 1 knots after it starts, which determines its mirror
+    // image in a period.
     return knots.is_periodic() ? ((count - 1 - degree - i) % count + count) % count : count - 1 - i;
   };
-  return with_knots(surface, direction, reversed(knots), reordered(surface.net, direction, from));
+  return replace_knots(surface, direction, reversed(knots), reorder_lines(surface.net, direction, from));
 }
 
 Surface exchanged(const Surface& surface) {
@@ -73,34 +223,35 @@ Surface exchanged(const Surface& surface) {
 Result<Surface> with_domain(const Surface& surface, Direction direction, double start, double end) {
   auto knots = with_domain(knots_along(surface, direction), start, end);
   if (!knots) return knots.error();
-  return with_knots(surface, direction, std::move(knots).value(), surface.net);
+  return replace_knots(surface, direction, std::move(knots).value(), surface.net);
 }
 
 Result<Surface> with_seam_at(const Surface& surface, Direction direction, double seam) {
   const KnotVector& knots = knots_along(surface, direction);
   if (!knots.is_periodic() || !std::isfinite(seam)) {
-    return Error{"only a periodic direction has a seam to move, to a finite parameter"};
+    return Error{ErrorCode::unsupported,
+                 "only a periodic direction has a seam to move, to a finite parameter"};
   }
   const double length = knots.domain_end() - knots.domain_start();
   double at = knots.into_domain(seam);
   for (const double knot : knots.breakpoints()) {
-    if (std::abs(knot - at) <= same_knot_share * length) at = knots.into_domain(knot);
+    if (std::abs(knot - at) <= same_knot_fraction * length) at = knots.into_domain(knot);
   }
   auto cut = insert_knot(surface, direction, at, 1);
   if (!cut) return cut.error();
   const KnotVector& finer = knots_along(cut.value(), direction);
   const int first = knot_at(finer, at), count = finer.control_point_count();
   if (first % count == 0) return cut;
-  auto turned = rotated(finer, first);
+  auto turned = rotate_knots(finer, first);
   if (!turned) return turned.error();
-  return with_knots(cut.value(), direction, std::move(turned).value(),
-                    reordered(cut->net, direction, [&](int i) { return (first + i) % count; }));
+  return replace_knots(cut.value(), direction, std::move(turned).value(),
+                       reorder_lines(cut->net, direction, [&](int i) { return (first + i) % count; }));
 }
 
 Result<Surface> part_of(const Surface& surface, Direction direction, double start, double end) {
   const auto part = clamped_part(knots_along(surface, direction), start, end);
   if (!part) return part.error();
-  return over_finer_knots(surface, direction, part.value());
+  return convert_to_finer_knots(surface, direction, part.value());
 }
 
 }  // namespace spoonbill

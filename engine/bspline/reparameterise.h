@@ -1,27 +1,33 @@
-// The same surface run through otherwise: backwards, with u and v exchanged, from another seam, over another
-// domain. Exact; pure functions, any thread.
+// Exact changes of a surface's parameters: knot insertion, reversal, exchange of u and v, another seam,
+// another domain, a part. Pure functions; any thread may call them.
 #pragma once
 
+#include "engine/base/result.h"
 #include "engine/bspline/change_knots.h"
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {
 
-// Run through from the end to the start. Turns the normals.
+// Inserts `knot` until it has the given multiplicity (1..degree) in that direction; does nothing if it
+// already has (Boehm 1980). The knot must be strictly inside the domain, or anywhere in the period of a
+// periodic direction.
+Result<Surface> insert_knot(const Surface& surface, Direction direction, double knot, int multiplicity);
+
+// Returns the surface with a direction reversed; its normals are flipped.
 Surface reversed(const Surface& surface, Direction direction);
 
-// u becomes v and v becomes u. Turns the normals.
+// Returns the surface with u and v exchanged; its normals are flipped.
 Surface exchanged(const Surface& surface);
 
-// Over the domain [start, end]. Refused unless start < end, both finite.
+// Returns the surface over the domain [start, end]. Refuses unless start < end, both finite.
 Result<Surface> with_domain(const Surface& surface, Direction direction, double start, double end);
 
-// A periodic direction's period starts where it had the parameter `seam` (wrapped into the domain), and keeps
-// its domain. A knot is inserted there where none stands. Refused for an open direction.
+// Returns the surface with the seam of a periodic direction at the parameter `seam` (wrapped into the
+// domain); the domain stays the same. A knot is inserted there if there is none. Refuses an open direction.
 Result<Surface> with_seam_at(const Surface& surface, Direction direction, double seam);
 
-// From `start` to `end`, clamped; of a periodic direction also across its seam, where `end` is at most one
-// period beyond `start`. Refused: a part that is empty or outside the domain.
+// Returns the clamped part from `start` to `end`. In a periodic direction it may cross the seam, with `end`
+// at most one period beyond `start`. Refuses an empty part and one outside the domain.
 Result<Surface> part_of(const Surface& surface, Direction direction, double start, double end);
 
 }  // namespace spoonbill

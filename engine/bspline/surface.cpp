@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/bspline/basis.h"
-#include "engine/bspline/unit_normal.h"
 
 namespace spoonbill {
 
@@ -16,16 +16,18 @@ namespace {
 
 Status check_coordinates(const ControlNet& net, const std::vector<double>& values, char coordinate) {
   if (values.size() != net.size()) {
-    return Error{std::string("control points: ") + std::to_string(values.size()) + " " + coordinate +
-                 " coordinates for a net of " + std::to_string(net.rows) + " x " +
-                 std::to_string(net.columns) + "; give " + std::to_string(net.size())};
+    return Error{ErrorCode::mismatch, std::string("control points: ") + std::to_string(values.size()) + " " +
+                                          coordinate + " coordinates for a net of " +
+                                          std::to_string(net.rows) + " x " + std::to_string(net.columns) +
+                                          "; give " + std::to_string(net.size())};
   }
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (!std::isfinite(values[k])) {
       const std::size_t columns = static_cast<std::size_t>(net.columns);
-      return Error{"control point (" + std::to_string(k / columns) + ", " + std::to_string(k % columns) +
-                   "): " + coordinate + " (" + number_text(values[k]) +
-                   ") is not a finite number; replace it"};
+      return Error{ErrorCode::out_of_range, "control point (" + std::to_string(k / columns) + ", " +
+                                                std::to_string(k % columns) + "): " + coordinate + " (" +
+                                                number_text(values[k]) +
+                                                ") is not a finite number; replace it"};
     }
   }
   return {};
@@ -33,7 +35,7 @@ Status check_coordinates(const ControlNet& net, const std::vector<double>& value
 
 }  // namespace
 
-Box box_of(const ControlNet& net) {
+Box bounding_box(const ControlNet& net) {
   Box box;
   for (std::size_t k = 0; k < net.size(); ++k) box.include({net.x[k], net.y[k], net.z[k]});
   return box;
@@ -41,9 +43,10 @@ Box box_of(const ControlNet& net) {
 
 Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net) {
   if (net.rows != u.control_point_count() || net.columns != v.control_point_count()) {
-    return Error{"control net of " + std::to_string(net.rows) + " x " + std::to_string(net.columns) +
-                 " does not fit the knots, which ask for " + std::to_string(u.control_point_count()) + " x " +
-                 std::to_string(v.control_point_count()) + "; change the net or the knots"};
+    return Error{ErrorCode::mismatch,
+                 "control net of " + std::to_string(net.rows) + " x " + std::to_string(net.columns) +
+                     " does not fit the knots, which require " + std::to_string(u.control_point_count()) +
+                     " x " + std::to_string(v.control_point_count()) + "; change the net or the knots"};
   }
   if (Status status = check_coordinates(net, net.x, 'x'); !status) return status.error();
   if (Status status = check_coordinates(net, net.y, 'y'); !status) return status.error();
@@ -51,7 +54,7 @@ Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net) {
   return Surface{std::move(u), std::move(v), std::move(net)};
 }
 
-bool has_size_of_knots(const Surface& surface) {
+bool has_matching_net(const Surface& surface) {
   const ControlNet& net = surface.net;
   return net.rows > 0 && net.rows == surface.u.control_point_count() &&
          net.columns == surface.v.control_point_count() && net.x.size() == net.size() &&
@@ -60,13 +63,17 @@ bool has_size_of_knots(const Surface& surface) {
 
 bool is_valid(const Surface& surface) {
   const auto is_finite = [](double value) { return std::isfinite(value); };
-  return has_size_of_knots(surface) && std::all_of(surface.net.x.begin(), surface.net.x.end(), is_finite) &&
+  return has_matching_net(surface) && std::all_of(surface.net.x.begin(), surface.net.x.end(), is_finite) &&
          std::all_of(surface.net.y.begin(), surface.net.y.end(), is_finite) &&
          std::all_of(surface.net.z.begin(), surface.net.z.end(), is_finite);
 }
 
+const KnotVector& knots_along(const Surface& surface, Direction direction) {
+  return direction == Direction::u ? surface.u : surface.v;
+}
+
 Surface placed(Surface surface, const Pose& pose) {
-  SPOONBILL_ASSERT(has_size_of_knots(surface));
+  SPOONBILL_ASSERT(has_matching_net(surface));
   place(surface.net, pose.orientation.toRotationMatrix(), pose.position_m, surface.net);
   return surface;
 }
@@ -83,7 +90,7 @@ void place(const ControlNet& net, const Eigen::Matrix3d& turn, const Vector3& po
 }
 
 SurfacePoint evaluate(const Surface& surface, double u, double v) {
-  SPOONBILL_ASSERT_DEBUG(has_size_of_knots(surface));
+  SPOONBILL_ASSERT_DEBUG(has_matching_net(surface));
   const BasisFunctions bu = basis_functions(surface.u, surface.u.into_domain(u));
   const BasisFunctions bv = basis_functions(surface.v, surface.v.into_domain(v));
   SurfacePoint point{Vector3::Zero(), Vector3::Zero(), Vector3::Zero(),
@@ -108,8 +115,8 @@ SurfacePoint evaluate(const Surface& surface, double u, double v) {
 }
 
 Vector3 position(const Surface& surface, double u, double v) {
-  SPOONBILL_ASSERT_DEBUG(has_size_of_knots(surface));
-  // Only values[0] is ever read.
+  SPOONBILL_ASSERT_DEBUG(has_matching_net(surface));
+  // Only values[0] is set and read.
   BasisFunctions bu, bv;
   basis_values(surface.u, surface.u.into_domain(u), bu);
   basis_values(surface.v, surface.v.into_domain(v), bv);
@@ -128,11 +135,150 @@ Vector3 position(const Surface& surface, double u, double v) {
 }
 
 Vector3 unit_normal(const Surface& surface, double u, double v) {
-  SPOONBILL_ASSERT_DEBUG(has_size_of_knots(surface));
+  SPOONBILL_ASSERT_DEBUG(has_matching_net(surface));
   return unit_normal(
       surface.u, surface.v,
       NetView<double>{surface.net.x.data(), surface.net.y.data(), surface.net.z.data(), surface.net.columns},
       u, v);
+}
+
+namespace {
+
+// Smallest usable ratio of |du x dv| to the largest value that the control points in reach allow. A smaller
+// product is rounding noise of the coordinates themselves.
+template <class Real>
+constexpr double noise = 16.0 * std::numeric_limits<Real>::epsilon();
+
+// Distance in domain lengths within which the product must grow beyond its own size for an edge to count as
+// collapsed. A ring of control points that a refit in single precision has moved together coincides only to
+// about 1e-7, and the normal of the remaining hole would be arbitrary.
+constexpr double hole = 1e-6;
+
+// Distances in domain lengths of neighbours that replace a sample whose first-order limit vanishes too.
+constexpr double steps_inside[] = {0x1p-14, 0x1p-10, 0x1p-6};
+
+// Derivatives with respect to parameters over a domain of length 1, and the bound that they are compared
+// with.
+struct LimitTangents {
+  Vector3 du = Vector3::Zero(), dv = Vector3::Zero();
+  Vector3 duu = Vector3::Zero(), duv = Vector3::Zero(), dvv = Vector3::Zero();
+  double product_bound = 0.0;
+};
+
+double absolute_sum(const BasisFunctions& basis, int degree, double length) {
+  double sum = 0.0;
+  for (int j = 0; j <= degree; ++j) sum += std::abs(basis.values[1][j]);
+  return sum * length;
+}
+
+template <class Real>
+LimitTangents tangents_at(const KnotVector& u_knots, const KnotVector& v_knots, const NetView<Real>& net,
+                          double u, double v) {
+  const BasisFunctions bu = basis_functions(u_knots, u), bv = basis_functions(v_knots, v);
+  const auto control = [&](int i, int j) {
+    const int index = u_knots.control_index(bu.span, i) * net.columns + v_knots.control_index(bv.span, j);
+    return Vector3(net.x[index], net.y[index], net.z[index]);
+  };
+  // Offsets from one control point, so that a distant origin adds no rounding noise.
+  const Vector3 origin = control(0, 0);
+  LimitTangents tangents;
+  double reach = 0.0;
+  for (int i = 0; i <= u_knots.degree(); ++i) {
+    Vector3 value = Vector3::Zero(), dv = Vector3::Zero(), dvv = Vector3::Zero();
+    for (int j = 0; j <= v_knots.degree(); ++j) {
+      const Vector3 offset = control(i, j) - origin;
+      reach = std::max(reach, offset.norm());
+      value += bv.values[0][j] * offset;
+      dv += bv.values[1][j] * offset;
+      dvv += bv.values[2][j] * offset;
+    }
+    tangents.du += bu.values[1][i] * value;
+    tangents.duu += bu.values[2][i] * value;
+    tangents.dv += bu.values[0][i] * dv;
+    tangents.duv += bu.values[1][i] * dv;
+    tangents.dvv += bu.values[0][i] * dvv;
+  }
+  const double u_length = u_knots.domain_length(), v_length = v_knots.domain_length();
+  tangents.du *= u_length;
+  tangents.dv *= v_length;
+  tangents.duu *= u_length * u_length;
+  tangents.duv *= u_length * v_length;
+  tangents.dvv *= v_length * v_length;
+  tangents.product_bound = reach * reach * absolute_sum(bu, u_knots.degree(), u_length) *
+                           absolute_sum(bv, v_knots.degree(), v_length);
+  return tangents;
+}
+
+Vector3 normalize_product(const Vector3& product) {
+  return product / product.norm();
+}
+
+bool exceeds(const Vector3& product, double threshold) {
+  const double length = product.norm();
+  return length > threshold && std::isfinite(length);
+}
+
+// Returns +1 at the start of an open domain, where inside means greater parameters, -1 at its end, and 0
+// elsewhere.
+int inward(const KnotVector& knots, double u) {
+  if (knots.is_periodic()) return 0;
+  return u <= knots.domain_start() ? 1 : u >= knots.domain_end() ? -1 : 0;
+}
+
+// Growth of du x dv per domain length, from the edge into the surface; zero away from edges.
+struct Growth {
+  Vector3 by_u = Vector3::Zero(), by_v = Vector3::Zero();
+};
+
+Growth growth_from_edge(const LimitTangents& t, int inward_u, int inward_v) {
+  return {inward_u * (t.duu.cross(t.dv) + t.du.cross(t.duv)),
+          inward_v * (t.duv.cross(t.dv) + t.du.cross(t.dvv))};
+}
+
+// Returns u moved toward the midpoint of the domain, so that it stays inside.
+double step_from(const KnotVector& knots, double u, double step) {
+  const double length = knots.domain_length();
+  return u + (u - knots.domain_start() < 0.5 * length ? step : -step) * length;
+}
+
+}  // namespace
+
+template <class Real>
+Vector3 unit_normal(const KnotVector& u_knots, const KnotVector& v_knots, const NetView<Real>& net, double u,
+                    double v) {
+  u = u_knots.into_domain(u);
+  v = v_knots.into_domain(v);
+  const LimitTangents here = tangents_at(u_knots, v_knots, net, u, v);
+  const Vector3 product = here.du.cross(here.dv);
+  const Growth growth = growth_from_edge(here, inward(u_knots, u), inward(v_knots, v));
+  const double threshold = noise<Real> * here.product_bound;
+  if (exceeds(product, std::max({threshold, hole * growth.by_u.norm(), hole * growth.by_v.norm()}))) {
+    return normalize_product(product);
+  }
+  if (exceeds(growth.by_v, threshold)) return normalize_product(growth.by_v);
+  if (exceeds(growth.by_u, threshold)) return normalize_product(growth.by_u);
+
+  for (const double step : steps_inside) {
+    const double u_inside = step_from(u_knots, u, step), v_inside = step_from(v_knots, v, step);
+    const double neighbours[][2] = {{u, v_inside}, {u_inside, v}, {u_inside, v_inside}};
+    for (const auto& [nu, nv] : neighbours) {
+      const LimitTangents there = tangents_at(u_knots, v_knots, net, nu, nv);
+      const Vector3 product_there = there.du.cross(there.dv);
+      if (exceeds(product_there, noise<Real> * there.product_bound)) return normalize_product(product_there);
+    }
+  }
+  return Vector3::Zero();
+}
+
+template Vector3 unit_normal(const KnotVector&, const KnotVector&, const NetView<float>&, double, double);
+template Vector3 unit_normal(const KnotVector&, const KnotVector&, const NetView<double>&, double, double);
+
+double stretch_bound_m(const Surface& surface) {
+  SPOONBILL_ASSERT(has_matching_net(surface));
+  const ControlNet& net = surface.net;
+  const ControlLines<double> in_u{net.x.data(), net.y.data(), net.z.data(), net.columns, net.columns, 1};
+  const ControlLines<double> in_v{net.x.data(), net.y.data(), net.z.data(), 1, net.rows, net.columns};
+  return std::hypot(DerivativeBound(surface.u).longest(in_u), DerivativeBound(surface.v).longest(in_v));
 }
 
 }  // namespace spoonbill

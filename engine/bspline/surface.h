@@ -1,17 +1,37 @@
-// A B-spline surface: a knot vector for u, one for v, and a control net (Eq. 1 of Pungotra et al. 2013).
+// B-spline surfaces: a knot vector for u, one for v and a control net (Eq. 1 of Pungotra et al. 2013).
 #pragma once
 
 #include <vector>
 
-#include "engine/base/box.h"
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/bspline/knot_vector.h"
 
 namespace spoonbill {
 
-// The r x s control points in metres as a structure of arrays; point (i, j) lies at index i * columns + j,
-// i along u.
+// Coordinates of a control net in metres, of either precision, in the order of ControlNet. A view: does not
+// own them.
+template <class Real>
+struct NetView {
+  const Real* x;
+  const Real* y;
+  const Real* z;
+  int columns;
+};
+
+// Returns the unit normal as unit_normal(Surface) does, computed in double. u, v are wrapped or clamped into
+// the domain. Does not allocate.
+template <class Real>
+Vector3 unit_normal(const KnotVector& u_knots, const KnotVector& v_knots, const NetView<Real>& net, double u,
+                    double v);
+
+extern template Vector3 unit_normal(const KnotVector&, const KnotVector&, const NetView<float>&, double,
+                                    double);
+extern template Vector3 unit_normal(const KnotVector&, const KnotVector&, const NetView<double>&, double,
+                                    double);
+
+// The rows x columns control points in metres as a structure of arrays. Point (i, j) has the index i *
+// columns + j; i runs along u.
 struct ControlNet {
   int rows = 0;
   int columns = 0;
@@ -33,43 +53,55 @@ struct ControlNet {
   }
 };
 
-// Returns the box about the control points, in which the surface is as well.
-Box box_of(const ControlNet& net);
+// Returns the box around the control points, which also contains the surface.
+Box bounding_box(const ControlNet& net);
 
-// A plain value with one owner. `net` may be changed in place; its size must stay what the knots ask for.
+// A surface, a plain value with one owner. `net` may be changed in place, but its size must stay what the
+// knots require.
 struct Surface {
   KnotVector u;
   KnotVector v;
   ControlNet net;
 };
 
-// Whether the net has the size that the knots ask for, and whether its coordinates are finite besides.
-bool has_size_of_knots(const Surface& surface);
+// Returns whether the net has the size that the knots require.
+bool has_matching_net(const Surface& surface);
+// Returns whether the net also has finite coordinates throughout.
 bool is_valid(const Surface& surface);
 
-// Refused: a net whose size differs from the knots' control point counts, non-finite coordinates.
+// Returns the knot vector of a direction.
+const KnotVector& knots_along(const Surface& surface, Direction direction);
+
+// Makes a surface. Refuses a net whose size differs from the knots' control point counts, and non-finite
+// coordinates.
 Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net);
 
-// The surface as a rigid thing at a pose; at the identity, as it was.
+// Returns the surface moved rigidly by a pose.
 Surface placed(Surface surface, const Pose& pose);
-// The same of its control net, over one of the same structure: turned, perhaps mirrored too, then moved.
+// Writes the control points of `net`, rotated or reflected by `turn` and then moved, to a net of the same
+// size.
 void place(const ControlNet& net, const Eigen::Matrix3d& turn, const Vector3& position_m, ControlNet& placed);
 
-// One point of a surface with its derivatives by the parameters, in double.
+// A point of a surface and its derivatives with respect to the parameters, in metres.
 struct SurfacePoint {
   Vector3 position_m;
   Vector3 du, dv;
   Vector3 duu, duv, dvv;
 };
 
-// u, v are wrapped or clamped into the domain. Allocates nothing.
+// Returns the point and its derivatives. u, v are wrapped or clamped into the domain. Does not allocate.
 SurfacePoint evaluate(const Surface& surface, double u, double v);
 
-// The position alone, to the same bits, at two fifths of the cost.
+// Returns the position alone, to the same bits, at two fifths of the cost.
 Vector3 position(const Surface& surface, double u, double v);
 
-// The unit normal along du x dv. At poles and collapsed edges, where that product vanishes, the limit from
-// inside the surface; zero where the surface has no normal at all (a single point or a line).
+// Returns the unit normal along du x dv. At poles and collapsed edges, where that product vanishes, returns
+// the limit from inside the surface; zero where the surface has no normal (a single point or a line).
 Vector3 unit_normal(const Surface& surface, double u, double v);
+
+// Returns a bound in metres of how far a surface point moves for a parameter step of the length of the
+// domain. A step of fractions a and b of the domain along u and v moves a point by at most hypot(a, b) times
+// the bound.
+double stretch_bound_m(const Surface& surface);
 
 }  // namespace spoonbill

@@ -1,65 +1,79 @@
-// A closed B-spline curve over the parameters (u, v) of a surface. It bounds the part that is kept: what lies
-// to its left, seen with u to the right and v up, so that an outer loop runs counter-clockwise and that of a
-// hole clockwise. Parameters, not metres. Values and pure functions outside the tick; any thread.
+// Trim loops: closed B-spline curves over the parameters (u, v) of a surface that bound its remaining part.
+// Parameters, not metres. Values and pure functions outside the tick; any thread may use them.
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
-#include "engine/bspline/knot_insertion.h"
 #include "engine/bspline/knot_vector.h"
+#include "engine/bspline/surface.h"
 
 namespace spoonbill {
 
-// Open knots whose curve ends where it starts, or periodic ones; a polygon is of degree 1. In a periodic
-// direction of the surface a loop may cross the seam: it then leaves the domain, by a period at most.
+// Two crossing edges: the polygons that they belong to, possibly the same, and a point near the crossing.
+struct PolygonCrossing {
+  std::size_t first = 0, second = 0;  // first <= second
+  Eigen::Vector2d near;
+};
+
+// Returns a pair of crossing edges of the polygons, if any. Edges that only touch, within `tolerance` (above
+// 0) along each axis, do not cross. The time grows with the number of edges times the number of their
+// neighbours in x.
+std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen::Vector2d>>& polygons,
+                                             const Eigen::Vector2d& tolerance);
+
+// A closed curve with open knots whose ends meet, or with periodic knots; a polygon has degree 1. The part to
+// its left remains, seen with u to the right and v up: outer loops run counter-clockwise, holes clockwise. In
+// a periodic direction of the surface a loop may cross the seam and then leaves the domain, by a period at
+// most.
 struct TrimLoop {
   KnotVector knots;
-  std::vector<double> u, v;  // a control point each
+  std::vector<double> u, v;  // one for each control point
 
   friend bool operator==(const TrimLoop&, const TrimLoop&) = default;
 };
 
 inline constexpr Range<int> trim_control_point_count_range{2, 10000};
 
-// Shares of the surface's domain: how far a loop may miss its own start or leave the domain by rounding, and
-// how far the polygons that stand for loops may be from them.
-inline constexpr double trim_rounding_share = 1e-6;
-inline constexpr double trim_chord_share = 1e-5;
-// Of all loops of a surface: a perforated sheet of some 300 holes.
+// Fractions of the surface's domain: how far a loop may miss its own start or leave the domain by rounding,
+// and how far the polygon of a loop may be from the loop.
+inline constexpr double trim_rounding_fraction = 1e-6;
+inline constexpr double trim_chord_fraction = 1e-5;
+// Largest number of chords of all loops of a surface, enough for a perforated sheet of some 300 holes.
 inline constexpr std::size_t trim_chord_count_limit = 20000;
 
-// A loop over the domain of a surface with the knot vectors `along_u` and `along_v`. Refused: as many
-// coordinates as the knots do not ask for, a non-finite one, a curve that does not close (one that goes once
-// around a periodic direction is to be led back along the seam), leaves the domain, crosses itself, encloses
-// nothing, or takes more chords than the limit.
+// Makes a loop over the domain of a surface with the knot vectors `along_u` and `along_v`. Refuses a number
+// of coordinates that does not match the knots, non-finite ones, and more chords than the limit. Refuses a
+// curve that is not closed, leaves the domain, crosses itself or encloses nothing. A curve once around a
+// periodic direction must return along the seam.
 Result<TrimLoop> make_trim_loop(const KnotVector& along_u, const KnotVector& along_v, KnotVector knots,
                                 std::vector<double> u, std::vector<double> v);
 
-// The point of the curve at a parameter of its own domain.
+// Returns the point of the curve at a parameter of its own domain.
 Eigen::Vector2d position(const TrimLoop& loop, double parameter);
 
-// The corners of a polygon within trim_chord_share of the loop, each once; none lies outside an open
+// Returns the corners of a polygon within trim_chord_fraction of the loop, each once and none outside an open
 // direction's domain. Every piece of the curve is cut evenly: a chord over the length h of parameter is
 // within h^2 / 8 of the largest second derivative, which the control points of that derivative bound.
-std::vector<Eigen::Vector2d> polygon_of(const TrimLoop& loop, const KnotVector& along_u,
+std::vector<Eigen::Vector2d> to_polygon(const TrimLoop& loop, const KnotVector& along_u,
                                         const KnotVector& along_v);
 
-// In shares of the domain, how far that polygon can be from the loop: 0 for a polygon.
-double polygon_error_share(const TrimLoop& loop, const KnotVector& along_u, const KnotVector& along_v);
+// Returns how far that polygon can be from the loop, in fractions of the domain; 0 for a loop of degree 1.
+double polygon_error_fraction(const TrimLoop& loop, const KnotVector& along_u, const KnotVector& along_v);
 
-// Positive when it runs counter-clockwise; in units of u times v.
+// Returns the signed area in units of u times v, positive for a counter-clockwise polygon.
 double signed_area(const std::vector<Eigen::Vector2d>& polygon);
 
-// The loop of the same part of a surface that is run through otherwise, as reparameterise.h does it:
-// `knots` are those of the direction before.
+// Returns the loop of the same part of a surface after the change of the same name in reparameterise.h;
+// `knots` are those of the direction before the change.
 TrimLoop reversed(const TrimLoop& loop, Direction direction, const KnotVector& knots);
 TrimLoop exchanged(const TrimLoop& loop);
 TrimLoop with_domain(const TrimLoop& loop, Direction direction, const KnotVector& knots, double start,
                      double end);
-// Of a periodic direction.
+// Returns the loop after with_seam_at() of the surface; the direction must be periodic.
 TrimLoop with_seam_at(const TrimLoop& loop, Direction direction, const KnotVector& knots, double seam);
 
 }  // namespace spoonbill

@@ -1,65 +1,151 @@
-// The part of a surface's domain that its trim loops keep, made ready to be asked about points.
+// Trimmed areas: the part of a surface's domain that remains inside its trim loops, prepared for point
+// queries, and the grid cells and triangles of that part. Functions are pure, outside the tick; any thread
+// may call them.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
+#include "engine/bspline/grid.h"
 #include "engine/bspline/knot_vector.h"
+#include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
 
 namespace spoonbill {
 
 inline constexpr Range<int> trim_loop_count_range{0, 1000};
 
-// Immutable once made; any thread may ask. Knows nothing of control points, so that it holds while the
-// surface deforms. Of u and v it keeps the domains alone.
+// A trimmed area. Immutable once made; any thread may query it. It depends on the domains of u and v, not on
+// control points, and stays valid while the surface deforms.
 class TrimmedArea {
  public:
-  // Without loops, all of any domain.
+  // Constructs the whole of any domain.
   TrimmedArea() = default;
 
-  // Of loops of make_trim_loop. Refused: too many loops or chords, loops that cross each other, loops that do
-  // not agree on what they keep, such as a hole that runs counter-clockwise, loops upon each other, and loops
-  // that keep nothing.
+  // Makes the area of loops made by make_trim_loop(). Refuses too many loops or chords, loops that cross or
+  // coincide, loops that disagree on the remaining part (such as a counter-clockwise hole), and loops that
+  // leave nothing.
   static Result<TrimmedArea> make(const KnotVector& along_u, const KnotVector& along_v,
                                   const std::vector<TrimLoop>& loops);
 
   bool is_whole() const { return edges_.empty(); }
 
-  // Whether the surface is there: by how often the loops wind around the point. u, v are wrapped or clamped
-  // into the domain; its ends belong to what lies beside them. On a loop the answer is either. Allocates
-  // nothing.
+  // Returns whether the point remains, by the winding number of the loops. u, v are wrapped or clamped into
+  // the domain, whose ends belong to the adjacent inside. On a loop the result is undefined. Does not
+  // allocate.
   bool contains(double u, double v) const;
 
-  // The share of the domain that is kept: above 0, at most 1.
-  double kept_share() const { return kept_share_; }
+  // Returns the remaining fraction of the domain, above 0 and at most 1.
+  double remaining_fraction() const { return remaining_fraction_; }
 
-  // Polygons within trim_chord_share of the loops, edge by edge, what is kept on the left. Across a seam they
-  // continue outside the domain, and once more on its other side.
+  // An edge of a polygon within trim_chord_fraction of a loop, with the remaining part on its left. Polygons
+  // that cross a seam continue outside the domain and occur again on the other side.
   struct Edge {
     Eigen::Vector2d from, to;
   };
   const std::vector<Edge>& edges() const { return edges_; }
 
  private:
-  Status place(const std::vector<std::vector<Eigen::Vector2d>>& polygons);
-  Status take_level(const std::vector<std::vector<Eigen::Vector2d>>& polygons);
-  int level_of(const std::vector<Eigen::Vector2d>& polygon) const;
-  std::map<int, int> windings_beside(const std::vector<Eigen::Vector2d>& polygon, double share) const;
+  Status add_edges(const std::vector<std::vector<Eigen::Vector2d>>& polygons);
+  Status compute_level(const std::vector<std::vector<Eigen::Vector2d>>& polygons);
+  int find_level(const std::vector<Eigen::Vector2d>& polygon) const;
+  std::map<int, int> windings_beside(const std::vector<Eigen::Vector2d>& polygon, double offset) const;
   int winding(double u, double v) const;
-  std::size_t column_of(double u) const;
+  std::size_t find_column(double u) const;
   bool fill_columns(std::size_t columns);
 
   KnotVector along_u_, along_v_;
   std::vector<Edge> edges_;
-  int level_ = 0;  // added to the winding number, so that 1 and more is kept
-  double kept_share_ = 1.0;
-  // The domain lies in equal columns of u. What may cross a vertical line in column c: column_edges_ from
+  int level_ = 0;  // added to the winding number, so that 1 and more remains
+  double remaining_fraction_ = 1.0;
+  // Edges by equal columns of u: those that may cross a vertical line in column c are column_edges_ from
   // column_starts_[c] to column_starts_[c + 1].
   std::vector<std::size_t> column_starts_, column_edges_;
 };
+
+// The grid lines of one direction that bound its cells, the ends of the domain included. Where a periodic
+// direction omits the seam's second line, its last cells end at the first line.
+class GridLines {
+ public:
+  // The parameters must include both ends of an open direction.
+  explicit GridLines(const GridDirection& direction);
+
+  int cells() const { return static_cast<int>(at_.size()) - 1; }
+  int samples() const { return samples_; }
+  double at(int line) const { return at_[static_cast<std::size_t>(line)]; }
+  const std::vector<double>& all() const { return at_; }
+
+  // Returns the parameter, moved onto a line that is nearer than a billionth of the domain, so that no sliver
+  // is cut off.
+  double snap(double parameter) const;
+  // Returns the cell of a parameter, clamped to the domain; of a line, the cell after it.
+  int find_cell(double parameter) const;
+  // Returns the line exactly at a parameter, or -1.
+  int find_line(double parameter) const;
+  // Returns the same value for both sides of a seam whose second line is omitted, otherwise the parameter.
+  double merge_seam(double parameter) const;
+
+ private:
+  std::vector<double> at_;
+  int samples_ = 0;
+  double snap_ = 0.0;
+};
+
+// State of each cell of a grid on a trimmed area, and the edges in cut cells. Immutable once made; any thread
+// may read it.
+class TrimmedCells {
+ public:
+  // A cell outside the area, cut by its edges, or inside.
+  enum class State : std::uint8_t { away, cut, kept };
+
+  TrimmedCells(const GridLines& u, const GridLines& v, const TrimmedArea& area);
+
+  State state(int i, int j) const { return states_[index(i, j)]; }
+  // Returns the parts of edges in a cut cell, in grid order. An edge along a grid line cuts no cell.
+  std::span<const TrimmedArea::Edge> edges(int i, int j) const {
+    const std::size_t cell = index(i, j);
+    return std::span(edges_).subspan(starts_[cell], starts_[cell + 1] - starts_[cell]);
+  }
+
+ private:
+  std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(j);
+  }
+
+  int columns_ = 0;
+  std::vector<State> states_;
+  std::vector<std::size_t> starts_;
+  std::vector<TrimmedArea::Edge> edges_;
+};
+
+// A vertex between the grid's samples. Interpolated bilinearly among the corners of its cell it is on the
+// chords of that cell, so that neighbouring triangles meet without a gap.
+struct CutVertex {
+  double u = 0.0, v = 0.0;
+  std::array<std::uint32_t, 4> corners{};  // samples of the grid, counter-clockwise from the lowest u and v
+  std::array<double, 4> weights{};         // their sum is 1
+};
+
+// Triangles of a trimmed grid.
+struct TrimmedGrid {
+  std::vector<CutVertex> vertices;  // numbered after the grid's samples
+  // Counter-clockwise with u to the right and v up. No vertex is inside another triangle's side.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+// Cuts a grid along the trims; sample (i, j) has the number i * columns + j. A periodic direction may omit
+// the seam's second line; its last cells then end at the first line. The parameters must include both ends of
+// an open direction.
+TrimmedGrid trim_grid(const GridDirection& u, const GridDirection& v, const TrimmedArea& area);
+
+// Returns the remaining fraction of a surface's area by triangles of eight cells for each polynomial piece,
+// accurate to about the square of a chord.
+double remaining_area_fraction(const Surface& surface, const TrimmedArea& area);
 
 }  // namespace spoonbill

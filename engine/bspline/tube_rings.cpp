@@ -8,14 +8,13 @@
 #include <numbers>
 
 #include "engine/base/assert.h"
-#include "engine/bspline/share_table.h"
 
 namespace spoonbill {
 namespace {
 
 constexpr int along_samples = 400;
-// Of the largest perimeter nearby.
-constexpr double rim_share = 0.85;
+// Fraction of the largest perimeter nearby that a rim has.
+constexpr double rim_fraction = 0.85;
 
 std::size_t near_rim(const Profile& profile, bool from_end) {
   const auto station = [&](std::size_t s) { return from_end ? profile.v.size() - 1 - s : s; };
@@ -26,18 +25,18 @@ std::size_t near_rim(const Profile& profile, bool from_end) {
     largest = std::max(largest, profile.perimeter[station(s)]);
   }
   std::size_t s = 0;
-  while (profile.perimeter[station(s)] < rim_share * largest) ++s;
+  while (profile.perimeter[station(s)] < rim_fraction * largest) ++s;
   return station(s);
 }
 
-// Of the length: a hollow end lies within this of its pole, with all of what stands out around it.
-constexpr double end_share = 0.4;
+// Fraction of the length within which a hollow end is, with everything that protrudes around it.
+constexpr double end_fraction = 0.4;
 
 std::size_t shoulder(const Profile& profile, bool from_end) {
   const std::size_t count = profile.v.size();
   const auto station = [&](std::size_t s) { return from_end ? count - 1 - s : s; };
   const auto centre = [&](std::size_t s) -> const Vector3& { return profile.centre[station(s)]; };
-  const double pole = profile.distance[station(0)], near = end_share * profile.distance.back();
+  const double pole = profile.distance[station(0)], near = end_fraction * profile.distance.back();
   std::size_t inner = 0;
   while (inner + 1 < count && std::abs(profile.distance[station(inner)] - pole) < near) ++inner;
   const Vector3 inward = (centre(inner) - centre(0)).normalized();
@@ -53,15 +52,15 @@ std::size_t shoulder(const Profile& profile, bool from_end) {
   return station(s);
 }
 
-// Of half the width: an axis through the middle of a section that is not bent meets it at its ends.
-constexpr double bent_share = 0.9;
+// Fraction of half the width at which an axis through the centre crosses a section that is not bent.
+constexpr double bent_fraction = 0.9;
 
-// The ring's points that lie farthest along e1 and against it.
+// The ring's points farthest along e1 and against it.
 struct Tips {
   int high = 0, low = 0;
 };
 
-Tips tips_of(const Ring& ring, const Vector3& e1) {
+Tips find_tips(const Ring& ring, const Vector3& e1) {
   Tips tips;
   for (int s = 0; s < ring_samples; ++s) {
     if (e1.dot(ring.points[s] - ring.points[tips.high]) > 0.0) tips.high = s;
@@ -70,10 +69,10 @@ Tips tips_of(const Ring& ring, const Vector3& e1) {
   return tips;
 }
 
-// A bent section, as of a spoon's bowl, has its middle beside it or near one side, and the wide axis through
-// the middle leaves it before its ends.
+// Returns whether the wide axis through the centre leaves the section before its ends, as in a spoon's bowl,
+// whose centre is beside the section or near one side.
 bool is_bent(const Ring& ring, const Vector3& e1, const Vector3& e2) {
-  const Tips tips = tips_of(ring, e1);
+  const Tips tips = find_tips(ring, e1);
   const auto reach = [&](int s) { return e1.dot(ring.points[s] - ring.centre); };
   int crossings = 0;
   bool at_ends = true;
@@ -83,15 +82,14 @@ bool is_bent(const Ring& ring, const Vector3& e1, const Vector3& e2) {
     if ((a < 0.0) == (b < 0.0)) continue;
     ++crossings;
     const double farthest = reach(s) > 0.0 ? reach(tips.high) : reach(tips.low);
-    at_ends = at_ends && reach(s) / farthest > bent_share;
+    at_ends = at_ends && reach(s) / farthest > bent_fraction;
   }
   return crossings > 0 && !(crossings == 2 && at_ends);
 }
 
-// Along the section and across it, where it is bent: from the sides' points at equal shares of the way from
-// tip to tip.
+// Measures a bent section along and across, from points at equal fractions of both sides from tip to tip.
 void measure_bent(const Ring& ring, CrossSection& section) {
-  const Tips tips = tips_of(ring, section.e1);
+  const Tips tips = find_tips(ring, section.e1);
   const auto samples = [](int from, int to) { return (to - from + ring_samples) % ring_samples; };
   const int upper = samples(tips.high, tips.low), lower = ring_samples - upper;
   constexpr int stations = 32;
@@ -109,10 +107,10 @@ void measure_bent(const Ring& ring, CrossSection& section) {
 }
 
 // The ring's arc length as a table to u (unwrapped past the seam), and the arc lengths at which the ring
-// crosses +e1, +e2, -e1, -e2 and +e1 again. Found by signs alone: no library function whose bits differ among
-// processors.
+// crosses +e1, +e2, -e1, -e2 and +e1. Crossings are found by signs alone: some library functions differ in
+// bits among processors.
 struct RingArc {
-  ShareTable arc_to_u;
+  LinearTable arc_to_u;
   std::array<double, 5> crossing{};
   double perimeter = 0.0;
 };
@@ -121,7 +119,7 @@ RingArc ring_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   const auto point = [&](int s) -> const Vector3& {
     return ring.points[static_cast<std::size_t>(s % ring_samples)];
   };
-  // Positive after the crossing number q, negative before it.
+  // Returns a value that is negative before crossing q and not negative after it.
   const auto side = [&](int q, int s) {
     const Vector3 axes[4] = {section.e2, -section.e1, -section.e2, section.e1};
     return axes[q % 4].dot(point(s) - ring.centre);
@@ -145,10 +143,10 @@ RingArc ring_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   return result;
 }
 
-// The same of a bent section: its tips stand for the crossings of the wide axis, the middles of its sides
-// between them for those of the narrow one.
+// Computes the arc of a bent section: its tips replace the crossings of the wide axis, the midpoints of its
+// sides those of the narrow axis.
 RingArc bent_arc(const Surface& surface, const Ring& ring, const CrossSection& section) {
-  const Tips tips = tips_of(ring, section.e1);
+  const Tips tips = find_tips(ring, section.e1);
   RingArc result;
   double arc = 0.0;
   for (int s = tips.high; s <= tips.high + 2 * ring_samples; ++s) {
@@ -164,32 +162,31 @@ RingArc bent_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   return result;
 }
 
-// Of the larger one, how far apart the spreads along both axes of a section may be for its axes to mean
-// nothing.
+// Relative difference of the spreads along both axes below which the axes are arbitrary.
 constexpr double nearly_alike = 1e-3;
-// Of the fourth moment about the middle, from where on it tells corners from the ripple of a round ring.
-constexpr double least_squareness = 0.02;
+// Fraction of the fourth moment above which a ring has corners, not just the ripple of a round ring.
+constexpr double min_squareness = 0.02;
 
-// Of a square section any axes are principal ones. Its corners lie where its fourth moment, by four times the
-// angle, points to; e1 is turned to the middle of a side between them. A round one keeps its axis.
+// Turns e1 to the midpoint of a side of a square section, in which any axes are principal ones. The argument
+// of the fourth moment, four times the angle, points to the corners. A round section keeps its axis.
 void turn_to_sides(const Ring& ring, const Vector3& axis, Vector3& e1) {
   const Vector3 e2 = axis.cross(e1);
   std::complex<double> moment = 0.0;
   double size = 0.0;
   for (const Vector3& p : ring.points) {
-    const std::complex<double> place(e1.dot(p - ring.centre), e2.dot(p - ring.centre));
-    moment += place * place * place * place;
-    size += std::norm(place) * std::norm(place);
+    const std::complex<double> position(e1.dot(p - ring.centre), e2.dot(p - ring.centre));
+    moment += position * position * position * position;
+    size += std::norm(position) * std::norm(position);
   }
-  if (!(std::abs(moment) > least_squareness * size)) return;
+  if (!(std::abs(moment) > min_squareness * size)) return;
   const double to_side = 0.25 * (std::arg(moment) + std::numbers::pi);
   e1 = std::cos(to_side) * e1 + std::sin(to_side) * e2;
 }
 
 }  // namespace
 
-double parameter_at(const KnotVector& knots, double share) {
-  return knots.domain_start() + share * (knots.domain_end() - knots.domain_start());
+double parameter_at(const KnotVector& knots, double fraction) {
+  return knots.domain_start() + fraction * (knots.domain_end() - knots.domain_start());
 }
 
 Ring sample_ring(const Surface& surface, double v) {
@@ -251,7 +248,7 @@ CrossSection principal_axes(const Ring& ring, const Vector3& axis) {
   section.e1 = solver.eigenvectors().col(2);
   const Eigen::Vector3d& spread = solver.eigenvalues();
   if (spread[2] - spread[1] < nearly_alike * spread[2]) turn_to_sides(ring, axis, section.e1);
-  // The sign is the eigenvector's largest component's, so that it does not hang on the solver's whim.
+  // The largest component of the eigenvector is made positive, because the solver's sign is arbitrary.
   Eigen::Index largest = 0;
   section.e1.cwiseAbs().maxCoeff(&largest);
   if (section.e1[largest] < 0.0) section.e1 = -section.e1;
@@ -271,13 +268,13 @@ CrossSection principal_axes(const Ring& ring, const Vector3& axis) {
   return section;
 }
 
-Extents extents_to_fill(const Surface& surface, const Profile& profile, const Rims& rims,
-                        const CrossSection& middle) {
+Extents lattice_extents(const Surface& surface, const Profile& profile, const Rims& rims,
+                        const CrossSection& centre_section) {
   SPOONBILL_ASSERT(rims.first <= rims.last && rims.last < profile.v.size());
   constexpr double much = 2.5;
   constexpr std::size_t stations = 24;
-  Extents least{middle.width, middle.thickness}, most = least;
-  bool bent = middle.bent;
+  Extents least{centre_section.width, centre_section.thickness}, most = least;
+  bool bent = centre_section.bent;
   for (std::size_t s = 0; s <= stations; ++s) {
     const Ring ring = sample_ring(surface, profile.v[rims.first + (rims.last - rims.first) * s / stations]);
     if (!(ring.along.norm() > 0.0)) continue;
@@ -286,11 +283,11 @@ Extents extents_to_fill(const Surface& surface, const Profile& profile, const Ri
     most = {std::max(most.width, section.width), std::max(most.thickness, section.thickness)};
     bent = bent || section.bent;
   }
-  const auto between = [](double low, double high, double usual) {
-    return low > 0.0 && high > much * low ? std::sqrt(low * high) : usual;
+  const auto between = [](double low, double high, double fallback) {
+    return low > 0.0 && high > much * low ? std::sqrt(low * high) : fallback;
   };
-  return {between(least.width, most.width, middle.width),
-          between(least.thickness, most.thickness, middle.thickness), bent};
+  return {between(least.width, most.width, centre_section.width),
+          between(least.thickness, most.thickness, centre_section.thickness), bent};
 }
 
 RingParameters ring_parameters(const Surface& surface, const Ring& ring, const CrossSection& section, int ni,
@@ -301,8 +298,8 @@ RingParameters ring_parameters(const Surface& surface, const Ring& ring, const C
   const double along_narrow = nj - 1, along_wide = ni - 1;
   std::array<double, 5> corner{};
   for (int q = 0; q < 4; ++q) {
-    // From the crossing of a wide axis to a corner runs half a narrow side, from a narrow axis half a wide
-    // one.
+    // Half a narrow side is between the crossing of a wide axis and a corner; half a wide side after a narrow
+    // axis.
     const double first = q % 2 == 0 ? along_narrow : along_wide;
     corner[q] =
         arc.crossing[q] + (arc.crossing[q + 1] - arc.crossing[q]) * first / (along_narrow + along_wide);
@@ -319,8 +316,7 @@ RingParameters ring_parameters(const Surface& surface, const Ring& ring, const C
 }
 
 double ring_position(double s, double t, int ni, int nj) {
-  // s, t in [-1, 1] with max(|s|, |t|) = 1; the ring starts at (+1, +1), runs to (-1, +1), (-1, -1), (+1,
-  // -1).
+  // The ring starts at (+1, +1) and runs to (-1, +1), (-1, -1) and (+1, -1).
   if (t == 1.0 && s > -1.0) return (1.0 - s) * 0.5 * (ni - 1);
   if (s == -1.0 && t > -1.0) return (ni - 1) + (1.0 - t) * 0.5 * (nj - 1);
   if (t == -1.0 && s < 1.0) return (ni - 1) + (nj - 1) + (1.0 + s) * 0.5 * (ni - 1);
@@ -331,11 +327,11 @@ double ring_parameter_at(const Surface& surface, const RingParameters& ring, dou
   SPOONBILL_ASSERT_DEBUG(!ring.u.empty() && position >= 0.0);
   const auto count = static_cast<int>(ring.u.size());
   const int low = static_cast<int>(std::floor(position)) % count;
-  const double share = position - std::floor(position);
+  const double fraction = position - std::floor(position);
   const double period = surface.u.domain_end() - surface.u.domain_start();
   double a = ring.u[low], b = ring.u[(low + 1) % count];
   while (b < a) b += period;
-  return a + share * (b - a);
+  return a + fraction * (b - a);
 }
 
 }  // namespace spoonbill

@@ -1,82 +1,111 @@
-// The rings of a closed tube at constant v, and where the nodes of its lattice lie on them.
+// Rings of a closed tube at constant v, and the positions of lattice nodes on them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
-#include "engine/base/pose.h"
+#include "engine/base/assert.h"
+#include "engine/base/geometry.h"
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {
 
+// A piecewise linear function given by a table.
+struct LinearTable {
+  std::vector<double> from, to;  // `from` must not decrease
+
+  // Returns the interpolated value at x; outside the table, the value of the nearest end.
+  double at(double x) const {
+    SPOONBILL_ASSERT_DEBUG(!from.empty() && from.size() == to.size());
+    const auto upper = std::upper_bound(from.begin(), from.end(), x);
+    if (upper == from.begin()) return to.front();
+    if (upper == from.end()) return to.back();
+    const auto i = static_cast<std::size_t>(upper - from.begin());
+    return to[i - 1] + (to[i] - to[i - 1]) * (x - from[i - 1]) / (from[i] - from[i - 1]);
+  }
+};
+
+// Number of samples around a ring.
 inline constexpr int ring_samples = 256;
 
-double parameter_at(const KnotVector& knots, double share);
+// Returns the parameter at a fraction (0 to 1) of the domain.
+double parameter_at(const KnotVector& knots, double fraction);
 
+// A ring of a tube, in metres.
 struct Ring {
-  std::vector<Vector3> points;  // ring_samples, the seam not repeated
+  std::vector<Vector3> points;  // ring_samples, the seam once
   Vector3 centre = Vector3::Zero();
-  Vector3 along = Vector3::Zero();  // how the centre moves with v
+  Vector3 along = Vector3::Zero();  // mean derivative of the points by v
   double perimeter = 0.0;
 };
 
-// The surface is periodic along u.
+// Samples a ring; the surface must be periodic along u.
 Ring sample_ring(const Surface& surface, double v);
 
-// The body's middle line: v against distance from the first pole, and each station's perimeter and middle.
+// The centre line of a tube: v, distance from the first pole, perimeter and centre of each station.
 struct Profile {
   std::vector<double> v, distance, perimeter;
   std::vector<Vector3> centre;
 };
 
+// Samples the profile; the surface must be periodic along u and open along v.
 Profile sample_profile(const Surface& surface);
 
-// The stations where caps end and the side begins.
+// The stations where the caps end and the sides begin.
 struct Rims {
   std::size_t first = 0, last = 0;
 };
 
-// From each pole the first station whose perimeter reaches most of the largest one nearby (within a tenth of
-// the length).
+// Returns, from each pole, the first station whose perimeter reaches 85 % of the largest one nearby (within a
+// tenth of the length).
 Rims near_rims(const Profile& profile);
 
-// From each pole the first station beyond the farthest one out at which the body grows longer faster than
-// wider. Where a body is hollow about its pole, its cap then reaches over the edge of the hollow to the side.
+// Returns, from each pole, the first station beyond the outermost one at which the length grows faster than
+// the circumference. Where a body is hollow around its pole, its cap then extends over the edge of the hollow
+// to the side.
 Rims shoulder_rims(const Profile& profile);
 
-// Of each end the one that is further from the pole.
+// Returns, for each end, the rim that is farther from the pole.
 Rims further_rims(const Rims& a, const Rims& b);
 
+// Axes and extents of a cross-section, in metres.
 struct CrossSection {
   Vector3 e1, e2;                       // the wide and the narrow axis
-  double width = 0.0, thickness = 0.0;  // of a bent one along its bend and across it
-  bool bent = false;                    // as of a spoon's bowl
+  double width = 0.0, thickness = 0.0;  // of a bent section, along its bend and across it
+  bool bent = false;                    // such as the section of a spoon's bowl
 };
 
+// Returns the axes and extents of a ring's section perpendicular to `axis`.
 CrossSection principal_axes(const Ring& ring, const Vector3& axis);
 
-// Counts that suit the middle make slender cells elsewhere where an extent differs much along the body, as of
-// a spoon: then the one between its least and its greatest.
+// Extents for choosing cell counts. Counts that suit the section at half length make slender cells elsewhere
+// if an extent varies much along the body, as in a spoon; the extent is then the geometric mean of its least
+// and its greatest.
 struct Extents {
   double width, thickness;
-  bool bent = false;  // whether any section between the rims is
+  bool bent = false;  // whether any section between the rims is bent
 };
 
-Extents extents_to_fill(const Surface& surface, const Profile& profile, const Rims& rims,
-                        const CrossSection& middle);
+// Returns the extents of the sections between the rims.
+Extents lattice_extents(const Surface& surface, const Profile& profile, const Rims& rims,
+                        const CrossSection& centre_section);
 
-// The parameters u of the ring's four corners and of the nodes between them. Corner 0 lies between +e1 and
-// +e2.
+// Parameters u of a ring's four corners and of the nodes between them. Corner 0 is between +e1 and +e2.
+// There are 2 (ni - 1) + 2 (nj - 1), starting at corner (ni - 1, nj - 1), in the direction of u.
 struct RingParameters {
-  std::vector<double> u;  // 2 (ni - 1) + 2 (nj - 1), from the corner (ni - 1, nj - 1) on, in the sense of u
+  std::vector<double> u;
 };
 
+// Returns the parameters of ni x nj nodes around a ring, spaced evenly along each side.
 RingParameters ring_parameters(const Surface& surface, const Ring& ring, const CrossSection& section, int ni,
                                int nj);
 
-// The ring position of the boundary node (i, j), or of a fractional place on the boundary of the unit square.
+// Returns the index, possibly fractional, in RingParameters::u of a point (s, t) on the boundary of the
+// square [-1, 1] x [-1, 1].
 double ring_position(double s, double t, int ni, int nj);
 
+// Returns the parameter u at a fractional index in RingParameters::u.
 double ring_parameter_at(const Surface& surface, const RingParameters& ring, double position);
 
 }  // namespace spoonbill

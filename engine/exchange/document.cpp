@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "engine/base/file.h"
-#include "engine/base/output_file.h"
 #include "engine/exchange/field_json.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/length.h"

@@ -1,6 +1,6 @@
 #include "engine/exchange/field_json.h"
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/length.h"
 
 namespace spoonbill {

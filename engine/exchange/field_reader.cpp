@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/length.h"
 
 namespace spoonbill {

@@ -17,8 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/pose.h"
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/exchange/json.h"
 

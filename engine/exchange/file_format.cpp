@@ -12,7 +12,7 @@ constexpr std::size_t bytes_limit = std::size_t{64} << 20;
 
 // A recording is known by its first bytes: it may be long, and be cut where its JSON ends early.
 bool starts_like_recording(const std::filesystem::path& file) {
-  return first_bytes(file, 64).find("\"spoonbill_recording\"") != std::string::npos;
+  return read_first_bytes(file, 64).find("\"spoonbill_recording\"") != std::string::npos;
 }
 
 }  // namespace

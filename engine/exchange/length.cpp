@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 

@@ -2,7 +2,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/field_json.h"
 #include "engine/exchange/length.h"
 #include "engine/exchange/scene_json.h"

@@ -27,7 +27,7 @@ namespace {
 // number after it from a byte too far. True for such a file, whose numbers begin at `begin`.
 bool begins_with_line_feed(const std::string& file, std::size_t& begin) {
   constexpr std::string_view last_line = "\nend_header\n";
-  const std::string start = first_bytes(file, ply_header_bytes_limit);
+  const std::string start = read_first_bytes(file, ply_header_bytes_limit);
   const std::size_t place = start.find(last_line);
   if (place == std::string::npos || start.find("\nformat binary") > place) return false;
   begin = place + last_line.size();

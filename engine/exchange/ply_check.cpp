@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/excerpt.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "engine/base/excerpt.h"
+#include "engine/base/text.h"
 #include "engine/base/file.h"
 
 namespace spoonbill {
@@ -28,7 +28,7 @@ std::string_view last_line_of(std::string_view text) {
 // As Assimp tells them apart: by the count of triangles behind a binary one's first 80 bytes.
 bool is_binary_stl(const std::filesystem::path& file, std::uintmax_t size) {
   constexpr std::size_t head_bytes = 84, count_at = 80, triangle_bytes = 50;
-  const std::string head = first_bytes(file, head_bytes);
+  const std::string head = read_first_bytes(file, head_bytes);
   if (head.size() < head_bytes) return false;
   std::uint32_t triangles = 0;
   std::memcpy(&triangles, head.data() + count_at, sizeof triangles);
@@ -79,14 +79,14 @@ Status check_text_stl(const std::filesystem::path& file) {
   std::error_code ignored;
   const std::uintmax_t size = std::filesystem::file_size(file, ignored);
   if (is_binary_stl(file, size) || !begins_as_text_stl(file)) return {};
-  std::string tail = last_bytes(file, tail_bytes);
+  std::string tail = read_last_bytes(file, tail_bytes);
   while (!tail.empty() && static_cast<unsigned char>(tail.back()) <= ' ') tail.pop_back();
   if (last_line_of(tail).starts_with("endsolid")) return {};
   return Error{"it does not end with 'endsolid'; it is cut or damaged"};
 }
 
 Status check_last_obj_line(const std::filesystem::path& file) {
-  const std::string tail = last_bytes(file, tail_bytes);
+  const std::string tail = read_last_bytes(file, tail_bytes);
   const std::string_view last = last_line_of(tail);
   const std::string line(last.substr(0, last.find('#')));
   std::istringstream words(line);

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/fitting/bridging.h"
 #include "engine/fitting/islands.h"
 #include "engine/fitting/profile_map.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/fitting/nearest_points.h"
 #include "engine/fitting/quantiles.h"
 

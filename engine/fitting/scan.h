@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 
 namespace spoonbill {

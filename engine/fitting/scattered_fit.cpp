@@ -246,7 +246,7 @@ void add_round_poles(const SurfaceStructure& structure, double weight, NormalEqu
     for (int t = 0; t < std::min(round_pole_spans, v_spans / 2); ++t) {
       const auto span = static_cast<std::size_t>(at_end ? v_spans - 1 - t : t);
       PieceBasis::Values v;
-      v_basis.take_values_only(0.5 * (v_breaks[span] + v_breaks[span + 1]), v);
+      v_basis.evaluate_values(0.5 * (v_breaks[span] + v_breaks[span + 1]), v);
       const double factor =
           round_pole_share * weight * static_cast<double>(span_count(structure.u)) / std::pow(t + 1, 3);
       for (const PieceBasis::Values& ring : rings) {
@@ -275,8 +275,8 @@ Result<std::vector<Surface>> fit_scattered_at(const SurfaceStructure& structure,
   PieceBasis::Values u, v;
   for (std::size_t p = 0; p < data.uv.size(); ++p) {
     if (data.uv[p].hasNaN() || data.weights[p] == 0.0) continue;
-    u_basis.take_values_only(structure.u.into_domain(data.uv[p].x()), u);
-    v_basis.take_values_only(structure.v.into_domain(data.uv[p].y()), v);
+    u_basis.evaluate_values(structure.u.into_domain(data.uv[p].x()), u);
+    v_basis.evaluate_values(structure.v.into_domain(data.uv[p].y()), v);
     distances.add(u.value[0].data(), u.controls, v.value[0].data(), v.controls, data.weights[p],
                   &data.points_m[p]);
   }

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <optional>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/fitting/harmonic_map.h"
 
 namespace spoonbill {

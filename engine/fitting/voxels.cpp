@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/bspline/grid.h"
-#include "engine/bspline/trimmed_grid.h"
+#include "engine/bspline/trimmed_area.h"
 #include "engine/inspection/piece_quadrature.h"
 
 namespace spoonbill {

@@ -27,7 +27,7 @@ std::optional<BodyMeetings> find_body_meetings(const std::vector<const Surface*>
   std::vector<Box> boxes;
   boxes.reserve(bodies.size());
   for (const Surface* body : bodies) {
-    const Box box = box_of(body->net);
+    const Box box = bounding_box(body->net);
     boxes.push_back({box.low.array() - touch_tolerance_m, box.high.array() + touch_tolerance_m});
   }
   BodyMeetings meetings;

@@ -19,7 +19,7 @@ ExactWalls::ExactWalls(const std::vector<const Surface*>& surfaces, double error
       std::none_of(surfaces.begin(), surfaces.end(), [](const Surface* one) { return one == nullptr; }));
   faces_.reserve(surfaces.size());
   for (const Surface* surface : surfaces) {
-    faces_.push_back({surface, box_of(surface->net), ThicknessSearch(*surface)});
+    faces_.push_back({surface, bounding_box(surface->net), ThicknessSearch(*surface)});
   }
 }
 

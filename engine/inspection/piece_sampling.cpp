@@ -69,7 +69,7 @@ ParameterPlace search_cell(Candidate from, const std::function<double(double, do
 
 // Whether all control points of an edge are one: of the first or last row (of u) or column.
 bool is_collapsed(const ControlNet& net, bool of_u, bool last) {
-  const double size = box_of(net).size();
+  const double size = bounding_box(net).size();
   const int count = of_u ? net.columns : net.rows, line = last ? (of_u ? net.rows : net.columns) - 1 : 0;
   const auto at = [&](int k) { return of_u ? net.point(line, k) : net.point(k, line); };
   for (int k = 1; k < count; ++k) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/bspline/knot_vectors.h"
+#include "engine/bspline/knot_vector.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 #include "engine/inspection/piece_sampling.h"
 

@@ -33,7 +33,7 @@ std::vector<double> cut_evenly(const std::vector<double>& ends) {
 
 ThicknessSearch::ThicknessSearch(const Surface& surface)
     : surface_(&surface), cells_(piece_cells(surface, parts)), exits_(facets()) {
-  SPOONBILL_ASSERT(has_size_of_knots(surface));
+  SPOONBILL_ASSERT(has_matching_net(surface));
 }
 
 std::vector<Triangle> ThicknessSearch::facets() {

@@ -6,9 +6,8 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/bspline/blending_matrix.h"
-#include "engine/bspline/constrained_inverse.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/edge_match.h"
@@ -117,7 +116,7 @@ Result<Surface> composed(const Surface& surface, const KnotVector& knots, const 
   const auto inverse = constrained_inverse(knots, fitted, {{}, open, open});
   if (!inverse) return inverse.error();
   const Eigen::MatrixXd weights = inverse.value().lazyProduct(blending_matrix(surface.u, beside, 0).dense());
-  return mixed_along(surface, Direction::u, weights, knots);
+  return combine_along(surface, Direction::u, weights, knots);
 }
 
 Vector3 blended(const BlendingMatrix& blending, int row, const ControlNet& net, int column) {
@@ -171,7 +170,7 @@ Result<CompatiblePatches> with_parameters_of(const Surface& before, const Surfac
           apart_m(matched.value(), measured, patch, parameters_beside(a, b, measured));
       return CompatiblePatches{{std::move(matched).value()}, *std::max_element(all.begin(), all.end())};
     }
-    auto finer = with_pieces_halved(knots, where);
+    auto finer = halve_pieces(knots, where);
     if (!finer) return finer.error();
     if (finer.value() == knots) break;
     knots = std::move(finer).value();
@@ -202,7 +201,7 @@ Status make_one_structure(std::vector<Surface>& patches, const JoinRequest& requ
                  "; simplify them first, or merge fewer"};
   }
   for (Surface& patch : patches) {
-    auto finer = over_finer_knots(patch, Direction::u, all);
+    auto finer = convert_to_finer_knots(patch, Direction::u, all);
     if (!finer) return finer.error();
     patch = std::move(finer).value();
   }
@@ -210,12 +209,12 @@ Status make_one_structure(std::vector<Surface>& patches, const JoinRequest& requ
 }
 
 Result<Surface> with_degrees(const Surface& patch, int degree_u, int degree_v) {
-  const auto u = elevated(patch.u, degree_u), v = elevated(patch.v, degree_v);
+  const auto u = elevate_degree(patch.u, degree_u), v = elevate_degree(patch.v, degree_v);
   if (!u) return u.error();
   if (!v) return v.error();
-  const auto along_u = over_finer_knots(patch, Direction::u, u.value());
+  const auto along_u = convert_to_finer_knots(patch, Direction::u, u.value());
   if (!along_u) return along_u.error();
-  return over_finer_knots(along_u.value(), Direction::v, v.value());
+  return convert_to_finer_knots(along_u.value(), Direction::v, v.value());
 }
 
 // Of the tolerance, how far edges that coincide may be apart, and what matching their parameters may leave.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/place_text.h"
+#include "engine/base/text.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/lines_from_loop.h"
@@ -108,12 +108,12 @@ Error closed_both_ways() {
 
 Error goes_through(const Vector3& place_m) {
   return Error{"the first patch goes through the other and would lose what is on the far side, from " +
-               place_text(place_m) +
+               position_text(place_m) +
                " on; cut it where it is inside, and merge the two parts one after the other"};
 }
 
 Error pokes_out(const Vector3& place_m) {
-  return Error{"the first patch leaves the other again at " + place_text(place_m) +
+  return Error{"the first patch leaves the other again at " + position_text(place_m) +
                " and would lose what lies outside there; move it so that its end is all inside, make the end "
                "narrower, or give the patches in the other order"};
 }

@@ -8,7 +8,7 @@
 #include "engine/base/assert.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/grid.h"
-#include "engine/bspline/knot_vectors.h"
+#include "engine/bspline/knot_vector.h"
 
 namespace spoonbill {
 

@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
-#include "engine/base/place_text.h"
+#include "engine/base/text.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/inspection/enclosed_mass.h"
 #include "engine/merging/crossing_lines.h"
@@ -81,14 +80,14 @@ Result<FittedShape> fitted_part(const Surface& first, CornerLines& lines, const 
   ShapeFit fit;
   fit.tolerance_m = share * tolerance_m;
   fit.keeps_parameters = true;
-  fit.least_spans = few_spans;
+  fit.min_spans = few_spans;
   constexpr double first_try = 0.5;
   fit.progress = progress.part(0.0, first_try);
   auto fitted = fit_shape(exact, fit);
   if (!progress.report(first_try)) return Progress::stopped();
   if (!fitted && !missed) {
     fit.progress = progress.part(first_try, 1.0);
-    fit.least_spans = local_spans;
+    fit.min_spans = local_spans;
     fitted = fit_shape(exact, fit);
     if (!progress.report(1.0)) return Progress::stopped();
   }
@@ -159,7 +158,7 @@ Error edges_apart(double apart_m, double tolerance_m) {
 Status check_folds(const Surface& merged, const Surface& first, const Surface& second) {
   const auto place = place_of_fold(merged);
   if (!place || place_of_fold(first) || place_of_fold(second)) return {};
-  return Error{"the merged surface folds over at " + place_text(*place) +
+  return Error{"the merged surface folds over at " + position_text(*place) +
                ": lines that lead away from the crossing run into each other there; let the other body enter "
                "nearer to a pole, or give the patches in the other order"};
 }

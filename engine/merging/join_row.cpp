@@ -7,10 +7,8 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/place_text.h"
+#include "engine/base/text.h"
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
-#include "engine/bspline/peak_search.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/bridge.h"
 #include "engine/merging/fold_search.h"
@@ -33,7 +31,7 @@ Result<std::vector<Surface>> placed_in_row(const PreparedRow& row) {
     const double length = patch.v.domain_end() - patch.v.domain_start();
     double end = start + stretch * length;
     // What was split keeps its knots to the last bit.
-    if (std::abs(end - patch.v.domain_end()) <= same_knot_share * length) end = patch.v.domain_end();
+    if (std::abs(end - patch.v.domain_end()) <= same_knot_fraction * length) end = patch.v.domain_end();
     auto moved = with_domain(patch, Direction::v, start, end);
     if (!moved) return moved.error();
     placed.push_back(std::move(moved).value());
@@ -106,7 +104,7 @@ PointGrid samples_of(const Surface& patch, const KnotVector& merged_v, int in_pi
   along.insert(along.end(), std::upper_bound(all.begin(), all.end(), start),
                std::lower_bound(all.begin(), all.end(), end));
   along.push_back(end);
-  return point_grid(patch, nested_parameters(patch.u, in_piece, 0).parameters, std::move(along));
+  return sample_grid_points(patch, nested_parameters(patch.u, in_piece, 0).parameters, std::move(along));
 }
 
 // About the worst sample too, unless few tell that there is nothing but rounding.
@@ -115,7 +113,7 @@ double deviation_from_m(const Surface& merged, const Surface& patch) {
   const double at_few = largest_deviation_m(merged, samples_of(patch, merged.v, few));
   if (at_few <= rounding_m) return at_few;
   const PointGrid of_patch = samples_of(patch, merged.v, many);
-  const PointGrid of_merged = point_grid(merged, of_patch.u, of_patch.v);
+  const PointGrid of_merged = sample_grid_points(merged, of_patch.u, of_patch.v);
   double largest = -1.0;
   std::size_t at = 0;
   for (std::size_t k = 0; k < of_patch.points_m.size(); ++k) {
@@ -133,7 +131,7 @@ double deviation_from_m(const Surface& merged, const Surface& patch) {
     return k + 1 < of.size() ? of[k + 1] - of[k] : of[k] - of[k - 1];
   };
   const double near =
-      peak_near(apart, of_patch.u[i], of_patch.v[j], step(of_patch.u, i), step(of_patch.v, j));
+      find_peak(apart, of_patch.u[i], of_patch.v[j], step(of_patch.u, i), step(of_patch.v, j));
   return std::max({at_few, largest, near});
 }
 
@@ -192,7 +190,7 @@ Status check_folds(const Surface& merged, const std::vector<Surface>& placed,
   if (!bridged && moved_m <= rounding_m) return {};
   const auto place = place_of_fold_in(merged, joints);
   if (!place || std::any_of(placed.begin(), placed.end(), place_of_fold)) return {};
-  return Error{"the merged surface folds over at " + place_text(*place) +
+  return Error{"the merged surface folds over at " + position_text(*place) +
                ": the patches meet at too sharp an edge there, or lie on each other; join them C0, ask for a "
                "blend, or cut a piece off"};
 }

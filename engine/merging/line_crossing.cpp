@@ -6,9 +6,8 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 #include "engine/collision/meshes/line_triangle.h"
 
 namespace spoonbill {
@@ -26,7 +25,7 @@ struct CurvePoint {
   Vector3 position_m, derivative;
 };
 
-Box box_of(const Vector3& a, const Vector3& b) {
+Box bounding_box(const Vector3& a, const Vector3& b) {
   return box_about(std::array{a, b});
 }
 
@@ -48,20 +47,20 @@ CrossingFinder::CrossingFinder(const Surface& other)
     : other_(other),
       u_(nested_parameters(other.u, cells_in_piece, 0).parameters),
       v_(nested_parameters(other.v, cells_in_piece, 0).parameters) {
-  points_m_ = point_grid(other, u_, v_).points_m;
+  points_m_ = sample_grid_points(other, u_, v_).points_m;
   std::vector<Box> boxes;
   for (std::size_t i = 0; i + 1 < u_.size(); ++i) {
     for (std::size_t j = 0; j + 1 < v_.size(); ++j) {
       const std::size_t corner = i * v_.size() + j;
-      boxes.push_back(joined(box_of(points_m_[corner], points_m_[corner + 1]),
-                             box_of(points_m_[corner + v_.size()], points_m_[corner + v_.size() + 1])));
+      boxes.push_back(joined(bounding_box(points_m_[corner], points_m_[corner + 1]),
+                             bounding_box(points_m_[corner + v_.size()], points_m_[corner + v_.size() + 1])));
     }
   }
   tree_.emplace(boxes, 4);
 }
 
 std::vector<CrossingFinder::Start> CrossingFinder::of_chord(const Vector3& from, const Vector3& to) const {
-  const Box chord = box_of(from, to);
+  const Box chord = bounding_box(from, to);
   const std::size_t columns = v_.size() - 1;
   std::vector<Start> starts;
   const auto look_at = [&](std::uint32_t cell) {

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
-#include "engine/base/place_text.h"
+#include "engine/base/text.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/fold_search.h"
@@ -111,7 +110,7 @@ Result<Approximation> closed_without_folds(const Surface& surface, Direction dir
   if (!closed || closed->deviation_m <= rounding_m) return closed;
   const auto place_m = place_of_fold(closed->surface);
   if (!place_m || place_of_fold(surface)) return closed;
-  return Error{"the surface would fold over at " + place_text(*place_m)};
+  return Error{"the surface would fold over at " + position_text(*place_m)};
 }
 
 // Where the grid is a ring along the direction.

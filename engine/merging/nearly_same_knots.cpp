@@ -8,7 +8,6 @@
 
 #include "engine/base/assert.h"
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 
 namespace spoonbill {
 
@@ -86,7 +85,7 @@ MovedKnots with_nearly_same_knots(const Surface& surface, const KnotVector& knot
   MovedKnots result{{std::move(u).value(), surface.v, surface.net}, 0.0};
   constexpr int samples_in_piece = 5;
   result.deviation_m = largest_deviation_m(
-      result.surface, point_grid(surface, nested_parameters(surface.u, samples_in_piece, 0).parameters,
+      result.surface, sample_grid_points(surface, nested_parameters(surface.u, samples_in_piece, 0).parameters,
                                  nested_parameters(surface.v, samples_in_piece, 0).parameters));
   return result.deviation_m <= most_m ? result : MovedKnots{surface, 0.0};
 }

@@ -66,7 +66,7 @@ const char* side_name(Side side) {
 }
 
 EdgeCurve edge_curve(const Surface& surface, Side side) {
-  SPOONBILL_ASSERT(has_size_of_knots(surface));
+  SPOONBILL_ASSERT(has_matching_net(surface));
   const bool across_u = across(side) == Direction::u;
   const KnotVector& fixed = knots_along(surface, across(side));
   const BasisFunctions basis =
@@ -98,7 +98,7 @@ bool is_joinable(const Surface& surface, Side side) {
   for (const Vector3& point : curve.control_points_m) {
     longest = std::max(longest, (point - curve.control_points_m[0]).norm());
   }
-  return longest > pole_share * box_of(surface.net).size();
+  return longest > pole_share * bounding_box(surface.net).size();
 }
 
 Vector3 outward(const Surface& surface, Side side) {

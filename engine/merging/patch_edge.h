@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/bspline/knot_insertion.h"
+#include "engine/bspline/reparameterise.h"
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/bridge.h"
 #include "engine/merging/compatible.h"

@@ -129,7 +129,7 @@ std::optional<Result<FittedShape>> round_part(const Surface& surface, const std:
   };
   ShapeFit fit;
   fit.tolerance_m = tolerance_m;
-  fit.least_spans = 4;
+  fit.min_spans = 4;
   fit.keeps_parameters = true;
   return fit_shape(shape, fit);
 }

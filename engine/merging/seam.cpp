@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/merging/edge_match.h"
 
 namespace spoonbill {
@@ -51,7 +51,7 @@ Result<Approximation> closed_around(const Surface& surface, Direction direction,
     return Error{"the first and the last edge are " + short_length_text(gap_m) +
                  " apart; allow a larger tolerance or bring them together"};
   }
-  const auto raised = elevated(knots, std::max(knots.degree(), continuity + 1));
+  const auto raised = elevate_degree(knots, std::max(knots.degree(), continuity + 1));
   if (!raised) return raised.error();
   const auto period = period_of(raised.value(), continuity);
   if (!period) return period.error();

@@ -179,7 +179,7 @@ Result<FittedShape> resampled_between(const Surface& surface, const KeptPart& pa
   };
   ShapeFit fit;
   fit.tolerance_m = tolerance_m;
-  fit.least_spans = 4;
+  fit.min_spans = 4;
   fit.keeps_parameters = true;
   auto fitted = fit_shape(shape, fit);
   if (missed) return no_single_pieces();
@@ -262,7 +262,7 @@ Result<FittedShape> untrimmed(const Surface& surface, const std::vector<TrimLoop
   if (!area) return area.error();
   if (area->is_whole()) return FittedShape{surface, 0.0};
   Polygons polygons;
-  for (const TrimLoop& loop : trims) polygons.push_back(polygon_of(loop, surface.u, surface.v));
+  for (const TrimLoop& loop : trims) polygons.push_back(to_polygon(loop, surface.u, surface.v));
   if (is_rectangle(polygons)) return rectangle_of(surface, polygons);
   const KeptPart part(polygons);
   if (part.is_cut_in_single_pieces()) return resampled(surface, part, tolerance_m);

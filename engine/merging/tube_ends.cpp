@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/place_text.h"
+#include "engine/base/text.h"
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
 
 namespace spoonbill {
@@ -106,7 +105,7 @@ std::optional<Vector3> place_of_fold_in_flat(const Surface& cap) {
 
 Error flat_cap_folds(const Vector3& place_m) {
   return Error{
-      "a flat cap folds over at " + place_text(place_m) +
+      "a flat cap folds over at " + position_text(place_m) +
       ", for the middle of the ring does not see its rim there; cut the tube where it is rounder and "
       "cap it there"};
 }

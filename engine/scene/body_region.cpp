@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {

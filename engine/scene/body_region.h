@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {

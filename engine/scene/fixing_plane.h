@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/base/field.h"
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "engine/base/field.h"
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "engine/base/field.h"
-#include "engine/base/pose.h"
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/scene/body_region.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/base/field.h"
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {

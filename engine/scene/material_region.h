@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/scene/body_region.h"
 #include "engine/scene/material.h"

@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 

@@ -1,16 +1,20 @@
-// A shape as a function over two parameters: what a surface is to be fitted to.
+// Exact shapes: functions of two parameters that surfaces are fitted to, with their derivatives, distances
+// and size checks.
 #pragma once
 
 #include <functional>
 #include <optional>
+#include <string_view>
 #include <vector>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
+#include "engine/base/result.h"
+#include "engine/bspline/surface.h"
 
 namespace spoonbill {
 
-// One direction of the parameters. `breaks` increase from one end of the domain to the other; between two of
-// them the shape is smooth, and at each the fit puts a knot.
+// One direction of the parameters. `breaks` increase from one end of the domain to the other; the shape is
+// smooth between two of them, and the fit puts a knot at each.
 struct ShapeDirection {
   bool periodic = false;
   std::vector<double> breaks{0.0, 1.0};
@@ -19,17 +23,47 @@ struct ShapeDirection {
   double end() const { return breaks.back(); }
 };
 
-// Metres; du x dv points outwards. `at` is called with parameters within the domain, must be continuous there
-// and is best when a step of either parameter goes about as far everywhere.
+// A shape in metres whose du x dv points outwards. `at` is called with parameters within the domain and must
+// be continuous there. Fits are best if equal parameter steps cover about equal distances everywhere.
 struct ExactShape {
   ShapeDirection u, v;
-  bool pole_at_start = false, pole_at_end = false;  // of v: all u are one point there
-  // Up to where from the start of v, and from where on to its end, the shape lies in the plane of its pole: a
-  // break; none where it does not.
+  bool pole_at_start = false, pole_at_end = false;  // whether all u give one point at that end of v
+  // The ends of the parts, at the start and at the end of v, in which the shape is in the plane of its pole;
+  // each is a break. Empty if there is no such part.
   std::optional<double> flat_to = {}, flat_from = {};
   std::function<Vector3(double u, double v)> at;
 
   bool is_closed() const { return u.periodic && (v.periodic || (pole_at_start && pole_at_end)); }
 };
+
+// Tangents of a shape by finite differences, one-sided at the ends of an open direction. The normal is zero
+// where the tangents are parallel, as at a pole.
+struct ShapeTangents {
+  Vector3 du, dv;
+  Vector3 normal = Vector3::Zero();
+};
+ShapeTangents tangents(const ExactShape& shape, double u, double v);
+
+// Returns a bound of the distance from a point to the shape: the distance to the shape's point at u, v,
+// reduce_degree by Gauss-Newton steps.
+double distance_near(const ExactShape& shape, const Vector3& point_m, double u, double v);
+
+// Returns the unit normal at the pole at the start or end of v, if the shape has a tangent plane there.
+std::optional<Vector3> pole_normal(const ExactShape& shape, bool at_start);
+
+// Range of the sizes of stock shapes.
+inline constexpr Range<double> shape_size_range_m{1e-4, 10.0};
+// Smallest rounding, as a fraction of the shortest side that it rounds. Sharper edges need more control
+// points than a stock shape has.
+inline constexpr double min_rounding_fraction = 0.01;
+// Default rounding, as a fraction of the same side.
+inline constexpr double default_rounding_fraction = 0.1;
+
+// Returns an out_of_range error in millimetres, such as "radius is 0.01 mm, must be 0.1 mm to 10000 mm".
+Status check_length(std::string_view name, double length_m, Range<double> range_m);
+// Checks a size against shape_size_range_m.
+Status check_size(std::string_view name, double size_m);
+// Checks a rounding against the smallest fraction of a side and `max_m`.
+Status check_rounding(std::string_view name, double rounding_m, double side_m, double max_m);
 
 }  // namespace spoonbill

@@ -1,40 +1,85 @@
-// Fits one B-spline surface to a shape given as a function, to a tolerance: the knots of each direction are
-// found by themselves, more of them where fitting that direction alone leaves more of an error, then both are
-// fitted together (grid_fit.h) and the deviation is measured between the samples. Runs outside the tick; any
-// thread.
+// Fits of B-spline surfaces to exact shapes within a tolerance. The knots of each direction are refined where
+// a fit in that direction alone has too large an error. Then both directions are fitted together
+// (fit_grid()), and the deviation is measured between the samples. Runs outside the tick; any thread.
 #pragma once
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
+#include "engine/bspline/knot_vector.h"
 #include "engine/bspline/surface.h"
 #include "engine/shapes/exact_shape.h"
 
 namespace spoonbill {
 
+// The knots of one direction while a fit refines them: cells between the shape's breaks, each divided evenly.
+// At a break inside the domain the fit is as smooth as the shape: its tangent is continuous, its curvature
+// may jump. One owner.
+class ShapeKnots {
+ public:
+  // Makes cells of at most 1 / min_spans of the domain that grow gradually away from short ones.
+  ShapeKnots(const ShapeDirection& direction, int degree, int min_spans);
+
+  // Makes knots for about `control_count` control points, leaving some for refine_worst(). Knots are even if
+  // the breaks alone would need more control points.
+  static Result<ShapeKnots> with_control_count(const ShapeDirection& direction, int degree,
+                                               int control_count);
+
+  int control_count() const;
+  KnotVector knots() const;
+  // Returns evenly spaced parameters, `in_each_span` in each span, with the ends of the domain and the seam
+  // once.
+  std::vector<double> parameters(int in_each_span) const;
+
+  // Subdivides the cells with an error above `allowed_m`, by the degree's order of convergence. Returns
+  // whether there were any.
+  bool refine(const std::vector<double>& at, const std::vector<double>& error_m, double allowed_m);
+  // Adds a span to the cell with the largest error.
+  void refine_worst(const std::vector<double>& at, const std::vector<double>& error_m);
+
+ private:
+  // Makes one cell between successive breaks.
+  ShapeKnots(const ShapeDirection& direction, int degree);
+  // Splits a cell at a distance `length` from its start or its end.
+  void split(std::size_t cell, double length, bool from_start);
+  void grade();
+  std::vector<double> breakpoints() const;
+  std::vector<double> largest_in_cells(const std::vector<double>& at,
+                                       const std::vector<double>& error_m) const;
+  void even_out();
+
+  bool periodic_;
+  int degree_;
+  std::vector<double> ends_;  // ends of the cells
+  std::vector<bool> jumps_;   // whether the curvature may jump at each end
+  std::vector<int> spans_;    // number in each cell
+};
+
 struct ShapeFit {
   double tolerance_m = 1e-5;
   int degree = 3;
-  // Cells a direction has at least: a lump is to be shaped everywhere.
-  int least_spans = 12;
-  // Whether sliding along the shape is an error too: where its edges must stay where they are.
+  // Least number of cells in each direction; the default allows shaping everywhere.
+  int min_spans = 12;
+  // Whether a displacement along the shape counts as an error too, for shapes whose edges must stay where
+  // they are.
   bool keeps_parameters = false;
-  // Given, so many control points along u and v, placed where the shape asks for them, and whatever
-  // deviation that leaves.
+  // Numbers of control points along u and v instead of the tolerance; they are placed where the shape needs
+  // them.
   std::optional<std::array<int, 2>> control_counts = {};
-  Progress progress = {};  // stops the fit, which is then an error
+  Progress progress = {};  // can cancel the fit
 };
 
 struct FittedShape {
   Surface surface;
-  double deviation_m = 0.0;  // the largest distance found between a point of the surface and the shape
+  double deviation_m = 0.0;  // largest distance found between a point of the surface and the shape
 };
 
-// Poles are met exactly, and are smooth where the shape has a tangent plane at them. Refused: a tolerance
-// that 200 control points in a direction do not reach, fewer control points than the degree needs, a shape
-// that is not finite.
+// Fits a surface to a shape. Poles are interpolated, and smooth where the shape has a tangent plane at them.
+// Refuses a tolerance that needs more than 200 control points in a direction, fewer control points than the
+// degree needs, and a shape that is not finite.
 Result<FittedShape> fit_shape(const ExactShape& shape, const ShapeFit& fit = {});
 
 }  // namespace spoonbill

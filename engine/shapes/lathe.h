@@ -1,18 +1,57 @@
-// A profile turned about the y axis: a starting shape.
+// Bodies of revolution around the y axis: profiles of lines and arcs, and smooth profiles through points.
 #pragma once
 
+#include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "engine/base/result.h"
 #include "engine/shapes/exact_shape.h"
-#include "engine/shapes/meridian.h"
 
 namespace spoonbill {
 
-// Through the points in their order, as radius and height. An end on the axis becomes a pole, where the
-// profile is level; with both ends there the shape is closed. A profile whose last point is its first, off
-// the axis, makes a ring that is closed both ways. Any other is open and its outside is away from the axis.
-// Refused: points too few or in one place, radii below 0, a profile that crosses the axis or itself.
+// A point of a profile: radius and height in metres.
+using MeridianPoint = Eigen::Vector2d;
+
+// A profile of lines and arcs in the half-plane beside the axis, parametrised by arc length.
+class Meridian {
+ public:
+  // Makes a profile through the vertices, each inner corner rounded by an arc of its radius (0: not rounded).
+  // The first and last vertex may be on the axis; the rounding there is that of the corner between the
+  // profile and its mirror image. Refuses roundings that do not fit between the corners, and names them.
+  static Result<Meridian> rounded(std::span<const MeridianPoint> vertices, std::span<const double> roundings);
+
+  // Makes a half circle around the origin from its lowest point to its highest.
+  static Meridian half_circle(double radius_m);
+
+  double length_m() const { return starts_.back(); }
+  // Returns the point at a distance along the profile.
+  MeridianPoint at(double distance_m) const;
+  // Returns the distances at which pieces begin and end.
+  const std::vector<double>& breaks_m() const { return starts_; }
+
+ private:
+  // An arc around `centre` from angle `from` through `sweep`, or a line if the radius is 0.
+  struct Piece {
+    MeridianPoint start, end, centre;
+    double radius = 0.0, from = 0.0, sweep = 0.0;
+  };
+  void add_line(const MeridianPoint& start, const MeridianPoint& end);
+  void add_arc(const MeridianPoint& centre, double radius, double from, double sweep);
+
+  std::vector<Piece> pieces_;
+  std::vector<double> starts_{0.0};
+};
+
+// Makes the body of revolution of a profile with poles at both ends. A profile that runs upwards has its
+// outside away from the axis.
+ExactShape revolved_shape(Meridian meridian);
+
+// Makes a body of revolution of a smooth profile through the points. An end on the axis becomes a pole, where
+// the profile is horizontal; with both ends there the shape is closed. A profile off the axis whose last
+// point is its first makes a ring that is closed both ways. Any other shape is open, with its outside away
+// from the axis. Refuses too few or coincident points, negative radii, and a profile that crosses the axis or
+// itself.
 Result<ExactShape> lathe_shape(const std::vector<MeridianPoint>& profile_m);
 
 }  // namespace spoonbill

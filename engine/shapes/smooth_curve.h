@@ -1,36 +1,39 @@
-// A curve through points: a cubic spline with continuous curvature, by the lengths of the chords between them
-// (de Boor 1978, chapter 4). Immutable once made; any thread may read it.
+// Smooth curves through points: cubic splines with continuous curvature, parametrised by chord length (de
+// Boor 1978, chapter 4).
 #pragma once
 
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {
 
-// How an open curve ends, by coordinate: straight (no second derivative) or level (no first one).
+// End conditions of an open curve for each coordinate: level (first derivative zero) or straight (second
+// derivative zero, the default).
 struct CurveEnds {
   bool level_x = false, level_y = false, level_z = false;
 };
 
+// A cubic spline. Immutable once made; any thread may read it.
 class SmoothCurve {
  public:
-  // No curve; to be assigned before anything is asked of it.
+  // Constructs an empty curve, to be assigned before any use.
   SmoothCurve() = default;
 
-  // Through at least two points, three of a closed one, which goes on from the last to the first. Refused:
-  // too few of them, two following ones in one place, naming them by their number from 1.
+  // Makes a curve through at least two points, or three if closed; a closed one continues from the last point
+  // to the first. Refuses too few points and two successive points at the same position, named by their
+  // number from 1.
   static Result<SmoothCurve> through(std::vector<Vector3> points_m, bool closed, const CurveEnds& first = {},
                                      const CurveEnds& last = {});
-  // The same at parameters of one's own, which increase; a closed one has one more than points, its end.
-  // The points may coincide.
+  // Makes a curve with given increasing parameters, one for each point and one more for the end of a closed
+  // curve. Points may coincide.
   static SmoothCurve at_parameters(std::vector<Vector3> points_m, std::vector<double> parameters, bool closed,
                                    const CurveEnds& first = {}, const CurveEnds& last = {});
 
   bool closed() const { return closed_; }
-  // The sum of the chords: parameters run from 0 to it.
+  // Returns the end of the parameters, which run from 0; the sum of the chords if made by through().
   double end() const {
     SPOONBILL_ASSERT(!parameters_.empty());
     return parameters_.back();
@@ -40,20 +43,20 @@ class SmoothCurve {
   Vector3 first_derivative(double t) const;
   Vector3 second_derivative(double t) const;
 
-  // By the points, the second derivatives there: what is linear in the points can be blended.
-  const std::vector<Vector3>& bends() const { return bends_; }
+  // Returns the second derivatives at the points. They are linear in the points and can thus be blended.
+  const std::vector<Vector3>& second_derivatives() const { return second_derivatives_; }
 
  private:
-  struct Place {
+  struct Location {
     std::size_t piece;
-    double length, share;
+    double length, fraction;
   };
-  Place place_of(double t) const;
+  Location find_piece(double t) const;
   const Vector3& point(std::size_t k) const { return points_[k % points_.size()]; }
-  const Vector3& bend(std::size_t k) const { return bends_[k % bends_.size()]; }
+  const Vector3& second(std::size_t k) const { return second_derivatives_[k % second_derivatives_.size()]; }
 
   bool closed_ = false;
-  std::vector<Vector3> points_, bends_;
+  std::vector<Vector3> points_, second_derivatives_;
   std::vector<double> parameters_;
 };
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/base/assert.h"
-#include "engine/bspline/knot_insertion.h"
+#include "engine/bspline/reparameterise.h"
 
 namespace spoonbill {
 namespace {
@@ -223,7 +223,7 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
     mapping.first_pole_ = is_pole(mapping.rest_, false);
     mapping.last_pole_ = is_pole(mapping.rest_, true);
   }
-  mapping.held_columns_ = constraints.held_columns;
+  mapping.held_columns_ = constraints.fixed_columns;
   Result<SampledRefit> sampled = sampled_refit(mapping.rest_, constraints, set);
   if (!sampled.ok()) return sampled.error();
   mapping.nested_ = std::make_shared<NestedGrid>(std::move(sampled->nested));

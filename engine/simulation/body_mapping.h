@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
-#include "engine/base/aligned_vector.h"
-#include "engine/base/instruction_set.h"
+#include "engine/base/containers.h"
+#include "engine/base/processor.h"
 #include "engine/base/result.h"
 #include "engine/bspline/evaluate.h"
-#include "engine/bspline/refit.h"
+#include "engine/bspline/grid.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/solids/surface_collider.h"
 #include "engine/material/contact/contact_constraints.h"
@@ -58,7 +58,7 @@ class BodyMapping {
   EmbeddedPoint at(double u, double v) const;
 
   // The control points of v (columns) that are held, for tests and the panel.
-  const std::vector<std::uint8_t>& held_columns() const { return held_columns_; }
+  const std::vector<std::uint8_t>& fixed_columns() const { return held_columns_; }
 
  private:
   BodyMapping(Surface rest, Surface current, InstructionSet set)

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/instruction_set.h"
+#include "engine/base/processor.h"
 #include "engine/base/result.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/material/implicit/implicit_core.h"

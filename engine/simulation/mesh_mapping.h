@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/base/aligned_vector.h"
+#include "engine/base/containers.h"
 #include "engine/collision/meshes/deforming_mesh.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/material/lattice/embedded_point.h"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/denormals.h"
+#include "engine/base/processor.h"
 #include "engine/simulation/command_applier.h"
 #include "engine/simulation/contact_snapshots.h"
 #include "engine/simulation/hand.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/instruction_set.h"
+#include "engine/base/processor.h"
 #include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/material/lattice/feature_map.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/bspline/knot_vector.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/material/lattice/embedded_point.h"

@@ -1,7 +1,7 @@
 // A tessellated tool that gives way, as a body.
 #pragma once
 
-#include "engine/base/instruction_set.h"
+#include "engine/base/processor.h"
 #include "engine/base/result.h"
 #include "engine/scene/tool.h"
 #include "engine/simulation/body_state.h"

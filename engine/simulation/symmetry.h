@@ -1,7 +1,7 @@
 // The mirrored side of a symmetric stroke.
 #pragma once
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/scene/scene.h"
 
 namespace spoonbill {

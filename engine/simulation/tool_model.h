@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "engine/base/instruction_set.h"
+#include "engine/base/processor.h"
 #include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/solids/signed_distance.h"
 #include "engine/scene/scene.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "haptic/devices/hand_inputs.h"
 #include "haptic/hand.h"

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/output_file.h"
+#include "engine/base/file.h"
 #include "haptic/recording/recording_lines.h"
 
 namespace spoonbill {

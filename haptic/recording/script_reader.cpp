@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "engine/base/file.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/simulation/simulation.h"
 #include "haptic/device.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/output_file.h"
+#include "engine/base/file.h"
 #include "engine/base/result.h"
 #include "render/image/image.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "render/overlay/contact_normals.h"
 
 namespace spoonbill {
@@ -128,7 +128,7 @@ std::optional<std::string> stage_caption(const ViewSettings& settings) {
   return std::nullopt;
 }
 
-Box box_of(const StageShapes& shapes) {
+Box bounding_box(const StageShapes& shapes) {
   Box box;
   const auto include = [&](const Eigen::Vector3f& point) { box.include(point.cast<double>()); };
   for (const OverlayLine& line : shapes.lines) {

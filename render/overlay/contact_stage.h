@@ -51,6 +51,6 @@ std::vector<OverlayArrow> contact_arrows(const Snapshot& snapshot, const ViewSet
 std::optional<std::string> stage_caption(const ViewSettings& settings);
 
 // Around all that stage_shapes() gives.
-Box box_of(const StageShapes& shapes);
+Box bounding_box(const StageShapes& shapes);
 
 }  // namespace spoonbill

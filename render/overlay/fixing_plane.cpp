@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 namespace {

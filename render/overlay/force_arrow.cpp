@@ -11,7 +11,7 @@ namespace {
 Vector3 start_of(const Snapshot& snapshot, const Vector3& direction) {
   const ToolSnapshot& tool = snapshot.tool;
   const ToolBody* body = rigid_body(tool);
-  if (body != nullptr) return way_out(box_of(body->solid), tool_frame(snapshot), direction);
+  if (body != nullptr) return way_out(bounding_box(body->solid), tool_frame(snapshot), direction);
   if (is_soft(tool)) return tool.proxy.position_m;
   return tool.proxy.position_m + tool.radius_m * direction;
 }

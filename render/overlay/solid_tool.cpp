@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 namespace {
@@ -40,7 +40,7 @@ struct BoxOfShape {
 struct BoxOfSolid {
   Box operator()(const ImplicitShape& shape) const { return std::visit(BoxOfShape{}, shape); }
   Box operator()(const MeshSolid& solid) const { return box_about(solid.mesh.mesh.vertices_m); }
-  Box operator()(const SurfaceSolid& solid) const { return spoonbill::box_of(solid.surface.net); }
+  Box operator()(const SurfaceSolid& solid) const { return spoonbill::bounding_box(solid.surface.net); }
 };
 
 }  // namespace
@@ -53,7 +53,7 @@ bool is_soft(const ToolSnapshot& tool) {
   return tool.kind == ToolKind::solid && tool.body && tool.body->soft;
 }
 
-Box box_of(const ToolSolid& solid) {
+Box bounding_box(const ToolSolid& solid) {
   return std::visit(BoxOfSolid{}, solid);
 }
 

@@ -16,7 +16,7 @@ bool is_soft(const ToolSnapshot& tool);
 inline constexpr double half_space_radius_m = 0.05;
 
 // Around the solid in its own frame; around the control points where it is a surface, which lies within.
-Box box_of(const ToolSolid& solid);
+Box bounding_box(const ToolSolid& solid);
 
 // From the tool's frame to the world: world = axes * local + origin_m. The axes are orthonormal, and
 // left-handed where the tool is the mirror image.

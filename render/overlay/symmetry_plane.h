@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "render/overlay/fixing_plane.h"
 
 namespace spoonbill {

@@ -1,6 +1,6 @@
 #include "render/passes/body_meshes.h"
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "render/overlay/contact_normals.h"
 #include "render/overlay/contact_stage.h"
 #include "render/overlay/fixing_plane.h"
@@ -158,7 +158,7 @@ void include_planes(const Snapshot& snapshot, const Overlays& on, const Box& bod
 void include_tools(const Snapshot& snapshot, Strips& strips) {
   const ToolSnapshot& tool = snapshot.tool;
   const ToolBody* body = rigid_body(tool);
-  const Box box = body != nullptr ? box_of(body->solid) : Box();
+  const Box box = body != nullptr ? bounding_box(body->solid) : Box();
   const auto include = [&](const ToolFrame& frame) {
     if (body == nullptr) return strips.include_sphere(frame.origin_m, tool.radius_m);
     Strips::Hull hull(strips);
@@ -199,7 +199,7 @@ std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& 
     hull.include(arrow->start_m.cast<float>());
     hull.include(arrow->tip_m.cast<float>());
   }
-  strips.include(box_of(stage_shapes(snapshot, settings)));
+  strips.include(bounding_box(stage_shapes(snapshot, settings)));
   include_planes(snapshot, on, body, strips);
   return strips.areas();
 }

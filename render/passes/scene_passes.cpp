@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "render/overlay/cell_lines.h"
 #include "render/overlay/contact_normals.h"
 #include "render/overlay/contact_stage.h"
@@ -51,7 +51,7 @@ ToolSphere ball_within(const Box& box, const ToolFrame& frame) {
 ToolSphere tool_sphere(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) {
   if (!settings.overlays.tool || is_soft(snapshot.tool)) return {};
   if (const ToolBody* body = rigid_body(snapshot.tool)) {
-    return ball_within(box_of(body->solid), tool_frame(snapshot));
+    return ball_within(bounding_box(body->solid), tool_frame(snapshot));
   }
   const Eigen::Vector3f centre = snapshot.tool.proxy.position_m.cast<float>();
   if (snapshot.tool.kind == ToolKind::sphere) return {centre, static_cast<float>(snapshot.tool.radius_m)};
@@ -67,7 +67,7 @@ SurfaceLook look_of(const BodySnapshot& body, const ViewSettings& settings) {
   return look;
 }
 
-Box box_of(const ToolSphere& tool) {
+Box bounding_box(const ToolSphere& tool) {
   Box box;
   if (tool.radius_m <= 0.0f) return box;
   box.include((tool.centre_m.array() - tool.radius_m).matrix().cast<double>());
@@ -106,7 +106,7 @@ void ScenePasses::draw_shadows(const FrameView& view, const Snapshot& snapshot, 
                                const BodyMeshes& bodies) {
   if (!settings.shadow) return;
   const ToolSphere tool = tool_sphere(view, snapshot, settings);
-  passes_.shadow.draw(view, bodies.buffers(), bodies.bounds(), box_of(tool), tool);
+  passes_.shadow.draw(view, bodies.buffers(), bodies.bounds(), bounding_box(tool), tool);
 }
 
 void ScenePasses::draw(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/simulation/snapshot.h"
 #include "render/passes/background_pass.h"

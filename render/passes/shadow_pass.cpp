@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "render/gl/pipeline_state.h"
 #include "render/passes/lighting_glsl.h"
 #include "render/passes/shadow_glsl.h"

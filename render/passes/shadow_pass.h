@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "render/gl/functions.h"
 #include "render/gl/handle.h"

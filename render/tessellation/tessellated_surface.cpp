@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 namespace {

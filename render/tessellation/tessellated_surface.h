@@ -10,7 +10,7 @@
 #include "engine/base/result.h"
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/grid.h"
-#include "engine/bspline/trimmed_grid.h"
+#include "engine/bspline/trimmed_area.h"
 #include "engine/simulation/snapshot.h"
 #include "render/camera.h"
 #include "render/tessellation/mesh_shading.h"

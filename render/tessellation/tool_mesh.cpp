@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "render/overlay/solid_tool.h"
 #include "render/tessellation/shape_mesh.h"
 #include "render/tessellation/tessellated_surface.h"
@@ -55,7 +55,7 @@ struct MeshOfSolid {
 
   Result<ToolMesh> operator()(const SurfaceSolid& solid) const {
     const SurfaceSnapshot snapshot = snapshot_of(solid.surface);
-    const Box box = box_of(ToolSolid(solid));
+    const Box box = bounding_box(ToolSolid(solid));
     const double pixels_per_metre = surface_px / box.size();
     TessellatedSurface surface;
     const Status updated = surface.update(snapshot, choose_sampling_level(snapshot, pixels_per_metre, {}));

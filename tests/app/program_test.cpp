@@ -6,7 +6,7 @@
 
 #include <cstdlib>
 
-#include "engine/base/instruction_set.h"
+#include "engine/base/processor.h"
 #include "tests/app/process.h"
 #include "tests/engine/effort.h"
 

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "engine/base/instruction_set.h"
+#include "engine/base/processor.h"
 
 namespace spoonbill {
 

@@ -10,7 +10,6 @@
 #include <numbers>
 
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 #include "engine/fitting/fit_scan.h"
 
 namespace spoonbill {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/merge.h"
 

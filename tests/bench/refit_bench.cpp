@@ -10,7 +10,7 @@
 #include <gp_Pnt.hxx>
 
 #include "engine/bspline/blending_matrix.h"
-#include "engine/bspline/refit.h"
+#include "engine/bspline/grid.h"
 #include "tests/bench/agreement.h"
 #include "tests/bench/dense_products.h"
 #include "tests/bench/sheet.h"

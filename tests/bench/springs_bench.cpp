@@ -3,7 +3,7 @@
 // it beside them: each cell's volume, damping, and plastic flow. Argument: nodes a side.
 #include <benchmark/benchmark.h>
 
-#include "engine/base/denormals.h"
+#include "engine/base/processor.h"
 #include "engine/material/lattice_solver.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "tests/bench/bullet_blocks.h"

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/base/denormals.h"
+#include "engine/base/processor.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/json.h"
 #include "haptic/tick.h"

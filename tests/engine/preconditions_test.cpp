@@ -8,8 +8,7 @@
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/change_knots.h"
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
-#include "engine/bspline/polygon_crossing.h"
+#include "engine/bspline/trim_loop.h"
 #include "engine/collision/meshes/box_tree.h"
 #include "engine/collision/meshes/vertex_join.h"
 #include "engine/collision/solids/implicit/implicit_shapes.h"
@@ -25,8 +24,8 @@
 #include "engine/material/lattice/lattice_mesh.h"
 #include "engine/merging/bridge.h"
 #include "engine/merging/patch_edge.h"
-#include "engine/shapes/meridian.h"
-#include "engine/shapes/shape_knots.h"
+#include "engine/shapes/lathe.h"
+#include "engine/shapes/fit_shape.h"
 #include "engine/shapes/smooth_curve.h"
 #include "engine/simulation/rest_shape.h"
 #include "engine/simulation/tool_model.h"
@@ -48,7 +47,7 @@ TEST_F(Preconditions, OfSplines) {
   EXPECT_THROW(blending_matrix(line_, parameters, 3), FailedAssertion);
   EXPECT_THROW(nested_parameters(line_, 0, 1), FailedAssertion);
   EXPECT_THROW(largest_deviation_m(square_, {parameters, parameters, {}}), FailedAssertion);
-  EXPECT_THROW(mixed_along(square_, Direction::u, Eigen::MatrixXd::Zero(2, 3), line_), FailedAssertion);
+  EXPECT_THROW(combine_along(square_, Direction::u, Eigen::MatrixXd::Zero(2, 3), line_), FailedAssertion);
   EXPECT_THROW(find_crossing({}, Eigen::Vector2d::Zero()), FailedAssertion);
   ControlNet smaller(1, 2);
   EXPECT_THROW(place(square_.net, Eigen::Matrix3d::Identity(), Vector3::Zero(), smaller), FailedAssertion);
@@ -97,12 +96,12 @@ TEST_F(Preconditions, OfFittingAndMerging) {
 TEST_F(Preconditions, AreCheckedThroughWholeSurfacesInDebugBuilds) {
   EXPECT_TRUE(is_valid(square_));
   square_.net.y[3] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(has_size_of_knots(square_));
+  EXPECT_TRUE(has_matching_net(square_));
   EXPECT_FALSE(is_valid(square_));
   square_.net.x.pop_back();
-  EXPECT_FALSE(has_size_of_knots(square_));
+  EXPECT_FALSE(has_matching_net(square_));
 #ifndef NDEBUG
-  EXPECT_THROW(over_coarser_knots(square_, Direction::u, line_), FailedAssertion);
+  EXPECT_THROW(fit_coarser_knots(square_, Direction::u, line_), FailedAssertion);
   EXPECT_THROW(basis_functions(line_, 1.5), FailedAssertion);
 #endif
 }

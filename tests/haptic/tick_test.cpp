@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/base/denormals.h"
+#include "engine/base/processor.h"
 #include "haptic/devices/virtual_device.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/simulation/handle.h"

@@ -15,7 +15,7 @@
 #include "app/frames/frame_painter.h"
 #include "app/panel/session_panel.h"
 #include "app/session/lockstep.h"
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/exchange/document.h"
 #include "engine/merging/merge.h"
 #include "haptic/devices/playback_device.h"

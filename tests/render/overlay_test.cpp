@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "render/overlay/cell_lines.h"
 #include "render/overlay/fixing_plane.h"
 #include "render/overlay/force_arrow.h"

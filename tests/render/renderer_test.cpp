@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "render/gl/osmesa_context.h"
 #include "render/image/png.h"
 #include "render/interface_fonts.h"

@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/simulation/symmetry.h"
 #include "render/gl/osmesa_context.h"
 #include "render/overlay/force_arrow.h"

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/bspline/surface.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/render/sample_scene.h"

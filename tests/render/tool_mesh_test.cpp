@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "render/overlay/solid_tool.h"
 #include "render/tessellation/facing_order.h"
 #include "tests/render/sample_scene.h"
@@ -201,7 +201,7 @@ TEST(ToolMesh, FillsTheBoxOfTheShape) {
     for (const ToolVertex& vertex : mesh_of(each.solid).vertices) {
       extent.include(vertex.position_m.cast<double>());
     }
-    const Box box = box_of(each.solid);
+    const Box box = bounding_box(each.solid);
     // Single precision.
     EXPECT_LT((extent.low - box.low).norm(), 1e-8) << each.name;
     EXPECT_LT((extent.high - box.high).norm(), 1e-8) << each.name;
@@ -210,7 +210,7 @@ TEST(ToolMesh, FillsTheBoxOfTheShape) {
 
 TEST(ToolMesh, OfASurfaceLiesWithinTheBoxOfItsControlPoints) {
   const SurfaceSolid solid = tube();
-  const Box box = box_of(ToolSolid(solid));
+  const Box box = bounding_box(ToolSolid(solid));
   for (const ToolVertex& vertex : mesh_of(solid).vertices) {
     const Vector3 at = vertex.position_m.cast<double>();
     ASSERT_TRUE((at.array() >= box.low.array() - 1e-8).all());

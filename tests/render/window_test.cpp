@@ -6,7 +6,7 @@
 #include <thread>
 #include <utility>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "render/gl/glfw_window.h"
 #include "render/gl/osmesa_context.h"
 #include "render/renderer.h"

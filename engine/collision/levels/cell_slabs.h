@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/base/aligned_vector.h"
+#include "engine/base/containers.h"
 #include "engine/collision/levels/surface_levels.h"
 
 namespace spoonbill {

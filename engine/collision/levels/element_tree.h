@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/levels/surface_levels.h"
 

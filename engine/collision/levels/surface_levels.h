@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/base/aligned_vector.h"
-#include "engine/base/instruction_set.h"
+#include "engine/base/containers.h"
+#include "engine/base/processor.h"
 #include "engine/base/result.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/piece_basis.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 
@@ -22,14 +22,14 @@ class BoxTree {
   // Halves the items by the middles of their boxes along the longest side. At least one box.
   BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size);
 
-  // Takes the boxes that the same items have now: box_of(place) of each place in order(). Allocates nothing.
+  // Takes the boxes that the same items have now: bounding_box(place) of each place in order(). Allocates nothing.
   template <class BoxOf>
-  void refit(const BoxOf& box_of) {
+  void refit(const BoxOf& bounding_box) {
     // Children stand behind their parents.
     for (auto index = static_cast<std::uint32_t>(nodes_.size()); index-- > 0;) {
       Node& node = nodes_[index];
-      node.box = node.is_leaf() ? box_of(node.first) : joined(nodes_[index + 1].box, nodes_[node.first].box);
-      for (std::uint32_t k = 1; k < node.count; ++k) node.box = joined(node.box, box_of(node.first + k));
+      node.box = node.is_leaf() ? bounding_box(node.first) : joined(nodes_[index + 1].box, nodes_[node.first].box);
+      for (std::uint32_t k = 1; k < node.count; ++k) node.box = joined(node.box, bounding_box(node.first + k));
     }
   }
 

@@ -17,7 +17,7 @@ constexpr std::uint32_t leaf_size = 4;
 constexpr double on_surface_m = 1e-12;
 
 Box box_of_corners(const std::vector<Vector3>& vertices, const TriangleCorners& corners) {
-  return box_of(Triangle{vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]});
+  return bounding_box(Triangle{vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]});
 }
 
 std::vector<Box> boxes_of(const TriangleMesh& mesh) {

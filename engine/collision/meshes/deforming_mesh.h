@@ -45,7 +45,7 @@ class DeformingMesh {
 
  private:
   struct Nearest;
-  Box box_of(std::uint32_t triangle) const;
+  Box bounding_box(std::uint32_t triangle) const;
   Vector3 face_normal(std::uint32_t triangle) const;
   Vector3 vertex_normal(std::uint32_t vertex) const;
   Vector3 normal_at(const Nearest& nearest) const;

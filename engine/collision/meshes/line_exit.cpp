@@ -37,7 +37,7 @@ bool meets(const Box& box, const Vector3& from, const Vector3& direction, double
 LineExits::LineExits(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
   std::vector<Box> boxes;
   boxes.reserve(triangles_.size());
-  for (const Triangle& triangle : triangles_) boxes.push_back(box_of(triangle));
+  for (const Triangle& triangle : triangles_) boxes.push_back(bounding_box(triangle));
   tree_ = std::make_unique<BoxTree>(boxes, leaf_size);
 }
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 

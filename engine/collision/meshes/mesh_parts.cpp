@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/collision/meshes/mesh_edges.h"
 #include "engine/collision/meshes/solid_angle.h"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/collision/meshes/mesh_edges.h"
 
 namespace spoonbill {

@@ -75,7 +75,7 @@ class SelfContact {
   void meet(const BoxTree::Node& first, const BoxTree::Node& second) {
     for (std::uint32_t s = first.first; s < first.first + first.count; ++s) {
       const Triangle a = triangle(s);
-      const Box around = box_of(a);
+      const Box around = bounding_box(a);
       for (std::uint32_t t = std::max(second.first, &first == &second ? s + 1 : 0U);
            t < second.first + second.count; ++t) {
         if (pairs_left_-- == 0) {
@@ -83,7 +83,7 @@ class SelfContact {
           return;
         }
         const Triangle b = triangle(t);
-        if (!around.overlaps(box_of(b))) continue;
+        if (!around.overlaps(bounding_box(b))) continue;
         const bool neighbours = have_common_corner(triangles_[s], triangles_[t]);
         if (!(neighbours ? triangles_meet(shrunk(a), shrunk(b)) : triangles_meet(a, b))) continue;
         if (meetings_.found.size() == most_) {

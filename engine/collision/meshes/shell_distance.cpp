@@ -26,7 +26,7 @@ std::vector<Box> boxes_of(const std::vector<Vector3>& vertices,
   std::vector<Box> boxes;
   boxes.reserve(triangles.size());
   for (const auto& [i, j, k] : triangles) {
-    boxes.push_back(box_of(Triangle{vertices[i], vertices[j], vertices[k]}));
+    boxes.push_back(bounding_box(Triangle{vertices[i], vertices[j], vertices[k]}));
   }
   return boxes;
 }

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 

@@ -4,14 +4,13 @@
 
 #include <array>
 
-#include "engine/base/box.h"
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 
 using Triangle = std::array<Vector3, 3>;
 
-inline Box box_of(const Triangle& t) {
+inline Box bounding_box(const Triangle& t) {
   return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
 }
 

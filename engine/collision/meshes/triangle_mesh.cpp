@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/collision/meshes/hole_filling.h"
 #include "engine/collision/meshes/mesh_edges.h"
 #include "engine/collision/meshes/mesh_parts.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 

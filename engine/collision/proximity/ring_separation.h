@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/levels/surface_bounds.h"
 

@@ -134,7 +134,7 @@ void SelfProximity::find_near_elements(double reach) {
   }
 }
 
-const Box& SelfProximity::box_of(const LevelCell& element) const {
+const Box& SelfProximity::bounding_box(const LevelCell& element) const {
   const SurfaceLevels& levels = near_.levels();
   const int side = levels.step(0), elements_v = (levels.nested().grid.columns() - 1) / side;
   return boxes_[element.i / side * elements_v + element.j / side];
@@ -168,8 +168,8 @@ std::span<const SelfProximity::NearCell> SelfProximity::cells_of(const LevelCell
 void SelfProximity::offer_elements(const LevelCell& one, const LevelCell& other, double reach) {
   if (slots_used_ + 2 > slot_capacity) begin_cells();
   const std::span<const NearCell> cells = cells_of(one), other_cells = cells_of(other);
-  offer_samples(one, box_of(other), other_cells, reach);
-  offer_samples(other, box_of(one), cells, reach);
+  offer_samples(one, bounding_box(other), other_cells, reach);
+  offer_samples(other, bounding_box(one), cells, reach);
 }
 
 // The samples of an element against the cells of another, in a box, that may be nearer than what they were

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/collision/proximity/near_points.h"
 #include "engine/collision/proximity/rest_pairs.h"
 #include "engine/collision/proximity/ring_separation.h"
@@ -54,7 +54,7 @@ class SelfProximity {
     PatchCorners corners;
     Box box;
   };
-  const Box& box_of(const LevelCell& element) const;
+  const Box& bounding_box(const LevelCell& element) const;
   void begin_cells();
   std::span<const NearCell> cells_of(const LevelCell& element);
   void offer_elements(const LevelCell& one, const LevelCell& other, double reach);

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 

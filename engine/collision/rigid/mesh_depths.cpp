@@ -27,7 +27,7 @@ MeshDepths::MeshDepths(const PosedMesh& mesh, const PosedMesh& other, double thi
       vertices_(mesh.vertex_count()) {
   for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
     const auto& [a, b, c] = mesh.corners(t);
-    const Box box = box_of({mesh.vertex(a), mesh.vertex(b), mesh.vertex(c)});
+    const Box box = bounding_box({mesh.vertex(a), mesh.vertex(b), mesh.vertex(c)});
     if (box.is_near(around_, mesh.grown_at_m(a))) near_.push_back(t);
   }
   if (!mesh.has_plates() && !other.has_plates()) return;

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/disjoint_sets.h"
+#include "engine/base/containers.h"
 #include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/meshes/nearest_on_triangle.h"
 #include "engine/collision/rigid/body_tree.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/collision/rigid/rigid_mesh.h"
 

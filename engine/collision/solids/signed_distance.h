@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 

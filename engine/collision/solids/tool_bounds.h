@@ -1,7 +1,7 @@
 // Lower bounds of a tool's distance over boxes and over patches of a surface.
 #pragma once
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/solids/tool_shape.h"
 

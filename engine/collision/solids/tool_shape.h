@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/collision/solids/signed_distance.h"
 
 namespace spoonbill {

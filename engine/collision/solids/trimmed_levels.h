@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/bspline/trimmed_cells.h"
+#include "engine/bspline/trimmed_area.h"
 #include "engine/collision/levels/surface_levels.h"
 
 namespace spoonbill {

@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 namespace {

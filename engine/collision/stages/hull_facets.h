@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 

@@ -7,7 +7,7 @@
 #include "engine/base/assert.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/tube_rings.h"
-#include "engine/bspline/unit_normal.h"
+#include "engine/bspline/surface.h"
 #include "engine/collision/meshes/mesh_parts.h"
 
 namespace spoonbill {

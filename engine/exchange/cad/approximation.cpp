@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/bspline/blending_matrix.h"
 #include "engine/exchange/cad/closing.h"
 #include "engine/scene/scene.h"

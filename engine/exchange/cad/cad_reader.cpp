@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
-#include "engine/base/pose.h"
+#include "engine/base/text.h"
+#include "engine/base/geometry.h"
 #include "engine/exchange/cad/external_files.h"
 #include "engine/exchange/cad/face_surface.h"
 #include "engine/exchange/cad/file_unit.h"

@@ -1,7 +1,7 @@
 // Surfaces that meet themselves made periodic: CAD files hold them open, with a seam.
 #pragma once
 
-#include "engine/bspline/knot_insertion.h"
+#include "engine/bspline/reparameterise.h"
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {

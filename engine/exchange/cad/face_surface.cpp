@@ -48,7 +48,7 @@ double snapped(double bound, double own, double length) {
   return std::abs(bound - own) < 1e-7 * length ? own : bound;
 }
 
-Result<ParameterBox> box_of(const TopoDS_Face& face, const Geometry& surface) {
+Result<ParameterBox> bounding_box(const TopoDS_Face& face, const Geometry& surface) {
   ParameterBox box, own;
   BRepTools::UVBounds(face, box.u_start, box.u_end, box.v_start, box.v_end);
   surface->Bounds(own.u_start, own.u_end, own.v_start, own.v_end);
@@ -161,7 +161,7 @@ void turn_round(FaceSurface& face) {
 Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolerance_m) {
   const Geometry surface = without_trims(BRep_Tool::Surface(face));
   if (surface.IsNull()) return Error{"has no surface; export it anew"};
-  auto box = box_of(face, surface);
+  auto box = bounding_box(face, surface);
   if (!box) return box.error();
   const bool trimmed = is_trimmed(face, box.value(), tolerance_m / scale);
   if (trimmed) box = widened(surface, box.value());

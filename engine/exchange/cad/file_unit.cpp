@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/cad/iges_globals.h"
 
 namespace spoonbill {

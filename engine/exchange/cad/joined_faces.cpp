@@ -23,7 +23,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/cad/body_shape.h"
 #include "engine/exchange/cad/closing.h"
 #include "engine/exchange/cad/occt_surface.h"

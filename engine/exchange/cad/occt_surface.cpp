@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/bspline/knot_insertion.h"
+#include "engine/bspline/reparameterise.h"
 
 namespace spoonbill {
 namespace {

@@ -21,8 +21,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/disjoint_sets.h"
-#include "engine/base/number_text.h"
+#include "engine/base/containers.h"
+#include "engine/base/text.h"
 #include "engine/collision/meshes/nearest_on_triangle.h"
 #include "engine/exchange/cad/occt_surface.h"
 

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/bspline/stretch_bound.h"
+#include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_area.h"
 
 namespace spoonbill {
@@ -47,7 +47,7 @@ struct Nearness {
 };
 
 Nearness nearness_on(const Surface& surface, double tolerance_m) {
-  const double share = tolerance_m / std::max(longest_stretch_m(surface), 1e-300);
+  const double share = tolerance_m / std::max(stretch_bound_m(surface), 1e-300);
   return {
       {surface.u.domain_end() - surface.u.domain_start(), surface.v.domain_end() - surface.v.domain_start()},
       std::clamp(share, nearest_curve_share, curve_share)};
@@ -178,7 +178,7 @@ std::vector<TrimLoop> turned_right(std::vector<TrimLoop> loops, const KnotVector
                                    const KnotVector& along_v) {
   std::vector<double> areas;
   areas.reserve(loops.size());
-  for (const TrimLoop& loop : loops) areas.push_back(signed_area(polygon_of(loop, along_u, along_v)));
+  for (const TrimLoop& loop : loops) areas.push_back(signed_area(to_polygon(loop, along_u, along_v)));
   const auto largest = std::max_element(areas.begin(), areas.end(),
                                         [](double a, double b) { return std::abs(a) < std::abs(b); });
   for (std::size_t k = 0; k < loops.size(); ++k) {
@@ -203,7 +203,7 @@ Result<std::vector<TrimLoop>> trims_of(const TopoDS_Face& face, const Surface& s
     if (chain->empty()) continue;
     auto loop = loop_of(chain.value(), along_u, along_v);
     if (!loop) return loop.error();
-    const double area = std::abs(signed_area(polygon_of(loop.value(), along_u, along_v)));
+    const double area = std::abs(signed_area(to_polygon(loop.value(), along_u, along_v)));
     if (area > (1.0 - curve_share) * domain_area(along_u, along_v)) continue;
     loops.push_back(std::move(loop).value());
   }

@@ -67,7 +67,7 @@ std::optional<double> free_seam(const KnotVector& knots, Direction direction,
 }
 
 bool leaves(const KnotVector& knots, Direction direction, const std::vector<TrimLoop>& trims) {
-  const double slack = trim_rounding_share * (knots.domain_end() - knots.domain_start());
+  const double slack = trim_rounding_fraction * (knots.domain_end() - knots.domain_start());
   for (const TrimLoop& loop : trims) {
     for (const double parameter : along(loop, direction)) {
       if (parameter < knots.domain_start() - slack || parameter > knots.domain_end() + slack) return true;
@@ -82,7 +82,7 @@ void bring_inside(const KnotVector& knots, Direction direction, std::vector<Trim
   for (TrimLoop& loop : trims) {
     std::vector<double>& values = direction == Direction::u ? loop.u : loop.v;
     const double low = *std::min_element(values.begin(), values.end());
-    const double shift = period * std::floor((low - knots.domain_start()) / period + trim_rounding_share);
+    const double shift = period * std::floor((low - knots.domain_start()) / period + trim_rounding_fraction);
     for (double& value : values) value -= shift;
   }
 }
@@ -113,7 +113,7 @@ bool is_pole(const ControlNet& net, Direction along_edge, int line) {
 
 bool has_holes_alone(const TrimmedSurface& part) {
   return std::all_of(part.trims.begin(), part.trims.end(), [&](const TrimLoop& loop) {
-    return signed_area(polygon_of(loop, part.surface.u, part.surface.v)) < 0.0;
+    return signed_area(to_polygon(loop, part.surface.u, part.surface.v)) < 0.0;
   });
 }
 
@@ -253,7 +253,7 @@ Result<std::vector<Outline>> outlines_of(const Geometry& geometry, const Trimmed
   std::vector<Outline> outlines;
   for (const TrimLoop& loop : part.trims) {
     Outline outline;
-    outline.polygon = polygon_of(loop, part.surface.u, part.surface.v);
+    outline.polygon = to_polygon(loop, part.surface.u, part.surface.v);
     outline.area = signed_area(outline.polygon);
     auto wire = wire_of(loop, geometry);
     if (!wire) return wire.error();

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/mesh_export/three_mf.h"
 
 namespace spoonbill {

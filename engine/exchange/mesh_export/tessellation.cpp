@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/bspline/evaluate.h"
-#include "engine/bspline/stretch_bound.h"
+#include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_area.h"
-#include "engine/bspline/trimmed_grid.h"
 #include "engine/collision/levels/surface_bounds.h"
 #include "engine/exchange/mesh_export/slivers.h"
 #include "engine/inspection/closing.h"
@@ -263,8 +262,8 @@ TriangleMesh kept_mesh(const Sheet& sheet, const Welding& welding, const Trimmed
 // How far the polygons that stand for loops can be from them.
 double trim_edge_error_m(const Surface& surface, const std::vector<TrimLoop>& trims) {
   double share = 0.0;
-  for (const TrimLoop& loop : trims) share = std::max(share, polygon_error_share(loop, surface.u, surface.v));
-  return share * longest_stretch_m(surface);
+  for (const TrimLoop& loop : trims) share = std::max(share, polygon_error_fraction(loop, surface.u, surface.v));
+  return share * stretch_bound_m(surface);
 }
 
 Result<Tessellation> finished(const Sheet& sheet, const Surface& surface, const std::vector<TrimLoop>& trims,

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/base/progress.h"
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
@@ -30,7 +30,7 @@ inline constexpr std::size_t exported_triangle_limit = 10'000'000;
 // A grid over the polynomial pieces, finer where the surface bends. A cell of sides h_u and h_v lies within
 // (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of the bilinear patch through its corners (surface_bounds.h), and that
 // within |P00 - P10 - P01 + P11| / 4 of its triangles, those that trim loops cut too, whose corners lie on
-// the patch. An edge that a loop makes is that of its polygon, within polygon_error_share() of the domain
+// the patch. An edge that a loop makes is that of its polygon, within polygon_error_fraction() of the domain
 // of the loop, which the surface stretches by no more than its first derivatives. Refused: more triangles
 // than the limit, loops that bound nothing; a request to stop.
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,

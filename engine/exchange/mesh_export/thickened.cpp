@@ -4,8 +4,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
-#include "engine/base/place_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {
@@ -64,7 +63,7 @@ Result<TriangleMesh> thickened(const TriangleMesh& outer, double thickness_m) {
   }
   if (turned > turned_share * area) {
     return Error{"a shell of " + number_text(1e3 * thickness_m) + " mm is thicker than it is curved at " +
-                 place_text(turned_m)};
+                 position_text(turned_m)};
   }
   for (const auto& [from, to] : edges_of(outer)) {
     shell.triangles.push_back({to, from, from + count});

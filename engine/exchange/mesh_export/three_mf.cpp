@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {

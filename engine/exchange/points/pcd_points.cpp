@@ -6,7 +6,7 @@
 #include <cstring>
 #include <optional>
 
-#include "engine/base/excerpt.h"
+#include "engine/base/text.h"
 #include "engine/exchange/points/number_lines.h"
 #include "engine/exchange/points/point_cloud.h"
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {

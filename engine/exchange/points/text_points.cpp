@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/base/excerpt.h"
+#include "engine/base/text.h"
 #include "engine/exchange/points/number_lines.h"
 #include "engine/exchange/points/point_cloud.h"
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 

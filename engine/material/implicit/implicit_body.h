@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/aligned_vector.h"
-#include "engine/base/instruction_set.h"
+#include "engine/base/containers.h"
+#include "engine/base/processor.h"
 #include "engine/base/result.h"
 #include "engine/material/implicit/block_materials.h"
 #include "engine/material/implicit/rolling_factor.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/base/aligned_vector.h"
+#include "engine/base/containers.h"
 #include "engine/material/implicit/band_kernels.h"
 #include "engine/material/implicit/cell_kernels.h"
 #include "engine/material/lattice/lattice_mesh.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/collision/meshes/shell_distance.h"
 #include "engine/material/lattice/embedded_point.h"

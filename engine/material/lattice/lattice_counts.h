@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/scene/lattice_request.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "engine/base/number_text.h"
-#include "engine/bspline/share_table.h"
+#include "engine/base/text.h"
+#include "engine/bspline/tube_rings.h"
 #include "engine/material/lattice/lattice_counts.h"
 #include "engine/material/lattice/shell_surface.h"
 #include "engine/scene/scene.h"
@@ -25,9 +25,9 @@ constexpr double as_far = 1.0 - 1e-6;
 
 // Arc length from the first station on, the mean over the lines, against the stations' shares.
 template <class PlaceOf>
-ShareTable length_to_share(const ShellSurface& face, const std::vector<double>& stations,
+LinearTable length_to_share(const ShellSurface& face, const std::vector<double>& stations,
                            const std::vector<double>& over, const PlaceOf& place_of) {
-  ShareTable table{{0.0}, {stations.front()}};
+  LinearTable table{{0.0}, {stations.front()}};
   for (std::size_t s = 1; s < stations.size(); ++s) {
     double sum = 0.0;
     for (const double line : over) {
@@ -40,13 +40,13 @@ ShareTable length_to_share(const ShellSurface& face, const std::vector<double>& 
   return table;
 }
 
-ShareTable across_table(const ShellSurface& face, const std::vector<double>& over) {
+LinearTable across_table(const ShellSurface& face, const std::vector<double>& over) {
   return length_to_share(face, face.across_shares(length_stations), over, [](double across, double line) {
     return Place{across, line};
   });
 }
 
-ShareTable along_table(const ShellSurface& face, const std::vector<double>& over) {
+LinearTable along_table(const ShellSurface& face, const std::vector<double>& over) {
   return length_to_share(face, face.along_shares(length_stations), over, [](double along, double line) {
     return Place{line, along};
   });
@@ -122,7 +122,7 @@ class Spread {
   }
 
   const ShellSurface* face_;
-  ShareTable across_, along_;
+  LinearTable across_, along_;
   std::array<double, 2> size_{};
   double start_m_ = 0.0;
 };

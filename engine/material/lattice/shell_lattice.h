@@ -1,7 +1,7 @@
 // Fills a thin shell with lattice nodes: layers between a surface and its offset by the thickness.
 #pragma once
 
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/material/lattice/lattice_mesh.h"

@@ -8,10 +8,9 @@
 #include <numbers>
 #include <vector>
 
-#include "engine/base/number_text.h"
-#include "engine/bspline/share_table.h"
+#include "engine/base/text.h"
 #include "engine/bspline/tube_rings.h"
-#include "engine/bspline/unit_normal.h"
+#include "engine/bspline/surface.h"
 #include "engine/collision/meshes/mesh_parts.h"
 #include "engine/collision/meshes/shell_distance.h"
 #include "engine/collision/surfaces/closed_surface.h"
@@ -38,10 +37,10 @@ Status check_thick(const ClosedSkin& skin, double volume_m3, double size_m) {
 }
 
 // Of v: the share of the body's length, of a ring that of a turn.
-ShareTable shares_along(const Surface& surface) {
+LinearTable shares_along(const Surface& surface) {
   if (surface.v.is_periodic()) return {{surface.v.domain_start(), surface.v.domain_end()}, {0.0, 1.0}};
   const Profile profile = sample_profile(surface);
-  ShareTable shares{profile.v, profile.distance};
+  LinearTable shares{profile.v, profile.distance};
   for (double& distance : shares.to) distance /= profile.distance.back();
   return shares;
 }
@@ -77,7 +76,7 @@ class Places {
  private:
   const ClosedSkin& skin_;
   const ShellDistance& inside_;
-  ShareTable along_;
+  LinearTable along_;
   double start_, period_;
 };
 

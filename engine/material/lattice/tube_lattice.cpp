@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/number_text.h"
-#include "engine/bspline/share_table.h"
+#include "engine/base/text.h"
 #include "engine/bspline/tube_rings.h"
 #include "engine/collision/surfaces/closed_surface.h"
 #include "engine/material/lattice/lattice_counts.h"
@@ -78,7 +77,7 @@ void place_turns(const Surface& surface, const RingParameters& ring, LatticeMesh
 void fill_cap(const Surface& surface, const RingParameters& ring, LatticeMesh& mesh, int k, double pole_v,
               double rim_v) {
   const int ni = mesh.count[0], nj = mesh.count[1];
-  ShareTable length_to_v;
+  LinearTable length_to_v;
   double length = 0.0;
   Vector3 previous = evaluate(surface, ring.u[0], pole_v).position_m;
   for (int s = 0; s <= 64; ++s) {
@@ -120,7 +119,7 @@ Result<TubeBlock> lay_block(const Surface& surface, const Profile& profile, cons
                             const LatticeRequest& request) {
   if (rims.first >= rims.last) return Error{"surface: too short between its caps for a lattice"};
   const double first_distance = profile.distance[rims.first], last_distance = profile.distance[rims.last];
-  const double middle_v = ShareTable{profile.distance, profile.v}.at(0.5 * (first_distance + last_distance));
+  const double middle_v = LinearTable{profile.distance, profile.v}.at(0.5 * (first_distance + last_distance));
   const Ring middle = sample_ring(surface, middle_v);
   // Not from rim to rim: a coil's ends may lie anywhere.
   if (!(middle.along.norm() > 0.0)) {
@@ -132,7 +131,7 @@ Result<TubeBlock> lay_block(const Surface& surface, const Profile& profile, cons
                  number_text(section.width * 1e3) +
                  " mm wide: too flat for a lattice; make it at least a ten-thousandth as thick"};
   }
-  const Extents extents = extents_to_fill(surface, profile, rims, section);
+  const Extents extents = lattice_extents(surface, profile, rims, section);
   const Result<std::array<int, 3>> counts =
       lattice_counts(request, {extents.width, extents.thickness, last_distance - first_distance});
   if (!counts.ok()) return counts.error();
@@ -141,7 +140,7 @@ Result<TubeBlock> lay_block(const Surface& surface, const Profile& profile, cons
   mesh.count = counts.value();
   mesh.nodes.assign(static_cast<std::size_t>(mesh.node_count()), Vector3::Zero());
   block.ring = ring_parameters(surface, middle, section, mesh.count[0], mesh.count[1]);
-  const ShareTable distance_to_v{profile.distance, profile.v};
+  const LinearTable distance_to_v{profile.distance, profile.v};
   const int last = mesh.count[2] - 1;
   for (int k = 1; k < last; ++k) {
     fill_ring(surface, block.ring, mesh, k,

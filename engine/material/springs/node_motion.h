@@ -1,7 +1,7 @@
 // Nodes that something else than their lattice moves, within a substep.
 #pragma once
 
-#include "engine/base/pose.h"
+#include "engine/base/geometry.h"
 #include "engine/material/springs/lattice_kernels.h"
 
 namespace spoonbill {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/aligned_vector.h"
-#include "engine/base/instruction_set.h"
+#include "engine/base/containers.h"
+#include "engine/base/processor.h"
 #include "engine/base/result.h"
 #include "engine/material/lattice/lattice_mesh.h"
 #include "engine/material/lattice_materials.h"

@@ -1,7 +1,7 @@
 #include "engine/material/statics/static_body.h"
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {

@@ -1,8 +1,8 @@
-#include "engine/base/box.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "engine/base/geometry.h"
 
 namespace spoonbill {
 namespace {

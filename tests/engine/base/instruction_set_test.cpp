@@ -1,6 +1,6 @@
-#include "engine/base/instruction_set.h"
-
 #include <gtest/gtest.h>
+
+#include "engine/base/processor.h"
 
 namespace spoonbill {
 namespace {

@@ -1,6 +1,4 @@
 // Files appear whole or not at all, whatever they were before.
-#include "engine/base/output_file.h"
-
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -95,18 +93,18 @@ TEST(OutputFile, WritesDevicesAsTheyAre) {
 TEST(OutputFile, AFileOfAnotherProgramIsPutInItsPlace) {
   const TemporaryFolder folder;
   const auto finished = folder.write("a.new.mp4", "video"), file = folder.path() / "a.mp4";
-  ASSERT_TRUE(put_in_place(finished, file).ok());
+  ASSERT_TRUE(publish_file(finished, file).ok());
   EXPECT_EQ(content_of(file), "video");
-  EXPECT_EQ(put_in_place(finished, file).error().message,
+  EXPECT_EQ(publish_file(finished, file).error().message,
             file.string() + ": cannot be written: No such file or directory");
 }
 
 TEST(OutputFile, TheEndsOfFilesAreReadAsTheirStartsAre) {
   const TemporaryFolder folder;
-  EXPECT_EQ(last_bytes(folder.write("long", "0123456789"), 4), "6789");
-  EXPECT_EQ(last_bytes(folder.write("short", "01"), 4), "01");
-  EXPECT_EQ(last_bytes(folder.path() / "missing", 4), "");
-  EXPECT_EQ(last_bytes(folder.path(), 4), "");
+  EXPECT_EQ(read_last_bytes(folder.write("long", "0123456789"), 4), "6789");
+  EXPECT_EQ(read_last_bytes(folder.write("short", "01"), 4), "01");
+  EXPECT_EQ(read_last_bytes(folder.path() / "missing", 4), "");
+  EXPECT_EQ(read_last_bytes(folder.path(), 4), "");
 }
 
 TEST(OutputFile, AFileTooLargeComesWithItsRemedy) {

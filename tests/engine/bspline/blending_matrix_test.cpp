@@ -153,10 +153,10 @@ TEST(PseudoInverse, RefitsFiftySamplesToTheControlPointsTheyCameFrom) {
   EXPECT_LT((pseudo_inverse(knots, parameters).value() * samples - controls).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-void expect_refused(const KnotVector& knots, const std::vector<double>& parameters, const std::string& part) {
+void expect_refused(const KnotVector& knots, const std::vector<double>& parameters, ErrorCode code) {
   const auto inverse = pseudo_inverse(knots, parameters);
-  ASSERT_FALSE(inverse.ok()) << "accepted, though it should be refused with: " << part;
-  EXPECT_NE(inverse.error().message.find(part), std::string::npos) << inverse.error().message;
+  ASSERT_FALSE(inverse.ok());
+  EXPECT_EQ(inverse.error().code, code) << inverse.error().message;
 }
 
 TEST(PseudoInverse, RefusesThePeriodicTraps) {
@@ -167,22 +167,20 @@ TEST(PseudoInverse, RefusesThePeriodicTraps) {
       if (degree % 2 == 1) {
         for (double& u : parameters) u += 0.5 / controls;
       }
-      expect_refused(knots, parameters,
-                     "do not determine the " + std::to_string(controls) + " control points");
+      expect_refused(knots, parameters, ErrorCode::degenerate);
     }
   }
 }
 
 TEST(PseudoInverse, RefusesTooFewSamples) {
   const auto knots = KnotVector::clamped_uniform(3, 8).value();
-  expect_refused(knots, uniform_parameters(knots, 7),
-                 "7 samples are too few for 8 control points; take at least 16");
-  expect_refused(knots, {}, "0 samples are too few");
+  expect_refused(knots, uniform_parameters(knots, 7), ErrorCode::too_few);
+  expect_refused(knots, {}, ErrorCode::too_few);
 }
 
 TEST(PseudoInverse, RefusesSamplesThatRepeat) {
   const auto knots = KnotVector::clamped_uniform(1, 4).value();
-  expect_refused(knots, {0, 0, 0.4, 0.4, 1, 1}, "has no sample of its own");
+  expect_refused(knots, {0, 0, 0.4, 0.4, 1, 1}, ErrorCode::too_few);
 }
 
 TEST(SchoenbergWhitney, NamesTheControlPointInAGap) {
@@ -200,7 +198,7 @@ TEST(SchoenbergWhitney, NamesTheControlPointInAGap) {
             "control point 10 of 20 has no sample of its own between 0.4117647058823529 and "
             "0.6470588235294118; add "
             "samples there");
-  expect_refused(knots, parameters, "control point 10 of 20");
+  expect_refused(knots, parameters, ErrorCode::too_few);
 }
 
 TEST(SchoenbergWhitney, NamesTheControlPointInAPeriodicGap) {

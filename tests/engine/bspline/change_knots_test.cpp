@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/bspline/reparameterise.h"
 #include "tests/engine/bspline/random_surface.h"
 
 namespace spoonbill {
@@ -41,9 +42,9 @@ TEST(ChangeKnots, ElevationKeepsTheSurface) {
     const Surface surface = random_surface(random);
     const Direction along = any_direction(random);
     const KnotVector& knots = knots_along(surface, along);
-    const auto higher = elevated(knots, random.integer(knots.degree(), max_degree));
+    const auto higher = elevate_degree(knots, random.integer(knots.degree(), max_degree));
     ASSERT_TRUE(higher.ok()) << higher.error().message;
-    const auto changed = over_finer_knots(surface, along, higher.value());
+    const auto changed = convert_to_finer_knots(surface, along, higher.value());
     ASSERT_TRUE(changed.ok()) << changed.error().message;
     EXPECT_LT(largest_difference(random, surface, changed.value(), along), same_surface);
   }
@@ -57,7 +58,7 @@ TEST(ChangeKnots, AgreesWithKnotInsertion) {
     const KnotVector& knots = knots_along(surface, along);
     const double knot = random.uniform(knots.domain_start(), knots.domain_end());
     const Surface inserted = insert_knot(surface, along, knot, random.integer(1, knots.degree())).value();
-    const auto changed = over_finer_knots(surface, along, knots_along(inserted, along));
+    const auto changed = convert_to_finer_knots(surface, along, knots_along(inserted, along));
     ASSERT_TRUE(changed.ok()) << changed.error().message;
     for (std::size_t k = 0; k < inserted.net.size(); ++k) {
       EXPECT_NEAR(changed->net.x[k], inserted.net.x[k], same_surface);
@@ -78,7 +79,7 @@ TEST(ChangeKnots, TakesPartsAlsoAcrossASeam) {
                                            : random.uniform(start, knots.domain_end());
     const auto part = clamped_part(knots, start, end);
     ASSERT_TRUE(part.ok()) << part.error().message;
-    const auto cut = over_finer_knots(surface, along, part.value());
+    const auto cut = convert_to_finer_knots(surface, along, part.value());
     ASSERT_TRUE(cut.ok()) << cut.error().message;
     // A short part lies far from the control points it is made of only where it is a small piece of a long
     // one: the blossoms then lie inside that piece.
@@ -91,7 +92,7 @@ TEST(ChangeKnots, NamesAKnotThatIsMissing) {
   const auto u = KnotVector::open(3, {0, 0, 0, 0, 0.25, 0.5, 1, 1, 1, 1}).value();
   const Surface surface = random_surface(random, u, KnotVector::clamped_uniform(2, 4).value());
   const auto lacking = KnotVector::open(3, {0, 0, 0, 0, 0.5, 1, 1, 1, 1}).value();
-  const auto changed = over_finer_knots(surface, Direction::u, lacking);
+  const auto changed = convert_to_finer_knots(surface, Direction::u, lacking);
   ASSERT_FALSE(changed.ok());
   EXPECT_EQ(changed.error().message,
             "direction u: the knots to change to lack the surface's knot 0.25; insert it");
@@ -104,10 +105,11 @@ TEST(ChangeKnots, CoarserKnotsGiveBackWhatWasRefined) {
     const Direction along = any_direction(random);
     const KnotVector& knots = knots_along(surface, along);
     const int degree = std::min(knots.degree() + 2, max_degree);
-    const auto target = elevated(knots, knots.degree());
-    const Surface clamped = over_finer_knots(surface, along, target.value()).value();
-    const Surface finer = over_finer_knots(clamped, along, elevated(knots, degree).value()).value();
-    const auto back = over_coarser_knots(finer, along, target.value());
+    const auto target = elevate_degree(knots, knots.degree());
+    const Surface clamped = convert_to_finer_knots(surface, along, target.value()).value();
+    const Surface finer =
+        convert_to_finer_knots(clamped, along, elevate_degree(knots, degree).value()).value();
+    const auto back = fit_coarser_knots(finer, along, target.value());
     ASSERT_TRUE(back.ok()) << back.error().message;
     EXPECT_LT(back->deviation_m, 1e-10);
     EXPECT_LT(largest_difference(random, clamped, back->surface, along), 1e-10);
@@ -121,9 +123,9 @@ TEST(ChangeKnots, TheDeviationOfACoarserSurfaceIsNeverPassed) {
     const Direction along = any_direction(random);
     const KnotVector& knots = knots_along(surface, along);
     const int degree = random.integer(1, knots.degree());
-    const auto fewer = reduced(knots, degree);
+    const auto fewer = reduce_degree(knots, degree);
     ASSERT_TRUE(fewer.ok()) << fewer.error().message;
-    const auto coarse = over_coarser_knots(surface, along, fewer.value());
+    const auto coarse = fit_coarser_knots(surface, along, fewer.value());
     ASSERT_TRUE(coarse.ok()) << coarse.error().message;
     const double seen = largest_difference(random, surface, coarse->surface, along);
     EXPECT_LE(seen, coarse->deviation_m + 1e-12);
@@ -136,7 +138,7 @@ TEST(ChangeKnots, ReducedDegreeReachesATolerance) {
   Random random(37);
   const Surface surface = random_surface(random, KnotVector::clamped_uniform(5, 9).value(),
                                          KnotVector::periodic_uniform(3, 8).value());
-  const KnotVector first = reduced(surface.u, 3).value();
+  const KnotVector first = reduce_degree(surface.u, 3).value();
   const auto cubic = approximated(surface, Direction::u, first, 1e-5, 400);
   ASSERT_TRUE(cubic.ok()) << cubic.error().message;
   EXPECT_LE(cubic->deviation_m, 1e-5);
@@ -144,8 +146,7 @@ TEST(ChangeKnots, ReducedDegreeReachesATolerance) {
   EXPECT_EQ(cubic->surface.u.degree(), 3);
   const auto refused = approximated(surface, Direction::u, first, 1e-9, 20);
   ASSERT_FALSE(refused.ok());
-  EXPECT_NE(refused.error().message.find("allow a larger one than 1e-06 mm"), std::string::npos)
-      << refused.error().message;
+  EXPECT_EQ(refused.error().code, ErrorCode::not_converged) << refused.error().message;
 }
 
 TEST(ChangeKnots, SpareKnotsGoAndOthersStay) {
@@ -155,10 +156,10 @@ TEST(ChangeKnots, SpareKnotsGoAndOthersStay) {
   Surface finer = surface;
   for (const double knot : {0.1, 0.3, 0.8}) finer = insert_knot(finer, Direction::u, knot, 2).value();
   finer = insert_knot(finer, Direction::v, 0.3, 1).value();
-  const auto u_back = without_spare_knots(finer, Direction::u, 1e-10);
+  const auto u_back = remove_spare_knots(finer, Direction::u, 1e-10);
   ASSERT_TRUE(u_back.ok());
   EXPECT_EQ(u_back->surface.u, surface.u);
-  const auto back = without_spare_knots(u_back->surface, Direction::v, 1e-10);
+  const auto back = remove_spare_knots(u_back->surface, Direction::v, 1e-10);
   EXPECT_EQ(back->surface.v, surface.v);
   EXPECT_LT(largest_difference(random, surface, back->surface), 1e-10);
 }
@@ -173,7 +174,7 @@ TEST(ChangeKnots, SpareKnotsOfUnclampedAndOfLongDirectionsGo) {
   Surface finer = surface;
   for (const double knot : {0.25, 0.5, 0.75}) finer = insert_knot(finer, Direction::u, knot, 1).value();
   ASSERT_EQ(finer.u, unclamped);
-  const auto back = without_spare_knots(finer, Direction::u, 1e-10);
+  const auto back = remove_spare_knots(finer, Direction::u, 1e-10);
   ASSERT_TRUE(back.ok());
   EXPECT_EQ(back->surface.u, single);
   for (const bool periodic : {false, true}) {
@@ -182,7 +183,7 @@ TEST(ChangeKnots, SpareKnotsOfUnclampedAndOfLongDirectionsGo) {
     const Surface few = random_surface(random, coarse, KnotVector::clamped_uniform(2, 4).value());
     Surface many = few;
     for (int k = 1; k < 80; ++k) many = insert_knot(many, Direction::u, (k + 0.37) / 80.0, 1 + k % 2).value();
-    const auto spared = without_spare_knots(many, Direction::u, 1e-9);
+    const auto spared = remove_spare_knots(many, Direction::u, 1e-9);
     ASSERT_TRUE(spared.ok());
     EXPECT_EQ(spared->surface.u, coarse) << periodic;
     EXPECT_LE(largest_difference(random, few, spared->surface), 1e-9);

@@ -1,7 +1,6 @@
-#include "engine/bspline/derivative_bound.h"
-
 #include <gtest/gtest.h>
 
+#include "engine/bspline/basis.h"
 #include "engine/bspline/surface.h"
 #include "tests/engine/bspline/random_surface.h"
 

@@ -1,5 +1,3 @@
-#include "engine/bspline/grid_fit.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +20,7 @@ TEST(GridFit, GivesBackTheSurfaceThatWasSampled) {
   for (const int degree : {1, 2, 3, 4, 5}) {
     const Surface surface = random_surface(random, KnotVector::clamped_uniform(degree, 9).value(),
                                            KnotVector::periodic_uniform(degree, 8).value());
-    const PointGrid points = point_grid(surface, twice_as_many(surface.u), twice_as_many(surface.v));
+    const PointGrid points = sample_grid_points(surface, twice_as_many(surface.u), twice_as_many(surface.v));
     const auto fit = fit_grid(surface.u, surface.v, points);
     ASSERT_TRUE(fit.ok()) << fit.error().message;
     // At twice the control points the condition number stays below 20 for these degrees.

@@ -51,7 +51,7 @@ TEST(Grid, RefusesBadParametersByName) {
                  "direction u: parameter 2 (0.5) is not greater than parameter 1 (0.5)");
   expect_refused({0, 1}, {0, 0.5, 0.4},
                  "direction v: parameter 2 (0.4) is not greater than parameter 1 (0.5)");
-  expect_refused({0, 1.5}, {0, 1}, "direction u: parameter 1 (1.5) lies outside the domain 0 to 1");
+  expect_refused({0, 1.5}, {0, 1}, "direction u: parameter 1 (1.5) is outside the domain 0 to 1");
   expect_refused({0, 1}, {std::numeric_limits<double>::quiet_NaN(), 1}, "direction v: parameter 0 (nan)");
 }
 

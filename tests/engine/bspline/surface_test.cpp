@@ -14,14 +14,12 @@ TEST(Surface, RefusesANetThatDoesNotFit) {
   const auto v = KnotVector::clamped_uniform(3, 5).value();
   const auto transposed = make_surface(u, v, ControlNet(5, 6));
   ASSERT_FALSE(transposed.ok());
-  EXPECT_NE(
-      transposed.error().message.find("control net of 5 x 6 does not fit the knots, which ask for 6 x 5"),
-      std::string::npos);
+  EXPECT_EQ(transposed.error().code, ErrorCode::mismatch) << transposed.error().message;
   ControlNet short_net(6, 5);
   short_net.y.pop_back();
   const auto missing = make_surface(u, v, short_net);
   ASSERT_FALSE(missing.ok());
-  EXPECT_NE(missing.error().message.find("29 y coordinates for a net of 6 x 5"), std::string::npos);
+  EXPECT_EQ(missing.error().code, ErrorCode::mismatch) << missing.error().message;
 }
 
 TEST(Surface, RefusesCoordinatesThatAreNotFinite) {

@@ -8,7 +8,6 @@
 #include <csignal>
 #include <fstream>
 
-#include "engine/base/output_file.h"
 #include "engine/exchange/document.h"
 #include "tests/engine/exchange/sample_document.h"
 
@@ -89,13 +88,13 @@ TEST(File, KeepsPermissionsThatTheMaskTakesAway) {
 
 TEST(File, TheFirstBytesAreThoseOfFilesAlone) {
   const TemporaryFolder folder;
-  EXPECT_EQ(first_bytes(folder.write("long", "0123456789"), 4), "0123");
-  EXPECT_EQ(first_bytes(folder.write("short", "01"), 4), "01");
-  EXPECT_EQ(first_bytes(folder.path() / "missing", 4), "");
-  EXPECT_EQ(first_bytes(folder.path(), 4), "");
+  EXPECT_EQ(read_first_bytes(folder.write("long", "0123456789"), 4), "0123");
+  EXPECT_EQ(read_first_bytes(folder.write("short", "01"), 4), "01");
+  EXPECT_EQ(read_first_bytes(folder.path() / "missing", 4), "");
+  EXPECT_EQ(read_first_bytes(folder.path(), 4), "");
   const auto pipe = folder.path() / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_EQ(first_bytes(pipe, 4), "");
+  EXPECT_EQ(read_first_bytes(pipe, 4), "");
 }
 
 TEST(File, RefusesToReplaceWhatIsNoFile) {

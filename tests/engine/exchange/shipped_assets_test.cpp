@@ -1,7 +1,7 @@
 // What the program ships can be read and used.
 #include <gtest/gtest.h>
 
-#include "engine/base/instruction_set.h"
+#include "engine/base/processor.h"
 #include "engine/exchange/document.h"
 #include "engine/simulation/simulation.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/shapes/round_shapes.h"
+#include "engine/shapes/stock_shapes.h"
 #include "tests/engine/shapes/body_measures.h"
 
 namespace spoonbill {

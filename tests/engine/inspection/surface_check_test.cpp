@@ -5,8 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/shapes/box_shapes.h"
-#include "engine/shapes/round_shapes.h"
+#include "engine/shapes/stock_shapes.h"
 #include "tests/engine/shapes/body_measures.h"
 #include "tests/engine/trims/loops.h"
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/fold_search.h"
 #include "tests/engine/merging/made_patches.h"

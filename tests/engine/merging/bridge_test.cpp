@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 #include "engine/merging/merge.h"
 #include "tests/engine/merging/made_patches.h"
 

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 
 namespace spoonbill {
 namespace {

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/inspection/curvature_range.h"
 #include "engine/inspection/enclosed_mass.h"
@@ -93,7 +92,7 @@ double distance_to_union(const Vector3& point, const Vector3& direction, double 
 
 double largest_distance(const Surface& merged, const Vector3& direction, double fillet) {
   const PointGrid points =
-      point_grid(merged, uniform_parameters(merged.u, 60), uniform_parameters(merged.v, 200));
+      sample_grid_points(merged, uniform_parameters(merged.u, 60), uniform_parameters(merged.v, 200));
   double largest = 0.0;
   for (const Vector3& point : points.points_m) {
     largest = std::max(largest, distance_to_union(point, direction, fillet));
@@ -153,7 +152,7 @@ TEST(IntersectionMerge, AFloorAndAWall) {
     ASSERT_TRUE(merged.ok()) << merged.error().message;
     const Surface& surface = merged->surface;
     const PointGrid points =
-        point_grid(surface, uniform_parameters(surface.u, 20), uniform_parameters(surface.v, 120));
+        sample_grid_points(surface, uniform_parameters(surface.u, 20), uniform_parameters(surface.v, 120));
     for (const Vector3& p : points.points_m) {
       double distance = std::min(std::abs(p.z()), std::abs(p.x() - 0.04));
       if (fillet > 0.0 && p.x() > 0.04 - fillet && p.z() < fillet) {
@@ -249,7 +248,7 @@ TEST(IntersectionMerge, LinesLeadAwayFromACrossingBesideThePole) {
     ASSERT_TRUE(merged.ok()) << merged.error().message;
     EXPECT_LE(merged->deviation_m, tolerance_m);
     EXPECT_FALSE(place_of_fold(merged->surface).has_value());
-    const PointGrid points = point_grid(merged->surface, uniform_parameters(merged->surface.u, 60),
+    const PointGrid points = sample_grid_points(merged->surface, uniform_parameters(merged->surface.u, 60),
                                         uniform_parameters(merged->surface.v, 120));
     double farthest = 0.0, deepest = 0.0;
     for (const Vector3& p : points.points_m) {

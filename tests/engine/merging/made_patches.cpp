@@ -4,8 +4,7 @@
 #include <numbers>
 
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
-#include "engine/bspline/knot_vectors.h"
+#include "engine/bspline/knot_vector.h"
 
 namespace spoonbill {
 

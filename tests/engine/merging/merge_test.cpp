@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/merging/made_patches.h"
@@ -16,7 +15,7 @@ namespace spoonbill {
 namespace {
 
 double largest_difference(const Surface& a, const Surface& b) {
-  const PointGrid points = point_grid(b, uniform_parameters(b.u, 41), uniform_parameters(b.v, 41));
+  const PointGrid points = sample_grid_points(b, uniform_parameters(b.u, 41), uniform_parameters(b.v, 41));
   return largest_deviation_m(a, points);
 }
 

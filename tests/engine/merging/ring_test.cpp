@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/inspection/enclosed_mass.h"
 #include "engine/merging/seam.h"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 #include "engine/inspection/enclosed_mass.h"
 #include "engine/inspection/surface_check.h"
 #include "engine/merging/merge.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "engine/bspline/grid.h"
-#include "engine/bspline/grid_fit.h"
 #include "engine/merging/merge.h"
 #include "tests/engine/trims/loops.h"
 
@@ -31,7 +30,7 @@ TrimLoop polygon(const std::vector<Eigen::Vector2d>& points) {
 double largest_off_the_wave(const Surface& surface) {
   double largest = 0.0;
   const PointGrid points =
-      point_grid(surface, uniform_parameters(surface.u, 33), uniform_parameters(surface.v, 33));
+      sample_grid_points(surface, uniform_parameters(surface.u, 33), uniform_parameters(surface.v, 33));
   for (const Vector3& p : points.points_m)
     largest = std::max(largest, std::abs(p.z() - 0.01 * std::sin(20.0 * p.x())));
   return largest;

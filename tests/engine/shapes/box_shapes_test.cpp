@@ -1,5 +1,3 @@
-#include "engine/shapes/box_shapes.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +5,7 @@
 #include <numbers>
 
 #include "engine/collision/surfaces/closed_surface.h"
-#include "engine/shapes/lump.h"
+#include "engine/shapes/stock_shapes.h"
 #include "tests/engine/shapes/body_measures.h"
 
 namespace spoonbill {
@@ -95,11 +93,11 @@ TEST(Box, MayBeLongOrWideOrBoth) {
        {Vector3(1.0, 0.001, 0.001), Vector3(0.1, 0.1, 0.001), Vector3(1.0, 1.0, 0.001),
         Vector3(10.0, 10.0, 10.0), Vector3(0.3, 0.02, 0.003)}) {
     BoxSize size{size_m};
-    size.rounding_m = usual_rounding_m(size);
+    size.rounding_m = default_rounding_m(size);
     const auto shape = box_shape(size);
     ASSERT_TRUE(shape) << shape.error().message;
     ShapeFit fit;
-    fit.tolerance_m = usual_tolerance_m(shape.value());
+    fit.tolerance_m = default_tolerance_m(shape.value());
     const FittedShape box = fitted(shape, fit);
     EXPECT_LE(box.deviation_m, fit.tolerance_m);
     EXPECT_NEAR(volume_m3(box.surface), size_m.prod(), 0.06 * size_m.prod());
@@ -124,7 +122,7 @@ TEST(Box, HasFlatEndFaces) {
 
 TEST(Plate, MayBeLong) {
   PlateSize size{1.0, 0.01, 0.002};
-  size.corner_m = usual_corner_m(size);
+  size.corner_m = default_corner_m(size);
   const FittedShape plate = fitted(plate_shape(size));
   EXPECT_LE(plate.deviation_m, tolerance_m);
   EXPECT_LT(plate.surface.net.size(), 3000U);

@@ -53,7 +53,7 @@ TEST(FitShape, SaysWhatATightToleranceWants) {
   fit.tolerance_m = 1e-9;
   const auto refused = fit_shape(kinked, fit);
   ASSERT_FALSE(refused.ok());
-  EXPECT_NE(refused.error().message.find("tolerance"), std::string::npos) << refused.error().message;
+  EXPECT_EQ(refused.error().code, ErrorCode::not_converged) << refused.error().message;
 }
 
 TEST(FitShape, TellsHowFarItIsAndStops) {
@@ -74,7 +74,7 @@ TEST(FitShape, TellsHowFarItIsAndStops) {
     fit.progress = Progress([&](double) { return --left > 0; });
     const auto stopped = fit_shape(wave(0.02), fit);
     ASSERT_FALSE(stopped);
-    EXPECT_EQ(stopped.error().message, "stopped");
+    EXPECT_EQ(stopped.error().code, ErrorCode::cancelled);
   }
 }
 
@@ -89,7 +89,7 @@ TEST(FitShape, RefusesMoreBreaksThanControlPointsAtOnce) {
   };
   const auto refused = fit_shape(shape);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("along v"), std::string::npos) << refused.error().message;
+  EXPECT_EQ(refused.error().code, ErrorCode::not_converged) << refused.error().message;
 }
 
 TEST(FitShape, RefusesAShapeThatIsNotFinite) {

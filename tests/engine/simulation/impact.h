@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "engine/base/denormals.h"
+#include "engine/base/processor.h"
 #include "engine/material/lattice_solver.h"
 #include "engine/simulation/body_pair_contact.h"
 

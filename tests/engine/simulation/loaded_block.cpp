@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/base/denormals.h"
+#include "engine/base/processor.h"
 #include "engine/simulation/simulation.h"
 #include "tests/engine/material/block.h"
 

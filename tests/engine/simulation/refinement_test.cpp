@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "engine/bspline/knot_insertion.h"
+#include "engine/bspline/reparameterise.h"
 #include "engine/simulation/body_mapping.h"
 #include "engine/simulation/simulation.h"
 #include "tests/engine/simulation/handle.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/base/denormals.h"
+#include "engine/base/processor.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 #include "engine/material/lattice_solver.h"
 #include "engine/simulation/body_self_contact.h"

@@ -43,7 +43,9 @@ std::vector<Eigen::Vector2d> backwards(std::vector<Eigen::Vector2d> points) {
 Result<TrimLoop> make_polygon_loop(const KnotVector& along_u, const KnotVector& along_v,
                                    const std::vector<Eigen::Vector2d>& points) {
   const int count = static_cast<int>(points.size());
-  if (count < 3) return Error{"a trim loop of " + std::to_string(count) + " points encloses nothing; give 3"};
+  if (count < 3)
+    return Error{ErrorCode::degenerate,
+                 "a trim loop of " + std::to_string(count) + " points encloses nothing; give 3"};
   std::vector<double> u, v, ends{0.0};
   for (int i = 0; i <= count; ++i) {
     u.push_back(points[i % count].x());

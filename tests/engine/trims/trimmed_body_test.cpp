@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/bspline/trimmed_grid.h"
+#include "engine/bspline/trimmed_area.h"
 #include "loops.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/material/lattice/shells.h"
@@ -55,7 +55,7 @@ Scene sheet(bool with_hole, Vector3* middle_m = nullptr) {
                                     middle.z() + hole_radius_m * std::sin(angle)));
   }
   TrimLoop loop = polygon_loop(body.surface.u, body.surface.v, corners);
-  if (signed_area(polygon_of(loop, body.surface.u, body.surface.v)) > 0.0) {
+  if (signed_area(to_polygon(loop, body.surface.u, body.surface.v)) > 0.0) {
     loop = polygon_loop(body.surface.u, body.surface.v, backwards(corners));
   }
   body.trims = {loop};
@@ -161,7 +161,8 @@ TEST(TrimmedBody, KeptAreaShareIsThatOfTheMetres) {
   const Body& body = pierced.bodies[0];
   const double hole_m2 = 0.5 * 200 * hole_radius_m * hole_radius_m * std::sin(2.0 * std::numbers::pi / 200);
   // Triangles of a flat sheet are exact where their corners are.
-  EXPECT_NEAR(kept_area_share(body.surface, *trim_of(body).value()), 1.0 - hole_m2 / (side_m * side_m), 1e-5);
+  EXPECT_NEAR(remaining_area_fraction(body.surface, *trim_of(body).value()),
+              1.0 - hole_m2 / (side_m * side_m), 1e-5);
 }
 
 }  // namespace

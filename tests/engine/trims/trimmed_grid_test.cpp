@@ -1,5 +1,3 @@
-#include "engine/bspline/trimmed_grid.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "engine/bspline/grid.h"
+#include "engine/bspline/trimmed_area.h"
 #include "loops.h"
 
 namespace spoonbill {
@@ -77,7 +76,7 @@ void expect_covers(const Grid& grid, const TrimmedArea& area, double cell_diagon
   const double domain = (grid.u.knots.domain_end() - grid.u.knots.domain_start()) *
                         (grid.v.knots.domain_end() - grid.v.knots.domain_start());
   // What is snapped to a grid line moves by a billionth.
-  EXPECT_NEAR(covered, area.kept_share() * domain, 1e-8 * domain);
+  EXPECT_NEAR(covered, area.remaining_fraction() * domain, 1e-8 * domain);
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
   for (const auto& corners : trimmed.triangles) {
     for (std::size_t c = 0; c < 3; ++c) {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "engine/base/assert.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/collision/solids/implicit/ellipsoid_distance.h"
 #include "engine/collision/solids/implicit/plain_distances.h"
 #include "engine/collision/solids/implicit/superquadric_distance.h"

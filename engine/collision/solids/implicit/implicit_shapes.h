@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "engine/base/field.h"
-#include "engine/base/range.h"
+#include "engine/base/geometry.h"
 #include "engine/collision/solids/signed_distance.h"
 
 namespace spoonbill {

@@ -227,11 +227,11 @@ TEST(MeshDistance, TheWindingNumberIsThatOfAllTriangles) {
   for (const TriangleMesh& given : {torus_mesh(60, 40, 0.4, 0.7), ball_mesh(3, 400, 0.9)}) {
     TriangleMesh mesh = given;
     std::vector<Box> boxes;
-    const auto box_of = [&](const TriangleCorners& t) {
+    const auto bounding_box = [&](const TriangleCorners& t) {
       const Vector3 &a = mesh.vertices_m[t[0]], &b = mesh.vertices_m[t[1]], &c = mesh.vertices_m[t[2]];
       return Box{a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
     };
-    for (const TriangleCorners& corners : mesh.triangles) boxes.push_back(box_of(corners));
+    for (const TriangleCorners& corners : mesh.triangles) boxes.push_back(bounding_box(corners));
     const BoxTree tree(boxes, 4);
     for (std::size_t k = 0; k < tree.order().size(); ++k)
       mesh.triangles[k] = given.triangles[tree.order()[k]];

@@ -76,11 +76,11 @@ double brute_gap(const CleanMesh& a, const CleanMesh& b) {
   double least = 1e300;
   for (std::size_t s = 0; s < a.mesh.triangles.size(); ++s) {
     const Triangle one = triangle_of(a.mesh, s);
-    const Box box = box_of(one);
+    const Box box = bounding_box(one);
     for (std::size_t t = 0; t < b.mesh.triangles.size(); ++t) {
       const Triangle other = triangle_of(b.mesh, t);
       const double grown = grown_of(a, s) + grown_of(b, t);
-      if (box.gap(box_of(other)) - grown >= least) continue;
+      if (box.gap(bounding_box(other)) - grown >= least) continue;
       least = std::min(least, triangles_apart(one, other) - grown);
     }
   }

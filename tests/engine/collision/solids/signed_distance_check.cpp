@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "engine/base/box.h"
+#include "engine/base/geometry.h"
 #include "engine/collision/meshes/triangle.h"
 
 namespace spoonbill {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/bspline/evaluate.h"
 #include "engine/exchange/cad/cad_writer.h"
 #include "engine/exchange/cad/session.h"

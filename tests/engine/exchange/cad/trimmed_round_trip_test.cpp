@@ -135,7 +135,7 @@ TEST_P(TrimmedRoundTrip, ASurfaceWithOneFaceKeepsItsParameters) {
   const auto before = TrimmedArea::make(part.surface.u, part.surface.v, part.trims).value();
   const auto after = TrimmedArea::make(back[0].surface.u, back[0].surface.v, back[0].trims);
   ASSERT_TRUE(after);
-  EXPECT_NEAR(after->kept_share(), before.kept_share(), 1e-6);
+  EXPECT_NEAR(after->remaining_fraction(), before.remaining_fraction(), 1e-6);
 }
 
 // Of a sheet nobody expects a solid.

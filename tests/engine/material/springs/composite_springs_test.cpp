@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/base/denormals.h"
+#include "engine/base/processor.h"
 #include "engine/material/lattice/lattice_of.h"
 #include "engine/material/lattice_solver.h"
 #include "tests/engine/allocations.h"

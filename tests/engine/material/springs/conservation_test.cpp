@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/base/denormals.h"
+#include "engine/base/processor.h"
 #include "engine/material/lattice_solver.h"
 #include "engine/material/statics/static_body.h"
 #include "tests/engine/bspline/random_surface.h"

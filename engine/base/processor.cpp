@@ -1,4 +1,6 @@
-#include "engine/base/instruction_set.h"
+#include "engine/base/processor.h"
+
+#include <xmmintrin.h>
 
 #include <array>
 #include <utility>
@@ -12,7 +14,10 @@ constexpr std::array<std::pair<InstructionSet, std::string_view>, 3> names{
      {InstructionSet::avx2, "avx2"},
      {InstructionSet::avx512, "avx512"}}};
 
-bool runs_here(InstructionSet set) {
+constexpr unsigned flush_to_zero = 0x8000u;
+constexpr unsigned denormals_are_zero = 0x0040u;
+
+bool is_supported(InstructionSet set) {
   switch (set) {
     case InstructionSet::baseline:
       return true;
@@ -34,13 +39,21 @@ InstructionSet best_instruction_set() {
 std::vector<InstructionSet> available_instruction_sets() {
   std::vector<InstructionSet> sets;
   for (const auto& [set, name] : names) {
-    if (runs_here(set)) sets.push_back(set);
+    if (is_supported(set)) sets.push_back(set);
   }
   return sets;
 }
 
 std::string_view name_of(InstructionSet set) {
   return names[static_cast<std::size_t>(set)].second;
+}
+
+DenormalsFlushed::DenormalsFlushed() : saved_(_mm_getcsr()) {
+  _mm_setcsr(saved_ | flush_to_zero | denormals_are_zero);
+}
+
+DenormalsFlushed::~DenormalsFlushed() {
+  _mm_setcsr(saved_);
 }
 
 }  // namespace spoonbill

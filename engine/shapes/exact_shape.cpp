@@ -1,23 +1,25 @@
-#include "engine/shapes/shape_samples.h"
+#include "engine/shapes/exact_shape.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "engine/base/assert.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 
 namespace {
 
-// Of the domain: far above the rounding of a difference, far below a knot span.
+// Step of finite differences as a fraction of the domain: far above rounding, far below a knot span.
 constexpr double difference_step = 1e-6;
 constexpr int newton_steps = 4;
-// Cosines: how far the directions at a pole may lie out of one plane.
+// Largest cosine of the angle between the normal at a pole and a direction in its tangent plane.
 constexpr double flat_tolerance = 1e-4;
 
-double brought_into(const ShapeDirection& direction, double parameter) {
+double into_domain(const ShapeDirection& direction, double parameter) {
   if (!direction.periodic) return std::clamp(parameter, direction.start(), direction.end());
   const double period = direction.end() - direction.start();
   const double turns = (parameter - direction.start()) / period;
@@ -39,7 +41,7 @@ Step step_about(const ShapeDirection& direction, double parameter) {
 ShapeTangents tangents(const ExactShape& shape, double u, double v) {
   SPOONBILL_ASSERT_DEBUG(static_cast<bool>(shape.at));
   const auto at = [&](double a, double b) {
-    return shape.at(brought_into(shape.u, a), brought_into(shape.v, b));
+    return shape.at(into_domain(shape.u, a), into_domain(shape.v, b));
   };
   const Step in_u = step_about(shape.u, u), in_v = step_about(shape.v, v);
   ShapeTangents result;
@@ -56,15 +58,15 @@ double distance_near(const ExactShape& shape, const Vector3& point_m, double u, 
   double nearest = (shape.at(u, v) - point_m).norm();
   for (int step = 0; step < newton_steps; ++step) {
     const ShapeTangents at = tangents(shape, u, v);
-    const Vector3 residual = point_m - shape.at(brought_into(shape.u, u), brought_into(shape.v, v));
+    const Vector3 residual = point_m - shape.at(into_domain(shape.u, u), into_domain(shape.v, v));
     Eigen::Matrix2d normal_matrix;
     normal_matrix << at.du.dot(at.du), at.du.dot(at.dv), at.du.dot(at.dv), at.dv.dot(at.dv);
     const double determinant = normal_matrix.determinant();
     if (!(determinant > 1e-12 * normal_matrix(0, 0) * normal_matrix(1, 1))) break;
     const Eigen::Vector2d move =
         normal_matrix.inverse() * Eigen::Vector2d(at.du.dot(residual), at.dv.dot(residual));
-    u = brought_into(shape.u, u + move.x());
-    v = brought_into(shape.v, v + move.y());
+    u = into_domain(shape.u, u + move.x());
+    v = into_domain(shape.v, v + move.y());
     const double distance = (shape.at(u, v) - point_m).norm();
     if (!(distance < nearest)) break;
     nearest = distance;
@@ -74,20 +76,44 @@ double distance_near(const ExactShape& shape, const Vector3& point_m, double u, 
 
 std::optional<Vector3> pole_normal(const ExactShape& shape, bool at_start) {
   SPOONBILL_ASSERT(at_start ? shape.pole_at_start : shape.pole_at_end);
-  constexpr int directions = 16;
-  std::array<Vector3, directions> ways;
+  constexpr int count = 16;
+  std::array<Vector3, count> directions;
   const double v = at_start ? shape.v.start() : shape.v.end();
   Vector3 normal = Vector3::Zero();
-  for (int k = 0; k < directions; ++k) {
-    const double u = shape.u.start() + (shape.u.end() - shape.u.start()) * k / directions;
-    ways[static_cast<std::size_t>(k)] = tangents(shape, u, v).dv.normalized();
+  for (int k = 0; k < count; ++k) {
+    const double u = shape.u.start() + (shape.u.end() - shape.u.start()) * k / count;
+    directions[static_cast<std::size_t>(k)] = tangents(shape, u, v).dv.normalized();
   }
-  for (std::size_t k = 0; k < directions; ++k) normal += ways[k].cross(ways[(k + 1) % directions]);
+  for (std::size_t k = 0; k < count; ++k) normal += directions[k].cross(directions[(k + 1) % count]);
   normal.normalize();
-  for (const Vector3& way : ways) {
-    if (!(std::abs(way.dot(normal)) < flat_tolerance)) return std::nullopt;
+  for (const Vector3& direction : directions) {
+    if (!(std::abs(direction.dot(normal)) < flat_tolerance)) return std::nullopt;
   }
   return normal;
+}
+
+namespace {
+
+// Relative tolerance for sizes converted from millimetres to metres, whose last digit may differ.
+constexpr double slack = 1e-9;
+
+}  // namespace
+
+Status check_length(std::string_view name, double length_m, Range<double> range_m) {
+  const Range<double> with_slack{range_m.low * (1.0 - slack), range_m.high * (1.0 + slack)};
+  if (with_slack.contains(length_m)) return {};
+  return Error{ErrorCode::out_of_range,
+               std::string(name) + " is " + length_text(length_m) + ", must be " + length_text(range_m.low) +
+                   " to " + length_text(range_m.high),
+               std::string(name)};
+}
+
+Status check_size(std::string_view name, double size_m) {
+  return check_length(name, size_m, shape_size_range_m);
+}
+
+Status check_rounding(std::string_view name, double rounding_m, double side_m, double max_m) {
+  return check_length(name, rounding_m, {min_rounding_fraction * side_m, max_m});
 }
 
 }  // namespace spoonbill

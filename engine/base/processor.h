@@ -1,0 +1,35 @@
+// The processor: the instruction sets that kernels are compiled for, and the handling of denormal numbers.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace spoonbill {
+
+// A vector instruction set. All sets give the same bits: kernels use no FMA contraction and no reduction
+// whose order depends on the vector width.
+enum class InstructionSet { baseline, avx2, avx512 };
+
+// Returns the widest set that this processor supports.
+InstructionSet best_instruction_set();
+
+// Returns every set that this processor supports, narrowest first.
+std::vector<InstructionSet> available_instruction_sets();
+
+// Returns "baseline", "avx2" or "avx512".
+std::string_view name_of(InstructionSet set);
+
+// Flushes denormal numbers to zero on this thread during its lifetime, then restores the previous mode.
+// Denormals are about a hundred times slower than other numbers, and all threads must treat them alike.
+class DenormalsFlushed {
+ public:
+  DenormalsFlushed();
+  ~DenormalsFlushed();
+  DenormalsFlushed(const DenormalsFlushed&) = delete;
+  DenormalsFlushed& operator=(const DenormalsFlushed&) = delete;
+
+ private:
+  unsigned saved_;  // the control and status register (MXCSR)
+};
+
+}  // namespace spoonbill

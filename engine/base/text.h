@@ -1,0 +1,31 @@
+// Numbers, lengths, points and quotations as messages and reports show them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "engine/base/geometry.h"
+
+namespace spoonbill {
+
+// Returns the shortest decimals that read back as the same number.
+std::string number_text(double number);
+
+// Returns metres as millimetres with at most `digits` significant digits, such as "2.5 mm"; zero has no sign.
+std::string millimetres_with_digits(double length_m, int digits);
+
+// Returns metres as millimetres with at most three significant digits.
+std::string short_length_text(double length_m);
+
+// Returns metres as millimetres with at most twelve significant digits, which hides the rounding error of the
+// conversion: 0.009 m is 9.000000000000002 mm in binary arithmetic.
+std::string length_text(double length_m);
+
+// Returns a point with tenths of a millimetre, such as "(10.0, -5.2, 0.0) mm"; zeros have no sign.
+std::string position_text(const Vector3& point_m);
+
+// Returns the beginning of a text for quotation in a message: at most `longest` bytes, no UTF-8 character cut
+// in two, each control character replaced by "?".
+std::string excerpt(std::string_view text, std::size_t longest = 40);
+
+}  // namespace spoonbill

@@ -1,0 +1,96 @@
+// Stock shapes, which a design starts from, by their sizes. The origin is the centre of each.
+#pragma once
+
+#include <variant>
+
+#include "engine/base/result.h"
+#include "engine/shapes/exact_shape.h"
+
+namespace spoonbill {
+
+// A box along x, y and z with rounded edges. The poles are the centres of its two ends, the faces at the ends
+// of its longest side unless these are slender. `rounding_m` is that of the edges around the ends. The four
+// edges between the ends have twice that rounding, at most half the shortest side, and the corners are parts
+// of tori.
+struct BoxSize {
+  Vector3 size_m{0.06, 0.04, 0.02};
+  double rounding_m = 0.002;  // at most max_box_rounding_fraction of the shortest side
+};
+inline constexpr double max_box_rounding_fraction = 0.4;
+
+// Makes a box.
+Result<ExactShape> box_shape(const BoxSize& size);
+// Returns the default rounding of a box: a tenth of its shortest side.
+double default_rounding_m(const BoxSize& size);
+
+// A closed horizontal slab with poles at the centres of its faces and a half-round rim.
+struct PlateSize {
+  double x_size_m = 0.1, z_size_m = 0.06, thickness_m = 0.003;
+  double corner_m = 0.006;  // radius of its four corners seen from above, at least the thickness
+};
+// Makes a plate. Refuses a thickness of more than half the width.
+Result<ExactShape> plate_shape(const PlateSize& size);
+// Returns the default corner radius of a plate.
+double default_corner_m(const PlateSize& size);
+
+// Makes a horizontal open sheet: u along x, v against z, so that its normals point up.
+Result<ExactShape> sheet_shape(double x_size_m, double z_size_m);
+
+// Makes a sphere.
+Result<ExactShape> sphere_shape(double radius_m);
+
+// A cylinder along y.
+struct CylinderSize {
+  double radius_m = 0.02, height_m = 0.06;
+  double rounding_m = 0.002;  // of both edges, at most the radius and half the height
+};
+// Makes a cylinder along y.
+Result<ExactShape> cylinder_shape(const CylinderSize& size);
+
+// A cone or truncated cone. Radii and height are those of the sharp shape, which contains the roundings: that
+// of the tip, or of the edges around both faces.
+struct ConeSize {
+  double radius_m = 0.03, height_m = 0.06;
+  double top_radius_m = 0.0;
+  double rounding_m = 0.003;
+};
+// Makes a cone along y.
+Result<ExactShape> cone_shape(const ConeSize& size);
+
+// A horizontal torus, closed both ways: u around the tube, v around the ring.
+struct TorusSize {
+  double ring_radius_m = 0.04, tube_radius_m = 0.01;
+};
+// Makes a torus. Refuses a tube that closes the hole of the ring.
+Result<ExactShape> torus_shape(const TorusSize& size);
+
+// Returns the default rounding of a cylinder or a cone.
+double default_rounding_m(const CylinderSize& size);
+double default_rounding_m(const ConeSize& size);
+
+// A sphere.
+struct SphereSize {
+  double radius_m = 0.03;
+};
+
+// An open sheet.
+struct SheetSize {
+  double x_size_m = 0.1, z_size_m = 0.06;
+};
+
+// Sizes of any stock shape, which determine its kind.
+using StockShapeSize =
+    std::variant<SphereSize, BoxSize, CylinderSize, ConeSize, PlateSize, SheetSize, TorusSize>;
+
+// Makes a stock shape. Refuses a size that is out of range, and names it.
+Result<ExactShape> stock_shape(const StockShapeSize& size);
+
+// Returns the reach of the shape (Federer 1959): every point nearer than this has one nearest point of the
+// shape, so a fitted surface within it that does not fold cannot meet itself. Infinite for a sheet.
+double reach_m(const StockShapeSize& size);
+
+// Returns the default tolerance of a stock shape's fit: 0.01 mm; a thousandth of a body smaller than 10 mm; a
+// hundred-thousandth of a body larger than 1 m in every direction.
+double default_tolerance_m(const ExactShape& shape);
+
+}  // namespace spoonbill

@@ -1,0 +1,42 @@
+// Swept shapes: tubes along a curve, and lofts through sections.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/base/geometry.h"
+#include "engine/base/result.h"
+#include "engine/shapes/exact_shape.h"
+#include "engine/shapes/smooth_curve.h"
+
+namespace spoonbill {
+
+// A tube of elliptic section, swept along a curve without twist (double reflection, Wang et al. 2008). At the
+// curve's start its width is horizontal, or along x if the curve runs vertically. The ends are half
+// ellipsoids, as long as the smaller half axis.
+struct TubeSize {
+  SmoothCurve centre_line;
+  double half_width_m = 0.005, half_height_m = 0.005;
+};
+
+// Makes a closed tube. Refuses sizes out of range and a curve that bends too sharply for the tube's width,
+// with the position.
+Result<ExactShape> tube_shape(const TubeSize& size);
+
+// Sections of a loft: the points of each in order, without repeating the first. A first or last section of a
+// single point is a pole.
+struct LoftSections {
+  std::vector<std::vector<Vector3>> sections_m;
+  bool closed = true;  // whether every section is a closed curve
+  // Height of the caps over the first and last closed section; default: half their mean radius. Caps bulge
+  // and continue the sides' tangents, because flat ones would meet the sides at an edge.
+  std::optional<double> cap_m = {};
+  bool caps = true;  // whether ends that are not poles are closed
+};
+
+// Makes a surface of a curve through each section and smooth curves across them. Closed sections are reversed
+// and restarted so that successive ones match as closely as possible. A shape with both ends closed has
+// outward normals. Refuses fewer than two sections, sections of too few points, and sizes out of range.
+Result<ExactShape> loft_shape(LoftSections sections);
+
+}  // namespace spoonbill
