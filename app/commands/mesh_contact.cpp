@@ -48,7 +48,7 @@ Result<CollisionAnswer> collide_mesh(const SignedDistance& mesh, const Pose& mes
   answer.distance_m = std::max(-result.nearest.depth_m, 0.0);
   if (!result.found) return answer;
 
-  for (const ToolContactRegion& region : collider.take_regions(surface, tool)) {
+  for (const ToolContactRegion& region : collider.find_contact_regions(surface, tool)) {
     answer.contacts.push_back(contact_of(tool, region.deepest, mesh_is_a));
     ContactSide& side = mesh_is_a ? answer.contacts.back().b : answer.contacts.back().a;
     side.place->range = region.range;

@@ -114,7 +114,7 @@ void add_content(FactSheet& facts, const Body& body, CheckedAs as, const Trimmed
 
 void add_places(const SurfaceCheck& check, Json& json) {
   json["self_intersections"] = Json::array();
-  for (const SelfMeeting& meeting : check.self_meetings) {
+  for (const SelfMeeting& meeting : check.self_intersections) {
     json["self_intersections"].push_back({{"u", meeting.u},
                                           {"v", meeting.v},
                                           {"other_u", meeting.other_u},
@@ -148,10 +148,10 @@ std::vector<std::string> closing_problems(const Body& body, const SurfaceCheck& 
 std::vector<std::string> problems_of(const Body& body, CheckedAs as, const SurfaceCheck& check) {
   std::vector<std::string> problems =
       as == CheckedAs::face ? std::vector<std::string>() : closing_problems(body, check);
-  if (!check.self_meetings.empty()) {
+  if (!check.self_intersections.empty()) {
     problems.push_back("passes through itself in " +
-                       count_text(check.self_meetings.size(), "place", "places") + ", one at " +
-                       position_text(check.self_meetings[0].position_m));
+                       count_text(check.self_intersections.size(), "place", "places") + ", one at " +
+                       position_text(check.self_intersections[0].position_m));
   }
   if (!check.self_meetings_complete) {
     problems.emplace_back("may pass through itself: too many places are near each other to be searched");

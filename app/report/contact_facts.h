@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/report/fact_sheet.h"
-#include "engine/collision/levels/parameter_range.h"
+#include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/rigid/mesh_pair.h"
 #include "engine/collision/surfaces/surface_pair_collider.h"
 #include "engine/collision/surfaces/surface_self_collider.h"

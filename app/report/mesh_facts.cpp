@@ -20,10 +20,10 @@ std::array<Count, 9> counts_of(const MeshReport& report) {
   return {{{report.vertices_joined, "vertices_joined", "vertices joined"},
            {report.degenerate_dropped, "degenerate_dropped", "degenerate triangles dropped"},
            {report.duplicates_dropped, "duplicates_dropped", "repeated triangles dropped"},
-           {report.triangles_turned, "triangles_turned", "triangles turned to agree"},
+           {report.triangles_flipped, "triangles_turned", "triangles turned to agree"},
            {report.holes_filled, "holes_filled", "holes filled"},
            {report.specks_dropped, "specks_dropped", "specks dropped"},
-           {report.parts_turned, "parts_turned", "parts inside out, turned round"},
+           {report.parts_flipped, "parts_turned", "parts inside out, turned round"},
            {report.open_edges, "open_edges", "open edges found"},
            {report.branching_edges, "non_manifold_edges", "edges of more than two triangles found"}}};
 }

@@ -41,8 +41,8 @@ Json numbers(const Vector3& vector) {
 
 std::vector<std::string> problems_of(const SolidCheck& check) {
   std::vector<std::string> problems;
-  if (!check.self_meetings.empty()) {
-    const SolidMeeting& deepest = check.self_meetings.front();
+  if (!check.self_intersections.empty()) {
+    const SolidMeeting& deepest = check.self_intersections.front();
     problems.push_back("passes through itself at " + position_text(deepest.position_m) + ", by at least " +
                        short_length_text(deepest.depth_m));
   }
@@ -54,7 +54,7 @@ std::vector<std::string> problems_of(const SolidCheck& check) {
 
 void add_self_meetings(const SolidCheck& check, Json& json) {
   json["self_intersections"] = Json::array();
-  for (const SolidMeeting& meeting : check.self_meetings) {
+  for (const SolidMeeting& meeting : check.self_intersections) {
     json["self_intersections"].push_back(
         {{"depth_m", meeting.depth_m}, {"point_m", numbers(meeting.position_m)}});
   }

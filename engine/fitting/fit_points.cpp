@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/collision/meshes/vertex_join.h"
+#include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/fitting/gaps.h"
 #include "engine/fitting/nearest_points.h"
 #include "engine/fitting/normal_signs.h"
@@ -25,7 +25,7 @@ constexpr std::size_t neighbours_of_a_node = 9;
 
 void join(Scan& scan) {
   const JoinedVertices joined =
-      join_vertices(scan.points_m, std::max(vertex_joining_share * size_of(scan.points_m), 1e-12));
+      join_vertices(scan.points_m, std::max(vertex_joining_fraction * size_of(scan.points_m), 1e-12));
   std::vector<TriangleCorners> kept;
   kept.reserve(scan.triangles.size());
   for (TriangleCorners corners : scan.triangles) {

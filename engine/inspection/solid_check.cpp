@@ -7,10 +7,9 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/collision/meshes/line_exit.h"
-#include "engine/collision/meshes/line_triangle.h"
-#include "engine/collision/meshes/mesh_self_contact.h"
-#include "engine/collision/meshes/smooth_normals.h"
+#include "engine/collision/meshes/box_tree.h"
+#include "engine/collision/meshes/triangle.h"
+#include "engine/collision/meshes/mesh_edges.h"
 #include "engine/inspection/exact_wall.h"
 #include "engine/inspection/piece_sampling.h"
 
@@ -41,7 +40,7 @@ Vector3 place_of(const Triangle& first, const Triangle& second) {
   for (const auto& [sides, through] : {std::pair(first, second), std::pair(second, first)}) {
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const Vector3 way = sides[(k + 1) % sides.size()] - sides[k];
-      const auto met = line_meets_triangle(sides[k], way, through[0], through[1], through[2], 0.0);
+      const auto met = intersect_line_triangle(sides[k], way, through[0], through[1], through[2], 0.0);
       if (met && met->along >= 0.0 && met->along <= 1.0) return sides[k] + met->along * way;
     }
   }
@@ -54,18 +53,18 @@ void find_self_meetings(const TriangleMesh& mesh, const LineExits& exits, double
   std::vector<TriangleCorners> in_order;
   in_order.reserve(order.size());
   for (const std::uint32_t index : order) in_order.push_back(mesh.triangles[index]);
-  const MeshMeetings meetings =
-      self_meetings(mesh.vertices_m, in_order, exits.tree(), most_meetings, progress);
+  const MeshIntersections meetings =
+      self_intersections(mesh.vertices_m, in_order, exits.tree(), most_meetings, progress);
   check.self_meetings_complete = meetings.complete;
-  for (const MeshMeeting& meeting : meetings.found) {
+  for (const MeshIntersection& meeting : meetings.found) {
     if (!(meeting.depth_m > 2.0 * error_m)) continue;
     const Triangle& first = exits.triangles()[order[meeting.first]];
     const Triangle& second = exits.triangles()[order[meeting.second]];
-    check.self_meetings.push_back({place_of(first, second), meeting.depth_m});
+    check.self_intersections.push_back({place_of(first, second), meeting.depth_m});
   }
-  std::stable_sort(check.self_meetings.begin(), check.self_meetings.end(),
+  std::stable_sort(check.self_intersections.begin(), check.self_intersections.end(),
                    [](const auto& a, const auto& b) { return a.depth_m > b.depth_m; });
-  check.self_meetings.resize(std::min(check.self_meetings.size(), most_told));
+  check.self_intersections.resize(std::min(check.self_intersections.size(), most_told));
 }
 
 // All triangles side by side over one parameter plane: triangle k spans u from k to k + 1 along its first
@@ -98,7 +97,7 @@ class Walls {
     const auto& [a, b, c] = exits_.triangles()[k];
     const Vector3 position = a + to_b * (b - a) + to_c * (c - a), inward = -normals_.at(k, to_b, to_c);
     const auto exit = exits_.first(position, inward);
-    if (!exit || !leaves_a_wall(exits_.triangles()[exit->triangle], inward)) return std::nullopt;
+    if (!exit || !exits_through_wall(exits_.triangles()[exit->triangle], inward)) return std::nullopt;
     return WallThickness{exit->distance_m, position, position + exit->distance_m * inward};
   }
 

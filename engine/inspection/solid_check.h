@@ -18,7 +18,7 @@ struct SolidMeeting {
 };
 
 struct SolidCheck {
-  std::vector<SolidMeeting> self_meetings;  // deepest first
+  std::vector<SolidMeeting> self_intersections;  // deepest first
   bool self_meetings_complete = true;       // false where there were too many to be searched
   // From places of its triangles straight inwards to where the line leaves through a wall (line_exit.h), the
   // least found, and that exactly where the surfaces are; another may be less by twice the mesh's error.

@@ -131,7 +131,7 @@ void find_self_meetings(const Surface& surface, const TrimmedArea& area, const P
   for (const PairContact& contact : collider.contacts()) {
     const PairParameters& at = contact.pair.at;
     if (!area.contains(at.u, at.v) || !area.contains(at.s, at.t)) continue;
-    check.self_meetings.push_back({at.u, at.v, at.s, at.t, contact.depth_m, position(surface, at.u, at.v)});
+    check.self_intersections.push_back({at.u, at.v, at.s, at.t, contact.depth_m, position(surface, at.u, at.v)});
   }
 }
 

@@ -36,7 +36,7 @@ struct SurfaceCheck {
   CurvatureRange curvature;
   double bending = 0.0;  // see bending_measure()
   std::vector<BadSpot> bad_spots;
-  std::vector<SelfMeeting> self_meetings;
+  std::vector<SelfMeeting> self_intersections;
   bool self_meetings_complete = true;      // false where there were too many to be searched
   std::optional<Thickness> thinnest = {};  // where it encloses()
 

@@ -65,7 +65,7 @@ std::optional<Thickness> ThicknessSearch::at(double u, double v) const {
 std::optional<SurfaceExit> ThicknessSearch::exit(const Vector3& from, const Vector3& direction) const {
   SPOONBILL_ASSERT(std::abs(direction.squaredNorm() - 1.0) < 1e-6);
   const auto met = exits_.first(from, direction);
-  if (!met || !leaves_a_wall(exits_.triangles()[met->triangle], direction)) return std::nullopt;
+  if (!met || !exits_through_wall(exits_.triangles()[met->triangle], direction)) return std::nullopt;
   return settled(*met, from, direction);
 }
 

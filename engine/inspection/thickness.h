@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/bspline/surface.h"
-#include "engine/collision/meshes/line_exit.h"
+#include "engine/collision/meshes/box_tree.h"
 #include "engine/inspection/piece_sampling.h"
 
 namespace spoonbill {
@@ -31,11 +31,11 @@ class ThicknessSearch {
  public:
   explicit ThicknessSearch(const Surface& surface);
 
-  // Along a unit direction, through a wall (leaves_a_wall()); to rounding where Newton's method finds to it.
+  // Along a unit direction, through a wall (exits_through_wall()); to rounding where Newton's method finds to it.
   std::optional<SurfaceExit> exit(const Vector3& from, const Vector3& direction) const;
 
   // None where there is no normal, or the line meets the surface nowhere, as between samples at an edge, or
-  // beside an edge alone (leaves_a_wall()).
+  // beside an edge alone (exits_through_wall()).
   std::optional<Thickness> at(double u, double v) const;
 
   // From samples, refined about the least of them. A wall thinner than a cell of samples is wide is found

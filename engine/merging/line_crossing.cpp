@@ -8,7 +8,7 @@
 #include "engine/base/assert.h"
 #include "engine/base/geometry.h"
 #include "engine/bspline/grid.h"
-#include "engine/collision/meshes/line_triangle.h"
+#include "engine/collision/meshes/triangle.h"
 
 namespace spoonbill {
 
@@ -71,10 +71,10 @@ std::vector<CrossingFinder::Start> CrossingFinder::of_chord(const Vector3& from,
     const auto is_on_chord = [](const auto& met) {
       return met && met->along >= -loose && met->along <= 1.0 + loose;
     };
-    if (const auto met = line_meets_triangle(from, to - from, low, right, up, loose); is_on_chord(met)) {
+    if (const auto met = intersect_line_triangle(from, to - from, low, right, up, loose); is_on_chord(met)) {
       starts.push_back({met->along, u_[i] + met->to_b * du, v_[j] + met->to_c * dv});
     }
-    if (const auto met = line_meets_triangle(from, to - from, high, up, right, loose); is_on_chord(met)) {
+    if (const auto met = intersect_line_triangle(from, to - from, high, up, right, loose); is_on_chord(met)) {
       starts.push_back({met->along, u_[i + 1] - met->to_b * du, v_[j + 1] - met->to_c * dv});
     }
   };

@@ -9,7 +9,7 @@
 #include "engine/base/field.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/meshes/triangle_mesh.h"
-#include "engine/collision/solids/implicit/implicit_shapes.h"
+#include "engine/collision/solids/implicit_shapes.h"
 #include "engine/scene/fixing_plane.h"
 #include "engine/scene/lattice_request.h"
 #include "engine/scene/material.h"

@@ -27,8 +27,8 @@ namespace {
 
 bool add_all(const NumberedBody& first, const NumberedBody& second, const SurfaceProximity& proximity,
              BodyContacts& contacts) {
-  const bool all_of_first = add_near_points(first, second, proximity.of_first(), contacts);
-  const bool all_of_second = add_near_points(second, first, proximity.of_second(), contacts);
+  const bool all_of_first = add_near_points(first, second, proximity.first_points(), contacts);
+  const bool all_of_second = add_near_points(second, first, proximity.second_points(), contacts);
   return all_of_first && all_of_second;
 }
 
@@ -37,12 +37,12 @@ bool add_all(const NumberedBody& first, const NumberedBody& second, const MeshPr
   const BodyMapping& surface = first.state->mapping();
   const MeshMapping& mesh = *second.state->mesh();
   bool complete = true;
-  for (const SampleNearMesh& near : proximity.of_surface()) {
+  for (const SampleNearMesh& near : proximity.surface_samples()) {
     complete &= contacts.add({first.number, &first.state->lattice, surface.sample(near.sample)},
                              {second.number, &second.state->lattice, mesh.at(near.mesh.on)}, near.mesh.normal,
                              near.mesh.gap_m);
   }
-  for (const VertexNearSurface& near : proximity.of_mesh()) {
+  for (const VertexNearSurface& near : proximity.mesh_vertices()) {
     complete &= contacts.add({second.number, &second.state->lattice, mesh.vertex(near.vertex)},
                              {first.number, &first.state->lattice, surface.at(near.u, near.v)}, near.normal,
                              near.gap_m);
@@ -152,14 +152,14 @@ bool BodyPairContact::find(const NumberedBody& first, const NumberedBody& second
 
 std::optional<SurfaceSpot> BodyPairContact::deepest_on_first(const BodyState& first) const {
   if (const auto* const meshes = std::get_if<std::unique_ptr<MeshProximity>>(&proximity_)) {
-    return deepest_of((*meshes)->of_surface(), first.mapping());
+    return deepest_of((*meshes)->surface_samples(), first.mapping());
   }
-  return deepest_of((*std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_))->of_first());
+  return deepest_of((*std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_))->first_points());
 }
 
 std::optional<SurfaceSpot> BodyPairContact::deepest_on_second() const {
   const auto* const surfaces = std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_);
-  return surfaces != nullptr ? deepest_of((*surfaces)->of_second()) : std::nullopt;
+  return surfaces != nullptr ? deepest_of((*surfaces)->second_points()) : std::nullopt;
 }
 
 bool BodyPairContact::add_contacts(const NumberedBody& first, const NumberedBody& second,

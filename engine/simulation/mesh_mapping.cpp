@@ -52,7 +52,7 @@ void MeshMapping::update(const SpringLattice& lattice) {
   const float *x = lattice.displacements(0), *y = lattice.displacements(1), *z = lattice.displacements(2);
   auto* const moves = reinterpret_cast<Vector4*>(node_moves_.data());
   for (std::size_t n = 0; n < nodes; ++n) moves[n] = Vector4{x[n], y[n], z[n], 0.0f};
-  std::vector<Vector3>& vertices = current_.moving_vertices_m();
+  std::vector<Vector3>& vertices = current_.mutable_vertices_m();
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const CellWeights& cell = embedding_[v];
     const auto term = [&](int c) { return cell.weight[c] * moves[cell.node[c]]; };
@@ -60,7 +60,7 @@ void MeshMapping::update(const SpringLattice& lattice) {
         ((term(0) + term(1)) + (term(2) + term(3))) + ((term(4) + term(5)) + (term(6) + term(7)));
     vertices[v] = rest_m_[v] + Vector3(sum[0], sum[1], sum[2]);
   }
-  current_.settle();
+  current_.refit();
 }
 
 EmbeddedPoint MeshMapping::vertex(std::uint32_t vertex) const {
@@ -74,7 +74,7 @@ EmbeddedPoint MeshMapping::vertex(std::uint32_t vertex) const {
 
 EmbeddedPoint MeshMapping::at(const PointOnMesh& on) const {
   EmbeddedPoint point;
-  for (std::size_t c = 0; c < 3; ++c) point.add(vertex(on.vertex[c]), static_cast<float>(on.share[c]));
+  for (std::size_t c = 0; c < 3; ++c) point.add(vertex(on.vertex[c]), static_cast<float>(on.weight[c]));
   return point;
 }
 

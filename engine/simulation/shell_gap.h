@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/bspline/surface.h"
-#include "engine/collision/proximity/near_points.h"
+#include "engine/collision/proximity/surface_proximity.h"
 
 namespace spoonbill {
 

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "engine/collision/meshes/mesh_parts.h"
-#include "engine/collision/meshes/mesh_refinement.h"
-#include "engine/collision/meshes/shell_distance.h"
+#include "engine/collision/meshes/mesh_edges.h"
+#include "engine/collision/meshes/mesh_distance.h"
 #include "engine/material/lattice/box_lattice.h"
 #include "engine/material/lattice/lattice_counts.h"
 
@@ -26,7 +26,7 @@ double shortest_cell_edge(const Vector3& size, const std::array<int, 3>& counts)
 Result<BodyState> make_soft_mesh(const MeshSolid& solid, const SoftTool& soft, InstructionSet set) {
   const TriangleMesh& mesh = solid.mesh.mesh;
   const ShellDistance inside(mesh.vertices_m, mesh.triangles, ShellDistance::Kind::solid);
-  if (!inside.is_told_by_normals()) {
+  if (!inside.uses_normals()) {
     return Error{
         "mesh: passes through itself or has edges of more than two triangles; mend it, or leave soft out"};
   }

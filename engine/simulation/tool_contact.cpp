@@ -194,9 +194,9 @@ void ToolContact::find_near(BodyContact& contact, const BodyState& body, double 
   contact.collision = {};
   contact.collision.overflow = proximity.overflow();
   const auto deepest =
-      std::min_element(proximity.of_first().begin(), proximity.of_first().end(),
+      std::min_element(proximity.first_points().begin(), proximity.first_points().end(),
                        [](const NearPoint& one, const NearPoint& other) { return one.gap_m < other.gap_m; });
-  if (deepest == proximity.of_first().end()) return;
+  if (deepest == proximity.first_points().end()) return;
   contact.collision.found = true;
   contact.collision.nearest = contact_at(surface, {deepest->u, deepest->v, deepest->point_m, deepest->gap_m});
 }
@@ -205,10 +205,10 @@ void ToolContact::find_near(BodyContact& contact, const BodyState& body, double 
 template <class Visit>
 void ToolContact::visit_near(BodyContact& contact, const BodyState& state, const Visit& visit) {
   if (is_surface()) {
-    for (const NearPoint& near : contact.proximity->of_first()) {
+    for (const NearPoint& near : contact.proximity->first_points()) {
       visit(Pushed{embedding_of(state.mapping(), near), near.normal, near.gap_m});
     }
-    for (const NearPoint& near : contact.proximity->of_second()) {
+    for (const NearPoint& near : contact.proximity->second_points()) {
       visit(Pushed{state.mapping().at(near.other_u, near.other_v), -near.normal, near.gap_m});
     }
     return;

@@ -251,7 +251,7 @@ TEST_F(MeshFileTest, DamagedContentNeverBecomesAWildMesh) {
   std::string numbers = binary_stl(box);
   const float infinite = HUGE_VALF, far = 1e30F;
   std::memcpy(&numbers[96], &infinite, 4);
-  one_line("infinite.stl", numbers, "no finite number");
+  one_line("infinite.stl", numbers, "not a finite number");
   std::memcpy(&numbers[96], &far, 4);
   one_line("far.stl", numbers, "beyond 100 m");
   one_line("out-of-range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99\n", "");

@@ -1,51 +1,174 @@
-// The cells of two surfaces that could meet, found from coarse to fine: boxes of the present control points
-// and corners, then slabs about the patches, which hold the slack that the surfaces may leave their samples
-// by.
+// Pairs of cells of two surfaces that may meet, found from coarse to fine: boxes over the elements, then
+// slabs around the patches of the cells.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "engine/collision/levels/cell_slabs.h"
-#include "engine/collision/levels/element_tree.h"
+#include "engine/base/containers.h"
+#include "engine/base/geometry.h"
+#include "engine/bspline/surface.h"
 #include "engine/collision/levels/surface_levels.h"
 
 namespace spoonbill {
 
+// Slab cache of one surface. One owner, one thread; allocates only on construction.
+class CellSlabs {
+ public:
+  explicit CellSlabs(SurfaceLevels& levels);
+
+  // Clears the cache. Call after SurfaceLevels::begin().
+  void begin();
+
+  // A cell and its index in the quadtree of the element's cells.
+  struct QuadtreeCell {
+    LevelCell cell;
+    int element_key, index_in_element;
+    int key() const { return element_key + index_in_element; }
+  };
+  QuadtreeCell element(int element_u, int element_v) const {
+    const int stride = levels_->step(0);
+    return {{element_u * stride, element_v * stride, 0},
+            (element_u * elements_v_ + element_v) * keys_per_element_,
+            0};
+  }
+  // Returns the child cell in the given lane of children().
+  QuadtreeCell child(const QuadtreeCell& node, int lane) const {
+    const int half = levels_->step(node.cell.level + 1);
+    return {{node.cell.i + (lane >> 1) * half, node.cell.j + (lane & 1) * half, node.cell.level + 1},
+            node.element_key,
+            4 * node.index_in_element + 1 + lane};
+  }
+
+  // Returns the slabs of the four children of a cell that is not at the finest level. Lane 2 a + b is half a
+  // along u and half b along v. Valid until the next call.
+  const SlabGroup& children(const QuadtreeCell& node) {
+    SlabGroup* group = nullptr;
+    if (claim_slot(node.key(), group)) compute_children(node.cell, *group);
+    return *group;
+  }
+  // Returns the slab of the cell itself, repeated in each lane. Valid until the next call.
+  const SlabGroup& single(const QuadtreeCell& node) {
+    SlabGroup* group = nullptr;
+    if (claim_slot(keys_ + node.key(), group)) compute_single(node.cell, *group);
+    return *group;
+  }
+
+ private:
+  // Finds or claims the group of a key. Returns false if the group already has its slabs.
+  bool claim_slot(int key, SlabGroup*& group) {
+    Slot& slot = slots_[key];
+    const bool is_current = slot.generation == generation_;
+    if (!is_current) {
+      if (used_ == static_cast<int>(groups_.size())) begin();
+      slot = {generation_, used_++};
+    }
+    group = &groups_[slot.group];
+    return !is_current;
+  }
+  void compute_children(const LevelCell& cell, SlabGroup& group);
+  void compute_single(const LevelCell& cell, SlabGroup& group);
+  void gather_samples(const LevelCell& cell, int stride);
+
+  SurfaceLevels* levels_;
+  AlignedVector<SlabGroup> groups_;
+  struct Slot {
+    std::uint32_t generation = 0;  // value of generation_ at which the slot was claimed
+    int group = 0;
+  };
+  int elements_v_, keys_per_element_, keys_;
+  std::vector<Slot> slots_;  // by key: the children of each cell, followed by the single cells
+  std::uint32_t generation_ = 0;
+  int used_ = 0;
+  double samples_[3][9];  // working memory
+};
+
+// Binary tree of boxes over the elements of one surface. It limits the parameter ranges that can meet another
+// surface, as section 4.1 of Pungotra et al. 2013 does by overlapping hulls. One owner, one thread; allocates
+// only on construction.
+class ElementTree {
+ public:
+  ElementTree(const KnotVector& u, const KnotVector& v);
+
+  struct Node {
+    int first_u, end_u, first_v, end_v;  // ranges of elements
+    int left = -1, right = -1;           // child nodes; -1 in a leaf, which is one element
+    bool is_leaf() const { return left < 0; }
+  };
+
+  // Updates the boxes to the current shape. An element's box encloses its corners and bulge, intersected with
+  // the box of its control points where the surface is far from flat.
+  void update(SurfaceLevels& levels);
+
+  int root() const { return 0; }
+  // Returns the leaf whose box centre is nearest to the point.
+  int find_leaf_near(const Vector3& point) const;
+  const Node& node(int index) const { return nodes_[index]; }
+  const Box& box(int index) const { return boxes_[index]; }
+  // Returns the sum of the box's side lengths, in metres.
+  double size(int index) const { return sizes_[index]; }
+
+ private:
+  struct Direction {
+    int degree;
+    std::vector<int> first_control;  // per element, index into `control`
+    std::vector<int> control;        // control indices of each element in turn
+    int elements() const { return static_cast<int>(first_control.size()); }
+  };
+  static Direction unroll(const KnotVector& knots);
+  int add(const Node& range);
+  void update_strip(SurfaceLevels& levels, int element_u);
+  Box control_box(const ControlNet& net, int element_u, int element_v) const;
+  void join_boxes();
+
+  Direction u_, v_;
+  std::vector<Node> nodes_;  // parents precede their children
+  std::vector<Box> boxes_;
+  std::vector<double> sizes_;
+  std::vector<Box> strip_;      // working memory: boxes of the elements of one span of u
+  std::vector<double> bulges_;  // working memory: bulges of the same elements
+  std::vector<int> leaf_;       // node index of each element's leaf
+};
+
 inline constexpr std::size_t cell_pair_capacity = 1 << 19;
 
+// One cell of each surface.
 struct CellPair {
   LevelCell first, second;
-  // From ContactRegions; before it, -1 where both cells are neighbours of the pair before's.
+  // Index of the region, set by ContactRegions. Before that, -1 where both cells are neighbours of those of
+  // the preceding pair.
   int region = 0;
 };
 
-// One owner, one thread; allocates only when made.
+// Coarse-to-fine search for pairs of cells of two surfaces that may meet. One owner, one thread; allocates
+// only on construction.
 class CellPairs {
  public:
   CellPairs(SurfaceLevels& first, SurfaceLevels& second);
 
-  // The control points of one have moved; after SurfaceLevels::begin() of it.
-  void begin_first();
-  void begin_second();
+  // Reports that the control points of the first surface moved. Call after SurfaceLevels::begin() of that
+  // surface.
+  void invalidate_first();
+  void invalidate_second();
 
-  // Brings the trees up to date; within() does so itself.
+  // Updates the trees to the current shapes. The find functions call it themselves.
   void update();
 
-  // Two elements, as coarsest cells, that are likely to be near each other.
-  CellPair likely_near() const;
+  // Returns two elements, as coarsest cells, that are likely to be near each other.
+  CellPair find_likely_near_elements() const;
 
-  // All pairs of cells that can be within `reach_m` of each other: of the finest level, or where the surfaces
-  // meet over a whole area, of the finest at which there are not too many.
-  std::vector<CellPair>& within(double reach_m);
-  // The same on the way there: the pairs of cells of one level, counted from the coarsest, that were kept.
-  const std::vector<CellPair>& within_at(double reach_m, int level);
-  // Those of the last within(), in the order that others have given them.
+  // Returns all pairs of cells that may be within `reach_m` of each other, at the finest level. Where the
+  // surfaces meet over a large area, the level is the finest one whose pairs fit the capacity.
+  std::vector<CellPair>& find_within(double reach_m);
+  // Returns the pairs of cells at one level, 0 being the coarsest, that may be within `reach_m` of each
+  // other.
+  const std::vector<CellPair>& find_within_at_level(double reach_m, int level);
+  // Returns the pairs of the last search, in the order to which ContactRegions may have sorted them.
   const std::vector<CellPair>& pairs() const { return pairs_; }
 
   // Calls visit(pair) for the elements, as coarsest cells, whose boxes are within reach() of each other,
-  // nearer ones first by and large; reach() may fall meanwhile.
+  // roughly nearest first. reach() may decrease during the search.
   template <class Reach, class Visit>
   void visit_elements(const Reach& reach, const Visit& visit) {
     node_pairs_.clear();
@@ -65,7 +188,7 @@ class CellPairs {
     }
   }
 
-  // Calls visit(pair) for all elements whose boxes are within reach of each other.
+  // Calls visit(pair) for all elements whose boxes are within `reach` of each other, in metres.
   template <class Visit>
   void visit_near_elements(double reach, const Visit& visit) {
     node_pairs_.clear();
@@ -90,7 +213,7 @@ class CellPairs {
     }
   }
 
-  // Whether a capacity was met in the last within(), and pairs may be missing.
+  // True if the last search met a capacity, so that pairs may be missing.
   bool overflow() const { return overflow_; }
 
   const ElementTree& first_tree() const { return first_tree_; }
@@ -101,7 +224,7 @@ class CellPairs {
     return first_tree_.box(nodes[0]).gap(second_tree_.box(nodes[1]));
   }
   CellPair elements(const std::array<int, 2>& nodes) const;
-  // The larger box in halves, beside the other.
+  // Splits the node with the larger box and pairs both halves with the other node.
   std::array<std::array<int, 2>, 2> split(const std::array<int, 2>& nodes) const {
     const auto [a, b] = nodes;
     const ElementTree::Node& node_a = first_tree_.node(a);
@@ -111,21 +234,21 @@ class CellPairs {
     if (split_a) return {{{node_a.left, b}, {node_a.right, b}}};
     return {{{a, node_b.left}, {a, node_b.right}}};
   }
-  void take_pairs(double reach, int level);
+  void collect_pairs(double reach, int level);
 
   SurfaceLevels* first_;
   SurfaceLevels* second_;
   CellSlabs first_slabs_, second_slabs_;
   ElementTree first_tree_, second_tree_;
-  std::vector<std::array<int, 2>> node_pairs_;  // working memory: a path down both trees
+  std::vector<std::array<int, 2>> node_pairs_;  // working memory: stack of the descent through both trees
   std::vector<CellPair> pairs_;
-  struct Places {
-    CellSlabs::Place first, second;
+  struct NodePair {
+    CellSlabs::QuadtreeCell first, second;
   };
   void refine(const CellPair& elements, double reach, int level);
-  void emit(const Places& places, bool is_first);
+  void add_pair(const NodePair& nodes, bool is_first);
 
-  std::vector<Places> path_;  // working memory: what is left to refine of two elements
+  std::vector<NodePair> pending_;  // working memory: stack of cell pairs still to be refined
   std::size_t limit_ = cell_pair_capacity;
   bool overflow_ = false;
   bool first_is_stale_ = true, second_is_stale_ = true;

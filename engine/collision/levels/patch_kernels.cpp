@@ -4,18 +4,18 @@ namespace spoonbill::SPOONBILL_KERNELS {
 
 namespace {
 
-// What single precision may add to an extent: of a slab's size and of its place.
+// Relative rounding error of an extent in single precision, of the slab's size and of its position.
 constexpr double size_rounding = 1e-6;
-constexpr double place_rounding = 2.5e-7;
-// And of the way between two centres, and of its square.
-constexpr float way_rounding = 1e-6F;
-constexpr float less = 1.0F - 1e-5F;
-constexpr float more = 1.0F + 1e-5F;
+constexpr double position_rounding = 2.5e-7;
+// Relative rounding error of the offset between two centres.
+constexpr float offset_rounding = 1e-6F;
+constexpr float rounded_down = 1.0F - 1e-5F;
+constexpr float rounded_up = 1.0F + 1e-5F;
 
-// Lanes that no compiler takes apart again; they need not begin on a whole vector.
+// Vector type of one sum per lane. It needs no alignment to a whole vector.
 typedef double Lanes __attribute__((vector_size(slab_lanes * sizeof(double)), aligned(sizeof(double))));
 
-// Four neighbouring sums, each of weights[k] * values[k][j].
+// Adds weights[k] * values[k][j] over k for four neighbouring j.
 template <int bandwidth>
 inline __attribute__((always_inline)) void sum_lanes(const double* weights, long weight_stride,
                                                      const double* values, long value_stride, double* sums) {
@@ -28,8 +28,8 @@ inline __attribute__((always_inline)) void sum_lanes(const double* weights, long
 }
 
 template <int bandwidth_u, int bandwidth_v>
-void sample_tile_of(const TileBand& u, const TileBand& v, const PlanarPoints& net, long net_columns,
-                    double* lines, const PlanarOutput& samples, long columns) {
+void sample_tile_with(const TileBand& u, const TileBand& v, const PlanarPoints& net, long net_columns,
+                      double* lines, const PlanarOutput& samples, long columns) {
   const double* const controls[3] = {net.x, net.y, net.z};
   double* const out[3] = {samples.x, samples.y, samples.z};
   const long padded = v.padded, line_size = 3 * padded;
@@ -65,15 +65,15 @@ using SampleTile = void (*)(const TileBand&, const TileBand&, const PlanarPoints
 template <int bandwidth_u>
 constexpr SampleTile tiles_by_bandwidth[] = {nullptr,
                                              nullptr,
-                                             sample_tile_of<bandwidth_u, 2>,
-                                             sample_tile_of<bandwidth_u, 3>,
-                                             sample_tile_of<bandwidth_u, 4>,
-                                             sample_tile_of<bandwidth_u, 5>,
-                                             sample_tile_of<bandwidth_u, 6>,
-                                             sample_tile_of<bandwidth_u, 7>,
-                                             sample_tile_of<bandwidth_u, 8>,
-                                             sample_tile_of<bandwidth_u, 9>,
-                                             sample_tile_of<bandwidth_u, 10>};
+                                             sample_tile_with<bandwidth_u, 2>,
+                                             sample_tile_with<bandwidth_u, 3>,
+                                             sample_tile_with<bandwidth_u, 4>,
+                                             sample_tile_with<bandwidth_u, 5>,
+                                             sample_tile_with<bandwidth_u, 6>,
+                                             sample_tile_with<bandwidth_u, 7>,
+                                             sample_tile_with<bandwidth_u, 8>,
+                                             sample_tile_with<bandwidth_u, 9>,
+                                             sample_tile_with<bandwidth_u, 10>};
 
 constexpr const SampleTile* tiles_by_bandwidths[] = {nullptr,
                                                      nullptr,
@@ -96,7 +96,7 @@ inline __attribute__((always_inline)) double magnitude(double number) {
   return __builtin_fabs(number);
 }
 
-void take_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
+void compute_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
   constexpr int low_low[slab_lanes] = {0, 1, 3, 4};
   const double* const values[3] = {samples.x, samples.y, samples.z};
   double centre[3][slab_lanes], u[3][slab_lanes], v[3][slab_lanes], twist[3][slab_lanes];
@@ -121,15 +121,15 @@ void take_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
       group.along_v[axis][k] = static_cast<float>(v[axis][k]);
     }
   }
-  // Unrolled too early, the lanes would not become vectors.
+  // Unrolling this loop early would keep GCC from vectorising the lanes.
 #pragma GCC unroll 1
   for (int k = 0; k < slab_lanes; ++k) {
     const double x = u[1][k] * v[2][k] - u[2][k] * v[1][k];
     const double y = u[2][k] * v[0][k] - u[0][k] * v[2][k];
     const double z = u[0][k] * v[1][k] - u[1][k] * v[0][k];
     const double squared = x * x + y * y + z * z;
-    const bool flat = squared > 0.0;
-    const double scale = (flat ? 1.0 : 0.0) / __builtin_sqrt(flat ? squared : 1.0);
+    const bool has_normal = squared > 0.0;
+    const double scale = (has_normal ? 1.0 : 0.0) / __builtin_sqrt(has_normal ? squared : 1.0);
     const double nx = x * scale, ny = y * scale, nz = z * scale;
     group.normal[0][k] = static_cast<float>(nx);
     group.normal[1][k] = static_cast<float>(ny);
@@ -138,18 +138,18 @@ void take_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) {
         __builtin_sqrt(twist[0][k] * twist[0][k] + twist[1][k] * twist[1][k] + twist[2][k] * twist[2][k]);
     const double size = magnitude(u[0][k]) + magnitude(u[1][k]) + magnitude(u[2][k]) + magnitude(v[0][k]) +
                         magnitude(v[1][k]) + magnitude(v[2][k]) + twisted + bulge;
-    const double place = magnitude(centre[0][k]) + magnitude(centre[1][k]) + magnitude(centre[2][k]);
-    const double off = bulge + size_rounding * size + place_rounding * place;
-    // A normal of long, narrow cells is not quite across their sides.
+    const double position = magnitude(centre[0][k]) + magnitude(centre[1][k]) + magnitude(centre[2][k]);
+    const double margin = bulge + size_rounding * size + position_rounding * position;
+    // The normal of a long, narrow cell is not exactly perpendicular to its sides.
     group.thickness[k] =
         static_cast<float>(magnitude(nx * u[0][k] + ny * u[1][k] + nz * u[2][k]) +
                            magnitude(nx * v[0][k] + ny * v[1][k] + nz * v[2][k]) +
-                           magnitude(nx * twist[0][k] + ny * twist[1][k] + nz * twist[2][k]) + off);
-    group.slack[k] = static_cast<float>(twisted + off);
+                           magnitude(nx * twist[0][k] + ny * twist[1][k] + nz * twist[2][k]) + margin);
+    group.slack[k] = static_cast<float>(twisted + margin);
   }
 }
 
-// One or two slabs of the first, against each of the second's four.
+// Number of slabs of the first surface that are tested at once against the four of the second.
 #ifdef __AVX__
 constexpr int slabs_at_once = 2;
 #else
@@ -164,9 +164,10 @@ struct ManyVectors {
   Many x, y, z;
 };
 
-// What is written to has any type, so that only the branch for it has to make sense.
+// Repeats the four lanes once per tested slab. `Out` is a template parameter so that only the branch for its
+// size has to compile.
 template <int a = 0>
-struct AllFour {
+struct RepeatAll {
   template <class Out>
   inline __attribute__((always_inline)) void operator()(const float* lanes, Out& out) const {
     const Four four = *reinterpret_cast<const Four*>(lanes);
@@ -178,7 +179,7 @@ struct AllFour {
   }
 };
 template <int first>
-struct FourOfEach {
+struct RepeatEach {
   template <class Out>
   inline __attribute__((always_inline)) void operator()(const float* lanes, Out& out) const {
     const Four four = *reinterpret_cast<const Four*>(lanes);
@@ -192,20 +193,20 @@ struct FourOfEach {
 };
 
 template <class Spread>
-inline __attribute__((always_inline)) void spread(const Spread& by, const float (&lanes)[3][slab_lanes],
+inline __attribute__((always_inline)) void spread(const Spread& spreader, const float (&lanes)[3][slab_lanes],
                                                   ManyVectors& out) {
-  by(lanes[0], out.x);
-  by(lanes[1], out.y);
-  by(lanes[2], out.z);
+  spreader(lanes[0], out.x);
+  spreader(lanes[1], out.y);
+  spreader(lanes[2], out.z);
 }
 
-inline __attribute__((always_inline)) void take_magnitude(const Many& number, Many& out) {
+inline __attribute__((always_inline)) void store_magnitude(const Many& number, Many& out) {
   out = reinterpret_cast<Many>(reinterpret_cast<ManyBits>(number) & 0x7fffffff);
 }
 
-inline __attribute__((always_inline)) void magnitude_of_product(const ManyVectors& a, const ManyVectors& b,
-                                                                Many& out) {
-  take_magnitude(a.x * b.x + a.y * b.y + a.z * b.z, out);
+inline __attribute__((always_inline)) void store_product_magnitude(const ManyVectors& a, const ManyVectors& b,
+                                                                   Many& out) {
+  store_magnitude(a.x * b.x + a.y * b.y + a.z * b.z, out);
 }
 
 struct ManySlabs {
@@ -214,47 +215,48 @@ struct ManySlabs {
 };
 
 template <class Spread>
-inline __attribute__((always_inline)) void take_many(const Spread& by, const SlabGroup& group,
-                                                     ManySlabs& slabs) {
-  spread(by, group.centre, slabs.centre);
-  spread(by, group.along_u, slabs.u);
-  spread(by, group.along_v, slabs.v);
-  spread(by, group.normal, slabs.normal);
-  by(group.thickness, slabs.thickness);
-  by(group.slack, slabs.slack);
+inline __attribute__((always_inline)) void spread_slabs(const Spread& spreader, const SlabGroup& group,
+                                                        ManySlabs& slabs) {
+  spread(spreader, group.centre, slabs.centre);
+  spread(spreader, group.along_u, slabs.u);
+  spread(spreader, group.along_v, slabs.v);
+  spread(spreader, group.normal, slabs.normal);
+  spreader(group.thickness, slabs.thickness);
+  spreader(group.slack, slabs.slack);
 }
 
-// Minus one in the lanes that are apart.
-inline __attribute__((always_inline)) void take_apart(const ManySlabs& a, const ManySlabs& b, float reach,
-                                                      ManyBits& apart) {
-  const ManyVectors way = {b.centre.x - a.centre.x, b.centre.y - a.centre.y, b.centre.z - a.centre.z};
+// Sets the lanes in which a plane separates the slabs by more than `reach` to -1, all others to 0.
+inline __attribute__((always_inline)) void find_separated(const ManySlabs& a, const ManySlabs& b, float reach,
+                                                          ManyBits& separated) {
+  const ManyVectors offset = {b.centre.x - a.centre.x, b.centre.y - a.centre.y, b.centre.z - a.centre.z};
   Many x, y, z;
-  take_magnitude(way.x, x);
-  take_magnitude(way.y, y);
-  take_magnitude(way.z, z);
-  const Many further = way_rounding * (x + y + z) + reach;
+  store_magnitude(offset.x, x);
+  store_magnitude(offset.y, y);
+  store_magnitude(offset.z, z);
+  const Many further = offset_rounding * (x + y + z) + reach;
   Many across_a, u_a, v_a, across_b, u_b, v_b;
-  magnitude_of_product(a.normal, way, across_a);
-  magnitude_of_product(a.normal, b.u, u_a);
-  magnitude_of_product(a.normal, b.v, v_a);
-  magnitude_of_product(b.normal, way, across_b);
-  magnitude_of_product(b.normal, a.u, u_b);
-  magnitude_of_product(b.normal, a.v, v_b);
-  apart = across_a > a.thickness + b.slack + u_a + v_a + further;
-  apart |= across_b > b.thickness + a.slack + u_b + v_b + further;
-  // squared > along + slack * length, without the root of squared.
+  store_product_magnitude(a.normal, offset, across_a);
+  store_product_magnitude(a.normal, b.u, u_a);
+  store_product_magnitude(a.normal, b.v, v_a);
+  store_product_magnitude(b.normal, offset, across_b);
+  store_product_magnitude(b.normal, a.u, u_b);
+  store_product_magnitude(b.normal, a.v, v_b);
+  separated = across_a > a.thickness + b.slack + u_a + v_a + further;
+  separated |= across_b > b.thickness + a.slack + u_b + v_b + further;
+  // squared > along + slack * length, squared on both sides to avoid the root.
   Many au, av, bu, bv;
-  magnitude_of_product(a.u, way, au);
-  magnitude_of_product(a.v, way, av);
-  magnitude_of_product(b.u, way, bu);
-  magnitude_of_product(b.v, way, bv);
-  const Many squared = way.x * way.x + way.y * way.y + way.z * way.z;
-  const Many beyond = less * squared - (au + av + bu + bv), slack = more * (a.slack + b.slack + reach);
-  apart |= (beyond > 0.0F) & (beyond * beyond > slack * slack * squared);
+  store_product_magnitude(a.u, offset, au);
+  store_product_magnitude(a.v, offset, av);
+  store_product_magnitude(b.u, offset, bu);
+  store_product_magnitude(b.v, offset, bv);
+  const Many squared = offset.x * offset.x + offset.y * offset.y + offset.z * offset.z;
+  const Many beyond = rounded_down * squared - (au + av + bu + bv),
+             slack = rounded_up * (a.slack + b.slack + reach);
+  separated |= (beyond > 0.0F) & (beyond * beyond > slack * slack * squared);
 }
 
-// One bit a lane.
-inline __attribute__((always_inline)) unsigned bits_of(const ManyBits& lanes) {
+// Returns one bit per lane.
+inline __attribute__((always_inline)) unsigned lane_bits(const ManyBits& lanes) {
 #ifdef __AVX__
   return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Many>(lanes)));
 #else
@@ -264,31 +266,31 @@ inline __attribute__((always_inline)) unsigned bits_of(const ManyBits& lanes) {
 #endif
 }
 
-// From slab `first` of the first on; returns the bits of lanes that are not apart.
+// Tests the slabs of `a` starting at slab `first`; returns the bits of the lanes that are not separated.
 template <int first>
-inline __attribute__((always_inline)) unsigned meeting_from(const SlabGroup& a, const ManySlabs& b,
-                                                            float reach) {
+inline __attribute__((always_inline)) unsigned find_meeting_from(const SlabGroup& a, const ManySlabs& b,
+                                                                 float reach) {
   ManySlabs slabs;
-  ManyBits apart;
-  take_many(FourOfEach<first>{}, a, slabs);
-  take_apart(slabs, b, reach, apart);
+  ManyBits separated;
+  spread_slabs(RepeatEach<first>{}, a, slabs);
+  find_separated(slabs, b, reach, separated);
   constexpr unsigned all = (1U << lanes_at_once) - 1U;
-  return (~bits_of(apart) & all) << (slab_lanes * first);
+  return (~lane_bits(separated) & all) << (slab_lanes * first);
 }
 
-unsigned meeting(const SlabGroup& a, int lanes, const SlabGroup& b, float reach) {
+unsigned find_meeting(const SlabGroup& a, int lanes, const SlabGroup& b, float reach) {
   ManySlabs second;
-  take_many(AllFour<>{}, b, second);
-  unsigned bits = meeting_from<0>(a, second, reach);
+  spread_slabs(RepeatAll<>{}, b, second);
+  unsigned bits = find_meeting_from<0>(a, second, reach);
   if (lanes == 1) return bits & 15U;
   if constexpr (slabs_at_once == 1) {
-    bits |= meeting_from<1>(a, second, reach) | meeting_from<3>(a, second, reach);
+    bits |= find_meeting_from<1>(a, second, reach) | find_meeting_from<3>(a, second, reach);
   }
-  return bits | meeting_from<2>(a, second, reach);
+  return bits | find_meeting_from<2>(a, second, reach);
 }
 
 }  // namespace
 
-const PatchKernels patch_kernels{sample_tile, take_slabs, meeting};
+const PatchKernels patch_kernels{sample_tile, compute_slabs, find_meeting};
 
 }  // namespace spoonbill::SPOONBILL_KERNELS

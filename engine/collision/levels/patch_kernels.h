@@ -1,5 +1,5 @@
-// The loops of contact between surfaces, compiled once for each instruction set: the samples of an element,
-// its cells as slabs, and which slabs of two surfaces could meet. As in evaluate_kernels.h, this header and
+// Numeric kernels of surface contact, compiled once for each instruction set. They sample an element, bound
+// its cells by slabs and test which slabs of two surfaces may meet. As in evaluate_kernels.h, this header and
 // its source use no standard library and no Eigen.
 #pragma once
 
@@ -7,15 +7,15 @@ namespace spoonbill {
 
 inline constexpr int slab_lanes = 4;
 
-// Values of the basis functions that an element has in one direction, at its finest samples: `bandwidth` rows
-// of `padded` values, those past `samples` zero; and the indices of their control points.
+// Basis function values of one element in one direction, at its finest samples. `values` has `bandwidth` rows
+// of `padded` numbers, zero beyond `samples`; `controls` holds the index of each row's control point.
 struct TileBand {
   const int* controls;
   const double* values;
   int bandwidth, samples, padded;
 };
 
-// A list of points, by coordinate; none where the pointers are null.
+// Points as separate coordinate arrays. Null pointers mean that no points are given.
 struct PlanarPoints {
   const double* x = nullptr;
   const double* y = nullptr;
@@ -27,36 +27,37 @@ struct PlanarOutput {
   double* z;
 };
 
-// The four cells within a cell, or one alone, by lane. With p(s, t) = centre + s along_u + t along_v + s t w
-// the bilinear patch of a cell's corners, s and t from -1 to 1, the surface lies within the bulge of it:
-// along its unit normal it leaves the centre by `thickness` at most, along any unit vector d by
-// |d . along_u| + |d . along_v| + slack.
+// Slabs around four cells, or around one cell repeated in all lanes.
 //
-// In single precision; thickness and slack hold what that leaves out.
+// The bilinear patch of a cell's corners is p(s, t) = centre + s along_u + t along_v + s t w, with s and t
+// from -1 to 1. The surface is within the bulge of that patch. Along its unit normal it leaves the centre by
+// at most `thickness`; along any unit vector d by at most |d . along_u| + |d . along_v| + slack. The values
+// are single precision; thickness and slack include the rounding.
 struct SlabGroup {
   float centre[3][slab_lanes];
   float along_u[3][slab_lanes];
   float along_v[3][slab_lanes];
-  float normal[3][slab_lanes];  // zero where the corners lie on a line
+  float normal[3][slab_lanes];  // zero if the corners are collinear
   float thickness[slab_lanes];
   float slack[slab_lanes];
 };
 
+// The kernels of one instruction set. Pure; any thread.
 struct PatchKernels {
-  // The samples of an element: first along v for each of its control rows, into `lines` (3 * u.bandwidth *
-  // v.padded numbers of working memory), then along u. Rows of samples are `columns` apart. Every sum begins
-  // at zero and goes by rising control index, as that of a single sample does.
+  // Samples one element, first along v for each control row into `lines` (working memory of 3 * u.bandwidth *
+  // v.padded numbers), then along u. Rows of `samples` are `columns` apart. Each sum starts at zero and adds
+  // by rising control index, as a single sample does.
   void (*sample_tile)(const TileBand& u, const TileBand& v, const PlanarPoints& net, long net_columns,
                       double* lines, const PlanarOutput& samples, long columns);
 
-  // The four cells between 3 x 3 samples (9 numbers a coordinate, row by row), each off its bilinear patch by
-  // `bulge` at most.
-  void (*take_slabs)(const PlanarPoints& samples, double bulge, SlabGroup& group);
+  // Computes the slabs of the four cells between 3 x 3 samples (9 numbers a coordinate, row by row). The
+  // surface leaves each bilinear patch by at most `bulge`.
+  void (*compute_slabs)(const PlanarPoints& samples, double bulge, SlabGroup& group);
 
-  // Bit 4 i + j is set unless a plane lies between slab i of the first, of which there are `lanes`, 1 or 4,
-  // and slab j of the second and more than `reach` apart from one of them: across either normal or across the
-  // line between their centres.
-  unsigned (*meeting)(const SlabGroup& first, int lanes, const SlabGroup& second, float reach);
+  // Returns bit 4 i + j set if slab i of the first group may be within `reach` of slab j of the second.
+  // Tested are the planes across both normals and across the line between the centres. `lanes` is the number
+  // of slabs of the first group, 1 or 4.
+  unsigned (*find_meeting)(const SlabGroup& first, int lanes, const SlabGroup& second, float reach);
 };
 
 namespace kernels_baseline {

@@ -1,5 +1,5 @@
 // Levels of detail of one surface (section 4.1 of Pungotra et al. 2013): samples at nested strides of its
-// blending matrices, evaluated as they are asked for, and spheres that provably cover the patches between.
+// blending matrices, evaluated on demand, and bounds of the surface between them.
 #pragma once
 
 #include <array>
@@ -7,32 +7,100 @@
 #include <vector>
 
 #include "engine/base/containers.h"
+#include "engine/base/geometry.h"
 #include "engine/base/processor.h"
 #include "engine/base/result.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/piece_basis.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/levels/patch_kernels.h"
-#include "engine/collision/levels/surface_bounds.h"
 
 namespace spoonbill {
 
-// Whether anything touches is decided to this.
-inline constexpr double touch_tolerance_m = 1e-6;
-
-struct NestedGrid {
-  Grid grid;
-  int levels = 0;  // strides halve level by level until they are 1
+// A rectangle of a surface's parameters, around cells of a grid. In a periodic direction it is the whole
+// domain if the cells are at both its ends.
+struct ParameterRange {
+  double u0, u1, v0, v1;
+  bool contains(double u, double v) const { return u0 <= u && u <= u1 && v0 <= v && v <= v1; }
 };
 
-// Parameters nested so that no cell holds a knot inside and each element has 2^levels cells a direction.
+// Largest norms of the second derivatives over each element (one polynomial piece in u by one in v).
+//
+// They come from the control points of the derivative surfaces, whose convex hull contains the derivatives:
+//   Q_i = p (P_{i+1} - P_i) / (u_{i+p+1} - u_{i+1}),
+//   second_i = (p - 1) (Q_{i+1} - Q_i) / (u_{i+p+1} - u_{i+2}).
+// A cell of sides h_u, h_v inside one element is within (h_u^2 M_uu + h_v^2 M_vv) / 8 of the bilinear patch
+// through its corners. This is the error of linear interpolation, once for each direction. The bounds are
+// valid only for the control points of the last update.
+//
+// One owner, one thread; allocates only on construction.
+class SurfaceBounds {
+ public:
+  SurfaceBounds(const KnotVector& u, const KnotVector& v);
+
+  // Updates the bounds of all elements from the control points. The overload with `element_v` updates only
+  // the elements (., element_v) and skips those already updated since begin().
+  void update(const ControlNet& net);
+  void begin() { ++stamp_; }
+  void update(const ControlNet& net, int element_v);
+
+  // Updates the boxes that box() and row_box() read. They enclose the control points of the elements (.,
+  // element_v) and (element_u, .).
+  void update_boxes(const ControlNet& net);
+  Box box(int element_v) const;
+  Box row_box(int element_u) const;
+
+  int elements_u() const { return static_cast<int>(span_u_.size()); }
+  int elements_v() const { return static_cast<int>(span_v_.size()); }
+
+  // Returns an upper bound of the distance of the surface from the bilinear patch of a cell of the element,
+  // in metres. `h_u` and `h_v` are the cell's sides in parameters.
+  double bulge(int element_u, int element_v, double h_u, double h_v) const {
+    const std::size_t e = static_cast<std::size_t>(element_u * elements_v() + element_v);
+    return (h_u * h_u * second_uu_[e] + h_v * h_v * second_vv_[e]) / 8.0;
+  }
+
+ private:
+  int rows_ = 0, columns_ = 0;  // size of the unrolled net
+  int degree_u_ = 0, degree_v_ = 0;
+  void update_column_norms(const ControlNet& net, int column);
+  void unroll_row(const ControlNet& net, int i);
+  void update_row_norms(const ControlNet& net, int i);
+  void update_elements(int element_u);
+
+  std::vector<int> span_u_, span_v_;        // knot span of each element
+  std::vector<int> control_u_, control_v_;  // unrolled index to control index
+  std::vector<double> first_scale_u_, second_scale_u_, first_scale_v_, second_scale_v_;
+  std::vector<double> norm_uu_, norm_vv_;  // squared norms by unrolled control point
+  std::vector<double> second_uu_, second_vv_;
+  std::uint64_t stamp_ = 1;
+  std::vector<std::uint64_t> column_at_,
+      element_at_;                        // stamp of the last update, by unrolled column and by element_v
+  std::vector<double> row_[3][3];         // working memory: unrolled row i of control points at i mod 3
+  std::vector<double> low_[3], high_[3];  // per control column
+  std::vector<Box> row_boxes_;            // per control row
+};
+
+// Distance below which two things count as touching, in metres.
+inline constexpr double touch_tolerance_m = 1e-6;
+
+// A sampling grid whose strides are nested.
+struct NestedGrid {
+  Grid grid;
+  int levels = 0;  // the stride halves level by level down to 1
+};
+
+// Makes a grid with 2^levels cells per element and direction, so that no cell has a knot in its interior.
+// `levels` must not be negative.
 Result<NestedGrid> make_nested_grid(const KnotVector& u, const KnotVector& v, int levels);
 
-// The patch between the samples (i, j) and (i + step, j + step), where the step is 2^(levels - level).
+// The patch between the samples (i, j) and (i + step, j + step) of the finest grid, with step 2^(levels -
+// level).
 struct LevelCell {
   int i, j, level;
 };
 
+// A sphere that contains the surface over one cell.
 struct CoverSphere {
   Vector3 centre;
   double radius;
@@ -41,16 +109,17 @@ struct CoverSphere {
 // Corners in the order (low u, low v), (low u, high v), (high u, low v), (high u, high v).
 using PatchCorners = std::array<Vector3, 4>;
 
-// One owner, one thread; allocates only when made. The grid must outlive it.
+// Samples, bounds and spheres of one surface at all levels. One owner, one thread; allocates only on
+// construction. The grid must outlive it.
 class SurfaceLevels {
  public:
   explicit SurfaceLevels(const NestedGrid& nested, InstructionSet set = best_instruction_set());
 
-  // To be called whenever the control points may have moved. Where none has since the last time, returns
-  // false and keeps all that was evaluated of them. The surface must have the grid's knots and outlive the
-  // calls below. Where all samples of the finest grid are known already, they may be given in its order, as
-  // GridEvaluator<double> has them: none is then evaluated. They must be the surface's and outlive the calls
-  // below.
+  // Starts a query. Call it whenever the control points may have moved. If none moved since the last call, it
+  // returns false and all evaluated values stay valid. The surface must have the grid's knots and outlive the
+  // calls below. `samples`, optional, are all samples of the finest grid in its order, as
+  // GridEvaluator<double> has them; no sample is then evaluated. They must belong to the surface and outlive
+  // the calls below.
   bool begin(const Surface& surface, const PlanarPoints& samples = {});
 
   const Surface& surface() const { return *surface_; }
@@ -59,28 +128,29 @@ class SurfaceLevels {
   SurfaceBounds& bounds() { return bounds_; }
   int samples_evaluated() const { return samples_evaluated_; }
 
-  // index: row * columns + column of the finest grid.
+  // Returns one sample; index is row * columns + column of the finest grid.
   Vector3 sample(int index);
-  // The coarsest samples of one column, which share their sums along v.
+  // Evaluates the coarsest samples of one column, which have their sums along v in common.
   void sample_column(int column);
-  // All samples of one element, at a fraction of what they cost one by one; to the same bits.
+  // Evaluates all samples of one element. Cheaper than single samples, with bitwise equal results.
   void sample_element(int element_u, int element_v);
-  // Of the finest grid; valid where sampled.
-  PlanarPoints samples() const { return given_.x != nullptr ? given_ : own_samples(); }
+  // Returns the samples of the finest grid; only entries that were evaluated are valid.
+  PlanarPoints samples() const { return external_samples_.x != nullptr ? external_samples_ : own_samples(); }
   const PatchKernels& kernels() const { return *kernels_; }
 
   int step(int level) const { return 1 << (nested_->levels - level); }
   bool is_finest(const LevelCell& cell) const { return cell.level >= nested_->levels; }
   PatchCorners corners(const LevelCell& cell);
 
-  // About each of the elements (element_u, .), by its corners and its bulge, which go with them.
+  // Computes the boxes of the elements (element_u, .) from their corners and bulges, and the bulges
+  // themselves. Both arrays have elements_v() entries.
   void element_boxes(int element_u, Box* boxes, double* bulges);
 
-  // How far the surface can leave the bilinear patch through the corners of the cell.
+  // Returns an upper bound of the distance of the surface from the bilinear patch of the cell, in metres.
   double bulge(const LevelCell& cell);
   const CoverSphere& cover(const LevelCell& cell);
 
-  // Cells of all levels, counted through; those of one level follow each other.
+  // Returns the index of a cell among the cells of all levels. The cells of one level are contiguous.
   int cell_index(const LevelCell& cell) const {
     const int down = shift(cell.level);
     return first_cell_[cell.level] + (cell.i >> down) * ((nested_->grid.columns() - 1) >> down) +
@@ -88,46 +158,56 @@ class SurfaceLevels {
   }
   int shift(int level) const { return nested_->levels - level; }  // a cell's step is 2^shift
   int cell_count(int level) const;
-  int all_cells() const { return static_cast<int>(covers_.size()); }
+  int total_cell_count() const { return static_cast<int>(covers_.size()); }
 
  private:
-  // The basis functions at one sample, `padded` apart.
+  // Basis functions at one sample; values are `padded` apart.
   struct BandEntry {
     const int* controls;
     const double* values;
   };
-  // The basis functions of each element of one direction at its finest samples.
+  // Basis functions of each element in one direction at its finest samples.
   struct Bands {
     int bandwidth = 0, samples = 0, padded = 0;
     std::vector<int> controls;
     AlignedVector<double> values;
-    TileBand of(int element) const;
+    TileBand tile_band(int element) const;
     BandEntry at(int row) const;
   };
-  static Bands bands_of(const GridDirection& direction, int levels);
-  bool take_net(const ControlNet& net);
+  static Bands make_bands(const GridDirection& direction, int levels);
+  bool store_net(const ControlNet& net);
   PlanarPoints own_samples() const { return {x_.data(), y_.data(), z_.data()}; }
   void set_sample(int index, const Vector3& point);
 
   const NestedGrid* nested_;
   const PatchKernels* kernels_;
   const Surface* surface_ = nullptr;
-  PlanarPoints given_;
-  ControlNet net_;  // as of the last begin()
+  PlanarPoints external_samples_;
+  ControlNet net_;  // control points of the last begin()
   SurfaceBounds bounds_;
   PieceBasis u_pieces_, v_pieces_;
   Bands u_bands_, v_bands_;
   std::vector<double> x_, y_, z_;
-  AlignedVector<double> tile_lines_;       // working memory of a tile
-  std::vector<std::uint32_t> element_at_;  // the begin() since which all samples of an element are there
-  std::vector<Vector3> lines_;             // working memory: a column's sums along v, one a control row
-  std::vector<std::uint32_t> sampled_at_;  // the begin() since which a sample was evaluated
-  std::vector<std::uint32_t> column_at_;   // the same for the coarsest samples of a whole column
-  std::vector<CoverSphere> covers_;        // by cell_index()
+  AlignedVector<double> tile_lines_;       // working memory of sample_element()
+  std::vector<std::uint32_t> element_at_;  // generation in which all samples of an element were evaluated
+  std::vector<Vector3> lines_;             // working memory: sums of one column along v, one per control row
+  std::vector<std::uint32_t> sampled_at_;  // generation in which a sample was evaluated
+  std::vector<std::uint32_t>
+      column_at_;                    // generation in which the coarsest samples of a column were evaluated
+  std::vector<CoverSphere> covers_;  // by cell_index()
   std::vector<std::uint32_t> covered_at_;
-  std::vector<int> first_cell_;  // of each level
-  std::uint32_t begun_ = 0;
+  std::vector<int> first_cell_;  // per level
+  std::uint32_t generation_ = 0;
   int samples_evaluated_ = 0;
 };
+
+// Lower bound of the distance between two patches, in metres, from the line between their centres and both
+// normals. A surface leaves the hull of its patch's corners by at most its bulge, so a plane that separates
+// the hulls bounds the distance.
+double patch_distance(const PatchCorners& a, double bulge_a, const PatchCorners& b, double bulge_b);
+
+// Lower bound of the distance between two patches, in metres, from the in-plane directions across the sides
+// of each patch. It separates slivers that are side by side.
+double patch_distance_in_plane(const PatchCorners& a, double bulge_a, const PatchCorners& b, double bulge_b);
 
 }  // namespace spoonbill

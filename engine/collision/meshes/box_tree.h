@@ -1,51 +1,64 @@
-// A tree of boxes in one flat array, whose depth is bounded, so that a search needs no recursion and no heap.
+// Bounding volume tree over triangles, and searches that it speeds up: ray casting and self-intersection.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/base/geometry.h"
+#include "engine/base/progress.h"
+#include "engine/collision/meshes/triangle.h"
+#include "engine/collision/meshes/triangle_mesh.h"
 
 namespace spoonbill {
 
-// Which items lie together never changes once made; any thread may read it while none refits.
+// Tree of boxes over items such as triangles, in one flat array. Its depth is bounded, so a search needs
+// neither recursion nor the heap. The grouping of the items never changes; any thread may read the tree while
+// none calls refit().
 class BoxTree {
  public:
   struct Node {
     Box box;
-    std::uint32_t first;  // of a leaf, into order(); else the right child, the left follows its parent
-    std::uint32_t count;  // of a leaf's items; 0 in a node with children
+    std::uint32_t first;  // in a leaf the start in order(); otherwise the right child, while the left one
+                          // follows its parent
+    std::uint32_t count;  // number of items in a leaf; 0 in an inner node
     bool is_leaf() const { return count > 0; }
   };
 
-  // Halves the items by the middles of their boxes along the longest side. At least one box.
+  // Builds the tree by halving the items at the median of their box centres along the longest side. `boxes`
+  // must not be empty, `leaf_size` at least 1.
   BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size);
 
-  // Takes the boxes that the same items have now: bounding_box(place) of each place in order(). Allocates nothing.
+  // Updates all boxes: bounding_box(position) returns the current box of the item at a position of order().
+  // Allocates nothing.
   template <class BoxOf>
   void refit(const BoxOf& bounding_box) {
-    // Children stand behind their parents.
+    // Children come after their parents.
     for (auto index = static_cast<std::uint32_t>(nodes_.size()); index-- > 0;) {
       Node& node = nodes_[index];
-      node.box = node.is_leaf() ? bounding_box(node.first) : joined(nodes_[index + 1].box, nodes_[node.first].box);
-      for (std::uint32_t k = 1; k < node.count; ++k) node.box = joined(node.box, bounding_box(node.first + k));
+      node.box =
+          node.is_leaf() ? bounding_box(node.first) : joined(nodes_[index + 1].box, nodes_[node.first].box);
+      for (std::uint32_t k = 1; k < node.count; ++k)
+        node.box = joined(node.box, bounding_box(node.first + k));
     }
   }
 
-  const std::vector<Node>& nodes() const { return nodes_; }           // the root first
-  const std::vector<std::uint32_t>& order() const { return order_; }  // the items, leaf by leaf
+  const std::vector<Node>& nodes() const { return nodes_; }           // the root is first
+  const std::vector<std::uint32_t>& order() const { return order_; }  // item indices, leaf by leaf
 
-  // Depth first: descend(node) says whether its box is worth a look, leaf(first, count) gets the items in
-  // order(). `first_right(left, right)` says which child to see first.
+  // Traverses the tree depth first. descend(node) returns false to skip a node, leaf(first, count) gets a
+  // range of order(), and first_right(left, right) returns true to visit the right child first.
   template <class Descend, class FirstRight, class Leaf>
   void search(const Descend& descend, const FirstRight& first_right, const Leaf& leaf) const {
-    // Two for each halving of at most 2^32 items.
-    std::array<std::uint32_t, 66> waiting;
+    // Two entries for each halving of at most 2^32 items.
+    std::array<std::uint32_t, 66> pending;
     std::uint32_t count = 1;
-    waiting[0] = 0;
+    pending[0] = 0;
     while (count > 0) {
-      const std::uint32_t index = waiting[--count];
+      const std::uint32_t index = pending[--count];
       const Node& node = nodes_[index];
       if (!descend(index)) continue;
       if (node.is_leaf()) {
@@ -53,8 +66,8 @@ class BoxTree {
         continue;
       }
       const bool right = first_right(index + 1, node.first);
-      waiting[count++] = right ? index + 1 : node.first;
-      waiting[count++] = right ? node.first : index + 1;
+      pending[count++] = right ? index + 1 : node.first;
+      pending[count++] = right ? node.first : index + 1;
     }
   }
 
@@ -63,11 +76,65 @@ class BoxTree {
   std::vector<std::uint32_t> order_;
 };
 
-// A lower bound of the signed distance to what lies in the box: outside the way to it, inside minus the way
-// out.
+// Lower bound of the signed distance to the contents of the box: positive outside, negative inside.
 inline double signed_distance(const Box& box, const Vector3& point) {
   const Vector3 beyond = (box.low - point).cwiseMax(point - box.high);
   return beyond.maxCoeff() > 0.0 ? beyond.cwiseMax(0.0).norm() : beyond.maxCoeff();
 }
+
+// Result of LineExits::first().
+struct LineExit {
+  double distance_m = 0.0;
+  std::uint32_t triangle = 0;
+  double to_b = 0.0, to_c = 0.0;  // barycentric weights of the corners b and c
+};
+
+// Ray casting against the triangles of a body, for use outside the tick. Immutable; any thread.
+class LineExits {
+ public:
+  // `triangles` must not be empty and must be counter-clockwise seen from outside.
+  explicit LineExits(std::vector<Triangle> triangles);
+
+  // Returns the nearest triangle hit along the unit direction whose outward normal has a positive component
+  // along it. Triangles that the line enters are ignored.
+  std::optional<LineExit> first(const Vector3& from, const Vector3& direction) const;
+
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+  const BoxTree& tree() const { return *tree_; }
+
+ private:
+  std::vector<Triangle> triangles_;
+  std::unique_ptr<BoxTree> tree_;
+};
+
+// Returns true if a line in the unit direction leaves through a wall, within 50 degrees of the triangle's
+// normal. A more oblique exit is beside an edge, where the distance between the sides does not measure a
+// wall's thickness.
+bool exits_through_wall(const Triangle& triangle, const Vector3& direction);
+
+struct MeshIntersection {
+  std::uint32_t first = 0, second = 0;  // triangle indices
+  // Smaller of the two depths by which each triangle penetrates the other's plane, in metres. Limited by the
+  // size of the triangles.
+  double depth_m = 0.0;
+};
+
+struct MeshIntersections {
+  std::vector<MeshIntersection> found;
+  bool complete = true;  // false if more exist, if the pair limit was met or if the search was stopped
+};
+
+// Finds up to `most` pairs of intersecting triangles. Triangles with a common corner are shrunk by a
+// millionth first. `triangles` must be in the order of the tree's leaves.
+//
+// Takes about a microsecond a triangle without intersections. The search ends early if it needs more than 200
+// pair tests a triangle, as with long needles. `progress` can only stop it.
+MeshIntersections self_intersections(const std::vector<Vector3>& vertices_m,
+                                     const std::vector<TriangleCorners>& triangles, const BoxTree& tree,
+                                     std::size_t limit, const Progress& progress = {});
+
+// Returns true if the mesh intersects itself, or if the search ended before that was decided.
+bool is_self_intersecting(const std::vector<Vector3>& vertices_m,
+                          const std::vector<TriangleCorners>& triangles, const BoxTree& tree);
 
 }  // namespace spoonbill

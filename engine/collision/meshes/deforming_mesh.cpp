@@ -6,21 +6,20 @@
 
 #include "engine/base/assert.h"
 #include "engine/collision/meshes/mesh_edges.h"
-#include "engine/collision/meshes/nearest_on_triangle.h"
 #include "engine/collision/meshes/triangle.h"
 
 namespace spoonbill {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
-// Nearer than this the way to the surface has no direction worth the name.
+// Distance in metres below which the offset to the surface has no reliable direction.
 constexpr double on_surface_m = 1e-12;
 
 Box box_of_corners(const std::vector<Vector3>& vertices, const TriangleCorners& corners) {
   return bounding_box(Triangle{vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]});
 }
 
-std::vector<Box> boxes_of(const TriangleMesh& mesh) {
+std::vector<Box> make_boxes(const TriangleMesh& mesh) {
   std::vector<Box> boxes;
   boxes.reserve(mesh.triangles.size());
   for (const TriangleCorners& corners : mesh.triangles)
@@ -28,8 +27,8 @@ std::vector<Box> boxes_of(const TriangleMesh& mesh) {
   return boxes;
 }
 
-// Within 2e-8 of the arc tangent of 0 to 1 (Abramowitz and Stegun 1964, 4.4.49): the library's differs in its
-// last bits from processor to processor, and these reach the simulation's state.
+// Arc tangent for x from 0 to 1, accurate to 2e-8 (Abramowitz and Stegun 1964, 4.4.49). The C library's
+// differs in its last bits between processors, which would change the simulation's state.
 double arc_tangent(double x) {
   constexpr double term[] = {-0.3333314528, 0.1999355085, -0.1420889944, 0.1065626393,
                              -0.0752896400, 0.0429096138, -0.0161657367, 0.0028662257};
@@ -39,7 +38,7 @@ double arc_tangent(double x) {
   return x * (1.0 + sum);
 }
 
-// 0 to pi; of unit vectors, as that of half of it: |a - b| over |a + b| is its tangent.
+// Angle between two unit vectors, 0 to pi. Half of it has the tangent |a - b| / |a + b|.
 double angle_between(const Vector3& a, const Vector3& b) {
   constexpr double quarter_turn = 1.57079632679489662;
   const double across = (a - b).norm(), along = (a + b).norm();
@@ -47,13 +46,14 @@ double angle_between(const Vector3& a, const Vector3& b) {
   return 2.0 * (quarter_turn - arc_tangent(along / across));
 }
 
-std::array<double, 3> shares_of(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& point) {
+std::array<double, 3> barycentric_weights(const Vector3& a, const Vector3& b, const Vector3& c,
+                                          const Vector3& point) {
   const Vector3 normal = (b - a).cross(c - a);
   const double square = normal.squaredNorm();
   if (!(square > 0.0)) return {1.0, 0.0, 0.0};
-  const double of_a = std::clamp(normal.dot((b - point).cross(c - point)) / square, 0.0, 1.0);
-  const double of_b = std::clamp(normal.dot((c - point).cross(a - point)) / square, 0.0, 1.0 - of_a);
-  return {of_a, of_b, 1.0 - of_a - of_b};
+  const double weight_a = std::clamp(normal.dot((b - point).cross(c - point)) / square, 0.0, 1.0);
+  const double weight_b = std::clamp(normal.dot((c - point).cross(a - point)) / square, 0.0, 1.0 - weight_a);
+  return {weight_a, weight_b, 1.0 - weight_a - weight_b};
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ struct DeformingMesh::Nearest {
 };
 
 DeformingMesh::DeformingMesh(const TriangleMesh& mesh)
-    : vertices_m_(mesh.vertices_m), tree_(boxes_of(mesh), leaf_size) {
+    : vertices_m_(mesh.vertices_m), tree_(make_boxes(mesh), leaf_size) {
   SPOONBILL_ASSERT(!mesh.triangles.empty());
   triangles_.reserve(mesh.triangles.size());
   for (const std::uint32_t index : tree_.order()) triangles_.push_back(mesh.triangles[index]);
@@ -84,8 +84,8 @@ DeformingMesh::DeformingMesh(const TriangleMesh& mesh)
   }
 }
 
-void DeformingMesh::settle() {
-  tree_.refit([&](std::uint32_t place) { return box_of_corners(vertices_m_, triangles_[place]); });
+void DeformingMesh::refit() {
+  tree_.refit([&](std::uint32_t position) { return box_of_corners(vertices_m_, triangles_[position]); });
 }
 
 Vector3 DeformingMesh::face_normal(std::uint32_t triangle) const {
@@ -99,8 +99,8 @@ Vector3 DeformingMesh::vertex_normal(std::uint32_t vertex) const {
     const std::uint32_t triangle = corners_[c] / 3, k = corners_[c] % 3;
     const Vector3& corner = vertices_m_[vertex];
     const Vector3 to_next = (vertices_m_[triangles_[triangle][(k + 1) % 3]] - corner).normalized();
-    const Vector3 to_last = (vertices_m_[triangles_[triangle][(k + 2) % 3]] - corner).normalized();
-    sum += angle_between(to_next, to_last) * face_normal(triangle);
+    const Vector3 to_previous = (vertices_m_[triangles_[triangle][(k + 2) % 3]] - corner).normalized();
+    sum += angle_between(to_next, to_previous) * face_normal(triangle);
   }
   return sum;
 }
@@ -136,13 +136,13 @@ std::optional<NearestOnMesh> DeformingMesh::nearest(const Vector3& point_m, doub
   if (!found) return std::nullopt;
   const TriangleCorners& corners = triangles_[best.triangle];
   NearestOnMesh result;
-  result.on = {corners, shares_of(vertices_m_[corners[0]], vertices_m_[corners[1]], vertices_m_[corners[2]],
-                                  best.on.point)};
-  const Vector3 normal = normal_at(best), way = point_m - best.on.point;
-  const double distance = std::sqrt(best.squared), side = way.dot(normal) < 0.0 ? -1.0 : 1.0;
+  result.on = {corners, barycentric_weights(vertices_m_[corners[0]], vertices_m_[corners[1]],
+                                            vertices_m_[corners[2]], best.on.point)};
+  const Vector3 normal = normal_at(best), offset = point_m - best.on.point;
+  const double distance = std::sqrt(best.squared), side = offset.dot(normal) < 0.0 ? -1.0 : 1.0;
   result.gap_m = side * distance;
-  const bool has_way = distance > on_surface_m && best.on.on != NearestOnTriangle::On::face;
-  result.normal = has_way ? Vector3(side / distance * way) : Vector3(normal.normalized());
+  const bool use_offset = distance > on_surface_m && best.on.on != NearestOnTriangle::On::face;
+  result.normal = use_offset ? Vector3(side / distance * offset) : Vector3(normal.normalized());
   return result;
 }
 

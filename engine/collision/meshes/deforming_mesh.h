@@ -1,4 +1,4 @@
-// A closed mesh whose vertices move: the nearest point of it as it is now, and on which side of it one is.
+// A closed mesh whose vertices move, with its nearest points and signed gaps.
 #pragma once
 
 #include <array>
@@ -11,41 +11,42 @@
 
 namespace spoonbill {
 
-// A point of a mesh: shares of a triangle's corners, which sum to 1.
+// A point on a mesh, as weights of a triangle's corners. The weights have the sum 1.
 struct PointOnMesh {
   TriangleCorners vertex{};
-  std::array<double, 3> share{};
+  std::array<double, 3> weight{};
 };
 
+// Result of DeformingMesh::nearest().
 struct NearestOnMesh {
   PointOnMesh on;
-  Vector3 normal = Vector3::UnitY();  // unit, out of the mesh, along the way between the two points
-  double gap_m = 0.0;                 // along it; below zero inside
+  Vector3 normal = Vector3::UnitY();  // unit, outward, along the line between the two points
+  double gap_m = 0.0;                 // signed distance along the normal; negative inside
 };
 
-// One owner, one thread; allocates only when made and copied.
+// Nearest point search on a closed deforming mesh. One owner, one thread; allocates only on construction and
+// copy.
 class DeformingMesh {
  public:
-  // Every edge must have two triangles, and those at a vertex make one umbrella.
+  // The mesh must be manifold: two triangles at each edge and one fan of triangles around each vertex.
   explicit DeformingMesh(const TriangleMesh& mesh);
 
   const std::vector<Vector3>& vertices_m() const { return vertices_m_; }
-  // To be moved, and settled before anything is asked.
-  std::vector<Vector3>& moving_vertices_m() { return vertices_m_; }
-  void settle();
+  // Vertices to be moved. Call settle() afterwards, before any query.
+  std::vector<Vector3>& mutable_vertices_m() { return vertices_m_; }
+  void refit();
 
-  // In the order of the tree's leaves.
+  // Triangles in the order of the tree's leaves.
   const std::vector<TriangleCorners>& triangles() const { return triangles_; }
   const BoxTree& tree() const { return tree_; }
   const Box& bounds() const { return tree_.nodes()[0].box; }
 
-  // None where no point of it is within `reach_m`. The side is told by the normals of faces, edges and
-  // vertices, the latter weighted by angles (Baerentzen and Aanaes 2005).
+  // Returns the nearest point, or nothing beyond `reach_m`. The sign of the gap comes from the normals of
+  // faces, edges and vertices, the latter weighted by angle (Baerentzen and Aanaes 2005).
   std::optional<NearestOnMesh> nearest(const Vector3& point_m, double reach_m) const;
 
  private:
   struct Nearest;
-  Box bounding_box(std::uint32_t triangle) const;
   Vector3 face_normal(std::uint32_t triangle) const;
   Vector3 vertex_normal(std::uint32_t vertex) const;
   Vector3 normal_at(const Nearest& nearest) const;
@@ -53,9 +54,9 @@ class DeformingMesh {
   std::vector<Vector3> vertices_m_;
   std::vector<TriangleCorners> triangles_;
   BoxTree tree_;
-  std::vector<std::uint32_t> across_;        // the triangle beyond each side
-  std::vector<std::uint32_t> first_corner_;  // of each vertex, into corners_; one more at the end
-  std::vector<std::uint32_t> corners_;       // 3 t + k: corner k of triangle t
+  std::vector<std::uint32_t> across_;        // adjacent triangle of each side, 3 t + k
+  std::vector<std::uint32_t> first_corner_;  // per vertex, start in corners_; one more entry at the end
+  std::vector<std::uint32_t> corners_;       // 3 t + k for corner k of triangle t, grouped by vertex
 };
 
 }  // namespace spoonbill

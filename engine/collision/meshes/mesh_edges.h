@@ -1,6 +1,7 @@
-// Which sides of triangles lie on one edge.
+// Adjacency of triangles over their edges, subdivision of long edges and smoothed normals.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -8,41 +9,66 @@
 
 namespace spoonbill {
 
-// Side 3 t + k of a mesh goes from corner k of triangle t to the next.
+// A directed side of a triangle: side 3 t + k goes from corner k of triangle t to the next corner.
 using MeshSide = std::uint32_t;
 
 inline MeshSide next_side(MeshSide side) {
   return side % 3 == 2 ? side - 2 : side + 1;
 }
-inline std::uint32_t start_of(const std::vector<TriangleCorners>& triangles, MeshSide side) {
+inline std::uint32_t side_start(const std::vector<TriangleCorners>& triangles, MeshSide side) {
   return triangles[side / 3][side % 3];
 }
-inline std::uint32_t end_of(const std::vector<TriangleCorners>& triangles, MeshSide side) {
+inline std::uint32_t side_end(const std::vector<TriangleCorners>& triangles, MeshSide side) {
   return triangles[side / 3][next_side(side) % 3];
 }
 
+// The edges of a triangle mesh, with the sides that share them. Immutable.
 class MeshEdges {
  public:
   static constexpr MeshSide open = 0xffffffffU;       // no other triangle has the edge
-  static constexpr MeshSide branching = 0xfffffffeU;  // more than one other has
+  static constexpr MeshSide branching = 0xfffffffeU;  // two or more other triangles have the edge
 
-  // The two ends of a side must differ.
+  // The two ends of each side must differ, and all corners must be below `vertices`.
   MeshEdges(const std::vector<TriangleCorners>& triangles, std::size_t vertices);
 
-  // The one other side on this one's edge, or one of the above.
+  // Returns the only other side on the same edge, or `open` or `branching`.
   MeshSide across(MeshSide side) const { return across_[side]; }
 
   std::size_t open_count() const { return open_count_; }
-  std::size_t branching_count() const { return branching_count_; }  // edges, not sides
+  std::size_t branching_count() const { return branching_count_; }  // counts edges, not sides
 
-  // Of an open edge its side; of a branching one those in the direction that more sides have, as many as are
-  // more. Closed where triangles agree, for what comes to a vertex also leaves it.
+  // Sides on the boundary. An open edge contributes its side; a branching edge contributes the surplus of
+  // sides in its prevailing direction. In a consistently oriented mesh the boundary consists of closed loops.
   const std::vector<MeshSide>& boundary() const { return boundary_; }
 
  private:
   std::vector<MeshSide> across_;
   std::vector<MeshSide> boundary_;
   std::size_t open_count_ = 0, branching_count_ = 0;
+};
+
+// Halves edges until none is longer than `longest_m`, each in both of its triangles, so that a closed mesh
+// stays closed. Existing vertices are unchanged; new ones are appended. Each edge must have two triangles.
+// Fails with too_many beyond `triangle_limit` triangles.
+Result<TriangleMesh> refine_edges(TriangleMesh mesh, double longest_m, std::size_t triangle_limit);
+
+// Normals that are continuous over facets and insensitive to slivers. The mesh must outlive the object; any
+// thread.
+class SmoothNormals {
+ public:
+  explicit SmoothNormals(const TriangleMesh& mesh);
+
+  // Returns the unit normal at a point of a triangle, with barycentric weights `to_b` and `to_c`. It is
+  // interpolated from the corners, whose normals average the adjacent triangles within 30 degrees of this one
+  // by area. Zero if the triangle has no area.
+  Vector3 at(std::uint32_t triangle, double to_b, double to_c) const;
+
+ private:
+  Vector3 twice_area(std::uint32_t triangle) const;
+
+  const TriangleMesh* mesh_;
+  // Triangles at a vertex: around_[starts_[vertex]] to around_[starts_[vertex + 1]].
+  std::vector<std::uint32_t> starts_, adjacent_;
 };
 
 }  // namespace spoonbill

@@ -5,52 +5,55 @@
 #include <cstdint>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "engine/base/assert.h"
 #include "engine/base/geometry.h"
 #include "engine/collision/meshes/mesh_edges.h"
-#include "engine/collision/meshes/solid_angle.h"
+#include "engine/collision/meshes/triangle.h"
 
 namespace spoonbill {
+
 namespace {
 
 constexpr std::uint32_t none = 0xffffffffU;
-// Triangles looked at for cavities: a file of countless specks is read in bounded time.
+// Limit of the triangles visited in the search for cavities, which bounds the time for files of countless
+// specks.
 constexpr std::size_t cavity_work = 50'000'000;
 
 struct Flood {
-  std::vector<std::uint32_t> part_of;  // of each triangle
-  std::vector<bool> turned;
-  std::vector<bool> orientable;  // of each part
+  std::vector<std::uint32_t> part_index;  // part of each triangle
+  std::vector<bool> flipped;
+  std::vector<bool> orientable;  // per part
 };
 
 void flood_from(std::uint32_t seed, const std::vector<TriangleCorners>& triangles, const MeshEdges& edges,
                 Flood& flood, std::vector<std::uint32_t>& reached) {
   const auto part = static_cast<std::uint32_t>(flood.orientable.size());
   flood.orientable.push_back(true);
-  flood.part_of[seed] = part;
+  flood.part_index[seed] = part;
   reached.assign(1, seed);
-  std::size_t turned = 0;
+  std::size_t flipped = 0;
   for (std::size_t at = 0; at < reached.size(); ++at) {
     const std::uint32_t triangle = reached[at];
     for (MeshSide side = 3 * triangle; side < 3 * triangle + 3; ++side) {
       const MeshSide other = edges.across(side);
       if (other == MeshEdges::open || other == MeshEdges::branching) continue;
-      const bool same_way = start_of(triangles, side) == start_of(triangles, other);
-      const bool turn = flood.turned[triangle] != same_way;
+      const bool same_direction = side_start(triangles, side) == side_start(triangles, other);
+      const bool flip = flood.flipped[triangle] != same_direction;
       const std::uint32_t neighbour = other / 3;
-      if (flood.part_of[neighbour] == none) {
-        flood.part_of[neighbour] = part;
-        flood.turned[neighbour] = turn;
-        turned += turn ? 1 : 0;
+      if (flood.part_index[neighbour] == none) {
+        flood.part_index[neighbour] = part;
+        flood.flipped[neighbour] = flip;
+        flipped += flip ? 1 : 0;
         reached.push_back(neighbour);
-      } else if (flood.turned[neighbour] != turn) {
+      } else if (flood.flipped[neighbour] != flip) {
         flood.orientable[part] = false;
       }
     }
   }
-  if (2 * turned <= reached.size()) return;
-  for (const std::uint32_t triangle : reached) flood.turned[triangle] = !flood.turned[triangle];
+  if (2 * flipped <= reached.size()) return;
+  for (const std::uint32_t triangle : reached) flood.flipped[triangle] = !flood.flipped[triangle];
 }
 
 Flood flood_parts(const TriangleMesh& mesh) {
@@ -60,27 +63,27 @@ Flood flood_parts(const TriangleMesh& mesh) {
               {}};
   std::vector<std::uint32_t> reached;
   for (std::uint32_t seed = 0; seed < mesh.triangles.size(); ++seed) {
-    if (flood.part_of[seed] == none) flood_from(seed, mesh.triangles, edges, flood, reached);
+    if (flood.part_index[seed] == none) flood_from(seed, mesh.triangles, edges, flood, reached);
   }
   return flood;
 }
 
-// The triangles by part, each part's in their order.
-std::vector<std::uint32_t> by_part(const Flood& flood, std::vector<MeshPart>& parts) {
-  for (const std::uint32_t part : flood.part_of) ++parts[part].end_triangle;
+// Returns the triangles sorted by part, in their original order within each part.
+std::vector<std::uint32_t> sort_by_part(const Flood& flood, std::vector<MeshPart>& parts) {
+  for (const std::uint32_t part : flood.part_index) ++parts[part].end_triangle;
   std::uint32_t begin = 0;
   for (MeshPart& part : parts) {
     part.first_triangle = begin;
     begin += std::exchange(part.end_triangle, begin);
   }
-  std::vector<std::uint32_t> order(flood.part_of.size());
+  std::vector<std::uint32_t> order(flood.part_index.size());
   for (std::uint32_t triangle = 0; triangle < order.size(); ++triangle) {
-    order[parts[flood.part_of[triangle]].end_triangle++] = triangle;
+    order[parts[flood.part_index[triangle]].end_triangle++] = triangle;
   }
   return order;
 }
 
-Box box_of_part(const TriangleMesh& mesh, const MeshPart& part) {
+Box part_box(const TriangleMesh& mesh, const MeshPart& part) {
   Box box;
   for (std::uint32_t v = part.first_vertex; v < part.end_vertex; ++v) box.include(mesh.vertices_m[v]);
   return box;
@@ -95,7 +98,7 @@ bool encloses(const TriangleMesh& mesh, const MeshPart& part, const Vector3& poi
   return std::abs(angle) > 0.5 * full_solid_angle;
 }
 
-// From the largest part to the smallest, so that what could hold a part is known before it.
+// Goes from the largest part to the smallest, so that a possible container precedes its contents.
 void find_cavities(const TriangleMesh& mesh, std::vector<MeshPart>& parts,
                    const std::vector<double>& volumes) {
   std::vector<int> closed;
@@ -104,18 +107,19 @@ void find_cavities(const TriangleMesh& mesh, std::vector<MeshPart>& parts,
   }
   std::stable_sort(closed.begin(), closed.end(),
                    [&](int a, int b) { return std::abs(volumes[a]) > std::abs(volumes[b]); });
-  std::vector<std::pair<int, Box>> holders[2];  // solids facing inward, outward
+  std::vector<std::pair<int, Box>> containers[2];  // inside-out solids, then outward solids
   std::size_t work = 0;
   for (const int p : closed) {
     const bool outward = volumes[p] > 0.0;
-    const Box box = box_of_part(mesh, parts[p]);
-    for (const auto& [holder, around] : holders[outward ? 0 : 1]) {
+    const Box box = part_box(mesh, parts[p]);
+    for (const auto& [container, around] : containers[outward ? 0 : 1]) {
       if (++work > cavity_work) return;
       if (!around.holds(box)) continue;
-      work += parts[holder].end_triangle - parts[holder].first_triangle;
-      if (encloses(mesh, parts[holder], mesh.vertices_m[parts[p].first_vertex])) parts[p].cavity_of = holder;
+      work += parts[container].end_triangle - parts[container].first_triangle;
+      if (encloses(mesh, parts[container], mesh.vertices_m[parts[p].first_vertex]))
+        parts[p].cavity_of = container;
     }
-    if (parts[p].cavity_of < 0) holders[outward ? 1 : 0].emplace_back(p, box);
+    if (parts[p].cavity_of < 0) containers[outward ? 1 : 0].emplace_back(p, box);
   }
 }
 
@@ -125,7 +129,7 @@ MeshParts split_into_parts(const TriangleMesh& mesh) {
   Flood flood = flood_parts(mesh);
   MeshParts result;
   result.parts.resize(flood.orientable.size());
-  const std::vector<std::uint32_t> order = by_part(flood, result.parts);
+  const std::vector<std::uint32_t> order = sort_by_part(flood, result.parts);
   result.mesh.triangles.reserve(order.size());
   result.mesh.vertices_m.reserve(mesh.vertices_m.size());
   std::vector<std::uint32_t> copy(mesh.vertices_m.size(), none);
@@ -134,17 +138,17 @@ MeshParts split_into_parts(const TriangleMesh& mesh) {
     for (std::uint32_t t = part.first_triangle; t < part.end_triangle; ++t) {
       TriangleCorners corners = mesh.triangles[order[t]];
       for (std::uint32_t& corner : corners) {
-        std::uint32_t& mine = copy[corner];
-        // A copy below the part's first vertex is another part's.
-        if (mine == none || mine < part.first_vertex) {
-          mine = static_cast<std::uint32_t>(result.mesh.vertices_m.size());
+        std::uint32_t& own = copy[corner];
+        // A copy with an index below the part's first vertex belongs to another part.
+        if (own == none || own < part.first_vertex) {
+          own = static_cast<std::uint32_t>(result.mesh.vertices_m.size());
           result.mesh.vertices_m.push_back(mesh.vertices_m[corner]);
         }
-        corner = mine;
+        corner = own;
       }
-      if (flood.turned[order[t]]) {
+      if (flood.flipped[order[t]]) {
         std::swap(corners[1], corners[2]);
-        ++result.triangles_turned;
+        ++result.triangles_flipped;
       }
       result.mesh.triangles.push_back(corners);
     }
@@ -157,20 +161,20 @@ MeshParts split_into_parts(const TriangleMesh& mesh) {
 std::size_t drop_specks(MeshParts& parts) {
   SPOONBILL_ASSERT(parts.orientable.size() == parts.parts.size());
   double closed = 0.0;
-  for (const MeshPart& part : parts.parts) closed += part.closed ? area_of(parts.mesh, part) : 0.0;
+  for (const MeshPart& part : parts.parts) closed += part.closed ? part_area(parts.mesh, part) : 0.0;
   const auto is_speck = [&](const MeshPart& part) {
-    return !part.closed && area_of(parts.mesh, part) < speck_share * closed;
+    return !part.closed && part_area(parts.mesh, part) < speck_area_fraction * closed;
   };
   if (std::none_of(parts.parts.begin(), parts.parts.end(), is_speck)) return 0;
-  MeshParts kept;
-  kept.triangles_turned = parts.triangles_turned;
+  MeshParts remaining;
+  remaining.triangles_flipped = parts.triangles_flipped;
   for (std::size_t p = 0; p < parts.parts.size(); ++p) {
     if (is_speck(parts.parts[p])) continue;
-    kept.parts.push_back(append_part(parts.mesh, parts.parts[p], kept.mesh));
-    kept.orientable.push_back(parts.orientable[p]);
+    remaining.parts.push_back(append_part(parts.mesh, parts.parts[p], remaining.mesh));
+    remaining.orientable.push_back(parts.orientable[p]);
   }
-  const std::size_t dropped = parts.parts.size() - kept.parts.size();
-  parts = std::move(kept);
+  const std::size_t dropped = parts.parts.size() - remaining.parts.size();
+  parts = std::move(remaining);
   return dropped;
 }
 
@@ -178,7 +182,7 @@ double triangle_area(const Vector3& a, const Vector3& b, const Vector3& c) {
   return 0.5 * (b - a).cross(c - a).norm();
 }
 
-double area_of(const TriangleMesh& mesh, const MeshPart& part) {
+double part_area(const TriangleMesh& mesh, const MeshPart& part) {
   SPOONBILL_ASSERT(part.first_triangle <= part.end_triangle && part.end_triangle <= mesh.triangles.size());
   double sum = 0.0;
   for (std::uint32_t t = part.first_triangle; t < part.end_triangle; ++t) {
@@ -208,7 +212,7 @@ MeshPart append_part(const TriangleMesh& from, const MeshPart& part, TriangleMes
 
 double signed_volume(const TriangleMesh& mesh, const MeshPart& part) {
   SPOONBILL_ASSERT(part.first_triangle <= part.end_triangle && part.end_triangle <= mesh.triangles.size());
-  // About one of its own vertices, so that a small part far away loses no digits.
+  // The origin is one of the part's own vertices, which keeps precision for small parts far away.
   const Vector3 origin = mesh.vertices_m[part.first_vertex];
   double six_volumes = 0.0;
   for (std::uint32_t t = part.first_triangle; t < part.end_triangle; ++t) {
@@ -219,7 +223,7 @@ double signed_volume(const TriangleMesh& mesh, const MeshPart& part) {
   return six_volumes / 6.0;
 }
 
-void turn_outward(TriangleMesh& mesh, std::vector<MeshPart>& parts, MeshReport& report) {
+void orient_outward(TriangleMesh& mesh, std::vector<MeshPart>& parts, MeshReport& report) {
   std::vector<double> volumes(parts.size(), 0.0);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (parts[p].closed) volumes[p] = signed_volume(mesh, parts[p]);
@@ -233,8 +237,175 @@ void turn_outward(TriangleMesh& mesh, std::vector<MeshPart>& parts, MeshReport& 
     for (std::uint32_t t = part.first_triangle; t < part.end_triangle; ++t) {
       std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
     }
-    ++report.parts_turned;
+    ++report.parts_flipped;
   }
+}
+
+namespace {
+
+// Vertices of a boundary loop in the winding order of the adjacent triangles, opposite to that of the filling
+// triangles.
+using BoundaryLoop = std::vector<std::uint32_t>;
+
+// Cuts the boundary sides into simple loops that visit no vertex twice. Parts have no vertex in common, so
+// each loop belongs to one part.
+class BoundaryWalk {
+ public:
+  BoundaryWalk(const TriangleMesh& mesh, const std::vector<MeshSide>& boundary)
+      : mesh_(mesh),
+        first_(mesh.vertices_m.size(), none),
+        next_(boundary.size(), none),
+        position_(mesh.vertices_m.size(), none),
+        boundary_(boundary) {
+    for (std::uint32_t k = 0; k < boundary.size(); ++k) {
+      std::uint32_t& first = first_[side_start(mesh.triangles, boundary[k])];
+      next_[k] = std::exchange(first, k);
+    }
+  }
+
+  // Calls visit(loop) for each loop. A chain of sides that does not close is discarded; in a consistently
+  // oriented mesh every chain closes.
+  template <class Visit>
+  void walk(const Visit& visit) {
+    for (const MeshSide side : boundary_) {
+      std::uint32_t vertex = side_start(mesh_.triangles, side);
+      while (first_[vertex] != none) {
+        const MeshSide leaving = boundary_[std::exchange(first_[vertex], next_[first_[vertex]])];
+        position_[vertex] = static_cast<std::uint32_t>(path_.size());
+        path_.push_back(vertex);
+        vertex = side_end(mesh_.triangles, leaving);
+        if (position_[vertex] != none) cut_at(vertex, visit);
+      }
+      for (const std::uint32_t left : path_) position_[left] = none;
+      path_.clear();
+    }
+  }
+
+ private:
+  template <class Visit>
+  void cut_at(std::uint32_t vertex, const Visit& visit) {
+    const BoundaryLoop loop(path_.begin() + position_[vertex], path_.end());
+    for (const std::uint32_t vertex_in_loop : loop) position_[vertex_in_loop] = none;
+    path_.resize(path_.size() - loop.size());
+    visit(loop);
+  }
+
+  const TriangleMesh& mesh_;
+  std::vector<std::uint32_t> first_,
+      next_;  // linked lists of the unused sides that leave each vertex, into boundary_
+  std::vector<std::uint32_t> position_;  // position of each vertex in path_
+  const std::vector<MeshSide>& boundary_;
+  std::vector<std::uint32_t> path_;
+};
+
+Vector3 loop_centre(const TriangleMesh& mesh, const BoundaryLoop& loop) {
+  Vector3 sum = Vector3::Zero();
+  double length = 0.0;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Vector3& a = mesh.vertices_m[loop[k]];
+    const Vector3& b = mesh.vertices_m[loop[(k + 1) % loop.size()]];
+    sum += (b - a).norm() * 0.5 * (a + b);
+    length += (b - a).norm();
+  }
+  return sum / length;
+}
+
+double fan_area(const TriangleMesh& mesh, const BoundaryLoop& loop) {
+  const Vector3 centre = loop_centre(mesh, loop);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    sum += triangle_area(mesh.vertices_m[loop[k]], mesh.vertices_m[loop[(k + 1) % loop.size()]], centre);
+  }
+  return sum;
+}
+
+struct Openings {
+  std::vector<BoundaryLoop> loops;
+  double area_m2 = 0.0;
+};
+
+// The triangles that fill a crack would have no normal.
+bool is_crack(const TriangleMesh& mesh, const BoundaryLoop& loop) {
+  double longest = 0.0;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    longest = std::max(longest, (mesh.vertices_m[loop[k]] - mesh.vertices_m[loop[0]]).norm());
+  }
+  return fan_area(mesh, loop) <= vertex_joining_fraction * longest * longest;
+}
+
+void add_fan(TriangleMesh& mesh, const BoundaryLoop& loop) {
+  if (loop.size() == 3) {
+    mesh.triangles.push_back({loop[0], loop[2], loop[1]});
+    return;
+  }
+  const auto centre = static_cast<std::uint32_t>(mesh.vertices_m.size());
+  mesh.vertices_m.push_back(loop_centre(mesh, loop));
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    mesh.triangles.push_back({loop[(k + 1) % loop.size()], loop[k], centre});
+  }
+}
+
+std::size_t find_part_of_vertex(const std::vector<MeshPart>& parts, std::uint32_t vertex) {
+  const auto after = std::upper_bound(parts.begin(), parts.end(), vertex,
+                                      [](std::uint32_t v, const MeshPart& p) { return v < p.first_vertex; });
+  return static_cast<std::size_t>(after - parts.begin()) - 1;
+}
+
+std::vector<Openings> find_openings(MeshParts& parts) {
+  const TriangleMesh& mesh = parts.mesh;
+  const MeshEdges edges(mesh.triangles, mesh.vertices_m.size());
+  // Two triangles that share a branching edge may be in one part without a consistent orientation.
+  for (MeshSide side = 0; side < 3 * mesh.triangles.size(); ++side) {
+    const MeshSide other = edges.across(side);
+    if (other == MeshEdges::open || other == MeshEdges::branching) continue;
+    const std::uint32_t start = side_start(mesh.triangles, side);
+    if (start == side_start(mesh.triangles, other)) {
+      parts.orientable[find_part_of_vertex(parts.parts, start)] = false;
+    }
+  }
+  std::vector<Openings> openings(parts.parts.size());
+  BoundaryWalk(mesh, edges.boundary()).walk([&](const BoundaryLoop& loop) {
+    Openings& own = openings[find_part_of_vertex(parts.parts, loop[0])];
+    own.area_m2 += fan_area(mesh, loop);
+    own.loops.push_back(loop);
+  });
+  return openings;
+}
+
+}  // namespace
+
+std::size_t fill_small_holes(MeshParts& parts) {
+  SPOONBILL_ASSERT(parts.orientable.size() == parts.parts.size());
+  std::vector<Openings> openings = find_openings(parts);
+  std::size_t filled = 0, cracks = 0;
+  for (std::size_t p = 0; p < parts.parts.size(); ++p) {
+    MeshPart& part = parts.parts[p];
+    std::vector<BoundaryLoop>& loops = openings[p].loops;
+    part.closed = parts.orientable[p] &&
+                  (loops.empty() || openings[p].area_m2 <= hole_area_fraction * part_area(parts.mesh, part));
+    if (!part.closed) loops.clear();
+    cracks += loops.size();
+    std::erase_if(loops, [&](const BoundaryLoop& loop) { return is_crack(parts.mesh, loop); });
+    cracks -= loops.size();
+    filled += loops.size();
+  }
+  if (filled == 0) return cracks;
+
+  TriangleMesh whole;
+  whole.vertices_m.reserve(parts.mesh.vertices_m.size() + filled);
+  for (std::size_t p = 0; p < parts.parts.size(); ++p) {
+    MeshPart& part = parts.parts[p];
+    const std::uint32_t before = part.first_vertex;
+    part = append_part(parts.mesh, part, whole);
+    for (BoundaryLoop& loop : openings[p].loops) {
+      for (std::uint32_t& vertex : loop) vertex = vertex - before + part.first_vertex;
+      add_fan(whole, loop);
+    }
+    part.end_vertex = static_cast<std::uint32_t>(whole.vertices_m.size());
+    part.end_triangle = static_cast<std::uint32_t>(whole.triangles.size());
+  }
+  parts.mesh = std::move(whole);
+  return filled + cracks;
 }
 
 }  // namespace spoonbill

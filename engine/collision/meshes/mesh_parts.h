@@ -1,4 +1,4 @@
-// The parts of a mesh: what hangs together, facing one way, and outward where it is closed.
+// Connected parts of a mesh, their orientation, their cavities and the filling of their small holes.
 #pragma once
 
 #include <vector>
@@ -7,30 +7,37 @@
 
 namespace spoonbill {
 
+// A mesh split into connected parts.
 struct MeshParts {
-  TriangleMesh mesh;  // part by part, no vertex in two of them
+  TriangleMesh mesh;  // sorted by part; parts have no vertex in common
   std::vector<MeshPart> parts;
-  std::vector<bool> orientable;  // of each part: its triangles can all agree (a Moebius strip's cannot)
-  std::size_t triangles_turned = 0;
+  std::vector<bool>
+      orientable;  // per part: its triangles can be oriented consistently, unlike those of a Moebius strip
+  std::size_t triangles_flipped = 0;
 };
 
-// Floods from triangle to triangle over the edges that exactly two share. The triangles must have three
-// different corners each. No part is closed yet.
+// Splits a mesh into parts by flooding over edges that exactly two triangles share, and orients each part
+// consistently. The corners of each triangle must differ. No part is marked as closed.
 MeshParts split_into_parts(const TriangleMesh& mesh);
 
-// Drops the open parts of less than speck_share of the closed parts' area; returns how many.
+// Removes open parts with less than speck_area_fraction of the closed parts' area. Returns their number.
 std::size_t drop_specks(MeshParts& parts);
 
-// Turns closed parts outward and cavities inward, counts both in the report.
-void turn_outward(TriangleMesh& mesh, std::vector<MeshPart>& parts, MeshReport& report);
+// Orients closed parts outward and cavities inward, and counts both in the report.
+void orient_outward(TriangleMesh& mesh, std::vector<MeshPart>& parts, MeshReport& report);
 
-// In cubic metres, by the divergence theorem; negative where a closed part faces inward.
+// Volume of a closed part in cubic metres, by the divergence theorem; negative if the part is inside out.
 double signed_volume(const TriangleMesh& mesh, const MeshPart& part);
 
 double triangle_area(const Vector3& a, const Vector3& b, const Vector3& c);
-double area_of(const TriangleMesh& mesh, const MeshPart& part);
+double part_area(const TriangleMesh& mesh, const MeshPart& part);
 
-// Adds the part's vertices and triangles to those that stand there; returns the part as it is there.
+// Appends the part's vertices and triangles to `to`. Returns the part with its indices there.
 MeshPart append_part(const TriangleMesh& from, const MeshPart& part, TriangleMesh& to);
+
+// Marks as closed the parts whose holes are absent or small (hole_area_fraction) and fills each hole by a fan
+// around the length-weighted mean of its boundary loop. Returns the number of holes filled. Cracks, whose
+// loops have no area, count but get no triangles.
+std::size_t fill_small_holes(MeshParts& parts);
 
 }  // namespace spoonbill

@@ -5,6 +5,7 @@
 #include "engine/base/assert.h"
 
 namespace spoonbill {
+
 namespace {
 
 struct Span {
@@ -36,7 +37,7 @@ class Separation {
 
 bool triangles_meet(const Triangle& first, const Triangle& second, double slack_m) {
   SPOONBILL_ASSERT_DEBUG(slack_m >= 0.0);
-  // Seen from a corner, so that coordinates far from the origin cost no digits.
+  // Coordinates relative to a corner, so that a distance from the origin costs no digits.
   const Vector3& origin = first[0];
   const Triangle a = {Vector3::Zero(), first[1] - origin, first[2] - origin};
   const Triangle b = {second[0] - origin, second[1] - origin, second[2] - origin};
@@ -56,6 +57,38 @@ bool triangles_meet(const Triangle& first, const Triangle& second, double slack_
     }
   }
   return true;
+}
+
+NearestOnTriangle nearest_on_triangle(const Vector3& a, const Vector3& b, const Vector3& c,
+                                      const Vector3& point) {
+  using On = NearestOnTriangle::On;
+  const Vector3 ab = b - a, bc = c - b, ca = a - c;
+  const Vector3 ap = point - a, bp = point - b, cp = point - c;
+  const double along_ab = ab.dot(ap), along_bc = bc.dot(bp), along_ca = ca.dot(cp);
+  const double before_ab = -ab.dot(bp), before_bc = -bc.dot(cp), before_ca = -ca.dot(ap);
+  if (along_ab <= 0.0 && before_ca <= 0.0) return {a, On::corner, 0};
+  if (along_bc <= 0.0 && before_ab <= 0.0) return {b, On::corner, 1};
+  if (along_ca <= 0.0 && before_bc <= 0.0) return {c, On::corner, 2};
+
+  // The barycentric weights use the normal. Products of lengths, which avoid it, lose all digits in slivers.
+  const Vector3 normal = ab.cross(-ca);
+  const double past_ab = normal.dot(ab.cross(ap)), past_bc = normal.dot(bc.cross(bp)),
+               past_ca = normal.dot(ca.cross(cp));
+  if (past_ab <= 0.0 && along_ab >= 0.0 && before_ab >= 0.0) {
+    return {a + along_ab / (along_ab + before_ab) * ab, On::side, 0};
+  }
+  if (past_bc <= 0.0 && along_bc >= 0.0 && before_bc >= 0.0) {
+    return {b + along_bc / (along_bc + before_bc) * bc, On::side, 1};
+  }
+  if (past_ca <= 0.0 && along_ca >= 0.0 && before_ca >= 0.0) {
+    return {c + along_ca / (along_ca + before_ca) * ca, On::side, 2};
+  }
+  // The weights are clamped so that rounding cannot leave the triangle.
+  const double weight_a = std::max(past_bc, 0.0), weight_b = std::max(past_ca, 0.0),
+               weight_c = std::max(past_ab, 0.0);
+  const double sum = weight_a + weight_b + weight_c;
+  if (!(sum > 0.0)) return {a, On::corner, 0};
+  return {a + (weight_b / sum) * ab - (weight_c / sum) * ca, On::face, 0};
 }
 
 }  // namespace spoonbill

@@ -1,8 +1,11 @@
-// Whether two triangles meet, in double precision: the separating axes of both planes, of their edges against
-// each other and, for coplanar ones, across their edges.
+// Queries on single triangles in double precision: intersection, nearest point, solid angle. Pure; any
+// thread.
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
 
 #include "engine/base/geometry.h"
 
@@ -14,8 +17,54 @@ inline Box bounding_box(const Triangle& t) {
   return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
 }
 
-// Touching counts as meeting. With a slack, in metres, also those that no plane separates by more than that:
-// every pair nearer than the slack, and some a little farther apart where two corners face each other.
+// Returns true if the triangles intersect or touch, or if no plane separates them by more than `slack_m`.
+// That includes every pair nearer than the slack and some slightly farther pairs whose corners face each
+// other. The separating axes are both normals, the cross products of the edges and the directions across the
+// edges, for coplanar triangles.
 bool triangles_meet(const Triangle& a, const Triangle& b, double slack_m = 0.0);
+
+// Result of intersect_line_triangle().
+struct LineTriangleHit {
+  double along = 0.0;             // position on the line, in lengths of its direction; may be negative
+  double to_b = 0.0, to_c = 0.0;  // barycentric weights of the corners b and c
+  double facing = 0.0;            // negative where the line leaves through the triangle along its normal
+};
+
+// Intersects an infinite line with a triangle. Returns nothing if the line is parallel to the triangle or
+// misses it by more than `loose`, a fraction of its sides (Moeller and Trumbore 1997).
+inline std::optional<LineTriangleHit> intersect_line_triangle(const Vector3& from, const Vector3& direction,
+                                                              const Vector3& a, const Vector3& b,
+                                                              const Vector3& c, double loose) {
+  const Vector3 ab = b - a, ac = c - a, across = direction.cross(ac);
+  const double facing = ab.dot(across);
+  if (facing == 0.0) return std::nullopt;
+  const Vector3 offset = from - a, offset_cross_ab = offset.cross(ab);
+  const double to_b = offset.dot(across) / facing, to_c = direction.dot(offset_cross_ab) / facing;
+  if (to_b < -loose || to_c < -loose || to_b + to_c > 1.0 + loose) return std::nullopt;
+  return LineTriangleHit{ac.dot(offset_cross_ab) / facing, to_b, to_c, facing};
+}
+
+struct NearestOnTriangle {
+  Vector3 point = Vector3::Zero();
+  enum class On : std::uint8_t { face, side, corner } on = On::face;
+  std::uint32_t which = 0;  // index of the side or corner; side k goes from corner k to the next
+};
+
+// Finds the nearest point by the Voronoi regions of the features (Ericson 2005, 5.1.5). The triangle must
+// have an area.
+NearestOnTriangle nearest_on_triangle(const Vector3& a, const Vector3& b, const Vector3& c,
+                                      const Vector3& point);
+
+inline constexpr double full_solid_angle = 4.0 * 3.14159265358979323846;
+
+// Solid angle of the triangle a, b, c seen from the origin, in steradians (van Oosterom and Strackee 1983).
+// Positive where its back is visible, so a closed outward mesh gives 4 pi from inside. Zero from a point in
+// its plane.
+inline double solid_angle(const Vector3& a, const Vector3& b, const Vector3& c) {
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  const double numerator = a.dot(b.cross(c));
+  const double denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+  return numerator == 0.0 ? 0.0 : 2.0 * std::atan2(numerator, denominator);
+}
 
 }  // namespace spoonbill

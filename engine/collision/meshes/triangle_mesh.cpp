@@ -1,44 +1,168 @@
 #include "engine/collision/meshes/triangle_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/geometry.h"
-#include "engine/collision/meshes/hole_filling.h"
 #include "engine/collision/meshes/mesh_edges.h"
 #include "engine/collision/meshes/mesh_parts.h"
-#include "engine/collision/meshes/vertex_join.h"
 
 namespace spoonbill {
+
 namespace {
 
-Status check_numbers(const TriangleMesh& mesh, const std::string& source, std::size_t triangle_limit) {
+constexpr std::uint32_t none = 0xffffffffU;
+// Width of a grid cell in tolerances. Wide cells are rarely near their neighbours and cannot have many kept
+// vertices.
+constexpr double cell_tolerances = 4.0;
+
+// Finaliser of MurmurHash3 (Appleby 2011), which spreads regularly spaced positions.
+std::uint64_t mix_bits(std::uint64_t bits) {
+  bits ^= bits >> 33;
+  bits *= 0xff51afd7ed558ccdULL;
+  bits ^= bits >> 33;
+  bits *= 0xc4ceb9fe1a85ec53ULL;
+  return bits ^ (bits >> 33);
+}
+
+std::uint64_t mix_bits(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+  return mix_bits(x + mix_bits(y + mix_bits(z)));
+}
+
+std::size_t table_size(std::size_t entries) {
+  return std::bit_ceil(2 * entries + 2);
+}
+
+JoinedVertices join_equal(const std::vector<Vector3>& vertices) {
+  JoinedVertices result;
+  result.joined_into.reserve(vertices.size());
+  std::vector<std::uint32_t> table(table_size(vertices.size()), none);
+  const std::uint64_t mask = table.size() - 1;
+  for (const Vector3& input : vertices) {
+    const Vector3 vertex = input.array() + 0.0;  // turns -0.0 into 0.0
+    const auto bits = [&](int axis) { return std::bit_cast<std::uint64_t>(vertex[axis]); };
+    std::uint64_t slot = mix_bits(bits(0), bits(1), bits(2)) & mask;
+    while (table[slot] != none && result.vertices_m[table[slot]] != vertex) slot = (slot + 1) & mask;
+    if (table[slot] == none) {
+      table[slot] = static_cast<std::uint32_t>(result.vertices_m.size());
+      result.vertices_m.push_back(vertex);
+    }
+    result.joined_into.push_back(table[slot]);
+  }
+  return result;
+}
+
+// Hash grid of the kept vertices, one chain per slot. Cells with the same slot share a chain.
+class VertexGrid {
+ public:
+  VertexGrid(std::size_t count, double tolerance)
+      : tolerance_(tolerance), first_(table_size(count), none), mask_(first_.size() - 1) {
+    next_.reserve(count);
+  }
+
+  std::uint32_t find(const Vector3& vertex, const std::vector<Vector3>& kept) const {
+    const auto low = cell(vertex.array() - tolerance_), high = cell(vertex.array() + tolerance_);
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+          for (std::uint32_t at = first_[slot({x, y, z})]; at != none; at = next_[at]) {
+            if ((kept[at] - vertex).squaredNorm() <= tolerance_ * tolerance_) return at;
+          }
+        }
+      }
+    }
+    return none;
+  }
+
+  // Adds the vertex that was kept last.
+  void add(const Vector3& vertex) {
+    std::uint32_t& first = first_[slot(cell(vertex))];
+    next_.push_back(first);
+    first = static_cast<std::uint32_t>(next_.size() - 1);
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+
+  Cell cell(const Vector3& point) const {
+    const Vector3 cells = point / (cell_tolerances * tolerance_);
+    return {static_cast<std::int64_t>(std::floor(cells.x())),
+            static_cast<std::int64_t>(std::floor(cells.y())),
+            static_cast<std::int64_t>(std::floor(cells.z()))};
+  }
+  std::size_t slot(const Cell& cell) const {
+    return mix_bits(static_cast<std::uint64_t>(cell[0]), static_cast<std::uint64_t>(cell[1]),
+                    static_cast<std::uint64_t>(cell[2])) &
+           mask_;
+  }
+
+  double tolerance_;
+  std::vector<std::uint32_t> first_, next_;
+  std::uint64_t mask_;
+};
+
+}  // namespace
+
+JoinedVertices join_vertices(const std::vector<Vector3>& vertices_m, double tolerance_m) {
+  SPOONBILL_ASSERT(tolerance_m > 0.0);
+  SPOONBILL_ASSERT_DEBUG(
+      std::all_of(vertices_m.begin(), vertices_m.end(), [](const Vector3& at) { return at.allFinite(); }));
+  JoinedVertices result = join_equal(vertices_m);
+  const std::vector<Vector3> distinct = std::move(result.vertices_m);
+  result.vertices_m.clear();
+  VertexGrid near(distinct.size(), tolerance_m);
+  std::vector<std::uint32_t> joined;
+  joined.reserve(distinct.size());
+  for (const Vector3& vertex : distinct) {
+    std::uint32_t into = near.find(vertex, result.vertices_m);
+    if (into == none) {
+      into = static_cast<std::uint32_t>(result.vertices_m.size());
+      near.add(vertex);
+      result.vertices_m.push_back(vertex);
+    }
+    joined.push_back(into);
+  }
+  for (std::uint32_t& into : result.joined_into) into = joined[into];
+  return result;
+}
+
+namespace {
+
+Status check_input(const TriangleMesh& mesh, const std::string& source, std::size_t triangle_limit) {
   if (mesh.triangles.empty()) {
-    return Error{source + ": has no triangles; a tool is made of a surface mesh, export one"};
+    return Error(ErrorCode::too_few, source + ": has no triangles; export a surface mesh");
   }
   if (mesh.triangles.size() > triangle_limit) {
-    return Error{source + ": has " + std::to_string(mesh.triangles.size()) + " triangles, more than the " +
-                 std::to_string(triangle_limit) + " that are read; reduce it"};
+    return Error(ErrorCode::too_many, source + ": has " + std::to_string(mesh.triangles.size()) +
+                                          " triangles, at most " + std::to_string(triangle_limit) +
+                                          " are supported; simplify the mesh");
   }
   for (const Vector3& vertex : mesh.vertices_m) {
-    if (!vertex.allFinite()) return Error{source + ": a coordinate is no finite number; export it anew"};
+    if (!vertex.allFinite()) {
+      return Error(ErrorCode::out_of_range,
+                   source + ": a coordinate is not a finite number; export the mesh again");
+    }
     if ((vertex.array() < position_range_m.low).any() || (vertex.array() > position_range_m.high).any()) {
-      return Error{source + ": a coordinate is beyond 100 m; is the unit right? --unit names another"};
+      return Error(ErrorCode::out_of_range,
+                   source + ": a coordinate is beyond 100 m; check the unit (--unit)");
     }
   }
   for (const TriangleCorners& corners : mesh.triangles) {
     if (*std::max_element(corners.begin(), corners.end()) >= mesh.vertices_m.size()) {
-      return Error{source + ": a triangle names a vertex that is not there; export it anew"};
+      return Error(ErrorCode::malformed,
+                   source + ": a triangle refers to a vertex that does not exist; export the mesh again");
     }
   }
   return {};
 }
 
-// Of the vertices that triangles have; a file may hold others.
-Box used_box(const TriangleMesh& mesh) {
+// Box of the vertices that triangles use; a file may have others.
+Box box_of_used_vertices(const TriangleMesh& mesh) {
   Box box;
   for (const TriangleCorners& corners : mesh.triangles) {
     for (const std::uint32_t corner : corners) box.include(mesh.vertices_m[corner]);
@@ -54,9 +178,8 @@ bool is_degenerate(const TriangleMesh& mesh, const TriangleCorners& corners, dou
   return ab.cross(ac).norm() <= least_height * longest;
 }
 
-// Keeps the first of those with the same corners.
+// Removes triangles with the same corners as an earlier one, in any order. Returns their number.
 std::size_t drop_duplicates(std::vector<TriangleCorners>& triangles) {
-  constexpr std::uint32_t none = 0xffffffffU;
   std::vector<std::uint32_t> table(std::bit_ceil(2 * triangles.size() + 2), none);
   const std::uint64_t mask = table.size() - 1;
   const auto sorted = [](TriangleCorners corners) {
@@ -66,12 +189,12 @@ std::size_t drop_duplicates(std::vector<TriangleCorners>& triangles) {
   std::size_t kept = 0;
   for (const TriangleCorners& corners : triangles) {
     const TriangleCorners key = sorted(corners);
-    std::uint64_t spread = 0;
+    std::uint64_t hash = 0;
     for (const std::uint32_t corner : key) {
-      spread = (spread ^ corner) * 0x9e3779b97f4a7c15ULL;
-      spread ^= spread >> 29;
+      hash = (hash ^ corner) * 0x9e3779b97f4a7c15ULL;
+      hash ^= hash >> 29;
     }
-    std::uint64_t slot = spread & mask;
+    std::uint64_t slot = hash & mask;
     while (table[slot] != none && sorted(triangles[table[slot]]) != key) slot = (slot + 1) & mask;
     if (table[slot] != none) continue;
     table[slot] = static_cast<std::uint32_t>(kept);
@@ -83,33 +206,32 @@ std::size_t drop_duplicates(std::vector<TriangleCorners>& triangles) {
 }
 
 void join_and_drop(TriangleMesh& mesh, double size, MeshReport& report) {
-  const JoinedVertices joined = join_vertices(mesh.vertices_m, vertex_joining_share * size);
+  const JoinedVertices joined = join_vertices(mesh.vertices_m, vertex_joining_fraction * size);
   report.vertices_joined = mesh.vertices_m.size() - joined.vertices_m.size();
   mesh.vertices_m = joined.vertices_m;
   for (TriangleCorners& corners : mesh.triangles) {
     for (std::uint32_t& corner : corners) corner = joined.joined_into[corner];
   }
   report.degenerate_dropped = std::erase_if(mesh.triangles, [&](const TriangleCorners& corners) {
-    return is_degenerate(mesh, corners, degenerate_share * size);
+    return is_degenerate(mesh, corners, degenerate_height_fraction * size);
   });
   report.duplicates_dropped = drop_duplicates(mesh.triangles);
 }
 
-// Turned triangles have their corners in another order than their vertices came in. What is clean is cleaned
-// into itself, so that a document that holds it is written as it was read.
+// Renumbers vertices by first use, since flipped triangles change the corner order. Cleaning a clean mesh
+// leaves it unchanged, so a document is written as it was read.
 void number_by_first_use(TriangleMesh& mesh) {
-  constexpr std::uint32_t none = 0xffffffffU;
-  std::vector<std::uint32_t> number(mesh.vertices_m.size(), none);
+  std::vector<std::uint32_t> new_index(mesh.vertices_m.size(), none);
   std::vector<Vector3> vertices_m;
   vertices_m.reserve(mesh.vertices_m.size());
   for (TriangleCorners& corners : mesh.triangles) {
     for (std::uint32_t& corner : corners) {
-      std::uint32_t& mine = number[corner];
-      if (mine == none) {
-        mine = static_cast<std::uint32_t>(vertices_m.size());
+      std::uint32_t& index = new_index[corner];
+      if (index == none) {
+        index = static_cast<std::uint32_t>(vertices_m.size());
         vertices_m.push_back(mesh.vertices_m[corner]);
       }
-      corner = mine;
+      corner = index;
     }
   }
   mesh.vertices_m = std::move(vertices_m);
@@ -118,18 +240,20 @@ void number_by_first_use(TriangleMesh& mesh) {
 }  // namespace
 
 Result<CleanMesh> clean_mesh(TriangleMesh mesh, const std::string& source, std::size_t triangle_limit) {
-  if (Status status = check_numbers(mesh, source, triangle_limit); !status) return status.error();
+  if (Status status = check_input(mesh, source, triangle_limit); !status) return status.error();
   CleanMesh clean;
   MeshReport& report = clean.report;
   report.vertices_read = mesh.vertices_m.size();
   report.triangles_read = mesh.triangles.size();
-  const Box box = used_box(mesh);
+  const Box box = box_of_used_vertices(mesh);
   report.size_m = box.high - box.low;
-  if (!(box.size() > 0.0)) return Error{source + ": all its triangles are in one point; export it anew"};
+  if (!(box.size() > 0.0)) {
+    return Error(ErrorCode::degenerate, source + ": all triangles are at one point; export the mesh again");
+  }
 
   join_and_drop(mesh, box.size(), report);
   if (mesh.triangles.empty()) {
-    return Error{source + ": none of its triangles has an area; export it anew"};
+    return Error(ErrorCode::degenerate, source + ": no triangle has an area; export the mesh again");
   }
   {
     const MeshEdges edges(mesh.triangles, mesh.vertices_m.size());
@@ -138,10 +262,10 @@ Result<CleanMesh> clean_mesh(TriangleMesh mesh, const std::string& source, std::
   }
   MeshParts parts = split_into_parts(mesh);
   mesh = {};
-  report.triangles_turned = parts.triangles_turned;
+  report.triangles_flipped = parts.triangles_flipped;
   report.holes_filled = fill_small_holes(parts);
   report.specks_dropped = drop_specks(parts);
-  turn_outward(parts.mesh, parts.parts, report);
+  orient_outward(parts.mesh, parts.parts, report);
   number_by_first_use(parts.mesh);
   clean.mesh = std::move(parts.mesh);
   clean.parts = std::move(parts.parts);

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/collision/proximity/nearest_on_cell.h"
+#include "engine/collision/proximity/surface_proximity.h"
 #include "engine/collision/surfaces/pair_polish.h"
 
 namespace spoonbill {
@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t near_capacity = 4096;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The surface lies within it.
+// Box of the control net, which contains the surface.
 Box net_box(const ControlNet& net) {
   Box box{net.point(0, 0), net.point(0, 0)};
   const std::vector<double>* const axes[3] = {&net.x, &net.y, &net.z};
@@ -44,12 +44,12 @@ MeshProximity::MeshProximity(const NestedGrid& surface, std::vector<int> patches
   for (std::uint32_t v = 0; v < patches_.size(); ++v) patch_vertices_[next[patches_[v]]++] = v;
   patch_at_.assign(patch_count, 0);
   offered_at_.assign(patch_count, 0);
-  place_.assign(patch_count, 0);
+  candidate_index_.assign(patch_count, 0);
   candidates_.reserve(patch_count);
   samples_.reserve(near_capacity);
   vertices_.reserve(near_capacity);
-  // A path down a tree of two children each leaves one behind at every step.
-  waiting_.reserve(64);
+  // A descent of the binary tree leaves one node on the stack at every step.
+  pending_.reserve(64);
 }
 
 void MeshProximity::find(const Surface& surface, const DeformingMesh& mesh, double margin_m) {
@@ -64,28 +64,28 @@ void MeshProximity::find(const Surface& surface, const DeformingMesh& mesh, doub
   if (net_box(surface.net).gap(mesh.bounds()) > margin_m) return;
   if (levels_.begin(surface)) tree_.update(levels_);
   visit_elements(mesh, margin_m);
-  settle_patches(mesh, margin_m);
+  resolve_patches(mesh, margin_m);
 }
 
 void MeshProximity::visit_elements(const DeformingMesh& mesh, double margin) {
-  waiting_.clear();
-  waiting_.push_back(tree_.root());
-  while (!waiting_.empty()) {
-    const int index = waiting_.back();
-    waiting_.pop_back();
+  pending_.clear();
+  pending_.push_back(tree_.root());
+  while (!pending_.empty()) {
+    const int index = pending_.back();
+    pending_.pop_back();
     if (!tree_.box(index).is_near(mesh.bounds(), margin)) continue;
     const ElementTree::Node& node = tree_.node(index);
     if (node.is_leaf()) {
-      take_element(node, tree_.box(index), mesh, margin);
+      search_element(node, tree_.box(index), mesh, margin);
     } else {
-      waiting_.push_back(node.right);
-      waiting_.push_back(node.left);
+      pending_.push_back(node.right);
+      pending_.push_back(node.left);
     }
   }
 }
 
-void MeshProximity::take_element(const ElementTree::Node& element, const Box& box, const DeformingMesh& mesh,
-                                 double margin) {
+void MeshProximity::search_element(const ElementTree::Node& element, const Box& box,
+                                   const DeformingMesh& mesh, double margin) {
   ++elements_;
   bool is_near = false;
   const std::vector<BoxTree::Node>& nodes = mesh.tree().nodes();
@@ -96,30 +96,32 @@ void MeshProximity::take_element(const ElementTree::Node& element, const Box& bo
                        is_near = true;
                        for (std::uint32_t t = first; t < first + count; ++t) {
                          for (const std::uint32_t vertex : mesh.triangles()[t]) {
-                           take_vertex(element, box, vertex, mesh.vertices_m()[vertex], margin);
+                           offer_vertex(element, box, vertex, mesh.vertices_m()[vertex], margin);
                          }
                        }
                      });
-  if (is_near) take_samples(element, mesh, margin);
+  if (is_near) collect_samples(element, mesh, margin);
 }
 
-// Of a patch the first vertex that is near stands for all.
-void MeshProximity::take_vertex(const ElementTree::Node& element, const Box& box, std::uint32_t vertex,
-                                const Vector3& point, double margin) {
+// The first vertex of a patch that is near represents all of them.
+void MeshProximity::offer_vertex(const ElementTree::Node& element, const Box& box, std::uint32_t vertex,
+                                 const Vector3& point, double margin) {
   const int patch = patches_[vertex];
   const bool found = patch_at_[patch] == search_;
-  if (found && (offered_at_[patch] == elements_ || candidates_[place_[patch]].vertex != vertex)) return;
+  if (found && (offered_at_[patch] == elements_ || candidates_[candidate_index_[patch]].vertex != vertex))
+    return;
   if (signed_distance(box, point) > margin) return;
   if (!found) {
     patch_at_[patch] = search_;
-    place_[patch] = static_cast<int>(candidates_.size());
+    candidate_index_[patch] = static_cast<int>(candidates_.size());
     candidates_.push_back({patch, vertex, 0.0, 0.0, infinity});
   }
   offered_at_[patch] = elements_;
-  offer(element, point, candidates_[place_[patch]]);
+  offer(element, point, candidates_[candidate_index_[patch]]);
 }
 
-void MeshProximity::take_samples(const ElementTree::Node& element, const DeformingMesh& mesh, double margin) {
+void MeshProximity::collect_samples(const ElementTree::Node& element, const DeformingMesh& mesh,
+                                    double margin) {
   const int side = levels_.step(0), columns = levels_.nested().grid.columns();
   for (int i = element.first_u * side; i <= element.end_u * side; ++i) {
     for (int j = element.first_v * side; j <= element.end_v * side; ++j) {
@@ -143,7 +145,7 @@ void MeshProximity::offer(const ElementTree::Node& element, const Vector3& point
   const int side = levels_.step(0);
   for (int i = element.first_u * side; i < element.end_u * side; ++i) {
     for (int j = element.first_v * side; j < element.end_v * side; ++j) {
-      const OnCell on = nearest_on_cell(point, levels_.corners({i, j, levels_.nested().levels}));
+      const NearestOnCell on = nearest_on_cell(point, levels_.corners({i, j, levels_.nested().levels}));
       if (on.distance >= candidate.distance_m) continue;
       candidate.distance_m = on.distance;
       candidate.u = u[i] + on.u * (u[i + 1] - u[i]);
@@ -152,14 +154,15 @@ void MeshProximity::offer(const ElementTree::Node& element, const Vector3& point
   }
 }
 
-VertexNearSurface MeshProximity::settled(std::uint32_t vertex, const Vector3& point, double u,
-                                         double v) const {
+VertexNearSurface MeshProximity::nearest_to_vertex(std::uint32_t vertex, const Vector3& point, double u,
+                                                   double v) const {
   const NearestPoint nearest = nearest_point(levels_.pieces(), point, u, v);
   const Vector3 normal = unit_normal(levels_.surface(), nearest.u, nearest.v);
   return {vertex, nearest.u, nearest.v, normal, (point - nearest.at.position_m).dot(normal)};
 }
 
-std::uint32_t MeshProximity::deepest_of(int patch, const DeformingMesh& mesh, const Vector3& normal) const {
+std::uint32_t MeshProximity::find_deepest_vertex(int patch, const DeformingMesh& mesh,
+                                                 const Vector3& normal) const {
   std::uint32_t deepest = patch_vertices_[first_vertex_[patch]];
   double least = infinity;
   for (std::uint32_t k = first_vertex_[patch]; k < first_vertex_[patch + 1]; ++k) {
@@ -171,13 +174,14 @@ std::uint32_t MeshProximity::deepest_of(int patch, const DeformingMesh& mesh, co
   return deepest;
 }
 
-void MeshProximity::settle_patches(const DeformingMesh& mesh, double margin) {
+void MeshProximity::resolve_patches(const DeformingMesh& mesh, double margin) {
   for (const Candidate& candidate : candidates_) {
     const std::vector<Vector3>& points = mesh.vertices_m();
-    VertexNearSurface near = settled(candidate.vertex, points[candidate.vertex], candidate.u, candidate.v);
-    const std::uint32_t deepest = deepest_of(candidate.patch, mesh, near.normal);
+    VertexNearSurface near =
+        nearest_to_vertex(candidate.vertex, points[candidate.vertex], candidate.u, candidate.v);
+    const std::uint32_t deepest = find_deepest_vertex(candidate.patch, mesh, near.normal);
     if (deepest != near.vertex) {
-      const VertexNearSurface other = settled(deepest, points[deepest], near.u, near.v);
+      const VertexNearSurface other = nearest_to_vertex(deepest, points[deepest], near.u, near.v);
       if (other.gap_m < near.gap_m) near = other;
     }
     if (near.gap_m > margin) continue;

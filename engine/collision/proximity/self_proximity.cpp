@@ -1,20 +1,237 @@
 #include "engine/collision/proximity/self_proximity.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/collision/levels/patch_distance.h"
+#include "engine/collision/levels/surface_levels.h"
 
 namespace spoonbill {
+
 namespace {
 
-// Of a ring, at most so many places tell whether it can meet another.
-constexpr int places_around = 24;
-// How far beyond the margin, in lattice cells, elements are looked for: as long as none are, and no control
-// point has gone half as far since, none can be within the margin.
+// Cosine of the largest angle between a direction into the body and the inward normal.
+constexpr double inward_cosine = 0.3;
+// Thickness, in lattice cells, below which a body cannot be; such points are of a rest shape pressed onto
+// itself.
+constexpr double least_thickness_cells = 0.25;
+// Largest number of blocks of the surface in each direction, by which neighbours are found.
+constexpr int most_blocks_u = 32, most_blocks_v = 64;
+
+std::vector<double> block_starts(const KnotVector& knots, int most) {
+  const std::vector<double> breaks = knots.breakpoints();
+  const int elements = static_cast<int>(breaks.size()) - 1, count = std::min(elements, most);
+  std::vector<double> starts;
+  for (int k = 0; k <= count; ++k) starts.push_back(breaks[static_cast<std::size_t>(k * elements / count)]);
+  return starts;
+}
+
+int find_block(const std::vector<double>& starts, double parameter) {
+  const auto next = std::upper_bound(starts.begin(), starts.end(), parameter) - starts.begin();
+  return std::clamp(static_cast<int>(next) - 1, 0, static_cast<int>(starts.size()) - 2);
+}
+
+}  // namespace
+
+RestPairs::RestPairs(const Grid& grid, Surface rest, double cell_m)
+    : rest_(std::move(rest)),
+      u_(block_starts(rest_.u, most_blocks_u)),
+      v_(block_starts(rest_.v, most_blocks_v)),
+      cell_m_(cell_m) {
+  SPOONBILL_ASSERT(cell_m > 0.0);
+  SPOONBILL_ASSERT_DEBUG(rest_.u == grid.u.knots && rest_.v == grid.v.knots);
+  points_.reserve(static_cast<std::size_t>(grid.rows() * grid.columns()));
+  for (const double u : grid.u.parameters) {
+    for (const double v : grid.v.parameters) points_.push_back(point_at(u, v));
+  }
+  neighbour_distance_m_ =
+      std::max(neighbour_cells * cell_m, neighbour_thicknesses * thickness(grid.columns()));
+  find_neighbours();
+}
+
+// Twice the volume over the area, from the triangles between the samples and their tetrahedra.
+double RestPairs::thickness(int columns) const {
+  double volume = 0.0, area = 0.0;
+  const auto add = [&](const Vector3& a, const Vector3& b, const Vector3& c) {
+    volume += a.dot(b.cross(c)) / 6.0;
+    area += 0.5 * (b - a).cross(c - a).norm();
+  };
+  const Vector3& origin = points_.front().position_m;
+  const auto at = [&](int index) -> Vector3 { return points_[index].position_m - origin; };
+  for (int k = 0; k + columns + 1 < static_cast<int>(points_.size()); ++k) {
+    if (k % columns == columns - 1) continue;
+    add(at(k), at(k + columns), at(k + 1));
+    add(at(k + columns + 1), at(k + 1), at(k + columns));
+  }
+  return area > 0.0 ? 2.0 * std::abs(volume) / area : 0.0;
+}
+
+RestPairs::RestPoint RestPairs::point_at(double u, double v) const {
+  const int across = static_cast<int>(v_.size()) - 1;
+  return {position(rest_, u, v), unit_normal(rest_, u, v), find_block(u_, u) * across + find_block(v_, v)};
+}
+
+void RestPairs::find_neighbours() {
+  for (std::size_t i = 0; i + 1 < u_.size(); ++i) {
+    for (std::size_t j = 0; j + 1 < v_.size(); ++j) {
+      block_centres_.push_back(position(rest_, 0.5 * (u_[i] + u_[i + 1]), 0.5 * (v_[j] + v_[j + 1])));
+    }
+  }
+  const std::size_t count = block_centres_.size();
+  std::vector<double> distances(count);
+  neighbours_.assign(count * count, false);
+  for (std::size_t block = 0; block < count; ++block) {
+    measure_from(static_cast<int>(block), distances);
+    for (std::size_t k = 0; k < count; ++k)
+      neighbours_[block * count + k] = distances[k] <= neighbour_distance_m_;
+  }
+}
+
+// Dijkstra's shortest paths between blocks, up to the neighbour distance.
+void RestPairs::measure_from(int block, std::vector<double>& distances) const {
+  using Path = std::pair<double, int>;
+  std::priority_queue<Path, std::vector<Path>, std::greater<>> queue;
+  std::fill(distances.begin(), distances.end(), std::numeric_limits<double>::infinity());
+  const int rows = static_cast<int>(u_.size()) - 1, columns = static_cast<int>(v_.size()) - 1;
+  const auto offer = [&](int to, double distance) {
+    if (distance > neighbour_distance_m_ || distance >= distances[to]) return;
+    distances[to] = distance;
+    queue.push({distance, to});
+  };
+  offer(block, 0.0);
+  while (!queue.empty()) {
+    const auto [distance, at] = queue.top();
+    queue.pop();
+    if (distance > distances[at]) continue;
+    const int i = at / columns, j = at % columns;
+    for (int row = i - 1; row <= i + 1; ++row) {
+      if (!rest_.u.is_periodic() && (row < 0 || row >= rows)) continue;
+      for (int column = j - 1; column <= j + 1; ++column) {
+        if (!rest_.v.is_periodic() && (column < 0 || column >= columns)) continue;
+        const int to = (row + rows) % rows * columns + (column + columns) % columns;
+        offer(to, distance + step_between(at, to));
+      }
+    }
+    // Steps across a pole.
+    if (rest_.v.is_periodic() || (j != 0 && j != columns - 1)) continue;
+    for (int row = 0; row < rows; ++row) {
+      offer(row * columns + j, distance + step_between(at, row * columns + j));
+    }
+  }
+}
+
+double RestPairs::step_between(int block, int other) const {
+  return (block_centres_[block] - block_centres_[other]).norm();
+}
+
+bool RestPairs::can_meet(double u, double v, double other_u, double other_v) const {
+  return can_meet(point_at(u, v), point_at(other_u, other_v));
+}
+
+bool RestPairs::can_meet(const RestPoint& one, const RestPoint& other) const {
+  const Vector3 between = other.position_m - one.position_m;
+  const double distance = between.norm();
+  if (distance > through_body * neighbour_distance_m_) return true;
+  const double enough = -inward_cosine * distance;
+  const bool inward = between.dot(one.normal) < enough && -between.dot(other.normal) < enough;
+  if (inward && distance > least_thickness_cells * cell_m_) return false;
+  if (distance > neighbour_distance_m_) return true;
+  return !neighbours_[static_cast<std::size_t>(one.block) * block_centres_.size() +
+                      static_cast<std::size_t>(other.block)];
+}
+
+RingSeparation::RingSeparation(const KnotVector& v, std::vector<std::array<int, 2>> pairs)
+    : columns_(v.control_point_count()), width_(v.degree() + 1), pairs_(std::move(pairs)) {
+  const std::vector<double> breaks = v.breakpoints();
+  for (std::size_t b = 0; b + 1 < breaks.size(); ++b) {
+    const int span = v.find_span(0.5 * (breaks[b] + breaks[b + 1]));
+    for (int j = 0; j < width_; ++j) column_.push_back(v.control_index(span, j));
+  }
+  const std::size_t rings = breaks.size() - 1, columns = static_cast<std::size_t>(columns_);
+  near_.reserve(pairs_.size());
+  centres_.resize(columns);
+  low_.resize(rings * columns);
+  high_.resize(rings * columns);
+  is_current_.resize(rings);
+  boxes_.resize(rings);
+}
+
+const std::vector<std::array<int, 2>>& RingSeparation::find_near(const ControlNet& net, SurfaceBounds& bounds,
+                                                                 double reach_m) {
+  SPOONBILL_ASSERT(net.columns == columns_);
+  SPOONBILL_ASSERT(reach_m >= 0.0);
+  near_.clear();
+  bounds.update_boxes(net);
+  for (std::size_t ring = 0; ring < boxes_.size(); ++ring) boxes_[ring] = bounds.box(static_cast<int>(ring));
+  for (const auto& [one, other] : pairs_) {
+    if (boxes_[one].is_near(boxes_[other], reach_m)) near_.push_back({one, other});
+  }
+  if (near_.empty()) return near_;
+  compute_centres(net);
+  std::fill(is_current_.begin(), is_current_.end(), char{0});
+  const auto are_apart = [&](const std::array<int, 2>& pair) {
+    return are_apart_along(net, pair[0], pair[1], reach_m) || are_apart_along(net, pair[1], pair[0], reach_m);
+  };
+  near_.erase(std::remove_if(near_.begin(), near_.end(), are_apart), near_.end());
+  return near_;
+}
+
+void RingSeparation::compute_centres(const ControlNet& net) {
+  std::fill(centres_.begin(), centres_.end(), Vector3::Zero());
+  for (int i = 0; i < net.rows; ++i) {
+    for (int j = 0; j < net.columns; ++j) centres_[j] += net.point(i, j);
+  }
+}
+
+// Computes the intervals of all columns along the line from a ring's first control column to its last.
+void RingSeparation::compute_intervals(const ControlNet& net, int ring) {
+  is_current_[ring] = 1;
+  const int* const column = column_.data() + ring * width_;
+  const Vector3 axis = (centres_[column[width_ - 1]] - centres_[column[0]]).normalized();
+  double* const low = low_.data() + ring * columns_;
+  double* const high = high_.data() + ring * columns_;
+  std::fill_n(low, columns_, std::numeric_limits<double>::infinity());
+  std::fill_n(high, columns_, -std::numeric_limits<double>::infinity());
+  const double a = axis.x(), b = axis.y(), c = axis.z();
+  for (int i = 0; i < net.rows; ++i) {
+    const std::size_t row = net.index(i, 0);
+    const double *const x = net.x.data() + row, *const y = net.y.data() + row, *const z = net.z.data() + row;
+    for (int j = 0; j < columns_; ++j) {
+      const double along = a * x[j] + b * y[j] + c * z[j];
+      low[j] = along < low[j] ? along : low[j];
+      high[j] = high[j] < along ? along : high[j];
+    }
+  }
+}
+
+RingSeparation::Interval RingSeparation::interval(int ring, int along) const {
+  Interval all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (int k = 0; k < width_; ++k) {
+    const int at = along * columns_ + column_[ring * width_ + k];
+    all = {std::min(all.low, low_[at]), std::max(all.high, high_[at])};
+  }
+  return all;
+}
+
+bool RingSeparation::are_apart_along(const ControlNet& net, int axis_ring, int other, double reach_m) {
+  if (!is_current_[axis_ring]) compute_intervals(net, axis_ring);
+  const Interval own = interval(axis_ring, axis_ring), other_interval = interval(other, axis_ring);
+  return other_interval.low > own.high + reach_m || other_interval.high < own.low - reach_m;
+}
+
+namespace {
+
+// Number of positions around a ring at which it is tested whether it can meet another.
+constexpr int positions_around = 24;
+// Distance in lattice cells beyond the margin within which elements are searched. If there are none, none can
+// come within the margin until a control point has moved half as far.
 constexpr double lead_cells = 1.0;
 constexpr std::size_t element_pair_capacity = 1 << 14;
-// Of more elements in contact, those of before are taken again.
+// Number of elements whose cells are cached; beyond it the cache is cleared.
 constexpr int slot_capacity = 1024;
 
 bool are_near(SurfaceLevels& levels, const LevelCell& a, const LevelCell& b, double reach) {
@@ -26,7 +243,7 @@ bool are_near(SurfaceLevels& levels, const LevelCell& a, const LevelCell& b, dou
 SelfProximity::SelfProximity(const NestedGrid& nested, const Surface& rest, double cell_m)
     : near_(nested),
       rest_(nested.grid, rest, cell_m),
-      rings_(rest.v, rings_that_can_meet()),
+      rings_(rest.v, find_rings_that_can_meet()),
       cell_m_(cell_m) {
   SPOONBILL_ASSERT(cell_m > 0.0);
   SPOONBILL_ASSERT(rest.net.rows == nested.grid.u.knots.control_point_count());
@@ -40,7 +257,7 @@ SelfProximity::SelfProximity(const NestedGrid& nested, const Surface& rest, doub
   clear_net_ = rest.net;
 }
 
-std::vector<std::array<int, 2>> SelfProximity::rings_that_can_meet() const {
+std::vector<std::array<int, 2>> SelfProximity::find_rings_that_can_meet() const {
   std::vector<std::array<int, 2>> pairs;
   const int rings = (near_.levels().nested().grid.columns() - 1) / near_.levels().step(0);
   for (int ring = 0; ring < rings; ++ring) {
@@ -51,10 +268,10 @@ std::vector<std::array<int, 2>> SelfProximity::rings_that_can_meet() const {
   return pairs;
 }
 
-// By their ends.
+// Tests positions at the ends of the rings.
 bool SelfProximity::can_meet(int ring, int other) const {
   const Grid& grid = near_.levels().nested().grid;
-  const int step = near_.levels().step(0), stride = std::max(1, (grid.rows() - 1) / places_around);
+  const int step = near_.levels().step(0), stride = std::max(1, (grid.rows() - 1) / positions_around);
   for (int i = 0; i < grid.rows(); i += stride) {
     for (int k = 0; k < grid.rows(); k += stride) {
       for (const int j : {ring * step, (ring + 1) * step}) {
@@ -67,7 +284,7 @@ bool SelfProximity::can_meet(int ring, int other) const {
   return false;
 }
 
-// The surface moves no farther than its control points: two parts approach by twice that at most.
+// The surface moves no farther than its control points, so two parts approach by at most twice that.
 bool SelfProximity::is_still_clear(const ControlNet& net) const {
   if (!clear_) return false;
   const double most = 0.5 * lead_cells * cell_m_;
@@ -89,41 +306,41 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
   if (nearby_.empty()) {
     find_near_elements(margin_m + lead_cells * cell_m_);
     clear_ = nearby_.empty();
-    missing_elements_ = false;  // of those that are too far to count
+    missing_elements_ = false;  // these are too far away to count
     if (clear_) clear_net_ = surface.net;
     return;
   }
   clear_ = false;
-  begin_cells();
+  clear_cells();
   SurfaceLevels& levels = near_.levels();
   const double reach = std::max(margin_m, deepest_self_cells * cell_m_);
   for (const auto& [one, other] : nearby_) offer_elements(one, other, reach);
   near_.keep_if([&](const NearPoint& near) { return near.gap_m <= reach; });
-  near_.settle(levels, 1.0, margin_m);
-  const auto keep = [&](const NearPoint& near) { return faces(near); };
+  near_.compute_nearest(levels, 1.0, margin_m);
+  const auto keep = [&](const NearPoint& near) { return is_contact(near); };
   near_.keep_if(keep);
   near_.add_between_samples(levels, 1.0);
   near_.keep_if(keep);
 }
 
-// Whether elements can meet is told by their middles.
+// Elements are excluded by the rest positions of their centres.
 void SelfProximity::find_near_elements(double reach) {
   nearby_.clear();
   SurfaceLevels& levels = near_.levels();
-  const auto& rings = rings_.near(levels.surface().net, levels.bounds(), reach);
+  const auto& rings = rings_.find_near(levels.surface().net, levels.bounds(), reach);
   if (rings.empty()) return;
   const int elements_u = levels.bounds().elements_u(), elements_v = levels.bounds().elements_v();
   for (int e = 0; e < elements_u; ++e) {
     levels.element_boxes(e, boxes_.data() + e * elements_v, bulges_.data() + e * elements_v);
   }
   const int step = levels.step(0), half = step / 2, columns = levels.nested().grid.columns();
-  const auto middle = [&](int u, int v) { return (u * step + half) * columns + v * step + half; };
+  const auto centre_sample = [&](int u, int v) { return (u * step + half) * columns + v * step + half; };
   for (const auto& [ring, other] : rings) {
     for (int one = 0; one < elements_u; ++one) {
       const Box& box = boxes_[one * elements_v + ring];
       for (int two = ring == other ? one + 1 : 0; two < elements_u; ++two) {
         if (!box.is_near(boxes_[two * elements_v + other], reach)) continue;
-        if (!rest_.can_meet(middle(one, ring), middle(two, other))) continue;
+        if (!rest_.can_meet(centre_sample(one, ring), centre_sample(two, other))) continue;
         const LevelCell a{one * step, ring * step, 0}, b{two * step, other * step, 0};
         if (!are_near(levels, a, b, reach)) continue;
         missing_elements_ = nearby_.size() == element_pair_capacity;
@@ -140,18 +357,18 @@ const Box& SelfProximity::bounding_box(const LevelCell& element) const {
   return boxes_[element.i / side * elements_v + element.j / side];
 }
 
-void SelfProximity::begin_cells() {
-  ++filling_;
+void SelfProximity::clear_cells() {
+  ++generation_;
   slots_used_ = 0;
 }
 
-// The finest cells of an element, valid until begin_cells().
-std::span<const SelfProximity::NearCell> SelfProximity::cells_of(const LevelCell& element) {
+// Returns the finest cells of an element, valid until clear_cells().
+std::span<const SelfProximity::NearCell> SelfProximity::element_cells(const LevelCell& element) {
   SurfaceLevels& levels = near_.levels();
   const int side = levels.step(0), finest = levels.nested().levels, cells = side * side;
   Slot& slot = slots_[element.i / side * levels.bounds().elements_v() + element.j / side];
-  if (slot.filling == filling_) return {cells_.data() + slot.first, static_cast<std::size_t>(cells)};
-  slot = {filling_, slots_used_++ * cells};
+  if (slot.generation == generation_) return {cells_.data() + slot.first, static_cast<std::size_t>(cells)};
+  slot = {generation_, slots_used_++ * cells};
   levels.sample_element(element.i / side, element.j / side);
   for (int k = 0; k < cells; ++k) {
     NearCell& cell = cells_[slot.first + k];
@@ -166,14 +383,14 @@ std::span<const SelfProximity::NearCell> SelfProximity::cells_of(const LevelCell
 }
 
 void SelfProximity::offer_elements(const LevelCell& one, const LevelCell& other, double reach) {
-  if (slots_used_ + 2 > slot_capacity) begin_cells();
-  const std::span<const NearCell> cells = cells_of(one), other_cells = cells_of(other);
+  if (slots_used_ + 2 > slot_capacity) clear_cells();
+  const std::span<const NearCell> cells = element_cells(one), other_cells = element_cells(other);
   offer_samples(one, bounding_box(other), other_cells, reach);
   offer_samples(other, bounding_box(one), cells, reach);
 }
 
-// The samples of an element against the cells of another, in a box, that may be nearer than what they were
-// offered.
+// Offers the samples of an element to the cells of another, within a box, that may be nearer than the cells
+// offered so far.
 void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std::span<const NearCell> cells,
                                   double reach) {
   SurfaceLevels& levels = near_.levels();
@@ -181,13 +398,13 @@ void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std:
   const bool ring = levels.surface().v.is_periodic();
   for (int i = element.i; i < element.i + side; ++i) {
     for (int j = element.j; j <= element.j + side; ++j) {
-      // Those at its end are the next element's, those of a pole one place.
+      // Samples at the end belong to the next element; those of a pole are a single point.
       const bool pole = !ring && (j == 0 || j == columns - 1);
       if (pole ? i > 0 : j == element.j + side) continue;
       const int sample = i * columns + j;
       const Vector3 point = levels.sample(sample);
       const auto may_be_nearer = [&](const Box& about) {
-        const double least = std::min(reach, near_.offered_m(sample));
+        const double least = std::min(reach, near_.offered_distance_m(sample));
         double square = 0.0;
         for (int axis = 0; axis < 3; ++axis) {
           const double beyond =
@@ -204,8 +421,8 @@ void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std:
   }
 }
 
-// Newton's method may have led to a neighbour, or round to another wall.
-bool SelfProximity::faces(const NearPoint& near) const {
+// Newton's method may have led to a neighbour, or to another wall.
+bool SelfProximity::is_contact(const NearPoint& near) const {
   if (near.gap_m < -deepest_self_cells * cell_m_) return false;
   if (!(near.normal.dot(unit_normal(near_.levels().surface(), near.u, near.v)) < 0.0)) return false;
   return rest_.can_meet(near.u, near.v, near.other_u, near.other_v);

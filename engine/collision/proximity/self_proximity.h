@@ -1,5 +1,5 @@
-// Where the surface of one body comes near itself from outside: samples with the nearest points of other
-// parts of it, and the places between samples where they are nearest or deepest.
+// Close pairs of one body's surface with itself, from outside: samples with the nearest points of other
+// parts, and the locally nearest or deepest points between samples.
 #pragma once
 
 #include <array>
@@ -8,75 +8,149 @@
 #include <vector>
 
 #include "engine/base/geometry.h"
-#include "engine/collision/proximity/near_points.h"
-#include "engine/collision/proximity/rest_pairs.h"
-#include "engine/collision/proximity/ring_separation.h"
+#include "engine/bspline/surface.h"
+#include "engine/collision/levels/surface_levels.h"
+#include "engine/collision/proximity/surface_proximity.h"
 
 namespace spoonbill {
 
-// Deeper than this in itself, in lattice cells, a point is not looked at: what is nearest may be another
-// wall.
+// Distance along the surface at rest below which points are neighbours: the larger of a number of lattice
+// cells and of thicknesses of the body (twice its volume over its area). A bar bent into a loop whose inner
+// side touches itself is longer than 4.4 times its bending radius. Three thicknesses leave it a radius of two
+// thirds of the thickness.
+inline constexpr double neighbour_cells = 4.0;
+inline constexpr double neighbour_thicknesses = 3.0;
+
+// Multiple of the neighbour distance up to which two points that face each other through the body are its two
+// sides, which never deform until they meet. Farther apart, like the ends of a bar, they may meet.
+inline constexpr double through_body = 2.0;
+
+// Decides by their rest positions which points of one body's surface can ever touch from outside. All others
+// are neighbours or face each other through the body. Immutable; any thread.
+class RestPairs {
+ public:
+  // `rest` is the surface at rest with the knots of the grid, du x dv outward. `cell_m` is the size of the
+  // lattice's cells.
+  RestPairs(const Grid& grid, Surface rest, double cell_m);
+
+  // Returns true if the points can touch. The points are samples of the grid, or given by parameters.
+  bool can_meet(int sample, int other) const { return can_meet(points_[sample], points_[other]); }
+  bool can_meet(double u, double v, double other_u, double other_v) const;
+
+ private:
+  struct RestPoint {
+    Vector3 position_m, normal;
+    int block;
+  };
+  RestPoint point_at(double u, double v) const;
+  bool can_meet(const RestPoint& one, const RestPoint& other) const;
+  double thickness(int columns) const;
+  void find_neighbours();
+  void measure_from(int block, std::vector<double>& distances) const;
+  double step_between(int block, int other) const;
+
+  Surface rest_;
+  std::vector<double> u_, v_;  // starts of the parameter blocks, and the end of the last
+  double cell_m_, neighbour_distance_m_ = 0.0;
+  std::vector<RestPoint> points_;       // per sample
+  std::vector<Vector3> block_centres_;  // per block
+  std::vector<bool> neighbours_;        // by block and block: true if they are near along the surface
+};
+
+// Finds rings of a surface (its elements between two knots of v) that may be near each other, by boxes and
+// then by intervals along each ring's axis. An unfolded long body is excluded in a few microseconds. One
+// owner, one thread; allocates only on construction.
+class RingSeparation {
+ public:
+  // `pairs` lists the elements of v to be tested.
+  RingSeparation(const KnotVector& v, std::vector<std::array<int, 2>> pairs);
+
+  // Returns the pairs for which no separating plane with a gap above `reach_m` was found. Updates the boxes
+  // of `bounds`, which must have the net's knots.
+  const std::vector<std::array<int, 2>>& find_near(const ControlNet& net, SurfaceBounds& bounds,
+                                                   double reach_m);
+
+ private:
+  struct Interval {
+    double low, high;
+  };
+  void compute_centres(const ControlNet& net);
+  void compute_intervals(const ControlNet& net, int ring);
+  Interval interval(int ring, int along) const;
+  bool are_apart_along(const ControlNet& net, int axis_ring, int other, double reach_m);
+
+  int columns_, width_;      // numbers of control columns of the net and of a ring
+  std::vector<int> column_;  // `width_` control columns of each ring
+  std::vector<std::array<int, 2>> pairs_, near_;
+  std::vector<Vector3> centres_;    // per control column
+  std::vector<double> low_, high_;  // per ring's axis, interval of each control column along it
+  std::vector<Box> boxes_;          // per ring
+  std::vector<char> is_current_;    // true if a ring's intervals are up to date
+};
+
+// Depth in lattice cells beyond which a point is ignored, because the nearest point may be on another wall.
 inline constexpr double deepest_self_cells = 1.0;
 
-// One owner, one thread; allocates only when made. The grid must outlive it.
+// Self-proximity search of one surface. One owner, one thread; allocates only on construction. The grid must
+// outlive it.
 class SelfProximity {
  public:
-  // The surface at rest bounds a body: du x dv points outwards. `cell_m` is the cell of the body's lattice.
+  // `rest` bounds a body, with du x dv outward. `cell_m` is the size of the cells of the body's lattice.
   SelfProximity(const NestedGrid& nested, const Surface& rest, double cell_m);
   SelfProximity(const SelfProximity&) = delete;
   SelfProximity& operator=(const SelfProximity&) = delete;
 
-  // All that is within `margin_m` of another part that it faces and can meet (see RestPairs), the same margin
-  // each time. Costs next to nothing where the body is not folded.
+  // Finds all points within `margin_m` of another part that they face and can touch (see RestPairs). The
+  // margin must be the same in each call. Takes almost no time while the body is not folded.
   void find(const Surface& surface, double margin_m);
 
-  // Keeps those of the points that `keep` keeps.
+  // Removes the points for which `keep` returns false.
   template <class Keep>
   void keep_if(const Keep& keep) {
     near_.keep_if(keep);
   }
 
-  // Of the last find().
+  // Points of the last find().
   const std::vector<NearPoint>& points() const { return near_.points(); }
-  // Nothing was near in the last find(): the next one costs next to nothing.
+  // True if nothing was near in the last find(), so that the next one takes almost no time.
   bool is_clear() const { return clear_; }
   // A capacity was met, and points may be missing. Remedy: fewer control points or a smaller margin.
   bool overflow() const { return missing_elements_ || near_.overflow(); }
 
  private:
   bool is_still_clear(const ControlNet& net) const;
-  std::vector<std::array<int, 2>> rings_that_can_meet() const;
+  std::vector<std::array<int, 2>> find_rings_that_can_meet() const;
   bool can_meet(int ring, int other) const;
   void find_near_elements(double reach);
-  // A finest cell and a box about its patch.
+  // A finest cell and a box around its patch.
   struct NearCell {
     LevelCell cell;
     PatchCorners corners;
     Box box;
   };
   const Box& bounding_box(const LevelCell& element) const;
-  void begin_cells();
-  std::span<const NearCell> cells_of(const LevelCell& element);
+  void clear_cells();
+  std::span<const NearCell> element_cells(const LevelCell& element);
   void offer_elements(const LevelCell& one, const LevelCell& other, double reach);
   void offer_samples(const LevelCell& element, const Box& box, std::span<const NearCell> cells, double reach);
-  bool faces(const NearPoint& near) const;
+  bool is_contact(const NearPoint& near) const;
 
   NearPoints near_;
   RestPairs rest_;
   RingSeparation rings_;
   double cell_m_;
-  std::vector<Box> boxes_;                        // of the elements, by u and v
-  std::vector<double> bulges_;                    // of the same
-  std::vector<std::array<LevelCell, 2>> nearby_;  // elements that could meet
+  std::vector<Box> boxes_;                        // per element, by u and v
+  std::vector<double> bulges_;                    // per element
+  std::vector<std::array<LevelCell, 2>> nearby_;  // pairs of elements that may meet
   struct Slot {
-    std::uint32_t filling = 0;  // of cells_, at which the element was taken
+    std::uint32_t generation = 0;  // generation in which the element was stored
     int first = 0;
   };
-  std::vector<Slot> slots_;      // of each element
-  std::vector<NearCell> cells_;  // of the elements in the slots
-  std::uint32_t filling_ = 0;
+  std::vector<Slot> slots_;      // per element
+  std::vector<NearCell> cells_;  // cells of the elements in the slots
+  std::uint32_t generation_ = 0;
   int slots_used_ = 0;
-  // The control points when no elements were within the margin and a lead; none since something was.
+  // Control points at which no elements were within the margin plus the lead; valid while clear_ is true.
   ControlNet clear_net_;
   bool clear_ = false;
   bool missing_elements_ = false;

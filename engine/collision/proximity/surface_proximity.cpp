@@ -1,11 +1,165 @@
 #include "engine/collision/proximity/surface_proximity.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "engine/base/assert.h"
+#include "engine/collision/surfaces/pair_polish.h"
 
 namespace spoonbill {
+
+namespace {
+
+// Returns the point of a triangle nearest to `point`, as weights of its edges from the first corner. Unlike
+// nearest_on_triangle(), it accepts triangles without area, which cells have at poles.
+std::array<double, 2> nearest_edge_weights(const Vector3& point, const Vector3& corner, const Vector3& edge_a,
+                                           const Vector3& edge_b) {
+  const Vector3 offset = point - corner;
+  const double aa = edge_a.squaredNorm(), ab = edge_a.dot(edge_b), bb = edge_b.squaredNorm();
+  const double pa = offset.dot(edge_a), pb = offset.dot(edge_b);
+  const double determinant = aa * bb - ab * ab;
+  const double s = determinant > 0.0 ? (bb * pa - ab * pb) / determinant : -1.0;
+  const double t = determinant > 0.0 ? (aa * pb - ab * pa) / determinant : -1.0;
+  if (s >= 0.0 && t >= 0.0 && s + t <= 1.0) return {s, t};
+  const auto fraction = [](double along, double square) {
+    return square > 0.0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
+  };
+  const double on_a = fraction(pa, aa), on_b = fraction(pb, bb);
+  const Vector3 across = edge_b - edge_a;
+  const double on_c = fraction((offset - edge_a).dot(across), across.squaredNorm());
+  const std::array<std::array<double, 2>, 3> candidates = {{{on_a, 0.0}, {0.0, on_b}, {1.0 - on_c, on_c}}};
+  return *std::min_element(candidates.begin(), candidates.end(), [&](const auto& one, const auto& other) {
+    return (offset - one[0] * edge_a - one[1] * edge_b).squaredNorm() <
+           (offset - other[0] * edge_a - other[1] * edge_b).squaredNorm();
+  });
+}
+
+}  // namespace
+
+NearestOnCell nearest_on_cell(const Vector3& point, const PatchCorners& at) {
+  const auto [a, b] = nearest_edge_weights(point, at[0], at[2] - at[0], at[1] - at[0]);
+  const NearestOnCell low{a, b, (point - at[0] - a * (at[2] - at[0]) - b * (at[1] - at[0])).norm()};
+  const auto [c, d] = nearest_edge_weights(point, at[3], at[1] - at[3], at[2] - at[3]);
+  const NearestOnCell high{1.0 - c, 1.0 - d,
+                           (point - at[3] - c * (at[1] - at[3]) - d * (at[2] - at[3])).norm()};
+  return low.distance <= high.distance ? low : high;
+}
+
+namespace {
+
+constexpr std::size_t near_capacity = 4096;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+NearPoints::NearPoints(const NestedGrid& nested) : levels_(nested) {
+  const auto samples = static_cast<std::size_t>(nested.grid.rows() * nested.grid.columns());
+  index_.assign(samples, 0);
+  indexed_at_.assign(samples, 0);
+  near_.reserve(near_capacity);
+}
+
+bool NearPoints::begin(const Surface& surface) {
+  ++generation_;
+  least_gap_m_ = infinity;
+  overflow_ = false;
+  near_.clear();
+  return levels_.begin(surface);
+}
+
+void NearPoints::offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch) {
+  const PatchCorners corners = other.corners(patch);
+  const int step = levels_.step(cell.level);
+  for (int corner = 0; corner < 4; ++corner) {
+    offer(cell.i + (corner >> 1) * step, cell.j + (corner & 1) * step, other, patch, corners);
+  }
+}
+
+void NearPoints::offer(int i, int j, const SurfaceLevels& other, const LevelCell& patch,
+                       const PatchCorners& corners) {
+  SPOONBILL_ASSERT_DEBUG(i >= 0 && i < levels_.nested().grid.rows() && j >= 0 &&
+                         j < levels_.nested().grid.columns());
+  const Grid& grid = levels_.nested().grid;
+  const int sample = i * grid.columns() + j;
+  const Vector3 point = levels_.sample(sample);
+  const NearestOnCell on = nearest_on_cell(point, corners);
+  if (indexed_at_[sample] != generation_) {
+    if (near_.size() == near_capacity) {
+      overflow_ = true;
+      return;
+    }
+    indexed_at_[sample] = generation_;
+    index_[sample] = static_cast<int>(near_.size());
+    near_.push_back(
+        {sample, grid.u.parameters[i], grid.v.parameters[j], 0.0, 0.0, point, Vector3::UnitY(), infinity});
+  }
+  // Until settle(), the gap is the distance to the other surface's triangles.
+  NearPoint& near = near_[index_[sample]];
+  if (on.distance >= near.gap_m) return;
+  const auto between = [](const std::vector<double>& parameters, int at, int to, double fraction) {
+    return parameters[at] + fraction * (parameters[to] - parameters[at]);
+  };
+  const Grid& patch_grid = other.nested().grid;
+  const int step = other.step(patch.level);
+  near.gap_m = on.distance;
+  near.other_u = between(patch_grid.u.parameters, patch.i, patch.i + step, on.u);
+  near.other_v = between(patch_grid.v.parameters, patch.j, patch.j + step, on.v);
+}
+
+double NearPoints::offered_distance_m(int sample) const {
+  SPOONBILL_ASSERT_DEBUG(sample >= 0 &&
+                         sample < levels_.nested().grid.rows() * levels_.nested().grid.columns());
+  return indexed_at_[sample] == generation_ ? near_[index_[sample]].gap_m : infinity;
+}
+
+void NearPoints::compute_nearest(const SurfaceLevels& other, double outside, double margin_m) {
+  SPOONBILL_ASSERT(std::abs(outside) == 1.0);
+  SPOONBILL_ASSERT(margin_m >= 0.0);
+  for (NearPoint& near : near_) {
+    const NearestPoint nearest = nearest_point(other.pieces(), near.point_m, near.other_u, near.other_v);
+    near.other_u = nearest.u;
+    near.other_v = nearest.v;
+    near.normal = outside * unit_normal(other.surface(), nearest.u, nearest.v);
+    near.gap_m = (near.point_m - nearest.at.position_m).dot(near.normal);
+  }
+  keep_if([&](const NearPoint& near) { return !(near.gap_m > margin_m); });
+}
+
+bool NearPoints::is_local_deepest(const NearPoint& near) const {
+  const Grid& grid = levels_.nested().grid;
+  const int row = near.sample / grid.columns(), column = near.sample % grid.columns();
+  for (int i = std::max(0, row - 1); i <= std::min(row + 1, grid.rows() - 1); ++i) {
+    for (int j = std::max(0, column - 1); j <= std::min(column + 1, grid.columns() - 1); ++j) {
+      const int sample = i * grid.columns() + j;
+      if (sample == near.sample || indexed_at_[sample] != generation_) continue;
+      const double gap = near_[index_[sample]].gap_m;
+      if (gap < near.gap_m || (gap == near.gap_m && sample < near.sample)) return false;
+    }
+  }
+  return true;
+}
+
+// The search starts at the nearest samples and uses the exact surfaces. deepest_pair() also ascends from in
+// front of the other surface, where a gap is a negative depth.
+void NearPoints::add_between_samples(const SurfaceLevels& other, double outside) {
+  SPOONBILL_ASSERT(std::abs(outside) == 1.0);
+  const std::size_t samples = near_.size();
+  for (std::size_t s = 0; s < samples; ++s) {
+    const NearPoint& near = near_[s];
+    if (!is_local_deepest(near)) continue;
+    if (near_.size() == near_capacity) {
+      overflow_ = true;
+      return;
+    }
+    const DeepestPair deepest = deepest_pair(levels_.pieces(), other.pieces(),
+                                             {near.u, near.v, near.other_u, near.other_v}, outside, infinity);
+    const PairParameters& at = deepest.pair.at;
+    near_.push_back({-1, at.u, at.v, at.s, at.t, deepest.pair.first_m, deepest.normal, -deepest.depth_m});
+    least_gap_m_ = std::min(least_gap_m_, -deepest.depth_m);
+  }
+}
 
 SurfaceProximity::SurfaceProximity(const NestedGrid& first, const NestedGrid& second)
     : first_(first), second_(second), cells_(first_.levels(), second_.levels()) {}
@@ -14,19 +168,19 @@ void SurfaceProximity::find(const Surface& first, const Surface& second, double 
                             double second_outside) {
   SPOONBILL_ASSERT(margin_m >= 0.0);
   SPOONBILL_ASSERT(std::abs(second_outside) == 1.0);
-  if (first_.begin(first)) cells_.begin_first();
-  if (second_.begin(second)) cells_.begin_second();
+  if (first_.begin(first)) cells_.invalidate_first();
+  if (second_.begin(second)) cells_.invalidate_second();
   cells_.update();
   missing_cells_ = false;
   const ElementTree &one = cells_.first_tree(), &other = cells_.second_tree();
   if (one.box(one.root()).gap(other.box(other.root())) > margin_m) return;
-  for (const CellPair& pair : cells_.within(margin_m)) {
+  for (const CellPair& pair : cells_.find_within(margin_m)) {
     first_.offer_corners(pair.first, second_.levels(), pair.second);
     second_.offer_corners(pair.second, first_.levels(), pair.first);
   }
   missing_cells_ = cells_.overflow();
-  first_.settle(second_.levels(), second_outside, margin_m);
-  second_.settle(first_.levels(), 1.0, margin_m);
+  first_.compute_nearest(second_.levels(), second_outside, margin_m);
+  second_.compute_nearest(first_.levels(), 1.0, margin_m);
   first_.add_between_samples(second_.levels(), second_outside);
   second_.add_between_samples(first_.levels(), 1.0);
 }

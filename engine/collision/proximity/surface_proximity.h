@@ -1,36 +1,114 @@
-// Where two closed surfaces come near each other: samples of either with the other's nearest points, and the
-// places between samples where they are nearest or deepest.
+// Close pairs between two surfaces: samples with the other surface's nearest points, and the locally nearest
+// or deepest points between samples.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "engine/collision/levels/cell_pairs.h"
-#include "engine/collision/proximity/near_points.h"
+#include "engine/collision/levels/surface_levels.h"
 
 namespace spoonbill {
 
-// One owner, one thread; allocates only when made. The grids must outlive it.
+// The nearest point of a cell of samples, taken as two triangles: local coordinates along u and v, 0 to 1,
+// and the distance in metres.
+struct NearestOnCell {
+  double u, v, distance;
+};
+NearestOnCell nearest_on_cell(const Vector3& point, const PatchCorners& at);
+
+// A point of one surface and the nearest point of the other.
+struct NearPoint {
+  int sample = -1;          // index into the grid of its surface; -1 for a point between samples
+  double u = 0.0, v = 0.0;  // parameters on its own surface
+  double other_u = 0.0, other_v = 0.0;
+  Vector3 point_m = Vector3::Zero();
+  Vector3 normal = Vector3::UnitY();  // unit outward normal of the other surface
+  double gap_m = 0.0;                 // along the normal; negative if the point is inside the other body
+};
+
+// Collects the points of one surface that are near another. Call the functions in the order of their
+// declaration. One owner, one thread; allocates only on construction. The grid must outlive it.
+class NearPoints {
+ public:
+  explicit NearPoints(const NestedGrid& nested);
+
+  // Removes all points. Returns false if the surface has not moved since the last call.
+  bool begin(const Surface& surface);
+
+  // Offers the corners of a cell to a cell of the other surface, which may be the same surface.
+  void offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch);
+  // Offers the sample (i, j) of the finest grid to a cell with the given corners.
+  void offer(int i, int j, const SurfaceLevels& other, const LevelCell& patch, const PatchCorners& corners);
+  // Returns the least distance of a sample to the triangles of the cells offered so far; infinite before the
+  // first.
+  double offered_distance_m(int sample) const;
+  // Computes the nearest point of the exact other surface for each sample, and removes samples beyond the
+  // margin. `outside` is -1 if the other surface's du x dv points inward, else 1.
+  void compute_nearest(const SurfaceLevels& other, double outside, double margin_m);
+  // Adds the locally nearest points between samples, where a surface may be nearer than at any sample.
+  void add_between_samples(const SurfaceLevels& other, double outside);
+
+  // Removes the points for which keep(point) returns false. `keep` may modify the point.
+  template <class Keep>
+  void keep_if(const Keep& keep) {
+    std::size_t kept = 0;
+    least_gap_m_ = std::numeric_limits<double>::infinity();
+    for (NearPoint& near : near_) {
+      if (!keep(near)) {
+        if (near.sample >= 0) indexed_at_[near.sample] = 0;
+        continue;
+      }
+      least_gap_m_ = near.gap_m < least_gap_m_ ? near.gap_m : least_gap_m_;
+      if (near.sample >= 0) index_[near.sample] = static_cast<int>(kept);
+      near_[kept++] = near;
+    }
+    near_.resize(kept);
+  }
+
+  SurfaceLevels& levels() { return levels_; }
+  const SurfaceLevels& levels() const { return levels_; }
+  const std::vector<NearPoint>& points() const { return near_; }
+  double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
+  // A capacity was met, and points may be missing.
+  bool overflow() const { return overflow_; }
+
+ private:
+  bool is_local_deepest(const NearPoint& near) const;
+
+  SurfaceLevels levels_;
+  std::vector<int> index_;                 // index of each sample in near_
+  std::vector<std::uint32_t> indexed_at_;  // generation in which that index was set
+  std::vector<NearPoint> near_;
+  std::uint32_t generation_ = 0;
+  double least_gap_m_ = 0.0;
+  bool overflow_ = false;
+};
+
+// Proximity search of two surfaces. One owner, one thread; allocates only on construction. The grids must
+// outlive it.
 class SurfaceProximity {
  public:
   SurfaceProximity(const NestedGrid& first, const NestedGrid& second);
   SurfaceProximity(const SurfaceProximity&) = delete;
   SurfaceProximity& operator=(const SurfaceProximity&) = delete;
 
-  // All that is within `margin_m`. The surfaces must have the grids' knots and bound bodies: du x dv points
-  // outwards, or inwards of the second where `second_outside` is -1, as of a mirrored surface.
+  // Finds all points within `margin_m`. The surfaces must have the grids' knots and bound bodies with du x dv
+  // outward. `second_outside` is -1 if it points inward on the second, as on a mirrored surface.
   void find(const Surface& first, const Surface& second, double margin_m, double second_outside = 1.0);
 
-  // Keeps those of the points of either that `keep_first` and `keep_second` keep, as they leave them.
+  // Removes the points of either surface for which its predicate returns false. Both may modify the point.
   template <class KeepFirst, class KeepSecond>
   void keep_if(const KeepFirst& keep_first, const KeepSecond& keep_second) {
     first_.keep_if(keep_first);
     second_.keep_if(keep_second);
   }
 
-  // Of the last find(): the points of one surface.
-  const std::vector<NearPoint>& of_first() const { return first_.points(); }
-  const std::vector<NearPoint>& of_second() const { return second_.points(); }
-  double least_gap_m() const;  // infinite where nothing is near
+  // Points of each surface near the other, of the last find().
+  const std::vector<NearPoint>& first_points() const { return first_.points(); }
+  const std::vector<NearPoint>& second_points() const { return second_.points(); }
+  double least_gap_m() const;  // infinite if nothing is near
   // A capacity was met, and points may be missing. Remedy: fewer control points or a smaller margin.
   bool overflow() const { return missing_cells_ || first_.overflow() || second_.overflow(); }
 

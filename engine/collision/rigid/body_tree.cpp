@@ -14,14 +14,14 @@ namespace {
 
 using Object = fcl::CollisionObject<double>;
 
-// Of the largest coordinate: FCL takes a centre and sides, which round.
+// Slack as a fraction of the largest coordinate, because FCL takes a rounded centre and rounded sides.
 constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
-std::size_t index_of(const Object* object) {
+std::size_t body_index(const Object* object) {
   return reinterpret_cast<std::size_t>(object->getUserData());
 }
 
-Object object_of(const Box& box, std::size_t index) {
+Object make_object(const Box& box, std::size_t index) {
   const double slack = rounding * box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
   const Vector3 sides = (box.high - box.low).array() + 2.0 * slack;
   fcl::Transform3d at = fcl::Transform3d::Identity();
@@ -32,8 +32,8 @@ Object object_of(const Box& box, std::size_t index) {
 }
 
 bool add_pair(Object* first, Object* second, void* pairs) {
-  static_cast<std::vector<BodyPair>*>(pairs)->emplace_back(index_of(first), index_of(second));
-  return false;  // goes on
+  static_cast<std::vector<BodyPair>*>(pairs)->emplace_back(body_index(first), body_index(second));
+  return false;  // continue the search
 }
 
 struct NearestSearch {
@@ -41,9 +41,9 @@ struct NearestSearch {
   double least_m = std::numeric_limits<double>::infinity();
 };
 
-bool take_nearer(Object* first, Object* second, void* search, double& least) {
+bool update_nearest(Object* first, Object* second, void* search, double& least) {
   auto& nearest = *static_cast<NearestSearch*>(search);
-  nearest.least_m = std::min(nearest.least_m, nearest.distance_m(index_of(first), index_of(second)));
+  nearest.least_m = std::min(nearest.least_m, nearest.distance_m(body_index(first), body_index(second)));
   least = nearest.least_m;
   return false;
 }
@@ -63,7 +63,7 @@ BodyTree::BodyTree(const std::vector<Box>& boxes) : bodies_(std::make_unique<Bod
     const Box& box = boxes[index];
     SPOONBILL_ASSERT(box.low.allFinite() && box.high.allFinite() &&
                      (box.low.array() <= box.high.array()).all());
-    bodies_->objects.push_back(object_of(box, index));
+    bodies_->objects.push_back(make_object(box, index));
     registered.push_back(&bodies_->objects.back());
   }
   if (!registered.empty()) bodies_->tree.registerObjects(registered);
@@ -95,7 +95,7 @@ double BodyTree::find_nearest(const BodyTree& other,
                               const std::function<double(std::size_t, std::size_t)>& distance_m) const {
   NearestSearch search{distance_m};
   if (bodies_->objects.empty() || other.bodies_->objects.empty()) return search.least_m;
-  bodies_->tree.distance(&other.bodies_->tree, &search, take_nearer);
+  bodies_->tree.distance(&other.bodies_->tree, &search, update_nearest);
   return search.least_m;
 }
 

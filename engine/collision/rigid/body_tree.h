@@ -1,5 +1,5 @@
-// The broad phase: which of many bodies may meet, by FCL's dynamic tree over their boxes. For loading,
-// checking and reports; never in the tick, for it allocates.
+// Broad phase over many bodies by FCL's dynamic tree of boxes. For loading, checks and reports, not for the
+// tick, because it allocates.
 #pragma once
 
 #include <cstddef>
@@ -12,32 +12,32 @@
 
 namespace spoonbill {
 
-// A body's place among the boxes of a first tree and of a second, or of one and the same.
+// Indices of two bodies, in the boxes of the first and second tree or of the same tree.
 using BodyPair = std::pair<std::size_t, std::size_t>;
 
-// Immutable once made, but searching takes turns: one owner, one thread.
+// Tree of the boxes of bodies. Immutable, but queries are not concurrent: one owner, one thread.
 class BodyTree {
  public:
-  // Finite boxes in metres, low corner first; they may be empty of volume. A pair of boxes that touch counts
-  // as near: grow them by half of what bodies may be apart.
+  // `boxes` are finite, in metres, and may have no volume. Boxes that touch count as near: grow them by half
+  // the distance that bodies may be apart.
   explicit BodyTree(const std::vector<Box>& boxes);
   ~BodyTree();
   BodyTree(const BodyTree&) = delete;
   BodyTree& operator=(const BodyTree&) = delete;
 
-  // The pairs whose boxes overlap or touch, in ascending order: within this tree with the first below the
-  // second, or of this tree's bodies with those of the other.
+  // Returns the pairs whose boxes overlap or touch, in ascending order. Within one tree the first index is
+  // below the second; with another tree the first index is of this one.
   std::vector<BodyPair> near_pairs() const;
   std::vector<BodyPair> near_pairs(const BodyTree& other) const;
 
-  // Calls `distance_m` with pairs of this tree's bodies and the other's until no other pair of boxes is
-  // nearer than the least distance that it returned, and returns that; infinity where a tree is empty. The
-  // distance must not be below that of the boxes.
+  // Returns the least value of `distance_m` over the pairs of this tree's bodies and the other's. It is
+  // called until no other pair of boxes is nearer than that. Infinite if a tree is empty. The distance must
+  // not be below that of the boxes.
   double find_nearest(const BodyTree& other,
                       const std::function<double(std::size_t, std::size_t)>& distance_m) const;
 
  private:
-  struct Bodies;  // FCL's headers stay out of ours
+  struct Bodies;  // defined in the source, to hide FCL's headers
   std::unique_ptr<Bodies> bodies_;
 };
 

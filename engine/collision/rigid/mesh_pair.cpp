@@ -4,50 +4,196 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "engine/base/assert.h"
 #include "engine/base/containers.h"
 #include "engine/collision/levels/surface_levels.h"
-#include "engine/collision/meshes/nearest_on_triangle.h"
+#include "engine/collision/meshes/mesh_distance.h"
+#include "engine/collision/meshes/triangle.h"
 #include "engine/collision/rigid/body_tree.h"
-#include "engine/collision/rigid/mesh_depths.h"
-#include "engine/collision/rigid/posed_mesh.h"
+#include "engine/collision/rigid/rigid_mesh.h"
 
 namespace spoonbill {
+
+namespace {
+
+// A point of a mesh's triangles and its depth in the other mesh.
+struct DeepPoint {
+  double depth_m = -std::numeric_limits<double>::infinity();  // depth of the mesh's surface; negative outside
+  Vector3 point_m = Vector3::Zero();
+  DistanceSample other;  // signed distance of the other mesh at the point
+};
+
+// Lazily evaluated depths of one mesh in another. One owner. The meshes must outlive it.
+class MeshDepths {
+ public:
+  MeshDepths(const PosedMesh& mesh, const PosedMesh& other, double thickness_m);
+
+  // Returns the triangles whose boxes are near the other mesh, a superset of those inside it.
+  const std::vector<std::uint32_t>& near() const { return near_; }
+
+  const DeepPoint& at_vertex(std::uint32_t v);
+  bool is_inside(std::uint32_t v);
+
+  // Calls `visit` with the deepest point of each stretch of the edge that is inside, if deeper than `least_m`
+  // (not negative). Exact to rounding if the other mesh is convex; otherwise stretches shorter than 1/32 of
+  // its size may be missed.
+  void visit_edge(std::uint32_t from, std::uint32_t to, double least_m,
+                  const std::function<void(const DeepPoint&)>& visit);
+
+  // Returns the other mesh's nearest triangle if a plate of either mesh fills the space up to it.
+  std::optional<std::uint32_t> find_plate_neighbour(const DeepPoint& deep) const;
+
+  // Returns the outward direction of the other mesh at a point of its surface.
+  Vector3 outward_of_other(const Vector3& point_m) const { return distance_.at(point_m).gradient; }
+
+ private:
+  DeepPoint at(const Vector3& point_m, double half_thickness_m) const;
+  void climb(DeepPoint low, DeepPoint high, double half_thickness_m, DeepPoint& best) const;
+
+  const PosedMesh& mesh_;
+  const PosedMesh& other_;
+  MeshDistance distance_;  // distance of the other mesh
+  Box other_box_;          // box of the other mesh
+  std::vector<std::uint32_t> near_;
+  std::vector<std::optional<DeepPoint>> vertices_;  // evaluated on demand
+  std::unique_ptr<ShellDistance> surface_;          // triangles of the other mesh, if a mesh has plates
+};
+
+// Step between depth samples along an edge, as a fraction of the other mesh's size.
+constexpr double step_fraction = 1.0 / 32.0;
+constexpr double steps_limit = 256.0;
+constexpr int climbs_limit = 32;
+// Convergence tolerance of the ascent, as a fraction of the other mesh's size.
+constexpr double climb_tolerance = 1e-9;
+
+MeshDepths::MeshDepths(const PosedMesh& mesh, const PosedMesh& other, double thickness_m)
+    : mesh_(mesh),
+      other_(other),
+      distance_(other.clean(), thickness_m),
+      other_box_(distance_.bounds()),
+      vertices_(mesh.vertex_count()) {
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    const auto& [a, b, c] = mesh.corners(t);
+    const Box box = bounding_box({mesh.vertex(a), mesh.vertex(b), mesh.vertex(c)});
+    if (box.is_near(other_box_, mesh.half_thickness_at_m(a))) near_.push_back(t);
+  }
+  if (!mesh.has_plates() && !other.has_plates()) return;
+  surface_ = std::make_unique<ShellDistance>(other.triangles().vertices_m, other.triangles().triangles,
+                                             ShellDistance::Kind::sheets);
+}
+
+DeepPoint MeshDepths::at(const Vector3& point_m, double half_thickness_m) const {
+  const DistanceSample sample = distance_.at(point_m);
+  return {half_thickness_m - sample.distance_m, point_m, sample};
+}
+
+const DeepPoint& MeshDepths::at_vertex(std::uint32_t v) {
+  if (!vertices_[v]) vertices_[v] = at(mesh_.vertex(v), mesh_.half_thickness_at_m(v));
+  return *vertices_[v];
+}
+
+bool MeshDepths::is_inside(std::uint32_t v) {
+  return at_vertex(v).depth_m > touch_tolerance_m;
+}
+
+void MeshDepths::visit_edge(std::uint32_t from, std::uint32_t to, double least_m,
+                            const std::function<void(const DeepPoint&)>& visit) {
+  SPOONBILL_ASSERT(least_m >= 0.0);
+  const DeepPoint start = at_vertex(from), end = at_vertex(to);
+  const Vector3 edge = end.point_m - start.point_m;
+  const double length_m = edge.norm(), half_thickness_m = mesh_.half_thickness_at_m(from);
+  // A depth changes by at most the distance moved.
+  if (!(0.5 * (start.depth_m + end.depth_m + length_m) > least_m)) return;
+  const int steps = static_cast<int>(
+      std::clamp(std::ceil(length_m / (step_fraction * other_box_.size())), 1.0, steps_limit));
+  DeepPoint best = start, low = start;
+  for (int k = 1; k <= steps; ++k) {
+    const double fraction = static_cast<double>(k) / steps;
+    const DeepPoint high = k == steps ? end : at(start.point_m + fraction * edge, half_thickness_m);
+    climb(low, high, half_thickness_m, best);
+    if (k == steps || high.depth_m < 0.0) {
+      if (best.depth_m > least_m) visit(best);
+      best = high;
+    }
+    low = high;
+  }
+}
+
+// Moves repeatedly to the intersection of the depth's tangents at both ends. Finds the deepest point if the
+// depth is concave, as in a convex mesh.
+void MeshDepths::climb(DeepPoint low, DeepPoint high, double half_thickness_m, DeepPoint& best) const {
+  const Vector3 between = high.point_m - low.point_m;
+  const double whole_m = between.norm(), tolerance_m = climb_tolerance * other_box_.size();
+  for (const DeepPoint* end : {&low, &high}) {
+    if (end->depth_m > best.depth_m) best = *end;
+  }
+  if (!(whole_m > tolerance_m)) return;
+  const Vector3 direction = between / whole_m;
+  for (int k = 0; k < climbs_limit; ++k) {
+    const double length_m = (high.point_m - low.point_m).norm();
+    const double rise = -low.other.gradient.dot(direction), fall = -high.other.gradient.dot(direction);
+    if (!(rise > 0.0 && fall < 0.0)) return;
+    const double offset_m = (high.depth_m - low.depth_m - fall * length_m) / (rise - fall);
+    if (!(offset_m > 0.0 && offset_m < length_m)) return;
+    if (!(low.depth_m + rise * offset_m > best.depth_m + tolerance_m)) return;
+    const DeepPoint candidate = at(low.point_m + offset_m * direction, half_thickness_m);
+    if (candidate.depth_m > best.depth_m) best = candidate;
+    (-candidate.other.gradient.dot(direction) > 0.0 ? low : high) = candidate;
+  }
+}
+
+std::optional<std::uint32_t> MeshDepths::find_plate_neighbour(const DeepPoint& deep) const {
+  if (!surface_) return std::nullopt;
+  const std::uint32_t nearest = surface_->nearest_triangle(deep.point_m);
+  const double half_thickness_m = deep.depth_m + deep.other.distance_m;
+  const double reach_m = half_thickness_m + other_.half_thickness_at_m(other_.corners(nearest)[0]);
+  if (!(surface_->at(deep.point_m).distance_m < reach_m)) return std::nullopt;
+  return nearest;
+}
+
+}  // namespace
+
 namespace {
 
 constexpr std::size_t crossings_limit = 4'000'000;
 
-// Two parts, one of each mesh, and the nearest points of their surfaces.
+// Nearest points of two parts, one of each mesh.
 struct Gap {
-  double gap_m = std::numeric_limits<double>::infinity();  // negative where plates overlap
+  double gap_m = std::numeric_limits<double>::infinity();  // negative if plates overlap
   std::size_t first_part = 0, second_part = 0;
   Vector3 first_m = Vector3::Zero(), second_m = Vector3::Zero();
 };
 
-void take_nearer(const PosedMesh& first, const PosedMesh& second, std::size_t i, std::size_t j, Gap& least) {
-  const double grown_m = first.grown_m(i) + second.grown_m(j);
-  const auto found = first.rigid(i).nearest(second.rigid(j), least.gap_m + grown_m);
-  if (!found || !(found->distance_m - grown_m < least.gap_m)) return;
+void update_nearest(const PosedMesh& first, const PosedMesh& second, std::size_t i, std::size_t j,
+                    Gap& least) {
+  const double half_thickness_m = first.half_thickness_m(i) + second.half_thickness_m(j);
+  const auto found = first.rigid(i).nearest(second.rigid(j), least.gap_m + half_thickness_m);
+  if (!found || !(found->distance_m - half_thickness_m < least.gap_m)) return;
   const Vector3 direction = (found->second_m - found->first_m).stableNormalized();
-  least = {found->distance_m - grown_m, i, j, found->first_m + first.grown_m(i) * direction,
-           found->second_m - second.grown_m(j) * direction};
+  least = {found->distance_m - half_thickness_m, i, j, found->first_m + first.half_thickness_m(i) * direction,
+           found->second_m - second.half_thickness_m(j) * direction};
 }
 
 Gap find_gap(const PosedMesh& first, const PosedMesh& second) {
   Gap least;
   const BodyTree parts(first.boxes()), others(second.boxes());
   parts.find_nearest(others, [&](std::size_t i, std::size_t j) {
-    take_nearer(first, second, i, j, least);
+    update_nearest(first, second, i, j, least);
     return least.gap_m;
   });
   return least;
 }
 
-// Whether the box about all of the mesh holds a part of the other, as it does where the part is inside.
+// Returns true if the box of the whole mesh contains the box of a part of the other, a necessary condition
+// for containment.
 bool may_contain(const PosedMesh& mesh, const PosedMesh& other) {
   Box around = mesh.boxes().front();
   for (const Box& part : mesh.boxes()) around = joined(around, part);
@@ -55,9 +201,8 @@ bool may_contain(const PosedMesh& mesh, const PosedMesh& other) {
                      [&](const Box& part) { return around.holds(part); });
 }
 
-// The regions in which two meshes are in each other. What hangs together in one: vertices of either mesh that
-// are inside and in one triangle, and pairs of triangles that cross, with the vertices inside of both and
-// with pairs of a neighbour and the same other triangle.
+// Regions in which two meshes overlap. Connected are inside vertices of one triangle, and pairs of crossing
+// triangles with the inside vertices of both and with pairs of a neighbour and the same other triangle.
 class ContactSearch {
  public:
   ContactSearch(const PosedMesh& first, const PosedMesh& second, double thickness_m)
@@ -72,22 +217,22 @@ class ContactSearch {
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
     join_regions();
     for (int s = 0; s < 2; ++s) find_deepest(s);
-    take_contacts(result);
+    collect_contacts(result);
     result.touching = surfaces_meet || !result.contacts.empty();
     result.contained = result.touching && !surfaces_meet;
-    if (surfaces_meet && result.contacts.empty()) result.contacts.push_back(contact_at(gap));
+    if (surfaces_meet && result.contacts.empty()) result.contacts.push_back(make_touch_contact(gap));
   }
 
  private:
-  using Pair = std::array<std::uint32_t, 2>;  // a triangle of each mesh
+  using Pair = std::array<std::uint32_t, 2>;  // one triangle of each mesh
 
-  // The deepest point of a region, and which mesh it is of.
+  // The deepest point of a region and the mesh that it belongs to.
   struct Deepest {
     DeepPoint at;
     int side = 0;
   };
 
-  // Items of regions: the vertices of the first mesh, those of the second, the pairs.
+  // Union-find items: the vertices of the first mesh, those of the second, then the pairs.
   std::size_t vertex_item(int s, std::uint32_t v) const {
     return s == 0 ? v : meshes_[0]->vertex_count() + v;
   }
@@ -95,33 +240,33 @@ class ContactSearch {
     return meshes_[0]->vertex_count() + meshes_[1]->vertex_count() + pair;
   }
 
-  // False where there are too many.
+  // Returns false if the limit of crossings was met.
   bool find_crossings() {
     const BodyTree parts(meshes_[0]->boxes()), others(meshes_[1]->boxes());
     for (const auto& [i, j] : parts.near_pairs(others)) {
-      const std::size_t most = crossings_limit - pairs_.size();
-      const auto crossings = meshes_[0]->rigid(i).find_crossings(meshes_[1]->rigid(j), most);
+      const std::size_t limit = crossings_limit - pairs_.size();
+      const auto crossings = meshes_[0]->rigid(i).find_crossings(meshes_[1]->rigid(j), limit);
       const std::uint32_t first = meshes_[0]->parts()[i].first_triangle,
                           second = meshes_[1]->parts()[j].first_triangle;
       for (const auto& [a, b] : crossings) pairs_.push_back({first + a, second + b});
-      if (crossings.size() >= most) return false;
+      if (crossings.size() >= limit) return false;
     }
     return true;
   }
 
-  // Plates cross what they reach, beside their sheets.
+  // Pairs triangles with those that a plate reaches beside its sheet.
   void find_plates_crossing(int s) {
     if (!meshes_[0]->has_plates() && !meshes_[1]->has_plates()) return;
     MeshDepths& depths = depths_[s];
     for (const std::uint32_t t : depths.near()) {
       const TriangleCorners& corners = meshes_[s]->corners(t);
-      const auto take_if_near = [&](const DeepPoint& deep) {
-        const auto other = depths.plate_neighbour(deep);
+      const auto add_if_near = [&](const DeepPoint& deep) {
+        const auto other = depths.find_plate_neighbour(deep);
         if (other) pairs_.push_back(s == 0 ? Pair{t, *other} : Pair{*other, t});
       };
       for (int k = 0; k < 3; ++k) {
-        if (depths.is_inside(corners[k])) take_if_near(depths.at_vertex(corners[k]));
-        depths.visit_edge(corners[k], corners[(k + 1) % 3], touch_tolerance_m, take_if_near);
+        if (depths.is_inside(corners[k])) add_if_near(depths.at_vertex(corners[k]));
+        depths.visit_edge(corners[k], corners[(k + 1) % 3], touch_tolerance_m, add_if_near);
       }
     }
   }
@@ -147,13 +292,13 @@ class ContactSearch {
     }
   }
 
-  // Pairs of one triangle of the other mesh with triangles of this one that have a common vertex.
+  // Joins pairs with the same triangle of the other mesh whose triangles of this mesh have a common vertex.
   void join_neighbours(int s) {
     std::vector<std::size_t> order(pairs_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return pairs_[a][1 - s] < pairs_[b][1 - s]; });
-    std::unordered_map<std::uint32_t, std::size_t> pair_at;  // each vertex
+    std::unordered_map<std::uint32_t, std::size_t> pair_at;  // first pair at each vertex
     for (std::size_t k = 0; k < order.size(); ++k) {
       const Pair& pair = pairs_[order[k]];
       if (k > 0 && pairs_[order[k - 1]][1 - s] != pair[1 - s]) pair_at.clear();
@@ -188,13 +333,13 @@ class ContactSearch {
       }
     }
     for (std::size_t first = 0, end = 0; first < pairs_.size(); first = end) {
-      // The pairs of the first mesh's triangles are in their order.
+      // The pairs are sorted by the first mesh's triangles.
       for (end = first + 1; s == 0 && end < pairs_.size() && pairs_[end][0] == pairs_[first][0];) ++end;
       find_deepest_between(s, first, end);
     }
   }
 
-  // On the edges, with no end inside, of a triangle in these pairs.
+  // Offers the deepest points of those edges of the triangle in these pairs that have no end inside.
   void find_deepest_between(int s, std::size_t first, std::size_t end) {
     const TriangleCorners& corners = meshes_[s]->corners(pairs_[first][s]);
     for (int k = 0; k < 3; ++k) {
@@ -206,12 +351,12 @@ class ContactSearch {
         for (std::size_t pair = first; pair < end; ++pair) {
           const auto& [a, b, c] = meshes_[1 - s]->corners(pairs_[pair][1 - s]);
           const PosedMesh& other = *meshes_[1 - s];
-          const double apart =
+          const double separation =
               (nearest_on_triangle(other.vertex(a), other.vertex(b), other.vertex(c), deep.point_m).point -
                deep.point_m)
                   .squaredNorm();
-          if (apart < least) {
-            least = apart;
+          if (separation < least) {
+            least = separation;
             nearest = pair;
           }
         }
@@ -220,34 +365,34 @@ class ContactSearch {
     }
   }
 
-  void take_contacts(MeshPairResult& result) {
+  void collect_contacts(MeshPairResult& result) {
     std::vector<bool> crosses(deepest_.size(), false);
     for (std::size_t pair = 0; pair < pairs_.size(); ++pair) crosses[regions_.find(pair_item(pair))] = true;
     for (std::size_t item = 0; item < deepest_.size(); ++item) {
       const Deepest& deepest = deepest_[item];
       if (!(deepest.at.depth_m > touch_tolerance_m)) continue;
-      const auto way_out = crosses[item] ? std::nullopt : contact_of_inner(item);
-      result.contacts.push_back(way_out ? *way_out : contact_of(deepest));
+      const auto containment = crosses[item] ? std::nullopt : make_containment_contact(item);
+      result.contacts.push_back(containment ? *containment : make_contact(deepest));
     }
     std::stable_sort(
         result.contacts.begin(), result.contacts.end(),
         [](const MeshPairContact& one, const MeshPairContact& other) { return one.depth_m > other.depth_m; });
   }
 
-  static MeshPairContact contact_of(const Deepest& deepest) {
+  static MeshPairContact make_contact(const Deepest& deepest) {
     const DeepPoint& at = deepest.at;
     const Vector3& gradient = at.other.gradient;
-    const double grown_m = at.depth_m + at.other.distance_m;
-    MeshPairContact contact{at.point_m - grown_m * gradient, at.point_m - at.other.distance_m * gradient,
-                            gradient, at.depth_m};
+    const double half_thickness_m = at.depth_m + at.other.distance_m;
+    MeshPairContact contact{at.point_m - half_thickness_m * gradient,
+                            at.point_m - at.other.distance_m * gradient, gradient, at.depth_m};
     if (deepest.side == 0) return contact;
     std::swap(contact.first_m, contact.second_m);
     contact.normal = -gradient;
     return contact;
   }
 
-  // Of a region that is a whole part inside the other mesh; it starts at a vertex.
-  std::optional<MeshPairContact> contact_of_inner(std::size_t item) {
+  // Contact of a region that is an entire part inside the other mesh; its item is a vertex.
+  std::optional<MeshPairContact> make_containment_contact(std::size_t item) {
     const int s = item < meshes_[0]->vertex_count() ? 0 : 1;
     const auto vertex = static_cast<std::uint32_t>(item - vertex_item(s, 0));
     const std::uint32_t p = meshes_[s]->part_of_vertex(vertex);
@@ -258,7 +403,7 @@ class ContactSearch {
     Gap gap;
     for (std::size_t q = 0; q < meshes_[1 - s]->parts().size(); ++q) {
       if (meshes_[s]->boxes()[p].gap(meshes_[1 - s]->boxes()[q]) >= gap.gap_m) continue;
-      take_nearer(*meshes_[0], *meshes_[1], s == 0 ? p : q, s == 0 ? q : p, gap);
+      update_nearest(*meshes_[0], *meshes_[1], s == 0 ? p : q, s == 0 ? q : p, gap);
     }
     if (!(gap.gap_m > touch_tolerance_m)) return std::nullopt;
     const Vector3 direction = (gap.second_m - gap.first_m).normalized();
@@ -267,19 +412,20 @@ class ContactSearch {
     return MeshPairContact{gap.first_m, gap.second_m, direction, gap.gap_m + length_m};
   }
 
-  // Of meshes that touch no deeper than the tolerance.
-  MeshPairContact contact_at(const Gap& gap) const {
-    const Vector3 apart = gap.gap_m > 0.0 ? gap.first_m - gap.second_m : gap.second_m - gap.first_m;
-    const bool has_direction = apart.norm() > 1e-3 * touch_tolerance_m;
-    const Vector3 normal = has_direction ? apart.normalized() : depths_[0].outward_of_other(gap.second_m);
+  // Contact of meshes that touch no deeper than the tolerance.
+  MeshPairContact make_touch_contact(const Gap& gap) const {
+    const Vector3 separation = gap.gap_m > 0.0 ? gap.first_m - gap.second_m : gap.second_m - gap.first_m;
+    const bool has_direction = separation.norm() > 1e-3 * touch_tolerance_m;
+    const Vector3 normal =
+        has_direction ? separation.normalized() : depths_[0].outward_of_other(gap.second_m);
     return {gap.first_m, gap.second_m, normal, std::max(-gap.gap_m, 0.0)};
   }
 
   std::array<const PosedMesh*, 2> meshes_;
-  std::array<MeshDepths, 2> depths_;  // of each in the other
-  std::vector<Pair> pairs_;           // that cross, in ascending order
+  std::array<MeshDepths, 2> depths_;  // depths of each mesh in the other
+  std::vector<Pair> pairs_;           // crossing triangles, in ascending order
   DisjointSets regions_{0};
-  std::vector<Deepest> deepest_;  // of each region, at the lowest of its items
+  std::vector<Deepest> deepest_;  // per region, at the lowest of its items
 };
 
 }  // namespace

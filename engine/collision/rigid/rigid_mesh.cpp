@@ -8,20 +8,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "engine/base/assert.h"
 #include "engine/base/geometry.h"
 
 namespace spoonbill {
+
 namespace {
 
 using Model = fcl::BVHModel<fcl::OBBRSS<double>>;
 
-// FCL's triangle distance takes no normal whose square is below 1e-15; twice the area of the smallest
-// triangle is scaled to this.
+// FCL's triangle distance ignores normals with a square below 1e-15. Twice the area of the smallest triangle
+// is scaled to at least this value.
 constexpr double smallest_doubled_area = 1e-6;
 
-void take_smallest(const TriangleMesh& mesh, double& doubled_area) {
+void update_smallest_area(const TriangleMesh& mesh, double& doubled_area) {
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vector3& corner = mesh.vertices_m[a];
     const double doubled = (mesh.vertices_m[b] - corner).cross(mesh.vertices_m[c] - corner).norm();
@@ -33,8 +36,8 @@ void take_smallest(const TriangleMesh& mesh, double& doubled_area) {
 
 RigidScale scale_for(const TriangleMesh& first, const TriangleMesh& second) {
   double doubled_area = std::numeric_limits<double>::infinity();
-  take_smallest(first, doubled_area);
-  take_smallest(second, doubled_area);
+  update_smallest_area(first, doubled_area);
+  update_smallest_area(second, doubled_area);
   RigidScale scale;
   if (!first.vertices_m.empty()) scale.origin_m = first.vertices_m.front();
   if (std::isfinite(doubled_area))
@@ -84,10 +87,10 @@ std::optional<RigidMesh::Nearest> RigidMesh::nearest(const RigidMesh& other, dou
                  scale.origin_m + result.nearest_points[1] / scale.per_m};
 }
 
-std::vector<RigidMesh::Crossing> RigidMesh::find_crossings(const RigidMesh& other, std::size_t most) const {
+std::vector<RigidMesh::Crossing> RigidMesh::find_crossings(const RigidMesh& other, std::size_t limit) const {
   SPOONBILL_ASSERT(tree_->scale.per_m == other.tree_->scale.per_m);
   const fcl::Transform3d here = fcl::Transform3d::Identity();
-  const fcl::CollisionRequest<double> request(most, false);
+  const fcl::CollisionRequest<double> request(limit, false);
   fcl::CollisionResult<double> result;
   fcl::collide(&tree_->model, here, &other.tree_->model, here, request, result);
   std::vector<Crossing> crossings;
@@ -98,6 +101,46 @@ std::vector<RigidMesh::Crossing> RigidMesh::find_crossings(const RigidMesh& othe
   }
   std::sort(crossings.begin(), crossings.end());
   return crossings;
+}
+
+PosedMesh::PosedMesh(CleanMesh mesh, const Pose& pose, double thickness_m)
+    : mesh_(std::move(mesh)),
+      half_thickness_m_(0.5 * thickness_m),
+      part_of_vertex_(mesh_.mesh.vertices_m.size()) {
+  SPOONBILL_ASSERT(!mesh_.parts.empty() && thickness_m > 0.0);
+  const Eigen::Matrix3d rotation = pose.orientation.normalized().toRotationMatrix();
+  for (Vector3& vertex : mesh_.mesh.vertices_m) vertex = rotation * vertex + pose.position_m;
+  boxes_.reserve(mesh_.parts.size());
+  for (std::uint32_t p = 0; p < mesh_.parts.size(); ++p) {
+    const MeshPart& part = mesh_.parts[p];
+    Box box{vertex(part.first_vertex), vertex(part.first_vertex)};
+    for (std::uint32_t v = part.first_vertex; v < part.end_vertex; ++v) {
+      part_of_vertex_[v] = p;
+      box = joined(box, {vertex(v), vertex(v)});
+    }
+    boxes_.push_back({box.low.array() - half_thickness_m(p), box.high.array() + half_thickness_m(p)});
+    has_plates_ = has_plates_ || !part.closed;
+  }
+}
+
+void PosedMesh::make_rigid(const RigidScale& scale) {
+  const std::span<const Vector3> vertices(mesh_.mesh.vertices_m);
+  const std::span<const TriangleCorners> triangles(mesh_.mesh.triangles);
+  rigid_.reserve(mesh_.parts.size());
+  for (const MeshPart& part : mesh_.parts) {
+    rigid_.emplace_back(vertices.subspan(part.first_vertex, part.end_vertex - part.first_vertex),
+                        triangles.subspan(part.first_triangle, part.end_triangle - part.first_triangle),
+                        part.first_vertex, scale);
+  }
+}
+
+double PosedMesh::length_along(std::size_t part, const Vector3& direction) const {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::uint32_t v = mesh_.parts[part].first_vertex; v < mesh_.parts[part].end_vertex; ++v) {
+    low = std::min(low, direction.dot(vertex(v)));
+    high = std::max(high, direction.dot(vertex(v)));
+  }
+  return high - low + 2.0 * half_thickness_m(part);
 }
 
 }  // namespace spoonbill

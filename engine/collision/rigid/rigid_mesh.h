@@ -1,6 +1,5 @@
-// Triangles that keep their shape, in FCL's tree of boxes: how far apart two of them are and which triangles
-// cross. FCL tests surfaces alone: one inside the other is apart (FCL bug 492). For loading, checking and
-// reports; never in the tick, for queries allocate.
+// Rigid meshes in FCL's trees of boxes: distance and crossing triangles. For loading, checks and reports, not
+// for the tick, because queries allocate.
 #pragma once
 
 #include <cstddef>
@@ -11,22 +10,25 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/geometry.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 
 namespace spoonbill {
 
-// The unit and the origin in which FCL computes. Its triangle distances treat triangles with a normal below
-// an absolute size as if they had no area; a scale_for() both meshes keeps all triangles above it.
+// Unit and origin in which FCL computes. Its triangle distance treats normals below an absolute size as zero;
+// the scale keeps all triangles of both meshes above it.
 struct RigidScale {
   Vector3 origin_m = Vector3::Zero();
   double per_m = 1.0;
 };
+// Returns the scale for two meshes that are tested against each other.
 RigidScale scale_for(const TriangleMesh& first, const TriangleMesh& second);
 
-// Immutable once made; any thread may query it.
+// Triangles in FCL's tree of boxes. FCL tests surfaces only, so a mesh inside another counts as apart (its
+// issue 492). Immutable; any thread may query it.
 class RigidMesh {
  public:
-  // At least one triangle, whose corners name vertices from `first_vertex` on among those that follow it.
+  // `triangles` must not be empty. Their corners are vertex indices that start at `first_vertex`.
   RigidMesh(std::span<const Vector3> vertices_m, std::span<const TriangleCorners> triangles,
             std::uint32_t first_vertex, const RigidScale& scale);
   ~RigidMesh();
@@ -34,20 +36,61 @@ class RigidMesh {
   RigidMesh& operator=(RigidMesh&&) noexcept;
 
   struct Nearest {
-    double distance_m = 0.0;  // 0 where triangles cross or touch
+    double distance_m = 0.0;  // 0 if triangles cross or touch
     Vector3 first_m = Vector3::Zero(), second_m = Vector3::Zero();
   };
-  // The nearest points of both where they are nearer than `below_m`. Both meshes must have one scale.
+  // Returns the nearest points of both meshes if they are nearer than `below_m`. Both must have the same
+  // scale.
   std::optional<Nearest> nearest(const RigidMesh& other, double below_m) const;
 
-  // The triangles of this and of the other that cross or touch, by their places among those given; about
-  // `most` of them at most. Both meshes must have one scale.
+  // Returns the pairs of crossing or touching triangles, as sorted indices into this mesh and the other,
+  // about `most` at most. Both must have the same scale.
   using Crossing = std::pair<std::uint32_t, std::uint32_t>;
-  std::vector<Crossing> find_crossings(const RigidMesh& other, std::size_t most) const;
+  std::vector<Crossing> find_crossings(const RigidMesh& other, std::size_t limit) const;
 
  private:
-  struct Tree;  // FCL's headers stay out of ours
+  struct Tree;  // defined in the source, to hide FCL's headers
   std::unique_ptr<Tree> tree_;
+};
+
+// A posed mesh of several parts, each with its box and FCL tree. Closed parts are solid, open ones plates.
+// Immutable after make_rigid(); any thread may read it.
+class PosedMesh {
+ public:
+  // `mesh` must have at least one part; `thickness_m` is positive.
+  PosedMesh(CleanMesh mesh, const Pose& pose, double thickness_m);
+
+  // Builds the FCL tree of each part, which rigid() requires.
+  void make_rigid(const RigidScale& scale);
+
+  const CleanMesh& clean() const { return mesh_; }
+  const TriangleMesh& triangles() const { return mesh_.mesh; }
+  const std::vector<MeshPart>& parts() const { return mesh_.parts; }
+  const Vector3& vertex(std::uint32_t v) const { return mesh_.mesh.vertices_m[v]; }
+  const TriangleCorners& corners(std::uint32_t t) const { return mesh_.mesh.triangles[t]; }
+  std::size_t vertex_count() const { return mesh_.mesh.vertices_m.size(); }
+  std::size_t triangle_count() const { return mesh_.mesh.triangles.size(); }
+  std::uint32_t part_of_vertex(std::uint32_t v) const { return part_of_vertex_[v]; }
+
+  // Returns the distance of a part's surface from its triangles: half the thickness of a plate, otherwise 0.
+  double half_thickness_m(std::size_t part) const {
+    return mesh_.parts[part].closed ? 0.0 : half_thickness_m_;
+  }
+  double half_thickness_at_m(std::uint32_t v) const { return half_thickness_m(part_of_vertex_[v]); }
+  bool has_plates() const { return has_plates_; }
+
+  const std::vector<Box>& boxes() const { return boxes_; }  // box around each part's surface
+  const RigidMesh& rigid(std::size_t part) const { return rigid_[part]; }
+  // Returns the length of a part along a unit direction, in metres.
+  double length_along(std::size_t part, const Vector3& direction) const;
+
+ private:
+  CleanMesh mesh_;
+  double half_thickness_m_;
+  bool has_plates_ = false;
+  std::vector<std::uint32_t> part_of_vertex_;
+  std::vector<Box> boxes_;
+  std::vector<RigidMesh> rigid_;
 };
 
 }  // namespace spoonbill

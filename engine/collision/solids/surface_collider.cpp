@@ -4,36 +4,69 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <tuple>
+#include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/collision/solids/tool_bounds.h"
+#include "engine/collision/solids/tool_shape.h"
 
 namespace spoonbill {
+
+TrimmedLevels::TrimmedLevels(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> area)
+    : levels_(nested.levels),
+      columns_(nested.grid.columns() - 1),
+      area_(std::move(area)),
+      cells_(GridLines(nested.grid.u), GridLines(nested.grid.v), *area_) {
+  const Grid& grid = nested.grid;
+  for (const double u : grid.u.parameters) {
+    for (const double v : grid.v.parameters) present_samples_.push_back(contains(u, v) ? 1 : 0);
+  }
+  const int rows = grid.rows() - 1, width = columns_ + 1;
+  present_.assign(static_cast<std::size_t>(rows + 1) * static_cast<std::size_t>(width), 0);
+  const auto at = [&](int i, int j) -> int& { return present_[static_cast<std::size_t>(i * width + j)]; };
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns_; ++j) {
+      const int here = cells_.state(i, j) != TrimmedCells::State::away ? 1 : 0;
+      at(i + 1, j + 1) = at(i, j + 1) + at(i + 1, j) - at(i, j) + here;
+    }
+  }
+}
+
+bool TrimmedLevels::is_trimmed_away(const LevelCell& cell) const {
+  SPOONBILL_ASSERT_DEBUG(cell.level >= 0 && cell.level <= levels_);
+  const int step = 1 << (levels_ - cell.level), width = columns_ + 1;
+  const auto at = [&](int i, int j) { return present_[static_cast<std::size_t>(i * width + j)]; };
+  return at(cell.i + step, cell.j + step) - at(cell.i, cell.j + step) - at(cell.i + step, cell.j) +
+             at(cell.i, cell.j) ==
+         0;
+}
+
 namespace {
 
 constexpr std::size_t cell_capacity = 16384;
 constexpr std::size_t patch_capacity = 512;
 constexpr std::size_t near_capacity = 4096;
 constexpr int deepest_patch = 24;
-// Newton's method usually finds the nearest point to the last digit. That no other is nearer is proven to
-// this, less than a hand's device resolves (0.055 mm); a tighter bound costs most where surface and tool fit
-// snugly and all points are as near.
+// Proven accuracy of the nearest point in metres, below the resolution of a haptic device (0.055 mm).
+// Newton's method itself is usually exact to the last digit. A tighter bound costs most where surface and
+// tool fit snugly and all points are equally near.
 constexpr double nearest_tolerance_m = 2e-5;
-// For a solid of which no more is known than that its distance changes by at most the way moved: patches must
-// then be cut to the size of the tolerance.
+// Proven accuracy in metres for a solid of unknown concavity, whose patches must be cut down to the
+// tolerance.
 constexpr double unbent_tolerance_m = 5e-5;
-// Of a solid's whole search, so that a tick has an end.
+// Limit of the patches cut in one search against a solid, which bounds the time of a tick.
 constexpr int cut_capacity = 20000;
-constexpr double clearance_share = 0.75;
-// Below this, a step of Newton's method gains nothing but rounding.
+constexpr double clearance_fraction = 0.75;
+// Smallest gain in metres of a Newton step that is more than rounding.
 constexpr double least_gain_m = 1e-15;
 
-double tolerance_of(const ToolShape& tool) {
-  if (!tool.is_solid() || tool.made_of->is_convex()) return nearest_tolerance_m;
-  const Box bounds = tool.made_of->bounds();
+double search_tolerance(const ToolShape& tool) {
+  if (!tool.is_solid() || tool.distance_field->is_convex()) return nearest_tolerance_m;
+  const Box bounds = tool.distance_field->bounds();
   const Vector3 far_m = bounds.high + (bounds.high - bounds.low);
-  const bool bent = std::isfinite(tool.made_of->concavity(far_m, 0.0));
-  return bent ? nearest_tolerance_m : unbent_tolerance_m;
+  const bool is_concavity_known = std::isfinite(tool.distance_field->concavity(far_m, 0.0));
+  return is_concavity_known ? nearest_tolerance_m : unbent_tolerance_m;
 }
 
 }  // namespace
@@ -59,10 +92,10 @@ double SurfaceCollider::reach(double margin) const {
 
 void SurfaceCollider::offer(const ToolShape& tool, double u, double v, const Vector3& point) {
   if (trimmed_ && !trimmed_->contains(u, v)) return;
-  take_nearer(tool, u, v, point);
+  update_best(tool, u, v, point);
 }
 
-void SurfaceCollider::take_nearer(const ToolShape& tool, double u, double v, const Vector3& point) {
+void SurfaceCollider::update_best(const ToolShape& tool, double u, double v, const Vector3& point) {
   const double distance = tool.distance_within(point, best_.distance_m);
   if (distance >= best_.distance_m) return;
   best_ = {u, v, point, distance};
@@ -71,11 +104,11 @@ void SurfaceCollider::take_nearer(const ToolShape& tool, double u, double v, con
 CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape& tool, double margin_m,
                                          bool closed, const PlanarPoints& samples) {
   SPOONBILL_ASSERT(margin_m >= 0.0);
-  SPOONBILL_ASSERT(!tool.is_solid() || tool.made_of != nullptr);
+  SPOONBILL_ASSERT(!tool.is_solid() || tool.distance_field != nullptr);
   CollisionResult result;
   moved_ |= levels_.begin(surface, samples);
   find_nearest(surface, tool, margin_m, Proof::deepest, result);
-  take_near_samples(tool, margin_m, result);
+  collect_near_samples(tool, margin_m, result);
   result.nearest = contact_at(surface, best_);
   const double inside = closed ? depth_inside(tool, result.nearest) : 0.0;
   if (inside > 0.0) result.nearest.depth_m = inside;
@@ -89,10 +122,10 @@ void SurfaceCollider::find_nearest(const Surface& surface, const ToolShape& tool
   near_.clear();
   offer_last(surface, tool);
   proof_ = proof;
-  tolerance_ = tolerance_of(tool);
+  tolerance_ = search_tolerance(tool);
   cuts_left_ = tool.is_solid() ? cut_capacity : std::numeric_limits<int>::max();
   descend(tool, margin, result);
-  if (trimmed_) offer_rims(surface, tool);
+  if (trimmed_) offer_trim_loops(surface, tool);
   polish(surface, tool);
   result.samples_evaluated = levels_.samples_evaluated();
   for (const LevelCell& cell : finest_) search_between_samples(surface, tool, cell, result.overflow);
@@ -104,31 +137,32 @@ Clearance SurfaceCollider::clearance(const Surface& surface, const ToolShape& to
   moved_ |= levels_.begin(surface);
   find_nearest(surface, tool, 0.0, Proof::clearance, result);
   const bool touching = best_.distance_m <= touch_tolerance_m;
-  return {touching ? 0.0 : clearance_share * best_.distance_m, contact_at(surface, best_), result.overflow};
+  return {touching ? 0.0 : clearance_fraction * best_.distance_m, contact_at(surface, best_),
+          result.overflow};
 }
 
-// How far a tool in the inside of a closed surface must go along the nearest wall's normal to be outside; 0
-// where it is not inside. A sphere is inside with its centre. A convex solid that touches the wall is so with
-// the middle of its bounds; one that touches nothing is where its nearest point is.
+// Depth of a tool inside a closed surface, along the nearest wall's normal; 0 if it is not inside. A sphere
+// is inside if its centre is. A convex solid that touches the wall is inside if the centre of its bounds is.
+// A tool that touches nothing is inside if its nearest point is.
 double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact& nearest) const {
   if (tool.kind == ToolShape::Kind::sphere) {
     const bool inside = (tool.centre_m - nearest.point_m).dot(nearest.normal) < 0.0;
     return inside ? std::max(2.0 * tool.radius_m + best_.distance_m, 0.0) : 0.0;
   }
   if (!tool.is_solid()) return 0.0;
-  const Box bounds = tool.made_of->bounds();
+  const Box bounds = tool.distance_field->bounds();
   if (!(bounds.size() < std::numeric_limits<double>::infinity())) return 0.0;
   Vector3 into_tool = -tool.at(nearest.point_m).gradient;
   if (!(best_.distance_m > 0.0)) {
-    if (!tool.made_of->is_convex()) return 0.0;
+    if (!tool.distance_field->is_convex()) return 0.0;
     into_tool = tool.centre_m + tool.turn * (0.5 * (bounds.low + bounds.high)) - nearest.point_m;
   }
   if (!(into_tool.dot(nearest.normal) < 0.0)) return 0.0;
   return std::max(depth_behind(tool, nearest.point_m, nearest.normal), -best_.distance_m);
 }
 
-// The coarsest samples, but for elements too far for any to count: first along the nearest box, whose samples
-// show how far that is.
+// Offers the coarsest samples, except of elements that are too far. The nearest box comes first, since its
+// samples tighten that bound.
 void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   const Grid& grid = levels_.nested().grid;
   const int stride = levels_.step(0);
@@ -136,14 +170,14 @@ void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   const auto offer_column = [&](int j) {
     levels_.sample_column(j);
     for (int i = 0; i < grid.rows(); i += stride) {
-      // A sample belongs to the elements on either side.
+      // A sample belongs to the elements on both sides.
       const int after = std::min(i / stride, last), before = std::max(i / stride - 1, 0);
       if (std::min(row_bound_[before], row_bound_[after]) > reach(margin)) continue;
       offer(tool, grid.u.parameters[i], grid.v.parameters[j], levels_.sample(i * grid.columns() + j));
     }
   };
   SurfaceBounds& bounds = levels_.bounds();
-  if (moved_) bounds.take_boxes(levels_.surface().net);
+  if (moved_) bounds.update_boxes(levels_.surface().net);
   moved_ = false;
   for (int e = 0; e < bounds.elements_v(); ++e) column_bound_[e] = lower_bound(tool, bounds.box(e));
   for (int e = 0; e < bounds.elements_u(); ++e) row_bound_[e] = lower_bound(tool, bounds.row_box(e));
@@ -157,12 +191,12 @@ void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   }
 }
 
-// What was nearest in the query before mostly almost is so still: much of the rest need not be looked at.
+// The nearest point of the last query is mostly still almost the nearest, which prunes the search.
 void SurfaceCollider::offer_last(const Surface& surface, const ToolShape& tool) {
   best_ = {};
   best_.distance_m = std::numeric_limits<double>::infinity();
-  if (asked_) offer(tool, last_.u, last_.v, position(surface, last_.u, last_.v));
-  asked_ = true;
+  if (has_last_) offer(tool, last_.u, last_.v, position(surface, last_.u, last_.v));
+  has_last_ = true;
 }
 
 void SurfaceCollider::descend(const ToolShape& tool, double margin, CollisionResult& result) {
@@ -174,7 +208,7 @@ void SurfaceCollider::descend(const ToolShape& tool, double margin, CollisionRes
   for (int i = 0; i + stride < grid.rows(); i += stride) {
     if (row_bound_[i / stride] > reach(margin)) continue;
     for (int j = 0; j + stride < grid.columns(); j += stride) {
-      if (column_bound_[j / stride] > reach(margin) || is_away({i, j, 0})) continue;
+      if (column_bound_[j / stride] > reach(margin) || is_trimmed_away({i, j, 0})) continue;
       if (cells_.size() < cell_capacity) {
         cells_.push_back({i, j, 0});
       } else {
@@ -182,16 +216,16 @@ void SurfaceCollider::descend(const ToolShape& tool, double margin, CollisionRes
       }
     }
   }
-  // Breadth first: a coarse level's best distance prunes the finer ones.
+  // Breadth first, so that the best distance of a coarse level prunes the finer ones.
   for (std::size_t at = 0; at < cells_.size(); ++at) visit_cell(tool, cells_[at], reach(margin), result);
 }
 
-void SurfaceCollider::take_near_samples(const ToolShape& tool, double margin, CollisionResult& result) {
+void SurfaceCollider::collect_near_samples(const ToolShape& tool, double margin, CollisionResult& result) {
   const int columns = levels_.nested().grid.columns();
   for (const LevelCell& cell : finest_) {
     for (int corner = 0; corner < 4; ++corner) {
       const int index = (cell.i + (corner >> 1)) * columns + cell.j + (corner & 1);
-      if (near_at_[index] == query_ || (trimmed_ && !trimmed_->keeps_sample(index))) continue;
+      if (near_at_[index] == query_ || (trimmed_ && !trimmed_->has_sample(index))) continue;
       near_at_[index] = query_;
       const double distance = tool.distance_within(levels_.sample(index), margin + touch_tolerance_m);
       if (distance > margin) continue;
@@ -206,7 +240,7 @@ void SurfaceCollider::take_near_samples(const ToolShape& tool, double margin, Co
 
 void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, double reach,
                                  CollisionResult& result) {
-  if (is_away(cell)) return;
+  if (is_trimmed_away(cell)) return;
   const CoverSphere sphere = levels_.cover(cell);
   if (tool.is_beyond(sphere.centre, sphere.radius, std::max(reach, 0.0))) return;
   if (levels_.is_finest(cell)) {
@@ -225,7 +259,7 @@ void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, d
       cells_.push_back({i, j, cell.level + 1});
     }
   }
-  // Its corners were offered when it was found.
+  // The corners were offered when the cell was added.
   constexpr int between[5][2] = {{0, 1}, {1, 0}, {1, 1}, {1, 2}, {2, 1}};
   for (const auto& [in_u, in_v] : between) {
     const int i = cell.i + in_u * half, j = cell.j + in_v * half;
@@ -233,21 +267,21 @@ void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, d
   }
 }
 
-// The bound from which a patch hides nothing that counts.
+// Returns the bound from which a patch cannot contain a point that counts.
 double SurfaceCollider::enough() const {
   const double best = best_.distance_m;
   if (proof_ == Proof::clearance) {
-    return best > touch_tolerance_m ? clearance_share * best : -std::numeric_limits<double>::infinity();
+    return best > touch_tolerance_m ? clearance_fraction * best : -std::numeric_limits<double>::infinity();
   }
   return best >= 0.0 ? std::max(best - tolerance_, -touch_tolerance_m) : best - tolerance_;
 }
 
-// Branch and bound below the finest samples of a cell that could still hide a nearer point.
+// Branch and bound below the finest samples of a cell that may still contain a nearer point.
 void SurfaceCollider::search_between_samples(const Surface& surface, const ToolShape& tool,
                                              const LevelCell& cell, bool& overflow) {
-  if (is_cut(cell)) return search_cut_cell(surface, tool, cell);
+  if (is_cut(cell)) return search_trimmed_cell(surface, tool, cell);
   patches_.clear();
-  patches_.push_back(whole(cell));
+  patches_.push_back(whole_patch(cell));
   while (!patches_.empty()) {
     const Patch patch = patches_.back();
     patches_.pop_back();
@@ -266,7 +300,7 @@ void SurfaceCollider::search_between_samples(const Surface& surface, const ToolS
   }
 }
 
-SurfaceCollider::Patch SurfaceCollider::whole(const LevelCell& cell) {
+SurfaceCollider::Patch SurfaceCollider::whole_patch(const LevelCell& cell) {
   const Grid& grid = levels_.nested().grid;
   const int levels = levels_.nested().levels;
   return {grid.u.parameters[cell.i], grid.u.parameters[cell.i + 1],
@@ -299,27 +333,27 @@ void SurfaceCollider::cut(const Surface& surface, const Patch& patch, const Vect
 void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
   const SurfaceSpot before = best_;
   if (tool.is_solid()) {
-    best_ = polished_on_solid(surface, tool, best_);
+    best_ = polish_on_solid(surface, tool, best_);
     if (trimmed_ && !trimmed_->contains(best_.u, best_.v)) best_ = before;
   } else {
-    polish_by_form(surface, tool);
+    polish_analytic(surface, tool);
   }
-  // It may have come down elsewhere.
+  // The search may have ended in another region.
   if (region_ >= 0 && region_at(best_.u, best_.v) != region_) best_ = before;
 }
 
-// Newton's method on the parameters from the best point so far; a step that does not come nearer is halved,
-// and the gradient takes over where the curvature has the wrong sign.
-void SurfaceCollider::polish_by_form(const Surface& surface, const ToolShape& tool) {
+// Newton's method on the parameters of the best point. A step that does not come nearer is halved. The
+// gradient is used where the curvature has the wrong sign.
+void SurfaceCollider::polish_analytic(const Surface& surface, const ToolShape& tool) {
   const bool sphere = tool.kind == ToolShape::Kind::sphere;
   SurfacePoint at = evaluate(surface, best_.u, best_.v);
   for (int step = 0; step < 20; ++step) {
     const Vector3 towards = sphere ? Vector3(at.position_m - tool.centre_m) : tool.normal;
     const double gu = towards.dot(at.du), gv = towards.dot(at.dv);
     const double metric_u = at.du.squaredNorm(), metric_v = at.dv.squaredNorm(), metric_uv = at.du.dot(at.dv);
-    const double share = sphere ? 1.0 : 0.0;
-    double huu = share * metric_u + towards.dot(at.duu), hvv = share * metric_v + towards.dot(at.dvv);
-    double huv = share * metric_uv + towards.dot(at.duv);
+    const double fraction = sphere ? 1.0 : 0.0;
+    double huu = fraction * metric_u + towards.dot(at.duu), hvv = fraction * metric_v + towards.dot(at.dvv);
+    double huv = fraction * metric_uv + towards.dot(at.duv);
     if (!(huu > 0.0 && huu * hvv - huv * huv > 1e-12 * huu * std::abs(hvv))) {
       huu = metric_u + 1e-30;
       hvv = metric_v + 1e-30;
@@ -328,7 +362,7 @@ void SurfaceCollider::polish_by_form(const Surface& surface, const ToolShape& to
     const double determinant = huu * hvv - huv * huv;
     double move_u = -(hvv * gu - huv * gv) / determinant, move_v = -(huu * gv - huv * gu) / determinant;
     if (!std::isfinite(move_u) || !std::isfinite(move_v)) return;
-    // Where no more than rounding can be gained, the last step is not worth halving.
+    // A step that can only gain rounding is not worth halving.
     const double gain = -(move_u * gu + move_v * gv) / towards.norm();
     const int tries = gain > least_gain_m ? 12 : 1;
     const double before = best_.distance_m;
@@ -339,6 +373,274 @@ void SurfaceCollider::polish_by_form(const Surface& surface, const ToolShape& to
     }
     if (!(best_.distance_m < before - least_gain_m)) return;
   }
+}
+
+namespace {
+
+// Number of golden section steps, for a ten-thousandth of an edge.
+constexpr int golden_section_steps = 20;
+constexpr double golden_fraction = 0.6180339887498949;
+
+Eigen::Vector2d point_on(const TrimmedArea::Edge& edge, double fraction) {
+  return edge.from + fraction * (edge.to - edge.from);
+}
+
+}  // namespace
+
+void SurfaceCollider::offer_trim_loops(const Surface& surface, const ToolShape& tool) {
+  TrimEdges nearest;
+  for (const LevelCell& cell : finest_) {
+    if (!is_cut(cell)) continue;
+    const Patch patch = whole_patch(cell);
+    if (lower_bound(tool, patch.corners, bulge(patch), best_.distance_m) >= best_.distance_m) continue;
+    offer_trim_edges(surface, tool, cell, nearest);
+  }
+  minimise_on_edges(surface, tool, nearest);
+}
+
+// Offers the start and the midpoint of each edge.
+void SurfaceCollider::offer_trim_edges(const Surface& surface, const ToolShape& tool, const LevelCell& cell,
+                                       TrimEdges& nearest) {
+  const std::span<const TrimmedArea::Edge> edges = trimmed_->edges(cell);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    for (const double fraction : {0.0, 0.5}) {
+      const Eigen::Vector2d at = point_on(edges[e], fraction);
+      const double before = best_.distance_m;
+      update_best(tool, at.x(), at.y(), position(surface, at.x(), at.y()));
+      if (!(best_.distance_m < before)) continue;
+      const bool meets_last = fraction == 0.0 && e > 0 && edges[e - 1].to == edges[e].from;
+      nearest = {&edges[e], meets_last ? &edges[e - 1] : nullptr};
+    }
+  }
+}
+
+// Minimises along the nearest edge, and along the edge that meets it at the nearest point.
+void SurfaceCollider::minimise_on_edges(const Surface& surface, const ToolShape& tool,
+                                        const TrimEdges& nearest) {
+  for (const TrimmedArea::Edge* edge : {nearest.first, nearest.second}) {
+    if (edge == nullptr) continue;
+    const auto distance = [&](double fraction) {
+      const Eigen::Vector2d at = point_on(*edge, fraction);
+      const Vector3 point = position(surface, at.x(), at.y());
+      update_best(tool, at.x(), at.y(), point);
+      return tool.distance(point);
+    };
+    double low = 0.0, high = 1.0;
+    double inner = 1.0 - golden_fraction, outer = golden_fraction;
+    double at_inner = distance(inner), at_outer = distance(outer);
+    for (int step = 0; step < golden_section_steps; ++step) {
+      if (at_inner < at_outer) {
+        high = outer;
+        outer = inner;
+        at_outer = at_inner;
+        inner = high - golden_fraction * (high - low);
+        at_inner = distance(inner);
+      } else {
+        low = inner;
+        inner = outer;
+        at_inner = at_outer;
+        outer = low + golden_fraction * (high - low);
+        at_outer = distance(outer);
+      }
+    }
+  }
+}
+
+// Nothing is proven for a partly trimmed cell. Newton's method starts from its centre, if that is present,
+// after corners, samples and loops were offered.
+void SurfaceCollider::search_trimmed_cell(const Surface& surface, const ToolShape& tool,
+                                          const LevelCell& cell) {
+  const Patch patch = whole_patch(cell);
+  const double needed = enough();
+  if (lower_bound(tool, patch.corners, bulge(patch), needed) >= needed) return;
+  const double u = 0.5 * (patch.u0 + patch.u1), v = 0.5 * (patch.v0 + patch.v1);
+  const double before = best_.distance_m;
+  offer(tool, u, v, position(surface, u, v));
+  if (best_.distance_m < before) polish(surface, tool);
+}
+
+bool SurfaceCollider::touches_trimmed_cell(const Surface& surface, const ToolShape& tool,
+                                           const LevelCell& cell) {
+  const auto touches_at = [&](double u, double v) {
+    return tool.distance_within(position(surface, u, v), 2.0 * touch_tolerance_m) <= touch_tolerance_m;
+  };
+  const Patch patch = whole_patch(cell);
+  if (lower_bound(tool, patch.corners, bulge(patch), 0.0) > 0.0) return false;
+  for (const double u : {patch.u0, 0.5 * (patch.u0 + patch.u1), patch.u1}) {
+    for (const double v : {patch.v0, 0.5 * (patch.v0 + patch.v1), patch.v1}) {
+      if (trimmed_->contains(u, v) && touches_at(u, v)) return true;
+    }
+  }
+  for (const TrimmedArea::Edge& edge : trimmed_->edges(cell)) {
+    if (touches_at(edge.from.x(), edge.from.y()) || touches_at(edge.to.x(), edge.to.y())) return true;
+  }
+  return false;
+}
+
+namespace {
+
+// Limit of the patches cut in one query for regions.
+constexpr int region_cut_capacity = 16000;
+
+int cell_count(const GridDirection& direction) {
+  return static_cast<int>(direction.parameters.size()) - 1;
+}
+
+// Maps a cell index across the seam of a periodic direction; returns -1 beyond an open end.
+int wrap_cell(const GridDirection& direction, int i) {
+  const int cells = cell_count(direction);
+  if (i >= 0 && i < cells) return i;
+  return direction.knots.is_periodic() ? (i + cells) % cells : -1;
+}
+
+int find_cell(const GridDirection& direction, double parameter) {
+  const auto& parameters = direction.parameters;
+  const auto next = std::upper_bound(parameters.begin(), parameters.end(), parameter) - parameters.begin();
+  return std::clamp(static_cast<int>(next) - 1, 0, cell_count(direction) - 1);
+}
+
+// Range of cells of a region in one direction.
+struct CellRange {
+  int low, high;  // cell indices
+
+  void widen(int cell) {
+    low = std::min(low, cell);
+    high = std::max(high, cell);
+  }
+  double start(const GridDirection& direction) const { return direction.parameters[low]; }
+  double end(const GridDirection& direction) const { return direction.parameters[high + 1]; }
+};
+
+}  // namespace
+
+void SurfaceCollider::reserve_regions() {
+  const Grid& grid = levels_.nested().grid;
+  const std::size_t cells = static_cast<std::size_t>(cell_count(grid.u) * cell_count(grid.v));
+  touched_index_.assign(cells, 0);
+  touched_at_.assign(cells, 0);
+  touched_.reserve(cells_.capacity());
+  grouped_.reserve(cells_.capacity());
+  regions_.reserve(tool_region_capacity);
+}
+
+int SurfaceCollider::finest_index(int i, int j) const {
+  return i * cell_count(levels_.nested().grid.v) + j;
+}
+
+int SurfaceCollider::region_at(double u, double v) const {
+  const Grid& grid = levels_.nested().grid;
+  const int index = finest_index(find_cell(grid.u, u), find_cell(grid.v, v));
+  return touched_at_[index] == query_ ? touched_[touched_index_[index]].region : -1;
+}
+
+// Cuts patches until a corner touches or no patch can touch.
+bool SurfaceCollider::touches(const Surface& surface, const ToolShape& tool, const LevelCell& cell) {
+  if (is_cut(cell)) return touches_trimmed_cell(surface, tool, cell);
+  patches_.clear();
+  patches_.push_back(whole_patch(cell));
+  while (!patches_.empty()) {
+    const Patch patch = patches_.back();
+    patches_.pop_back();
+    for (const Vector3& corner : patch.corners) {
+      if (tool.distance_within(corner, 2.0 * touch_tolerance_m) <= touch_tolerance_m) return true;
+    }
+    if (lower_bound(tool, patch.corners, bulge(patch), 0.0) > 0.0) continue;
+    if (!can_cut(patch)) {
+      regions_overflow_ = true;
+      continue;
+    }
+    cut(surface, patch, position(surface, 0.5 * (patch.u0 + patch.u1), 0.5 * (patch.v0 + patch.v1)));
+  }
+  return false;
+}
+
+void SurfaceCollider::find_touched_cells(const Surface& surface, const ToolShape& tool) {
+  touched_.clear();
+  for (const LevelCell& cell : finest_) {
+    if (!touches(surface, tool, cell)) continue;
+    const int index = finest_index(cell.i, cell.j);
+    touched_index_[index] = static_cast<int>(touched_.size());
+    touched_at_[index] = query_;
+    touched_.push_back({cell, -1});
+  }
+}
+
+// Appends all cells connected with the first one, across a seam too, to grouped_.
+void SurfaceCollider::join_neighbours(int first, int region) {
+  const Grid& grid = levels_.nested().grid;
+  std::size_t next = grouped_.size();
+  touched_[first].region = region;
+  grouped_.push_back(first);
+  for (; next < grouped_.size(); ++next) {
+    const LevelCell cell = touched_[grouped_[next]].cell;
+    for (int k = 0; k < 9; ++k) {
+      const int i = wrap_cell(grid.u, cell.i + k / 3 - 1), j = wrap_cell(grid.v, cell.j + k % 3 - 1);
+      if (i < 0 || j < 0) continue;
+      const int index = finest_index(i, j);
+      if (touched_at_[index] != query_) continue;
+      TouchedCell& neighbour = touched_[touched_index_[index]];
+      if (neighbour.region >= 0) continue;
+      neighbour.region = region;
+      grouped_.push_back(touched_index_[index]);
+    }
+  }
+}
+
+void SurfaceCollider::add_region(const Surface& surface, const ToolShape& tool, int begin, int end) {
+  const Grid& grid = levels_.nested().grid;
+  const LevelCell& first = touched_[grouped_[begin]].cell;
+  CellRange along_u{first.i, first.i}, along_v{first.j, first.j};
+  best_ = {};
+  best_.distance_m = std::numeric_limits<double>::infinity();
+  for (int k = begin; k < end; ++k) {
+    const LevelCell& cell = touched_[grouped_[k]].cell;
+    along_u.widen(cell.i);
+    along_v.widen(cell.j);
+    for (int corner = 0; corner < 4; ++corner) {
+      const int i = cell.i + (corner >> 1), j = cell.j + (corner & 1);
+      offer(tool, grid.u.parameters[i], grid.v.parameters[j], levels_.sample(i * grid.columns() + j));
+    }
+  }
+  TrimEdges nearest_edges;
+  for (int k = begin; k < end; ++k) {
+    if (is_cut(touched_[grouped_[k]].cell))
+      offer_trim_edges(surface, tool, touched_[grouped_[k]].cell, nearest_edges);
+  }
+  minimise_on_edges(surface, tool, nearest_edges);
+  region_ = touched_[grouped_[begin]].region;
+  polish(surface, tool);
+  for (int k = begin; k < end; ++k) {
+    search_between_samples(surface, tool, touched_[grouped_[k]].cell, regions_overflow_);
+  }
+  region_ = -1;
+  const ParameterRange range{along_u.start(grid.u), along_u.end(grid.u), along_v.start(grid.v),
+                             along_v.end(grid.v)};
+  regions_.push_back({range, contact_at(surface, best_)});
+}
+
+const std::vector<ToolContactRegion>& SurfaceCollider::find_contact_regions(const Surface& surface,
+                                                                            const ToolShape& tool) {
+  regions_.clear();
+  grouped_.clear();
+  regions_overflow_ = false;
+  proof_ = Proof::deepest;
+  cuts_left_ = region_cut_capacity;
+  find_touched_cells(surface, tool);
+  for (int k = 0; k < static_cast<int>(touched_.size()); ++k) {
+    if (touched_[k].region >= 0) continue;
+    if (regions_.size() == tool_region_capacity) {
+      regions_overflow_ = true;
+      break;
+    }
+    const int begin = static_cast<int>(grouped_.size());
+    join_neighbours(k, static_cast<int>(regions_.size()));
+    add_region(surface, tool, begin, static_cast<int>(grouped_.size()));
+  }
+  std::sort(regions_.begin(), regions_.end(), [](const ToolContactRegion& a, const ToolContactRegion& b) {
+    return std::tie(b.deepest.depth_m, a.deepest.u, a.deepest.v) <
+           std::tie(a.deepest.depth_m, b.deepest.u, b.deepest.v);
+  });
+  return regions_;
 }
 
 }  // namespace spoonbill

@@ -1,77 +1,107 @@
-// Contact of a tool with one B-spline surface, through levels of detail of its blending matrices (section 4.1
-// of Pungotra et al. 2013): sparse samples, spheres that provably cover their patch, refinement where a
-// sphere meets the tool, then the nearest point polished on the true surface.
+// Contact of a tool with one B-spline surface through levels of detail of its blending matrices (section 4.1
+// of Pungotra et al. 2013). Coarse samples with spheres that cover their patches are refined where a sphere
+// meets the tool. The nearest point is then polished on the exact surface.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/bspline/surface.h"
+#include "engine/bspline/trimmed_area.h"
 #include "engine/collision/levels/surface_levels.h"
-#include "engine/collision/solids/solid_polish.h"
 #include "engine/collision/solids/surface_contact.h"
 #include "engine/collision/solids/tool_shape.h"
-#include "engine/collision/solids/trimmed_levels.h"
 
 namespace spoonbill {
+
+// Lookup of the untrimmed cells and samples. Immutable; queries allocate nothing.
+class TrimmedLevels {
+ public:
+  TrimmedLevels(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> area);
+
+  bool contains(double u, double v) const { return area_->contains(u, v); }
+  bool has_sample(int index) const { return present_samples_[static_cast<std::size_t>(index)] != 0; }
+
+  // Returns true if the cell, of any level, is entirely trimmed away.
+  bool is_trimmed_away(const LevelCell& cell) const;
+  // Returns true if trim loops cross the cell, which must be of the finest level.
+  bool is_cut(const LevelCell& cell) const {
+    return cells_.state(cell.i, cell.j) == TrimmedCells::State::cut;
+  }
+  std::span<const TrimmedArea::Edge> edges(const LevelCell& cell) const {
+    return cells_.edges(cell.i, cell.j);
+  }
+
+ private:
+  int levels_;
+  int columns_;  // number of finest cells in a row
+  std::shared_ptr<const TrimmedArea> area_;
+  TrimmedCells cells_;
+  std::vector<std::uint8_t> present_samples_;
+  std::vector<int> present_;  // summed area table of the finest cells that are not trimmed away
+};
 
 // A sample of the finest level within the margin of the tool.
 struct NearSample {
   int index = 0;            // into the grid
-  double distance_m = 0.0;  // to the tool's surface, negative inside the tool
+  double distance_m = 0.0;  // signed distance to the tool; negative inside it
 };
 
+// Result of SurfaceCollider::collide().
 struct CollisionResult {
-  bool found = false;  // whether the surface comes within the margin (or encloses the tool), to 1e-6 m
-  // The deepest contact, valid when found: none is deeper by 2e-5 m, or by 5e-5 m in a solid that is not
-  // convex and does not know its concavity.
+  bool found = false;  // the surface is within the margin or encloses the tool, to 1e-6 m
+  // Deepest contact, valid if found. None is deeper by 2e-5 m, or by 5e-5 m for a non-convex solid of unknown
+  // concavity.
   SurfaceContact nearest;
-  bool overflow = false;  // a capacity was met; `nearest` is still the best of what was searched
+  bool overflow = false;  // a capacity was met; `nearest` is the best of the part that was searched
   int samples_evaluated = 0;
 };
 
-// How far a tool surely is from the surface: three quarters of the way to the nearest point; 0 where they
-// touch, to touch_tolerance_m.
+// Guaranteed distance between a tool and the surface: three quarters of the nearest distance, or 0 if they
+// touch to within touch_tolerance_m.
 struct Clearance {
-  double surely_m = 0.0;
+  double guaranteed_m = 0.0;
   SurfaceContact nearest;
-  bool overflow = false;  // a capacity was met, and nothing is sure
+  bool overflow = false;  // a capacity was met, and the distance is not guaranteed
 };
 
-// Keeps what it evaluated of a surface until its control points move, and looks first where it last found the
-// nearest point. One owner, one thread; allocates only when made. The grid must outlive it.
+// Contact search of one surface with a tool. Reuses what it evaluated until control points move, and starts
+// from the last nearest point. One owner, one thread; allocates only on construction. The grid must outlive
+// it.
 class SurfaceCollider {
  public:
-  // Of a trimmed surface only what `trim` keeps is there. Nearest points on its loops are those of its
-  // polygons, and in cells that loops cross, what Newton's method finds from samples and loops.
+  // `trim`, optional, restricts the surface to the trimmed area. Nearest points on trim loops are those of
+  // their polygons. In cells that loops cross they are what Newton's method finds from samples and loops,
+  // without proof.
   explicit SurfaceCollider(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> trim = nullptr);
 
-  // The surface must have the grid's knots. `closed` says that the surface bounds a body, so that the tool
-  // may be inside it: its depth is then the way along the nearest wall's normal that takes it out. Samples
-  // nearer than `margin_m` are in near_samples() afterwards. Where all samples of the grid are known already,
-  // they may be given (see SurfaceLevels::begin()).
+  // Finds the deepest contact within `margin_m`. The surface must have the grid's knots. `closed` is true if
+  // the surface bounds a body, which may contain the tool; the depth is then the exit along the nearest
+  // wall's normal. near_samples() has the samples within the margin afterwards. `samples` are optional, see
+  // SurfaceLevels::begin().
   CollisionResult collide(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
                           const PlanarPoints& samples = {});
 
-  // After collide() of the same surface and tool: every region of the surface that the tool touches, the
-  // deepest first. Valid until the next call of anything here.
-  const std::vector<ToolContactRegion>& take_regions(const Surface& surface, const ToolShape& tool);
-  // Whether a capacity was met in the last take_regions(), and regions or parts of them may be missing.
+  // Finds every region of the surface that the tool touches, deepest first. Call after collide() with the
+  // same surface and tool. Valid until the next call of a member function.
+  const std::vector<ToolContactRegion>& find_contact_regions(const Surface& surface, const ToolShape& tool);
+  // True if the last find_contact_regions() met a capacity, so that regions or parts of them may be missing.
   bool regions_overflow() const { return regions_overflow_; }
 
-  // For the same surface, without its inside.
+  // Returns a guaranteed distance to the surface, ignoring its interior.
   Clearance clearance(const Surface& surface, const ToolShape& tool);
 
   const std::vector<NearSample>& near_samples() const { return near_; }
 
-  // For tests and overlays, after collide().
+  // Levels of the surface, for tests and overlays after collide().
   SurfaceLevels& levels() { return levels_; }
-  // The cells that were looked at, level by level. Those within a cell that was kept follow each other, in
-  // the order of the cells that were kept.
+  // Cells visited by the last search, level by level. The children of a refined cell are contiguous, in the
+  // order of the refined cells.
   const std::vector<LevelCell>& visited_cells() const { return cells_; }
-  // Those of the finest level that were kept, in the same order.
+  // Refined cells of the finest level, in the same order.
   const std::vector<LevelCell>& finest_cells() const { return finest_; }
 
  private:
@@ -81,40 +111,41 @@ class SurfaceCollider {
     int element_u, element_v, depth;
   };
 
-  // What a search must prove: the deepest contact to the tolerance, or a clearance.
+  // Goal of a search: the deepest contact to the tolerance, or a clearance.
   enum class Proof { deepest, clearance };
 
-  // After SurfaceLevels::begin().
+  // The private functions require SurfaceLevels::begin().
   void find_nearest(const Surface& surface, const ToolShape& tool, double margin, Proof proof,
                     CollisionResult& result);
   void offer_last(const Surface& surface, const ToolShape& tool);
   void offer_coarsest(const ToolShape& tool, double margin);
   void descend(const ToolShape& tool, double margin, CollisionResult& result);
-  void take_near_samples(const ToolShape& tool, double margin, CollisionResult& result);
+  void collect_near_samples(const ToolShape& tool, double margin, CollisionResult& result);
   void visit_cell(const ToolShape& tool, const LevelCell& cell, double reach, CollisionResult& result);
   double enough() const;
   void search_between_samples(const Surface& surface, const ToolShape& tool, const LevelCell& cell,
                               bool& overflow);
-  Patch whole(const LevelCell& cell);
+  Patch whole_patch(const LevelCell& cell);
   double bulge(const Patch& patch);
   bool can_cut(const Patch& patch) const;
   void cut(const Surface& surface, const Patch& patch, const Vector3& centre);
   void offer(const ToolShape& tool, double u, double v, const Vector3& point);
-  void take_nearer(const ToolShape& tool, double u, double v, const Vector3& point);
-  bool is_away(const LevelCell& cell) const { return trimmed_ && trimmed_->is_away(cell); }
+  void update_best(const ToolShape& tool, double u, double v, const Vector3& point);
+  bool is_trimmed_away(const LevelCell& cell) const { return trimmed_ && trimmed_->is_trimmed_away(cell); }
   bool is_cut(const LevelCell& cell) const { return trimmed_ && trimmed_->is_cut(cell); }
-  // The edge of a loop that came nearest, and one that meets it there.
-  struct RimEdges {
+  // The edge of a trim loop that is nearest, and the one that meets it there.
+  struct TrimEdges {
     const TrimmedArea::Edge* first = nullptr;
     const TrimmedArea::Edge* second = nullptr;
   };
-  void offer_rims(const Surface& surface, const ToolShape& tool);
-  void offer_rim(const Surface& surface, const ToolShape& tool, const LevelCell& cell, RimEdges& nearest);
-  void narrow(const Surface& surface, const ToolShape& tool, const RimEdges& nearest);
-  void search_cut_cell(const Surface& surface, const ToolShape& tool, const LevelCell& cell);
-  bool touches_cut(const Surface& surface, const ToolShape& tool, const LevelCell& cell);
+  void offer_trim_loops(const Surface& surface, const ToolShape& tool);
+  void offer_trim_edges(const Surface& surface, const ToolShape& tool, const LevelCell& cell,
+                        TrimEdges& nearest);
+  void minimise_on_edges(const Surface& surface, const ToolShape& tool, const TrimEdges& nearest);
+  void search_trimmed_cell(const Surface& surface, const ToolShape& tool, const LevelCell& cell);
+  bool touches_trimmed_cell(const Surface& surface, const ToolShape& tool, const LevelCell& cell);
   void polish(const Surface& surface, const ToolShape& tool);
-  void polish_by_form(const Surface& surface, const ToolShape& tool);
+  void polish_analytic(const Surface& surface, const ToolShape& tool);
   double depth_inside(const ToolShape& tool, const SurfaceContact& nearest) const;
   double reach(double margin) const;
 
@@ -122,38 +153,38 @@ class SurfaceCollider {
   int finest_index(int i, int j) const;
   int region_at(double u, double v) const;
   bool touches(const Surface& surface, const ToolShape& tool, const LevelCell& cell);
-  void take_touched(const Surface& surface, const ToolShape& tool);
+  void find_touched_cells(const Surface& surface, const ToolShape& tool);
   void join_neighbours(int first, int region);
   void add_region(const Surface& surface, const ToolShape& tool, int begin, int end);
 
   SurfaceLevels levels_;
-  std::shared_ptr<const TrimmedLevels> trimmed_;  // null: all of the surface is there
-  // Of the tool's distance, for the elements of each span of v and of each span of u.
+  std::shared_ptr<const TrimmedLevels> trimmed_;  // null if the surface is not trimmed
+  // Lower bounds of the tool's distance to the elements of each span of v and of u.
   std::vector<double> column_bound_, row_bound_;
   std::vector<LevelCell> cells_, finest_;
   std::vector<Patch> patches_;
   std::vector<NearSample> near_;
-  std::vector<std::uint32_t> near_at_;  // the query in which a sample was looked at
+  std::vector<std::uint32_t> near_at_;  // query in which a sample was visited
   std::uint32_t query_ = 0;
   SurfaceSpot best_;
-  SurfaceSpot last_;    // the best of the query before
-  bool asked_ = false;  // whether there was one
-  bool moved_ = true;   // since the boxes were taken
+  SurfaceSpot last_;       // best of the previous query
+  bool has_last_ = false;  // true after the first query
+  bool moved_ = true;      // since the boxes were updated
   Proof proof_ = Proof::deepest;
   double tolerance_ = 0.0;
   int cuts_left_ = 0;
 
-  // The finest cells that the tool touches, those of a region beside each other once they are grouped.
+  // Finest cells that the tool touches. Those of one region are contiguous in grouped_.
   struct TouchedCell {
     LevelCell cell;
-    int region;  // -1 before it is known
+    int region;  // -1 until it is assigned
   };
   std::vector<TouchedCell> touched_;
   std::vector<int> grouped_;               // into touched_
   std::vector<int> touched_index_;         // by finest_index(), into touched_
-  std::vector<std::uint32_t> touched_at_;  // the query in which the tool touched the cell
+  std::vector<std::uint32_t> touched_at_;  // query in which the tool touched the cell
   std::vector<ToolContactRegion> regions_;
-  int region_ = -1;  // which the search must not leave
+  int region_ = -1;  // region that the search must not leave; -1 for none
   bool regions_overflow_ = false;
 };
 

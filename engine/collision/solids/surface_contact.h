@@ -1,36 +1,51 @@
-// A contact of a tool with a surface: where on it, in which frame, how deep.
+// A contact of a tool with a surface (position, frame and depth), and the local search for the deepest point
+// in a solid.
 #pragma once
 
 #include "engine/bspline/surface.h"
-#include "engine/collision/levels/parameter_range.h"
-#include "engine/collision/solids/solid_polish.h"
+#include "engine/collision/levels/surface_levels.h"
+#include "engine/collision/solids/tool_shape.h"
 
 namespace spoonbill {
 
-// Unit, spanning the plane across a unit normal: along du as far as it lies in it, and normal x u. Where du
-// vanishes, as at a pole, both are chosen by dv or, where that vanishes too, by the normal alone.
+// A point of a surface and the tool's signed distance there.
+struct SurfaceSpot {
+  double u = 0.0, v = 0.0;
+  Vector3 point_m = Vector3::Zero();
+  double distance_m = 0.0;
+};
+
+// Descends from `from` to a local minimum of the distance over the surface; the result is never farther.
+// Where several faces of the solid are equally near (an edge, an inner ridge), it keeps each face's second
+// order expansion. Each step minimises their maximum: a bundle-Newton method (Luksan and Vlcek 1998) in two
+// unknowns. The tool must be a solid. Allocates nothing.
+SurfaceSpot polish_on_solid(const Surface& surface, const ToolShape& tool, const SurfaceSpot& from);
+
+// Unit tangents spanning the plane across a unit normal: the projection of du and normal x u. Where du
+// vanishes, as at a pole, dv is used instead, or the normal alone if that vanishes too.
 struct Tangents {
   Vector3 u = Vector3::UnitX(), v = Vector3::UnitZ();
 };
 Tangents tangents_across(const Vector3& normal, const SurfacePoint& at);
 
+// Position, frame and depth of a contact on a surface.
 struct SurfaceContact {
   double u = 0.0, v = 0.0;
   Vector3 point_m = Vector3::Zero();  // on the surface
   Vector3 normal = Vector3::UnitY();  // unit, along du x dv
-  double depth_m = 0.0;               // of the tool in the surface's inside; negative where they are apart
+  double depth_m = 0.0;               // depth of the tool inside the surface; negative if apart
   Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // tangents_across() the normal
 };
 
-// A part of the surface that a tool touches and that hangs together.
+// A connected part of the surface that a tool touches.
 struct ToolContactRegion {
-  ParameterRange range;  // all of it is within
+  ParameterRange range;  // parameter rectangle that contains the region
   SurfaceContact deepest;
 };
 
 inline constexpr int tool_region_capacity = 64;
 
-// The frame at a spot, its depth that of the distance.
+// Makes the contact at a spot; the depth is the negative of its distance.
 SurfaceContact contact_at(const Surface& surface, const SurfaceSpot& spot);
 
 }  // namespace spoonbill

@@ -1,4 +1,5 @@
-// The shapes of tools as signed distances: negative inside the tool.
+// Tool shapes as signed distances, negative inside the tool, and lower bounds of the distance over boxes and
+// patches.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,19 +7,21 @@
 
 #include "engine/base/assert.h"
 #include "engine/base/geometry.h"
+#include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/solids/signed_distance.h"
 
 namespace spoonbill {
 
-// A sphere about `centre_m`; a point where the radius is 0; or the half-space behind a plane through
-// `centre_m` with the unit normal `normal`; or any solid, its frame at `centre_m` and turned by `turn`.
+// A tool of one of three kinds. A sphere is around `centre_m`, and a point if its radius is 0. A half-space
+// is behind the plane through `centre_m` with the unit normal `normal`. A solid has its frame at `centre_m`,
+// rotated by `turn`.
 struct ToolShape {
   enum class Kind { sphere, half_space, solid };
   Kind kind = Kind::sphere;
   Vector3 centre_m = Vector3::Zero();
   double radius_m = 0.0;
   Vector3 normal = Vector3::UnitX();
-  const SignedDistance* made_of = nullptr;
+  const SignedDistance* distance_field = nullptr;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
 
   static ToolShape sphere(const Vector3& centre_m, double radius_m) {
@@ -37,49 +40,62 @@ struct ToolShape {
     return tool;
   }
   // The solid must outlive the tool.
-  static ToolShape solid(const SignedDistance& made_of, const Pose& pose) {
-    return solid(made_of, pose.position_m, pose.orientation.normalized().toRotationMatrix());
+  static ToolShape solid(const SignedDistance& distance_field, const Pose& pose) {
+    return solid(distance_field, pose.position_m, pose.orientation.normalized().toRotationMatrix());
   }
-  // Its frame may also be mirrored.
-  static ToolShape solid(const SignedDistance& made_of, const Vector3& centre_m,
+  // The frame may be mirrored: `turn` is orthogonal. The solid must outlive the tool.
+  static ToolShape solid(const SignedDistance& distance_field, const Vector3& centre_m,
                          const Eigen::Matrix3d& turn) {
     ToolShape tool;
     tool.kind = Kind::solid;
     tool.centre_m = centre_m;
-    tool.made_of = &made_of;
+    tool.distance_field = &distance_field;
     tool.turn = turn;
     return tool;
   }
 
   bool is_solid() const { return kind == Kind::solid; }
 
-  // Changes by at most the distance moved, which is what makes a ball's bound distance(centre) - radius.
+  // Returns the signed distance, which changes by at most the distance moved. Therefore distance(centre) -
+  // radius bounds a ball.
   double distance(const Vector3& point) const {
-    if (is_solid()) return made_of->at(into_frame(point)).distance_m;
+    if (is_solid()) return distance_field->at(into_frame(point)).distance_m;
     return kind == Kind::sphere ? (point - centre_m).norm() - radius_m : normal.dot(point - centre_m);
   }
 
-  // The same where it is less than `enough`; beyond, a lower bound of it that is at least so far.
+  // Returns the distance if it is less than `enough`; otherwise a lower bound of it that is at least
+  // `enough`.
   double distance_within(const Vector3& point, double enough) const {
-    return is_solid() ? made_of->at_within(into_frame(point), enough).distance_m : distance(point);
+    return is_solid() ? distance_field->at_within(into_frame(point), enough).distance_m : distance(point);
   }
 
-  // Whether no point of a ball is within `reach`, which is not below 0.
+  // Returns true if no point of a ball is within `reach`, which must not be negative.
   bool is_beyond(const Vector3& centre, double radius, double reach) const {
-    return is_solid() ? made_of->is_beyond(into_frame(centre), reach + radius)
+    return is_solid() ? distance_field->is_beyond(into_frame(centre), reach + radius)
                       : distance(centre) - radius > reach;
   }
 
-  // Of a solid alone, in the world frame.
+  // Distance and gradient in the world frame; only for a solid. See SignedDistance::at_within().
   DistanceSample at_within(const Vector3& point, double enough) const {
-    const DistanceSample sample = made_of->at_within(into_frame(point), enough);
+    const DistanceSample sample = distance_field->at_within(into_frame(point), enough);
     return {sample.distance_m, turn * sample.gradient};
   }
   DistanceSample at(const Vector3& point) const {
-    const DistanceSample sample = made_of->at(into_frame(point));
+    const DistanceSample sample = distance_field->at(into_frame(point));
     return {sample.distance_m, turn * sample.gradient};
   }
   Vector3 into_frame(const Vector3& point) const { return turn.transpose() * (point - centre_m); }
 };
+
+// Lower bound of the tool's distance over a box, in metres.
+double lower_bound(const ToolShape& tool, const Box& box);
+
+// Lower bound of the tool's distance over a patch that leaves the bilinear patch of its corners by at most
+// `bulge`. The bound is not improved once it is at least `enough`.
+double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bulge, double enough);
+
+// Distance along the unit normal that moves the tool in front of the plane through `point`. Infinite if the
+// tool is unbounded. Exact to 1e-5 of the tool's size.
+double depth_behind(const ToolShape& tool, const Vector3& point, const Vector3& normal);
 
 }  // namespace spoonbill

@@ -1,55 +1,73 @@
-// The stages in which a contact is found (section 4.1 of Pungotra et al. 2013), as plain data to be looked
-// at: hulls of control points, limits of parameters, spheres level by level, triangles, contact points. No
-// tick computes them: whoever draws does, on its own thread, and may allocate.
+// Stages in which a contact is found (section 4.1 of Pungotra et al. 2013), as data for drawing: hulls of
+// control points, parameter ranges, spheres by level, triangles and contact points. They are computed on the
+// drawing thread, not in the tick, and may allocate.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "engine/base/geometry.h"
 #include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/meshes/triangle.h"
 #include "engine/collision/solids/surface_contact.h"
 
 namespace spoonbill {
 
-// The finest level of the spheres that are shown. A body's own grid in a simulation ends at level 1, and the
-// search goes on below by cutting patches in four, as these levels do.
+// The convex hull of points as triangles and edges, given by indices into the points.
+struct HullFacets {
+  std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside
+  std::vector<std::array<int, 2>> edges;      // edges between triangles that bend by half a degree or more
+};
+
+// Builds the hull of points rounded to 2^20 steps of their box's longest side, for which the volume signs are
+// exact. The points are outside it by less than one step. Empty if they are in one plane or not finite.
+//
+// Time is proportional to points times triangles, up to half a second for the largest control nets. Any
+// thread.
+HullFacets hull_facets(const std::vector<Vector3>& points_m);
+
+// Finest level of the displayed spheres. A body's grid in a simulation ends at level 1; below it the contact
+// search cuts patches in four, as these levels do.
 inline constexpr int finest_stage_level = 3;
 
-// What is kept of each kind; beyond, ContactStages::overflow says so.
+// Largest number of stored items of each kind; ContactStages::overflow is set beyond it.
 inline constexpr std::size_t stage_capacity = 1 << 14;
 
+// A line segment.
 struct StageLine {
   Vector3 start_m, end_m;
 };
 
-// One cell's sphere that was looked at.
+// The sphere of a visited cell.
 struct StageSphere {
   CoverSphere cover;
   LevelCell cell;
-  int surface = 0;         // counted through all surfaces of the stages
-  bool is_second = false;  // of two surfaces
-  bool kept = false;       // refined, or triangulated on the last level; dropped otherwise
+  int surface = 0;         // index over all surfaces of the stages
+  bool is_second = false;  // on the second of two surfaces
+  bool kept = false;       // refined, or triangulated at the last level; false if dropped
 };
 
-// One of the two triangles of a cell of the last level that can meet the other side: with the slack by which
-// the surface may leave it.
+// One of the two triangles of a cell of the last level that may meet the other side, including the deviation
+// of the surface from it.
 struct StageTriangle {
   Triangle corners;
   LevelCell cell;
   int surface = 0;
 };
 
+// A contact point.
 struct StageContact {
   SurfaceContact at;
-  bool is_deepest = false;  // of its region
+  bool is_deepest = false;  // deepest point of its region
 };
 
+// All stages of one or more contact searches.
 struct ContactStages {
-  std::vector<StageLine> hulls;   // their edges
-  std::vector<StageLine> ranges;  // borders of the elements within the limits of the parameters
+  std::vector<StageLine> hulls;   // edges of the hulls
+  std::vector<StageLine> ranges;  // borders of the elements within the parameter ranges
   int elements = 0, elements_within = 0;
   std::vector<StageSphere> spheres;  // level by level for each surface
   std::vector<StageTriangle> triangles;
@@ -59,21 +77,62 @@ struct ContactStages {
   bool overflow = false;
 };
 
-// The edges of the hull of a surface's control points, which hold the surface.
+// Adds the edges of the convex hull of the control points, which contains the surface.
 void add_hull(const ControlNet& net, ContactStages& stages);
 
-// How far the surface over a cell of the finest level can be from the cell's two triangles.
+// Returns an upper bound of the distance between the surface over a finest cell and the cell's two triangles,
+// in metres.
 double triangle_slack(SurfaceLevels& levels, const LevelCell& cell);
-std::array<Triangle, 2> triangles_of(const PatchCorners& corners);
+// Returns the two triangles of a cell with the given corners.
+std::array<Triangle, 2> cell_triangles(const PatchCorners& corners);
 
-// Appends up to the capacity.
+// Appends an item unless stage_capacity is met, in which case it sets the overflow flag.
 template <class Item>
-void keep(Item item, std::vector<Item>& items, ContactStages& stages) {
+void append(Item item, std::vector<Item>& items, ContactStages& stages) {
   if (items.size() == stage_capacity) {
     stages.overflow = true;
     return;
   }
   items.push_back(std::move(item));
 }
+
+// Set of elements of one surface. One owner, one thread. The levels must have begun a query and outlive it.
+class ElementMarks {
+ public:
+  explicit ElementMarks(SurfaceLevels& levels)
+      : levels_(levels),
+        rows_((levels.nested().grid.rows() - 1) / levels.step(0)),
+        columns_((levels.nested().grid.columns() - 1) / levels.step(0)),
+        within_(static_cast<std::size_t>(rows_ * columns_), 0) {}
+
+  void mark(const LevelCell& element) {
+    within_[static_cast<std::size_t>(element.i / levels_.step(0) * columns_ + element.j / levels_.step(0))] =
+        1;
+  }
+  template <class Visit>
+  void visit(const Visit& visit) const {
+    for (int row = 0; row < rows_; ++row) {
+      for (int column = 0; column < columns_; ++column) {
+        if (is_within(row, column)) visit(LevelCell{row * levels_.step(0), column * levels_.step(0), 0});
+      }
+    }
+  }
+  void add_to(ContactStages& stages) const;
+
+ private:
+  bool is_within(int row, int column) const {
+    const Grid& grid = levels_.nested().grid;
+    if (grid.u.knots.is_periodic()) row = (row + rows_) % rows_;
+    if (grid.v.knots.is_periodic()) column = (column + columns_) % columns_;
+    if (row < 0 || row >= rows_ || column < 0 || column >= columns_) return false;
+    return within_[static_cast<std::size_t>(row * columns_ + column)] != 0;
+  }
+  // Adds the line through the samples from (i, j), with the given step in rows and columns.
+  void add_border(int i, int j, int row_step, int column_step, ContactStages& stages) const;
+
+  SurfaceLevels& levels_;
+  int rows_, columns_;
+  std::vector<std::uint8_t> within_;
+};
 
 }  // namespace spoonbill

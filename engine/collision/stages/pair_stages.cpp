@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/collision/stages/element_marks.h"
+#include "engine/collision/stages/contact_stages.h"
 
 namespace spoonbill {
 
@@ -28,7 +28,7 @@ void PairStages::add(const Surface& first, const Surface& second, double margin_
   query.first_closed = first_closed;
   query.second_closed = second_closed;
   query.reach_m = margin_m;
-  // A used one looks first where it last found contacts.
+  // A new collider starts without the contacts of an earlier call, so the stages are complete.
   collider_ = std::make_unique<SurfacePairCollider>(*first_, *second_);
   const PairResult result = collider_->collide(first, second, query);
   stages.overflow |= result.overflow;
@@ -36,7 +36,7 @@ void PairStages::add(const Surface& first, const Surface& second, double margin_
   const int number = stages.surfaces;
   stages.surfaces += 2;
   const int level = add_spheres(margin_m, number, stages);
-  add_triangles(collider_->cell_pairs().within_at(margin_m, level), margin_m, number, stages);
+  add_triangles(collider_->cell_pairs().find_within_at_level(margin_m, level), margin_m, number, stages);
 }
 
 void PairStages::add_contacts(const Surface& first, const Surface& second, const PairQuery& query,
@@ -45,30 +45,30 @@ void PairStages::add_contacts(const Surface& first, const Surface& second, const
   if (!result.touching && !near) return;
   proximity_->find(first, second, query.reach_m, query.second_closed ? 1.0 : -1.0);
   stages.overflow |= proximity_->overflow();
-  for (const NearPoint& point : proximity_->of_first()) {
-    keep(StageContact{contact_at(first, {point.u, point.v, point.point_m, point.gap_m})}, stages.contacts,
-         stages);
+  for (const NearPoint& point : proximity_->first_points()) {
+    append(StageContact{contact_at(first, {point.u, point.v, point.point_m, point.gap_m})}, stages.contacts,
+           stages);
   }
   const auto add_both = [&](const SurfacePair& pair, double distance) {
     const PairParameters& at = pair.at;
-    keep(StageContact{contact_at(first, {at.u, at.v, pair.first_m, distance}), true}, stages.contacts,
-         stages);
-    keep(StageContact{contact_at(second, {at.s, at.t, pair.second_m, distance}), true}, stages.contacts,
-         stages);
+    append(StageContact{contact_at(first, {at.u, at.v, pair.first_m, distance}), true}, stages.contacts,
+           stages);
+    append(StageContact{contact_at(second, {at.s, at.t, pair.second_m, distance}), true}, stages.contacts,
+           stages);
   };
   for (const PairContact& contact : collider_->contacts()) add_both(contact.pair, -contact.depth_m);
   if (!result.touching) add_both(result.nearest, result.distance_m);
 }
 
-// The cells of one level with their spheres; returns those that were kept, refined. Those of the last level
-// are not, and what is returned of them is not used.
+// Adds the spheres of one level's cells. Returns the children of the cells that were kept; for the last level
+// the result is unused.
 std::vector<LevelCell> PairStages::add_level(SurfaceLevels& levels, const std::vector<LevelCell>& visited,
                                              const Marks& kept, int surface, bool is_second,
                                              ContactStages& stages) {
   std::vector<LevelCell> finer;
   for (const LevelCell& cell : visited) {
     const bool is_kept = kept[static_cast<std::size_t>(levels.cell_index(cell))] != 0;
-    keep(StageSphere{levels.cover(cell), cell, surface, is_second, is_kept}, stages.spheres, stages);
+    append(StageSphere{levels.cover(cell), cell, surface, is_second, is_kept}, stages.spheres, stages);
     if (!is_kept || levels.is_finest(cell)) continue;
     const int half = levels.step(cell.level) / 2;
     for (int k = 0; k < 4; ++k) {
@@ -78,7 +78,7 @@ std::vector<LevelCell> PairStages::add_level(SurfaceLevels& levels, const std::v
   return finer;
 }
 
-// Returns the last level at which there are not too many pairs to tell.
+// Returns the last level whose pairs fit the capacity.
 int PairStages::add_spheres(double margin_m, int first_surface, ContactStages& stages) {
   SurfaceLevels* const levels[2] = {&collider_->first_levels(), &collider_->second_levels()};
   CellPairs& pairs = collider_->cell_pairs();
@@ -96,9 +96,9 @@ int PairStages::add_spheres(double margin_m, int first_surface, ContactStages& s
   for (int level = 0;; ++level) {
     Marks kept[2];
     for (int side = 0; side < 2; ++side) {
-      kept[side].assign(static_cast<std::size_t>(levels[side]->all_cells()), 0);
+      kept[side].assign(static_cast<std::size_t>(levels[side]->total_cell_count()), 0);
     }
-    for (const CellPair& pair : pairs.within_at(margin_m, level)) {
+    for (const CellPair& pair : pairs.find_within_at_level(margin_m, level)) {
       kept[0][static_cast<std::size_t>(levels[0]->cell_index(pair.first))] = 1;
       kept[1][static_cast<std::size_t>(levels[1]->cell_index(pair.second))] = 1;
     }
@@ -107,7 +107,7 @@ int PairStages::add_spheres(double margin_m, int first_surface, ContactStages& s
           add_level(*levels[side], visited[side], kept[side], first_surface + side, side == 1, stages);
     }
     if (level == finest_stage_level) return level;
-    pairs.within_at(margin_m, level + 1);
+    pairs.find_within_at_level(margin_m, level + 1);
     if (pairs.overflow()) return level;
   }
 }
@@ -115,30 +115,30 @@ int PairStages::add_spheres(double margin_m, int first_surface, ContactStages& s
 void PairStages::add_triangles(const std::vector<CellPair>& pairs, double margin_m, int first_surface,
                                ContactStages& stages) {
   SurfaceLevels* const levels[2] = {&collider_->first_levels(), &collider_->second_levels()};
-  // By cell and triangle: 1 where it was tested, 2 where it was kept.
+  // Marks by cell and triangle: 1 if it was tested, 2 if it was kept.
   Marks marks[2];
   for (int side = 0; side < 2; ++side) {
-    marks[side].assign(static_cast<std::size_t>(2 * levels[side]->all_cells()), 0);
+    marks[side].assign(static_cast<std::size_t>(2 * levels[side]->total_cell_count()), 0);
   }
-  const auto take = [&](int side, const LevelCell& cell, int k, const Triangle& triangle, bool meets) {
+  const auto record = [&](int side, const LevelCell& cell, int k, const Triangle& triangle, bool meets) {
     std::uint8_t& mark = marks[side][static_cast<std::size_t>(2 * levels[side]->cell_index(cell) + k)];
     if (mark == 0) ++stages.triangles_tested;
     if (meets && mark != 2) {
-      keep(StageTriangle{triangle, cell, first_surface + side}, stages.triangles, stages);
+      append(StageTriangle{triangle, cell, first_surface + side}, stages.triangles, stages);
     }
     mark = meets || mark == 2 ? 2 : 1;
   };
   for (const CellPair& pair : pairs) {
     const double slack =
         margin_m + triangle_slack(*levels[0], pair.first) + triangle_slack(*levels[1], pair.second);
-    const auto of_first = triangles_of(levels[0]->corners(pair.first));
-    const auto of_second = triangles_of(levels[1]->corners(pair.second));
+    const auto first_triangles = cell_triangles(levels[0]->corners(pair.first));
+    const auto second_triangles = cell_triangles(levels[1]->corners(pair.second));
     for (int k = 0; k < 4; ++k) {
-      const Triangle &one = of_first[static_cast<std::size_t>(k >> 1)],
-                     &other = of_second[static_cast<std::size_t>(k & 1)];
+      const Triangle &one = first_triangles[static_cast<std::size_t>(k >> 1)],
+                     &other = second_triangles[static_cast<std::size_t>(k & 1)];
       const bool meet = triangles_meet(one, other, slack);
-      take(0, pair.first, k >> 1, one, meet);
-      take(1, pair.second, k & 1, other, meet);
+      record(0, pair.first, k >> 1, one, meet);
+      record(1, pair.second, k & 1, other, meet);
     }
   }
 }

@@ -1,4 +1,4 @@
-// The stages of the contact of two surfaces.
+// Stages of the contact of two surfaces.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,20 @@
 
 namespace spoonbill {
 
-// Of each cell that the descent of SurfacePairCollider visits, the sphere is shown; it drops a
-// cell by slabs about the same patch, which are tighter, so that spheres of dropped cells may still meet.
-// One owner, one thread. The knots are those of the surfaces given later.
+// Records the stages of a SurfacePairCollider. It shows the sphere of each cell visited, but the collider
+// drops cells by tighter slabs, so spheres of dropped cells may still meet. One owner, one thread. The knots
+// must be those of the surfaces given later.
 class PairStages {
  public:
   static Result<PairStages> make(const Surface& first, const Surface& second);
 
+  // Adds the stages of a contact search up to `margin_m`; `first_closed` and `second_closed` as in PairQuery.
   void add(const Surface& first, const Surface& second, double margin_m, bool first_closed,
            bool second_closed, ContactStages& stages);
 
  private:
   PairStages(NestedGrid first, NestedGrid second);
-  // By SurfaceLevels::cell_index().
+  // Flags by SurfaceLevels::cell_index().
   using Marks = std::vector<std::uint8_t>;
   static std::vector<LevelCell> add_level(SurfaceLevels& levels, const std::vector<LevelCell>& visited,
                                           const Marks& kept, int surface, bool is_second,
@@ -35,8 +36,8 @@ class PairStages {
   void add_triangles(const std::vector<CellPair>& pairs, double margin_m, int first_surface,
                      ContactStages& stages);
 
-  std::unique_ptr<NestedGrid> first_, second_;     // by pointer, which the collider keeps
-  std::unique_ptr<SurfacePairCollider> collider_;  // of the last add()
+  std::unique_ptr<NestedGrid> first_, second_;     // on the heap, because the collider stores the addresses
+  std::unique_ptr<SurfacePairCollider> collider_;  // collider of the last add()
   std::unique_ptr<SurfaceProximity> proximity_;
 };
 

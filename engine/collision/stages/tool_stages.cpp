@@ -5,15 +5,15 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/collision/stages/element_marks.h"
+#include "engine/collision/stages/contact_stages.h"
 
 namespace spoonbill {
 namespace {
 
-// How often a triangle is cut in four before it counts as near enough.
+// Number of times a triangle is cut in four before it counts as near.
 constexpr int triangle_cuts = 6;
 
-// By balls about the triangle and its parts.
+// Tests balls around the triangle and its parts.
 bool is_within(const ToolShape& tool, const Triangle& triangle, double reach_m, int cuts) {
   const auto& [a, b, c] = triangle;
   const Vector3 centre = (a + b + c) / 3.0;
@@ -40,7 +40,7 @@ ToolStages::ToolStages(NestedGrid nested) : nested_(std::make_unique<NestedGrid>
 void ToolStages::add(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
                      ContactStages& stages, std::shared_ptr<const TrimmedArea> trim) {
   SPOONBILL_ASSERT(margin_m >= 0.0);
-  // A used one looks first where it last found a contact.
+  // A new collider starts without the contact of an earlier call, so the stages are complete.
   collider_ = std::make_unique<SurfaceCollider>(*nested_, std::move(trim));
   const CollisionResult result = collider_->collide(surface, tool, margin_m, closed);
   stages.overflow |= result.overflow;
@@ -55,12 +55,13 @@ void ToolStages::add_spheres(int surface, ContactStages& stages) {
   SurfaceLevels& levels = collider_->levels();
   const std::vector<LevelCell>& visited = collider_->visited_cells();
   const std::vector<LevelCell>& finest = collider_->finest_cells();
-  const auto holds = [&](const LevelCell& cell, const LevelCell& other) {
+  const auto contains = [&](const LevelCell& cell, const LevelCell& other) {
     const int step = levels.step(cell.level);
     return other.i >= cell.i && other.i < cell.i + step && other.j >= cell.j && other.j < cell.j + step;
   };
   ElementMarks within(levels);
-  std::size_t finer = 0, last = 0;  // the cells that the next one kept was refined to, or became
+  std::size_t finer = 0,
+              last = 0;  // positions of the children of the next refined cell, and of the next finest cell
   while (finer < visited.size() && visited[finer].level == 0) ++finer;
   for (const LevelCell& cell : visited) {
     if (cell.level == 0) within.mark(cell);
@@ -70,12 +71,12 @@ void ToolStages::add_spheres(int surface, ContactStages& stages) {
       if (kept) ++last;
     } else {
       while (finer < visited.size() && visited[finer].level == cell.level + 1 &&
-             holds(cell, visited[finer])) {
+             contains(cell, visited[finer])) {
         kept = true;
         ++finer;
       }
     }
-    keep(StageSphere{levels.cover(cell), cell, surface, false, kept}, stages.spheres, stages);
+    append(StageSphere{levels.cover(cell), cell, surface, false, kept}, stages.spheres, stages);
   }
   within.add_to(stages);
 }
@@ -85,10 +86,10 @@ void ToolStages::add_triangles(const ToolShape& tool, double margin_m, int surfa
   for (const LevelCell& cell : collider_->finest_cells()) {
     const PatchCorners at = levels.corners(cell);
     const double reach = margin_m + triangle_slack(levels, cell);
-    for (const Triangle& triangle : triangles_of(at)) {
+    for (const Triangle& triangle : cell_triangles(at)) {
       ++stages.triangles_tested;
       if (!is_within(tool, triangle, reach, triangle_cuts)) continue;
-      keep(StageTriangle{triangle, cell, surface}, stages.triangles, stages);
+      append(StageTriangle{triangle, cell, surface}, stages.triangles, stages);
     }
   }
 }
@@ -100,13 +101,13 @@ void ToolStages::add_contacts(const Surface& surface, const ToolShape& tool, con
     const SurfaceSpot spot{grid.u.parameters[static_cast<std::size_t>(sample.index / grid.columns())],
                            grid.v.parameters[static_cast<std::size_t>(sample.index % grid.columns())],
                            collider_->levels().sample(sample.index), sample.distance_m};
-    keep(StageContact{contact_at(surface, spot)}, stages.contacts, stages);
+    append(StageContact{contact_at(surface, spot)}, stages.contacts, stages);
   }
-  const std::vector<ToolContactRegion>& regions = collider_->take_regions(surface, tool);
+  const std::vector<ToolContactRegion>& regions = collider_->find_contact_regions(surface, tool);
   for (const ToolContactRegion& region : regions) {
-    keep(StageContact{region.deepest, true}, stages.contacts, stages);
+    append(StageContact{region.deepest, true}, stages.contacts, stages);
   }
-  if (regions.empty()) keep(StageContact{result.nearest, true}, stages.contacts, stages);
+  if (regions.empty()) append(StageContact{result.nearest, true}, stages.contacts, stages);
 }
 
 }  // namespace spoonbill

@@ -1,4 +1,4 @@
-// The stages of the contact of a surface with a tool that is a signed distance.
+// Stages of the contact of a surface with a tool that is a signed distance.
 #pragma once
 
 #include <memory>
@@ -9,14 +9,13 @@
 
 namespace spoonbill {
 
-// What is shown is what a SurfaceCollider does that is asked for the first time: its cells, its spheres, its
-// contacts. One owner, one thread. The knots are those of the surfaces given later.
+// Records the stages of a new SurfaceCollider: its cells, spheres and contacts. One owner, one thread. The
+// knots must be those of the surfaces given later.
 class ToolStages {
  public:
   static Result<ToolStages> make(const KnotVector& u, const KnotVector& v);
 
-  // Contacts are searched up to `margin_m` away; `closed` as in SurfaceCollider::collide(), `trim` as
-  // when one is made.
+  // Adds the stages of a contact search up to `margin_m`; `closed` and `trim` as in SurfaceCollider.
   void add(const Surface& surface, const ToolShape& tool, double margin_m, bool closed, ContactStages& stages,
            std::shared_ptr<const TrimmedArea> trim = nullptr);
 
@@ -27,8 +26,8 @@ class ToolStages {
   void add_contacts(const Surface& surface, const ToolShape& tool, const CollisionResult& result,
                     ContactStages& stages);
 
-  std::unique_ptr<NestedGrid> nested_;         // by pointer, which the collider keeps
-  std::unique_ptr<SurfaceCollider> collider_;  // of the last add()
+  std::unique_ptr<NestedGrid> nested_;         // on the heap, because the collider stores its address
+  std::unique_ptr<SurfaceCollider> collider_;  // collider of the last add()
 };
 
 }  // namespace spoonbill

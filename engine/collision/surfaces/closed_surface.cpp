@@ -13,62 +13,72 @@
 namespace spoonbill {
 namespace {
 
-// Of the radius: how little the points of a ring lie out along their normals where it is pressed flat, by
-// rounding of positions and normals.
-constexpr double flat = 1e-9;
+// Fraction of the radius below which the outward component of a ring's points is rounding, so that the ring
+// is flat.
+constexpr double flat_fraction = 1e-9;
 
 Status check_poles(const Surface& surface) {
   const Ring first = sample_ring(surface, surface.v.domain_start());
   const Ring last = sample_ring(surface, surface.v.domain_end());
   const double size = (last.centre - first.centre).norm();
-  if (!(size > 0.0)) return Error{"surface: the poles at both ends of v coincide; the body has no length"};
+  if (!(size > 0.0)) {
+    return Error(ErrorCode::degenerate,
+                 "surface: the poles at both ends of v coincide; the body has no length");
+  }
   if (first.perimeter > 1e-6 * size || last.perimeter > 1e-6 * size) {
-    return Error{"surface: both ends of v must be poles (all control points of the edge in one place)"};
+    return Error(ErrorCode::inconsistent,
+                 "surface: both ends of v must be poles (all control points of the edge at one position)");
   }
   return {};
 }
 
-Status check_thick_in_middle(const Surface& surface) {
-  const double middle = parameter_at(surface.v, 0.5);
-  const Ring ring = sample_ring(surface, middle);
+Status check_thickness(const Surface& surface) {
+  const double centre = parameter_at(surface.v, 0.5);
+  const Ring ring = sample_ring(surface, centre);
   double outward = 0.0, radius = 0.0;
   for (int s = 0; s < ring_samples; s += 8) {
     const double u = parameter_at(surface.u, static_cast<double>(s) / ring_samples);
-    outward += unit_normal(surface, u, middle).dot(ring.points[s] - ring.centre);
+    outward += unit_normal(surface, u, centre).dot(ring.points[s] - ring.centre);
     radius += (ring.points[s] - ring.centre).norm();
   }
-  if (std::abs(outward) > flat * radius) return {};
-  return Error{"surface: flat in the middle, where it encloses no volume; a body must be thick everywhere"};
+  if (std::abs(outward) > flat_fraction * radius) return {};
+  return Error(ErrorCode::degenerate,
+               "surface: encloses no volume halfway along v; a body must be thick everywhere");
 }
 
-// By the volume: a ring of a hollow body may lie on the wall inside, whose normals point to its axis.
+// Uses the volume, because a ring of a hollow body may be on its inner wall, where the normals point to the
+// axis.
 Status check_outward(const Surface& surface) {
-  const double volume = enclosed_volume_m3(skin_of(surface));
+  const double volume = enclosed_volume_m3(make_skin(surface));
   if (volume > 0.0) return {};
   if (volume < 0.0) {
-    return Error{"surface: normals point inward; reverse the order of the control points in u"};
+    return Error(ErrorCode::inconsistent,
+                 "surface: normals point inward; reverse the order of the control points in u");
   }
-  return Error{"surface: encloses no volume; a body must be thick everywhere"};
+  return Error(ErrorCode::degenerate, "surface: encloses no volume; a body must be thick everywhere");
 }
 
-// Leaves out what has no area, as beside a pole.
-void add_triangle(ClosedSkin& skin, const TriangleCorners& corners, const std::array<double, 2>& middle) {
+// Skips triangles without area, which occur beside a pole.
+void add_triangle(ClosedSkin& skin, const TriangleCorners& corners, const std::array<double, 2>& centre) {
   const std::vector<Vector3>& at = skin.mesh.vertices_m;
   const Vector3& first = at[corners[0]];
   if (!((at[corners[1]] - first).cross(at[corners[2]] - first).squaredNorm() > 0.0)) return;
   skin.mesh.triangles.push_back(corners);
-  skin.middles.push_back(middle);
+  skin.triangle_centres.push_back(centre);
 }
 
 }  // namespace
 
 Status check_closed_tube(const Surface& surface) {
-  if (!surface.u.is_periodic()) return Error{"surface: u must be periodic for a closed body"};
+  if (!surface.u.is_periodic()) {
+    return Error(ErrorCode::inconsistent, "surface: u must be periodic for a closed body");
+  }
   if (surface.v.is_periodic()) {
-    return Error{"surface: v must be open, with a pole at both ends, for a closed body"};
+    return Error(ErrorCode::inconsistent,
+                 "surface: v must be open, with a pole at both ends, for a closed body");
   }
   if (Status poles = check_poles(surface); !poles) return poles;
-  if (Status thick = check_thick_in_middle(surface); !thick) return thick;
+  if (Status thick = check_thickness(surface); !thick) return thick;
   return check_outward(surface);
 }
 
@@ -84,11 +94,11 @@ std::vector<double> skin_parameters(const KnotVector& knots) {
   return nested_parameters(knots, pieces, 0).parameters;
 }
 
-ClosedSkin skin_of(const Surface& surface) {
-  return skin_between(surface, skin_parameters(surface.u), skin_parameters(surface.v));
+ClosedSkin make_skin(const Surface& surface) {
+  return sample_skin(surface, skin_parameters(surface.u), skin_parameters(surface.v));
 }
 
-ClosedSkin skin_between(const Surface& surface, const std::vector<double>& u, const std::vector<double>& v) {
+ClosedSkin sample_skin(const Surface& surface, const std::vector<double>& u, const std::vector<double>& v) {
   SPOONBILL_ASSERT(u.size() >= 2 && v.size() >= 2);
   SPOONBILL_ASSERT_DEBUG(std::is_sorted(u.begin(), u.end()) && std::is_sorted(v.begin(), v.end()));
   const std::size_t rows = u.size() - 1, last = v.size() - 1;

@@ -1,4 +1,4 @@
-// Whether a surface closes about a body, and its skin as triangles.
+// Closed surfaces: checks, the enclosed volume and a triangle skin.
 #pragma once
 
 #include <array>
@@ -10,31 +10,33 @@
 
 namespace spoonbill {
 
-// Whether the surface is a closed tube: periodic in u, a single point (a pole) at both ends of v, normals
-// outward. The message says which of these fails.
+// Checks that the surface is a closed tube: periodic in u, a single point (a pole) at both ends of v, normals
+// outward.
 Status check_closed_tube(const Surface& surface);
 
-// The same of a closed tube, or of a ring: periodic in both directions.
+// Checks that the surface is a closed tube or a ring, which is periodic in both directions, with outward
+// normals.
 Status check_closed(const Surface& surface);
 
-// Triangles between samples of a surface whose ends close as check_closed() asks, whichever way its normals
-// point; what is one place, over a seam or at a pole, is one vertex.
+// Triangles between samples of a surface that closes as check_closed() requires, with normals in either
+// direction. Points that coincide over a seam or at a pole are one vertex.
 struct ClosedSkin {
   TriangleMesh mesh;
-  std::vector<double> u, v;                    // of each vertex; any u at a pole
-  std::vector<std::array<double, 2>> middles;  // u and v in the middle of each triangle
+  std::vector<double> u, v;                             // parameters of each vertex; u is arbitrary at a pole
+  std::vector<std::array<double, 2>> triangle_centres;  // u and v at the centroid of each triangle
 };
-ClosedSkin skin_of(const Surface& surface);
+// Samples a closed surface at its skin_parameters().
+ClosedSkin make_skin(const Surface& surface);
 
-// The samples of skin_of() in a direction: about `skin_samples`, two to eight an element, two also where that
-// is more.
+// Number of samples in a direction that skin_parameters() aims at. Each element gets two to eight, so a
+// surface of many elements has more.
 inline constexpr int skin_samples = 200;
 std::vector<double> skin_parameters(const KnotVector& knots);
 
-// At other samples, from the start of both domains to their ends.
-ClosedSkin skin_between(const Surface& surface, const std::vector<double>& u, const std::vector<double>& v);
+// Samples a closed surface at given parameters, ascending from the start of each domain to its end.
+ClosedSkin sample_skin(const Surface& surface, const std::vector<double>& u, const std::vector<double>& v);
 
-// What the surface encloses, by its skin; negative where its normals point inward. m3.
+// Volume that the skin encloses, in cubic metres; negative if its normals point inward.
 double enclosed_volume_m3(const ClosedSkin& skin);
 
 }  // namespace spoonbill

@@ -1,16 +1,20 @@
 #include "engine/collision/surfaces/contact_regions.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 
+#include "engine/base/assert.h"
+
 namespace spoonbill {
+
 namespace {
 
 constexpr std::size_t region_capacity = 64;
 
-// The cell at i, brought back over the seam of a periodic direction; -1 beyond an end.
-int into_grid(const GridDirection& direction, int i) {
+// Maps a cell index across the seam of a periodic direction; returns -1 beyond an open end.
+int wrap_cell(const GridDirection& direction, int i) {
   const int cells = static_cast<int>(direction.parameters.size()) - 1;
   if (i >= 0 && i < cells) return i;
   return direction.knots.is_periodic() ? (i + cells) % cells : -1;
@@ -30,7 +34,7 @@ ContactRegions::ContactRegions(const SurfaceLevels& first, const SurfaceLevels& 
   previous_.reserve(cell_pair_capacity);
   unordered_.reserve(cell_pair_capacity);
   cell_.reserve(cell_pair_capacity);
-  paired_.resize(static_cast<std::size_t>(first.all_cells()));
+  paired_.resize(static_cast<std::size_t>(first.total_cell_count()));
   regions_.reserve(region_capacity);
   end_.reserve(region_capacity);
 }
@@ -40,7 +44,7 @@ int ContactRegions::root(int pair) {
   return pair;
 }
 
-// Joins pairs of two cells of the first surface, the same or neighbours.
+// Joins the pairs of two cells of the first surface that are equal or neighbours.
 void ContactRegions::join(const std::vector<CellPair>& pairs, const Paired& cell, const Paired& other) {
   const int step = second_->step(pairs[cell.last_pair].second.level);
   const bool same = &cell == &other, whole = !same && !cell.split && !other.split;
@@ -55,13 +59,13 @@ void ContactRegions::join(const std::vector<CellPair>& pairs, const Paired& cell
   }
 }
 
-// The cell itself and half of its neighbours: the other half find it.
+// Visits the cell itself and half of its neighbours; the other half visit it.
 void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pair) {
   const LevelCell& cell = pairs[pair].first;
   const Grid& grid = first_->nested().grid;
   const int step = first_->step(cell.level), here = cell_[pair];
-  const int next = into_grid(grid.u, cell.i + step);
-  const int columns[3] = {cell.j, into_grid(grid.v, cell.j + step), into_grid(grid.v, cell.j - step)};
+  const int next = wrap_cell(grid.u, cell.i + step);
+  const int columns[3] = {cell.j, wrap_cell(grid.v, cell.j + step), wrap_cell(grid.v, cell.j - step)};
   const auto offer = [&](int there) {
     if (paired_[there].at == group_) join(pairs, paired_[here], paired_[there]);
   };
@@ -73,7 +77,7 @@ void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pai
   }
 }
 
-void ContactRegions::take_cells(const std::vector<CellPair>& pairs) {
+void ContactRegions::collect_cells(const std::vector<CellPair>& pairs) {
   ++group_;
   const std::size_t count = pairs.size();
   parent_.resize(count);
@@ -90,8 +94,8 @@ void ContactRegions::take_cells(const std::vector<CellPair>& pairs) {
 
 const std::vector<ContactRegions::Region>& ContactRegions::group(std::vector<CellPair>& pairs) {
   const int count = static_cast<int>(pairs.size());
-  take_cells(pairs);
-  // Each cell once, by its first pair.
+  collect_cells(pairs);
+  // Visits each cell once, at its first pair.
   for (int k = 0; k < count; ++k) {
     if (previous_[k] >= 0) continue;
     Paired& cell = paired_[cell_[k]];
@@ -123,6 +127,74 @@ void ContactRegions::order_by_region(std::vector<CellPair>& pairs) {
   }
   unordered_.assign(pairs.begin(), pairs.end());
   for (const CellPair& pair : unordered_) pairs[end_[pair.region]++] = pair;
+}
+
+namespace {
+
+constexpr std::size_t depth_seeds = 8;
+
+// Range of the finest samples that cells cover.
+struct SampleRange {
+  int i0 = std::numeric_limits<int>::max(), i1 = 0, j0 = std::numeric_limits<int>::max(), j1 = 0;
+  void widen(const LevelCell& cell, int step) {
+    i0 = std::min(i0, cell.i);
+    i1 = std::max(i1, cell.i + step);
+    j0 = std::min(j0, cell.j);
+    j1 = std::max(j1, cell.j + step);
+  }
+  ParameterRange to_parameters(const Grid& grid) const {
+    return {grid.u.parameters[i0], grid.u.parameters[i1], grid.v.parameters[j0], grid.v.parameters[j1]};
+  }
+};
+
+double cell_centre(const std::vector<double>& parameters, int at, int step) {
+  return 0.5 * (parameters[at] + parameters[at + step]);
+}
+
+}  // namespace
+
+PairParameters RegionCells::pair_centre(const CellPair& pair) const {
+  const Grid& a = first->nested().grid;
+  const Grid& b = second->nested().grid;
+  const int step_a = first->step(pair.first.level), step_b = second->step(pair.second.level);
+  return {
+      cell_centre(a.u.parameters, pair.first.i, step_a), cell_centre(a.v.parameters, pair.first.j, step_a),
+      cell_centre(b.u.parameters, pair.second.i, step_b), cell_centre(b.v.parameters, pair.second.j, step_b)};
+}
+
+RegionCells region_cells(const SurfaceLevels& first, const SurfaceLevels& second,
+                         const std::vector<CellPair>& pairs, const ContactRegions::Region& region) {
+  SPOONBILL_ASSERT(region.begin < region.end && region.end <= pairs.size());
+  return {&first, &second, std::span(pairs).subspan(region.begin, region.end - region.begin)};
+}
+
+RegionRanges region_ranges(const RegionCells& cells) {
+  SPOONBILL_ASSERT(!cells.pairs.empty());
+  SampleRange first, second;
+  for (const CellPair& pair : cells.pairs) {
+    first.widen(pair.first, cells.first->step(pair.first.level));
+    second.widen(pair.second, cells.second->step(pair.second.level));
+  }
+  return {first.to_parameters(cells.first->nested().grid), second.to_parameters(cells.second->nested().grid)};
+}
+
+PairParameters find_deepest_seed(const RegionCells& cells, const PairParameters& touch, double outside) {
+  SPOONBILL_ASSERT(std::abs(outside) == 1.0);
+  const std::size_t seeds = cells.at_most(depth_seeds);
+  PairParameters deepest = touch;
+  double depth = 0.0;
+  for (std::size_t k = 0; k < seeds; ++k) {
+    const PairParameters at = cells.pair_centre(k, seeds);
+    const double here = depth_behind(cells.first->pieces(), cells.second->pieces(), at, outside);
+    if (!(here > depth)) continue;
+    depth = here;
+    deepest = at;
+  }
+  return deepest;
+}
+
+double facing_side(const Vector3& normal, const Vector3& own) {
+  return normal.dot(own) < 0.0 ? 1.0 : -1.0;
 }
 
 }  // namespace spoonbill

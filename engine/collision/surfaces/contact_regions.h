@@ -1,58 +1,150 @@
-// Groups of pairs of cells that hang together: each is one region of contact.
+// Connected regions of cell pairs, and starting parameters within a region.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <span>
 #include <vector>
 
+#include "engine/base/assert.h"
+#include "engine/bspline/surface.h"
 #include "engine/collision/levels/cell_pairs.h"
+#include "engine/collision/levels/surface_levels.h"
+#include "engine/collision/surfaces/pair_polish.h"
 
 namespace spoonbill {
 
-// One owner, one thread; allocates only when made.
+// Union-find over cell pairs. One owner, one thread; allocates only on construction.
 class ContactRegions {
  public:
   ContactRegions(const SurfaceLevels& first, const SurfaceLevels& second);
 
   struct Region {
-    std::size_t begin, end;  // into the pairs
+    std::size_t begin, end;  // range of the grouped pairs
   };
 
-  // Orders the pairs by their region. Two pairs hang together where their cells are the same or neighbours on
-  // both surfaces, across a seam too. Regions beyond the capacity are joined to the last.
+  // Sorts the pairs by region and returns the regions. Two pairs are connected if their cells are equal or
+  // neighbours on both surfaces, across a seam too. Regions beyond the capacity join the last one.
   const std::vector<Region>& group(std::vector<CellPair>& pairs);
 
  private:
-  // Whether two cells of the second surface are the same or have a corner in common.
+  // Returns true if two cells of the second surface are equal or have a corner in common.
   bool are_neighbours(const LevelCell& a, const LevelCell& b, int step) const {
     const int in_u = std::abs(a.i - b.i), in_v = std::abs(a.j - b.j);
     return (in_u <= step || around_u_ - in_u <= step) && (in_v <= step || around_v_ - in_v <= step);
   }
-  // A cell of the first surface.
+  // A cell of the first surface that is in a pair.
   struct Paired {
-    std::uint32_t at = 0;  // the group() in which it was last in a pair
+    std::uint32_t at = 0;  // group() call in which it was last in a pair
     int last_pair = 0;
-    bool split = false;  // whether not all its pairs hang together
+    bool split = false;  // true if its pairs are not all connected
   };
 
   int root(int pair);
-  void take_cells(const std::vector<CellPair>& pairs);
+  void collect_cells(const std::vector<CellPair>& pairs);
   void join_neighbours(const std::vector<CellPair>& pairs, int pair);
   void join(const std::vector<CellPair>& pairs, const Paired& cell, const Paired& other);
   void order_by_region(std::vector<CellPair>& pairs);
 
   const SurfaceLevels* first_;
   const SurfaceLevels* second_;
-  // Cells of the second surface around a periodic direction; without end on others.
+  // Number of cells of the second surface around a periodic direction; unlimited for open ones.
   int around_u_ = 0, around_v_ = 0;
-  std::vector<int> parent_;     // of each pair, an earlier one or itself
-  std::vector<int> previous_;   // pair of the same cell of the first surface, by pair; -1 before the first
-  std::vector<int> cell_;       // by pair: that cell, as cell_index() counts it
+  std::vector<int> parent_;     // union-find parent of each pair: an earlier pair or itself
+  std::vector<int> previous_;   // previous pair of the same cell of the first surface; -1 for the first
+  std::vector<int> cell_;       // cell_index() of the first surface's cell, by pair
   std::vector<Paired> paired_;  // by cell_index()
   std::uint32_t group_ = 0;
   std::vector<Region> regions_;
   std::vector<int> end_;             // working memory: where the next pair of each region goes
   std::vector<CellPair> unordered_;  // working memory
 };
+
+// Mean of parameters. In a periodic direction each is taken relative to the first along the shorter path.
+class ParameterMean {
+ public:
+  explicit ParameterMean(const KnotVector& knots) : knots_(&knots) {}
+  void add(double parameter) {
+    if (count_ == 0) first_ = parameter;
+    const double length = knots_->domain_end() - knots_->domain_start();
+    double difference = parameter - first_;
+    if (knots_->is_periodic()) difference -= length * std::round(difference / length);
+    sum_ += difference;
+    ++count_;
+  }
+  // Returns the mean. At least one parameter must have been added.
+  double mean() const {
+    SPOONBILL_ASSERT(count_ > 0);
+    return knots_->into_domain(first_ + sum_ / count_);
+  }
+  // Returns the point at a fraction of the path from the mean to another parameter; fractions above 1
+  // extrapolate.
+  double towards(double parameter, double fraction) const {
+    const double from = first_ + sum_ / count_, length = knots_->domain_end() - knots_->domain_start();
+    double difference = parameter - from;
+    if (knots_->is_periodic()) difference -= length * std::round(difference / length);
+    return knots_->into_domain(from + fraction * difference);
+  }
+
+ private:
+  const KnotVector* knots_;
+  double first_ = 0.0, sum_ = 0.0;
+  int count_ = 0;
+};
+
+// Mean of the parameters of pairs, as the centre of a contact region on both surfaces.
+class RegionCentre {
+ public:
+  RegionCentre(const Surface& first, const Surface& second)
+      : u_(first.u), v_(first.v), s_(second.u), t_(second.v) {}
+  void add(const PairParameters& at) {
+    u_.add(at.u);
+    v_.add(at.v);
+    s_.add(at.s);
+    t_.add(at.t);
+  }
+  PairParameters mean() const { return {u_.mean(), v_.mean(), s_.mean(), t_.mean()}; }
+  PairParameters towards(const PairParameters& at, double fraction) const {
+    return {u_.towards(at.u, fraction), v_.towards(at.v, fraction), s_.towards(at.s, fraction),
+            t_.towards(at.t, fraction)};
+  }
+
+ private:
+  ParameterMean u_, v_, s_, t_;
+};
+
+// The pairs of one region and the levels of both surfaces, which may be the same. A view that is valid as
+// long as the pairs are. Allocates nothing.
+struct RegionCells {
+  const SurfaceLevels* first;
+  const SurfaceLevels* second;
+  std::span<const CellPair> pairs;
+
+  PairParameters pair_centre(const CellPair& pair) const;
+  // Returns the centre of one of `count` pairs spread evenly over the region; `which` is below `count`, and
+  // `count` at most the number of pairs.
+  PairParameters pair_centre(std::size_t which, std::size_t count) const {
+    return pair_centre(pairs[which * pairs.size() / count]);
+  }
+  std::size_t at_most(std::size_t count) const { return count < pairs.size() ? count : pairs.size(); }
+};
+
+RegionCells region_cells(const SurfaceLevels& first, const SurfaceLevels& second,
+                         const std::vector<CellPair>& pairs, const ContactRegions::Region& region);
+
+// Parameter rectangles of a region on both surfaces.
+struct RegionRanges {
+  ParameterRange first, second;
+};
+RegionRanges region_ranges(const RegionCells& cells);
+
+// Returns the deepest of a few pairs of the region, where the first surface is farthest behind the second, or
+// `touch` if none is behind. See deepest_pair() for `outside`.
+PairParameters find_deepest_seed(const RegionCells& cells, const PairParameters& touch, double outside);
+
+// Returns the side of one's own surface on which another surface is: 1 if the two face each other, -1 if they
+// face the same way. `normal` is the other's outward normal and `own` one's du x dv.
+double facing_side(const Vector3& normal, const Vector3& own);
 
 }  // namespace spoonbill

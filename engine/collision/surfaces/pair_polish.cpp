@@ -8,26 +8,27 @@
 #include "engine/base/assert.h"
 
 namespace spoonbill {
+
 namespace {
 
 using Matrix2 = Eigen::Matrix2d;
 
-constexpr int most_steps = 40;
-constexpr int most_tries = 12;
+constexpr int max_steps = 40;
+constexpr int max_tries = 12;
 constexpr double least_damping = 1e-9;
-// Below this, in metres, a step gains nothing but rounding.
+// Smallest gain in metres of a step that is more than rounding.
 constexpr double least_gain_m = 1e-15;
-// Below this, the quadratic model promises nothing that could be measured.
+// Smallest gain in metres that the quadratic model must predict.
 constexpr double least_promise_m = 1e-17;
 
-// Whether a step would leave an open domain that the parameter is at the end of.
-bool leaves(const KnotVector& knots, double parameter, double step) {
+// Returns true if the step leaves an open domain at whose end the parameter already is.
+bool leaves_domain(const KnotVector& knots, double parameter, double step) {
   if (knots.is_periodic()) return false;
   return (step < 0.0 && parameter <= knots.domain_start()) || (step > 0.0 && parameter >= knots.domain_end());
 }
 
-// Puts the solution of h x = g into g, by Cholesky's factors in the lower half of h; false where h is not
-// positive definite.
+// Solves h x = g in place by a Cholesky factorisation in the lower half of h; x replaces g. Returns false if
+// h is not positive definite.
 template <int size>
 bool solve_positive(Eigen::Matrix<double, size, size>& h, Eigen::Matrix<double, size, 1>& g) {
   for (int j = 0; j < size; ++j) {
@@ -49,17 +50,18 @@ bool solve_positive(Eigen::Matrix<double, size, size>& h, Eigen::Matrix<double, 
   return true;
 }
 
-// A minimisation in `size` parameters whose lengths on the surface differ: steps are taken in metres.
+// Quadratic model of a minimisation over parameters of different speeds. Steps are scaled to metres.
 template <int size>
 struct Problem {
   Eigen::Matrix<double, size, 1> gradient;  // by the parameters
   Eigen::Matrix<double, size, size> curvature;
-  Eigen::Matrix<double, size, 1> speed;  // metres a unit of each parameter
+  Eigen::Matrix<double, size, 1> speed;  // metres per unit of each parameter
   std::array<const KnotVector*, size> knots;
   Eigen::Matrix<double, size, 1> parameters;
-  double least_promise = 0.0;  // in the unit of what is minimised
+  double least_promise = 0.0;  // in the unit of the objective
 
-  // The step that leads to the least value of the quadratic model, `damping` in the unit of the curvature.
+  // Returns the step to the minimum of the quadratic model; NaN if it is not convex. `damping` has the unit
+  // of the curvature.
   Eigen::Matrix<double, size, 1> step(double damping) const {
     auto g = gradient;
     auto h = curvature;
@@ -68,7 +70,7 @@ struct Problem {
     g = scale.cwiseProduct(g);
     h = scale.asDiagonal() * h * scale.asDiagonal();
     for (int k = 0; k < size; ++k) {
-      if (!leaves(*knots[k], parameters[k], -g[k])) continue;
+      if (!leaves_domain(*knots[k], parameters[k], -g[k])) continue;
       h.row(k).setZero();
       h.col(k).setZero();
       h(k, k) = 1.0;
@@ -80,11 +82,11 @@ struct Problem {
   }
 };
 
-// One accepted step of a Levenberg-Marquardt method, by `offer(parameters)`, which says whether the value
-// fell; false where none is found.
+// Takes one accepted Levenberg-Marquardt step. offer(parameters) returns true if the value decreased. Returns
+// false if no step is found.
 template <int size, class Offer>
 bool descend(const Problem<size>& problem, double& damping, const Offer& offer) {
-  for (int tries = 0; tries < most_tries; ++tries) {
+  for (int tries = 0; tries < max_tries; ++tries) {
     const auto step = problem.step(damping);
     if (step.allFinite()) {
       if (!(-0.5 * problem.gradient.dot(step) > problem.least_promise)) return false;
@@ -127,12 +129,13 @@ SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
   SurfacePoint a, b;
   double distance = evaluate_at(problem.parameters, a, b);
   double damping = least_damping;
-  for (int taken = 0; taken < most_steps && distance > least_gain_m; ++taken) {
-    const Vector3 apart = a.position_m - b.position_m;
+  for (int steps = 0; steps < max_steps && distance > least_gain_m; ++steps) {
+    const Vector3 difference = a.position_m - b.position_m;
     problem.least_promise = least_promise_m * distance;
-    problem.gradient << apart.dot(a.du), apart.dot(a.dv), -apart.dot(b.du), -apart.dot(b.dv);
-    problem.curvature.topLeftCorner<2, 2>() = first_form(a) + along(a, apart);
-    problem.curvature.bottomRightCorner<2, 2>() = first_form(b) - along(b, apart);
+    problem.gradient << difference.dot(a.du), difference.dot(a.dv), -difference.dot(b.du),
+        -difference.dot(b.dv);
+    problem.curvature.topLeftCorner<2, 2>() = first_form(a) + along(a, difference);
+    problem.curvature.bottomRightCorner<2, 2>() = first_form(b) - along(b, difference);
     Matrix2 mixed;
     mixed << a.du.dot(b.du), a.du.dot(b.dv), a.dv.dot(b.du), a.dv.dot(b.dv);
     problem.curvature.topRightCorner<2, 2>() = -mixed;
@@ -161,11 +164,11 @@ NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point
   problem.parameters = {problem.knots[0]->into_domain(u), problem.knots[1]->into_domain(v)};
   SurfacePoint at = evaluate(surface, problem.parameters[0], problem.parameters[1]);
   double distance = (at.position_m - point).norm(), damping = least_damping;
-  for (int taken = 0; taken < most_steps && distance > least_gain_m; ++taken) {
-    const Vector3 apart = at.position_m - point;
+  for (int steps = 0; steps < max_steps && distance > least_gain_m; ++steps) {
+    const Vector3 difference = at.position_m - point;
     problem.least_promise = least_promise_m * distance;
-    problem.gradient << apart.dot(at.du), apart.dot(at.dv);
-    problem.curvature = first_form(at) + along(at, apart);
+    problem.gradient << difference.dot(at.du), difference.dot(at.dv);
+    problem.curvature = first_form(at) + along(at, difference);
     problem.speed << at.du.norm(), at.dv.norm();
     const double before = distance;
     const bool moved = descend(problem, damping, [&](const Vector2& next) {
@@ -184,8 +187,8 @@ NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point
 
 namespace {
 
-// A point of the first surface and the second's nearest to it.
-struct Behind {
+// A point of the first surface, the second surface's nearest point to it and the depth.
+struct DepthPoint {
   PairParameters at;
   SurfacePoint a, b;
   Vector3 normal;
@@ -200,34 +203,34 @@ bool on_edge(const PiecewiseSurface& surface, double u, double v) {
   return is_end(surface.u->knots(), u) || is_end(surface.v->knots(), v);
 }
 
-// By more than Newton's method may leave.
-bool is_oblique(const Vector3& apart, const Vector3& normal) {
-  return apart.cross(normal).norm() > 1e-6 * apart.norm();
+// Tolerance beyond the convergence of Newton's method.
+bool is_oblique(const Vector3& difference, const Vector3& normal) {
+  return difference.cross(normal).norm() > 1e-6 * difference.norm();
 }
 
-Behind behind_at(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
-                 double outside) {
-  Behind result;
+DepthPoint evaluate_depth(const PiecewiseSurface& first, const PiecewiseSurface& second,
+                          const PairParameters& from, double outside) {
+  DepthPoint result;
   result.a = evaluate(first, from.u, from.v);
   const NearestPoint nearest = nearest_point(second, result.a.position_m, from.s, from.t);
   result.at = {from.u, from.v, nearest.u, nearest.v};
   result.b = nearest.at;
   result.normal = outside * unit_normal(second, nearest.at, nearest.u, nearest.v);
-  const Vector3 apart = result.a.position_m - nearest.at.position_m;
-  // Beyond an edge of the second surface there is no behind.
-  const bool behind = apart.dot(result.normal) < 0.0 &&
-                      !(on_edge(second, nearest.u, nearest.v) && is_oblique(apart, result.normal));
-  result.depth = behind ? apart.norm() : -apart.norm();
+  const Vector3 difference = result.a.position_m - nearest.at.position_m;
+  // A point beyond an edge of the second surface cannot be behind it.
+  const bool is_behind = difference.dot(result.normal) < 0.0 &&
+                         !(on_edge(second, nearest.u, nearest.v) && is_oblique(difference, result.normal));
+  result.depth = is_behind ? difference.norm() : -difference.norm();
   return result;
 }
 
-Matrix2 distance_curvature(const Behind& at) {
+Matrix2 distance_curvature(const DepthPoint& at) {
   const Matrix2 first = first_form(at.b), second = along(at.b, at.normal);
-  Matrix2 moves;  // a column for each of A_u, A_v
-  moves << at.a.du.dot(at.b.du), at.a.dv.dot(at.b.du), at.a.du.dot(at.b.dv), at.a.dv.dot(at.b.dv);
+  Matrix2 motion;  // one column each for A_u and A_v
+  motion << at.a.du.dot(at.b.du), at.a.dv.dot(at.b.du), at.a.du.dot(at.b.dv), at.a.dv.dot(at.b.dv);
   const double distance = -at.depth;
-  const Matrix2 follows = (first - distance * second).inverse() * moves;
-  return -moves.transpose() * first.inverse() * second * follows;
+  const Matrix2 follows = (first - distance * second).inverse() * motion;
+  return -motion.transpose() * first.inverse() * second * follows;
 }
 
 }  // namespace
@@ -235,25 +238,26 @@ Matrix2 distance_curvature(const Behind& at) {
 double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
                     double outside) {
   SPOONBILL_ASSERT_DEBUG(std::abs(outside) == 1.0);
-  return behind_at(first, second, from, outside).depth;
+  return evaluate_depth(first, second, from, outside).depth;
 }
 
 DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from,
                          double outside, double enough_m) {
   SPOONBILL_ASSERT_DEBUG(std::abs(outside) == 1.0);
-  Behind best = behind_at(first, second, from, outside);
+  DepthPoint best = evaluate_depth(first, second, from, outside);
   Problem<2> problem;
   problem.knots = {&first.u->knots(), &first.v->knots()};
   problem.least_promise = least_promise_m;
   double damping = least_damping;
-  for (int taken = 0; taken < most_steps && !(best.depth > enough_m); ++taken) {
+  for (int steps = 0; steps < max_steps && !(best.depth > enough_m); ++steps) {
     problem.parameters = {best.at.u, best.at.v};
     problem.gradient << best.a.du.dot(best.normal), best.a.dv.dot(best.normal);
     problem.curvature = along(best.a, best.normal) + distance_curvature(best);
     problem.speed << best.a.du.norm(), best.a.dv.norm();
     const double before = best.depth;
     const bool moved = descend(problem, damping, [&](const Vector2& next) {
-      const Behind there = behind_at(first, second, {next[0], next[1], best.at.s, best.at.t}, outside);
+      const DepthPoint there =
+          evaluate_depth(first, second, {next[0], next[1], best.at.s, best.at.t}, outside);
       if (!(there.depth > best.depth)) return false;
       best = there;
       return true;

@@ -1,53 +1,78 @@
-// The points of two surfaces that lie nearest, or deepest in one another, found by Newton's method from a
-// first guess on the surfaces themselves. Local: what the guess leads to. Allocates nothing.
+// Nearest and deepest points of two surfaces, found by Newton's method on the surfaces themselves, and the
+// contact that they describe. The search is local: the result depends on the starting parameters. Allocates
+// nothing.
 #pragma once
 
 #include "engine/bspline/piece_basis.h"
 #include "engine/bspline/surface.h"
+#include "engine/collision/levels/surface_levels.h"
+#include "engine/collision/solids/surface_contact.h"
 
 namespace spoonbill {
 
-// Parameters on the first surface, then on the second.
+// Parameters (u, v) on the first surface and (s, t) on the second.
 struct PairParameters {
   double u = 0.0, v = 0.0, s = 0.0, t = 0.0;
 };
 
+// A point on each of two surfaces.
 struct SurfacePair {
   PairParameters at;
   Vector3 first_m, second_m;
   double distance_m() const { return (first_m - second_m).norm(); }
 };
 
-// A damped Newton's method on half the squared distance; parameters stay within the domains.
+// Finds a locally nearest pair of points by a damped Newton's method on half the squared distance. Parameters
+// stay within the domains.
 SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from);
 
-// The same for a point and a surface, from its parameters u, v.
+// A point on a surface with its parameters.
 struct NearestPoint {
   double u, v;
   SurfacePoint at;
 };
+// Finds the locally nearest point of a surface, starting from the parameters u, v.
 NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v);
 
+// Result of deepest_pair().
 struct DeepestPair {
   SurfacePair pair;
-  Vector3 normal = Vector3::UnitY();  // of the second surface, towards the side that `outside` says
-  double depth_m = 0.0;               // of the first surface's point behind the second; below zero, before it
+  Vector3 normal = Vector3::UnitY();  // unit normal of the second surface, on the side given by `outside`
+  double depth_m = 0.0;  // depth of the first surface's point behind the second; negative in front of it
 };
 
-// How far a point of the first surface is behind the second, by the nearest point that `from` leads to; below
-// zero, before it. See deepest_pair() for `outside`.
+// Returns the depth in metres of a point of the first surface behind the second, measured at the nearest
+// point found from `from`. Negative in front. See deepest_pair() for `outside`.
 double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
                     double outside);
 
-// The point of the first surface that lies farthest behind the second, along the normal of the second's
-// nearest point; or any that lies deeper than `enough_m`. `outside` is 1 where that normal is du x dv, -1
-// where it is the opposite.
+// Finds the point of the first surface that is locally deepest behind the second, along the normal of the
+// second's nearest point. Stops early once the depth exceeds `enough_m`. `outside` is 1 if that normal is du
+// x dv, -1 if it is the opposite.
 //
 // The depth is f = -d(A(u, v)) for the signed distance d to the second surface, with the gradient -A_u . n.
 // With I and II the fundamental forms of the second surface at the nearest point, the parameters of that
-// point follow a move c = (A_u . B_s, A_u . B_t) by (I - d II)^-1 c, and n turns by -II of that, so that
+// point follow a displacement c = (A_u . B_s, A_u . B_t) by (I - d II)^-1 c, and n rotates by -II times that.
+// Therefore
 //   Hess d = -c^T I^-1 II (I - d II)^-1 c,   f_uu = -(A_uu . n) - Hess d.
 DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from,
                          double outside, double enough_m);
+
+// One region in which the surfaces cross or touch.
+struct PairContact {
+  SurfacePair pair;              // deepest points, one on each surface
+  Vector3 normal;                // unit, direction in which the first surface leaves the second
+  double depth_m = 0.0;          // along the normal; 0 if they only touch
+  ParameterRange first, second;  // parameter rectangles that contain the region
+  Vector3 tangent_u, tangent_v;  // tangents_across() the normal, from the first surface
+};
+
+// Sets the contact's tangents from its normal and the first surface.
+inline void set_tangents(const PiecewiseSurface& first, PairContact& contact) {
+  const PairParameters& at = contact.pair.at;
+  const Tangents tangents = tangents_across(contact.normal, evaluate(first, at.u, at.v));
+  contact.tangent_u = tangents.u;
+  contact.tangent_v = tangents.v;
+}
 
 }  // namespace spoonbill

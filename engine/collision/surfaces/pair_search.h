@@ -1,16 +1,23 @@
-// Branch and bound over two patches: whether two surfaces touch between their finest samples, and no pair of
-// points nearer than the nearest known is missed.
+// Searches that decide whether two surfaces touch: separation of their control points' hulls, and branch and
+// bound over two patches.
 #pragma once
 
 #include <vector>
 
+#include "engine/bspline/surface.h"
 #include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/surfaces/pair_polish.h"
 
 namespace spoonbill {
 
-// Says which pairs of places count. Of one surface with itself, Newton's method may lead to a single place,
-// which is no distance from itself.
+// Returns true only if a plane separates the convex hulls of the control points, which contain the surfaces;
+// the plane is verified with all control points. Hulls that nearly touch may count as intersecting. Uses only
+// support functions, so the hulls follow moving control points without being built (Gilbert, Johnson and
+// Keerthi 1988). Allocates nothing.
+bool hulls_are_apart(const ControlNet& first, const ControlNet& second);
+
+// Decides which pairs of points count. For one surface against itself, Newton's method may lead to a single
+// point, whose distance from itself is meaningless.
 class PairJudge {
  public:
   virtual bool counts(const PairParameters& at) const = 0;
@@ -19,26 +26,27 @@ class PairJudge {
   ~PairJudge() = default;
 };
 
-// One owner, one thread; allocates only when made.
+// Branch and bound over two patches. One owner, one thread; allocates only on construction.
 class PairSearch {
  public:
-  // Both may be the same surface, with a judge, which must outlive it.
+  // Both surfaces may be the same if there is a judge. Surfaces and judge must outlive the search.
   PairSearch(SurfaceLevels& first, SurfaceLevels& second, const PairJudge* judge = nullptr);
 
+  // Starts a new query: forgets the best pair and clears overflow().
   void begin();
   void forget_best();
 
-  // The best pair so far is that of `from` polished, where it is nearer; as it is where, polished, it does
-  // not count.
+  // Polishes the pair `from` and keeps the result if it is nearer than the best. If the polished pair does
+  // not count, `from` itself is considered.
   void offer(const PairParameters& from);
   const SurfacePair& best() const { return best_; }
   double best_distance_m() const { return best_distance_m_; }
 
-  // Searches two cells until nothing in them can be nearer than the best by more than `tolerance_m`, or the
-  // best is within `enough_m`.
+  // Searches two cells until nothing in them can be nearer than the best pair by more than `tolerance_m`, or
+  // the best pair is within `enough_m`. Both are in metres; the tolerance must be positive.
   void search(const LevelCell& a, const LevelCell& b, double tolerance_m, double enough_m);
 
-  // Whether a search ended before its time.
+  // True if a search met a capacity and ended early.
   bool overflow() const { return overflow_; }
 
  private:
@@ -53,7 +61,7 @@ class PairSearch {
     int depth;
   };
 
-  static Patch patch_of(SurfaceLevels& levels, const LevelCell& cell);
+  static Patch make_patch(SurfaceLevels& levels, const LevelCell& cell);
   static std::array<Patch, 4> cut(const PiecewiseSurface& surface, const Patch& patch);
   void split(const Pair& pair);
 

@@ -4,25 +4,25 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
-#include "engine/collision/surfaces/convex_hull.h"
+#include "engine/collision/surfaces/pair_search.h"
 
 namespace spoonbill {
 namespace {
 
 constexpr std::size_t contact_capacity = 64;
-// Of the smaller surface's size or of the distance: that no other points are nearer is proven to this.
+// Tolerance of the nearest distance, as a fraction of the smaller surface's size or of the distance.
 constexpr double nearest_tolerance = 1e-4;
-// Candidates of a region from which Newton's method looks for a touch before all of it is searched.
+// Number of candidates from which Newton's method looks for a touch before the whole region is searched.
 constexpr std::size_t region_seeds = 8;
 constexpr std::size_t wall_seeds = 8;
-// Candidates of a region that its middle is taken from.
-constexpr std::size_t middle_pairs = 64;
-// From its middle outwards.
-constexpr std::size_t seed_ways = 2;
+// Number of candidates that determine the centre of a region.
+constexpr std::size_t centre_pairs = 64;
+// Number of directions from the centre in which seeds are placed.
+constexpr std::size_t seed_directions = 2;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// How long the control net is along a direction.
+// Length of the control net along a unit direction, in metres.
 double length_along(const ControlNet& net, const Vector3& direction) {
   double least = infinity, most = -infinity;
   for (int i = 0; i < net.rows; ++i) {
@@ -55,59 +55,58 @@ PairResult SurfacePairCollider::collide(const Surface& first, const Surface& sec
   std::swap(seeds_, last_seeds_);
   seeds_.clear();
   ++query_;
-  if (first_.begin(first, query.first_samples)) cells_.begin_first();
-  if (second_.begin(second, query.second_samples)) cells_.begin_second();
+  if (first_.begin(first, query.first_samples)) cells_.invalidate_first();
+  if (second_.begin(second, query.second_samples)) cells_.invalidate_second();
   search_.begin();
-  // Where they touched, they mostly do so still, and the hulls would be asked in vain.
-  if (touched_ || !hulls_are_apart(first.net, second.net)) {
-    take_contacts(query);
+  // Surfaces that touched in the last call mostly still do, so the hull test is skipped.
+  if (touched_last_ || !hulls_are_apart(first.net, second.net)) {
+    find_contacts(query);
     result.overflow = cells_.overflow();
   }
-  result.touching = touched_ = !contacts_.empty();
+  result.touching = touched_last_ = !contacts_.empty();
   if (!result.touching) find_nearest(query, result);
   result.overflow = result.overflow || search_.overflow();
   result.samples_evaluated = first_.samples_evaluated() + second_.samples_evaluated();
   return result;
 }
 
-void SurfacePairCollider::take_contacts(const PairQuery& query) {
-  Pairs& pairs = cells_.within(0.5 * touch_tolerance_m);
+void SurfacePairCollider::find_contacts(const PairQuery& query) {
+  Pairs& pairs = cells_.find_within(0.5 * touch_tolerance_m);
   for (const Region& region : regions_.group(pairs)) {
-    const RegionCells cells = cells_of(first_, second_, pairs, region);
-    const auto [first, second] = ranges_of(cells);
+    const RegionCells cells = region_cells(first_, second_, pairs, region);
+    const auto [first, second] = region_ranges(cells);
     PairContact contact;
     contact.first = first;
     contact.second = second;
     const Seed* const last = last_seed(contact);
     if (!touches(cells, last)) continue;
     contact.pair = search_.best();
-    seeds_.push_back(settle(cells, query, last, contact));
-    take_tangents(first_.pieces(), contact);
+    seeds_.push_back(resolve_contact(cells, query, last, contact));
+    set_tangents(first_.pieces(), contact);
     contacts_.push_back(contact);
   }
 }
 
-// Of the last collide(), where it touched within the region; null where it did not. Ranges of regions may
-// overlap, and mostly they come in the same order.
+// Returns the seed of the last collide() within the region, or null. Regions mostly come in the same order,
+// and their ranges may overlap.
 const SurfacePairCollider::Seed* SurfacePairCollider::last_seed(const PairContact& contact) const {
   for (std::size_t k = 0; k < last_seeds_.size(); ++k) {
     const Seed& seed = last_seeds_[(contacts_.size() + k) % last_seeds_.size()];
     const PairParameters& at = seed.touch;
-    if (contact.first.holds(at.u, at.v) && contact.second.holds(at.s, at.t)) return &seed;
+    if (contact.first.contains(at.u, at.v) && contact.second.contains(at.s, at.t)) return &seed;
   }
   return nullptr;
 }
 
-// First where they last touched and from a few places, which mostly finds a touch at once; then everywhere,
-// to be sure that there is none.
+// Tries the last touch and a few candidates, which mostly succeeds at once, before searching all pairs.
 bool SurfacePairCollider::touches(const RegionCells& cells, const Seed* last) {
   search_.forget_best();
   if (last != nullptr) search_.offer(last->touch);
   if (search_.best_distance_m() <= touch_tolerance_m) return true;
   const std::size_t count = cells.pairs.size(), seeds = cells.at_most(region_seeds);
   for (std::size_t k = 0; k < seeds; ++k) {
-    // From the middle outwards, where a region is most likely to be deep.
-    search_.offer(cells.middle_of(cells.pairs[(count / 2 + k * count / seeds) % count]));
+    // Goes from the middle of the list outwards, where a region is likely to be deepest.
+    search_.offer(cells.pair_centre(cells.pairs[(count / 2 + k * count / seeds) % count]));
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }
   for (const CellPair& pair : cells.pairs) {
@@ -117,54 +116,55 @@ bool SurfacePairCollider::touches(const RegionCells& cells, const Seed* last) {
   return false;
 }
 
-// The pair of the contact is a touch of the region. Returns what the next collide() may begin from.
-SurfacePairCollider::Seed SurfacePairCollider::settle(const RegionCells& cells, const PairQuery& query,
-                                                      const Seed* last, PairContact& contact) const {
+// Computes the depth of a region whose touch is in the contact. Returns the seed for the next collide().
+SurfacePairCollider::Seed SurfacePairCollider::resolve_contact(const RegionCells& cells,
+                                                               const PairQuery& query, const Seed* last,
+                                                               PairContact& contact) const {
   Seed found{contact.pair.at, {}};
   contact.normal = unit_normal(second_.surface(), found.touch.s, found.touch.t);
-  // An open surface has no inside: of both its sides, the one with the shorter way out counts, which is
-  // looked for first where the middle of the region lies.
-  Seeds seeds = seeds_of(cells, last);
-  const double first_side = query.second_closed || seeds.middle_depth > 0.0 ? 1.0 : -1.0;
+  // An open surface has no inside, so the side with the shorter exit counts. The search begins with the side
+  // on which the centre of the region is.
+  Seeds seeds = find_seeds(cells, last);
+  const double first_side = query.second_closed || seeds.centre_depth > 0.0 ? 1.0 : -1.0;
   double shortest = infinity;
   for (const double outside : {first_side, -first_side}) {
     if (outside < 0.0 && query.second_closed) continue;
-    PairContact way = contact;
+    PairContact candidate = contact;
     const int side = outside > 0.0 ? 0 : 1;
     PairParameters& from = seeds.at[side];
-    settle_from(way, from, outside, query.first_closed, shortest);
+    deepen_contact(candidate, from, outside, query.first_closed, shortest);
     const bool was_deep = last != nullptr && last->deep[side];
-    if (!(way.depth_m > 0.0) && was_deep) {
+    if (!(candidate.depth_m > 0.0) && was_deep) {
       from = last->deepest[side];
-      settle_from(way, from, outside, query.first_closed, shortest);
+      deepen_contact(candidate, from, outside, query.first_closed, shortest);
     }
-    if (!(way.depth_m > 0.0) && (last == nullptr || was_deep || shortest == infinity)) {
-      from = deepest_place(cells, search_.best().at, outside);
-      settle_from(way, from, outside, query.first_closed, shortest);
+    if (!(candidate.depth_m > 0.0) && (last == nullptr || was_deep || shortest == infinity)) {
+      from = find_deepest_seed(cells, search_.best().at, outside);
+      deepen_contact(candidate, from, outside, query.first_closed, shortest);
     }
-    found.deep[side] = way.depth_m > 0.0;
+    found.deep[side] = candidate.depth_m > 0.0;
     found.deepest[side] = from;
-    if (!(way.depth_m > 0.0 && way.depth_m < shortest)) continue;
-    shortest = way.depth_m;
-    contact = way;
+    if (!(candidate.depth_m > 0.0 && candidate.depth_m < shortest)) continue;
+    shortest = candidate.depth_m;
+    contact = candidate;
   }
   const bool bodies = query.first_closed && query.second_closed;
-  if (shortest == infinity && bodies) take_inner_touch(cells, contact);
+  if (shortest == infinity && bodies) find_inner_touch(cells, contact);
   return found;
 }
 
-RegionMiddle SurfacePairCollider::middle_of(const RegionCells& cells) const {
-  RegionMiddle middle(first_.surface(), second_.surface());
-  const std::size_t count = cells.pairs.size(), stride = (count + middle_pairs - 1) / middle_pairs;
-  for (std::size_t k = 0; k < count; k += stride) middle.add(cells.middle_of(cells.pairs[k]));
-  return middle;
+RegionCentre SurfacePairCollider::find_centre(const RegionCells& cells) const {
+  RegionCentre centre(first_.surface(), second_.surface());
+  const std::size_t count = cells.pairs.size(), stride = (count + centre_pairs - 1) / centre_pairs;
+  for (std::size_t k = 0; k < count; k += stride) centre.add(cells.pair_centre(cells.pairs[k]));
+  return centre;
 }
 
-// Of the middle of the region and a few places between it and the pairs, which lie where the surfaces cross,
-// and as far beyond: those where the first surface is deepest behind the second and farthest before it. Where
-// it was deepest last is mostly the place; the others then take turns.
-SurfacePairCollider::Seeds SurfacePairCollider::seeds_of(const RegionCells& cells, const Seed* last) const {
-  const RegionMiddle middle = middle_of(cells);
+// Seeds at the centre of the region and between it and a few pairs, which are where the surfaces cross, and
+// as far beyond. Keeps the deepest and the farthest in front. With a seed from the last call, only one of the
+// other candidates is tried per call.
+SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& cells, const Seed* last) const {
+  const RegionCentre centre = find_centre(cells);
   Seeds seeds;
   const auto offer = [&](const PairParameters& at) {
     const double depth = depth_behind(first_.pieces(), second_.pieces(), at, 1.0);
@@ -176,70 +176,73 @@ SurfacePairCollider::Seeds SurfacePairCollider::seeds_of(const RegionCells& cell
     }
     return depth;
   };
-  seeds.middle_depth = offer(middle.mean());
+  seeds.centre_depth = offer(centre.mean());
   for (int side = 0; side < 2; ++side) {
     if (last != nullptr && last->deep[side]) offer(last->deepest[side]);
   }
-  for (std::size_t k = 0; k < seed_ways; ++k) {
-    const PairParameters way = cells.middle_of(k, seed_ways);
+  for (std::size_t k = 0; k < seed_directions; ++k) {
+    const PairParameters crossing = cells.pair_centre(k, seed_directions);
     for (std::size_t beyond = 0; beyond < 2; ++beyond) {
-      if (last != nullptr && (2 * k + beyond) != query_ % (2 * seed_ways)) continue;
-      offer(middle.towards(way, beyond == 0 ? 0.5 : 2.0));
+      if (last != nullptr && (2 * k + beyond) != query_ % (2 * seed_directions)) continue;
+      offer(centre.towards(crossing, beyond == 0 ? 0.5 : 2.0));
     }
   }
   return seeds;
 }
 
-// Where bodies touch with their outsides on the same side, one is inside the other there. Of a few such
-// places the one whose common wall gives the shortest way out counts.
-void SurfacePairCollider::take_inner_touch(const RegionCells& cells, PairContact& contact) const {
+// Computes the depth of a touch with both interiors on the same side, where one body is inside the other. A
+// few such points are tried; the one whose wall gives the shorter exit counts.
+void SurfacePairCollider::find_inner_touch(const RegionCells& cells, PairContact& contact) const {
   const Surface& first = first_.surface();
   const Surface& second = second_.surface();
   const std::size_t seeds = cells.at_most(wall_seeds);
   double shortest = infinity;
   for (std::size_t k = 0; k <= seeds; ++k) {
-    const PairParameters from = k == seeds ? search_.best().at : cells.middle_of(k, seeds);
+    const PairParameters from = k == seeds ? search_.best().at : cells.pair_centre(k, seeds);
     const SurfacePair pair = nearest_pair(first_.pieces(), second_.pieces(), from);
     if (pair.distance_m() > touch_tolerance_m) continue;
     const Vector3 normal = unit_normal(second, pair.at.s, pair.at.t);
     if (!(normal.dot(unit_normal(first, pair.at.u, pair.at.v)) > 0.0)) continue;
-    const double of_first = length_along(first.net, normal), of_second = length_along(second.net, normal);
-    if (!(std::min(of_first, of_second) < shortest)) continue;
-    shortest = std::min(of_first, of_second);
+    const double first_length = length_along(first.net, normal),
+                 second_length = length_along(second.net, normal);
+    if (!(std::min(first_length, second_length) < shortest)) continue;
+    shortest = std::min(first_length, second_length);
     contact.pair = pair;
-    contact.normal = of_first <= of_second ? normal : Vector3(-normal);
+    contact.normal = first_length <= second_length ? normal : Vector3(-normal);
     contact.depth_m = shortest;
   }
 }
 
-// How deep either surface is behind the other: the less of both moves them apart. Kept where it is deeper
-// than what is known; without care for how much beyond `shortest`. `from` becomes where the first is deepest.
-void SurfacePairCollider::settle_from(PairContact& contact, PairParameters& from, double outside,
-                                      bool first_closed, double shortest) const {
+// Updates the contact if both surfaces are deeper behind each other than its depth; the smaller depth
+// separates them. Depths beyond `shortest` need not be exact. `from` becomes the deepest parameters of the
+// first surface.
+void SurfacePairCollider::deepen_contact(PairContact& contact, PairParameters& from, double outside,
+                                         bool first_closed, double shortest) const {
   const PiecewiseSurface first = first_.pieces(), second = second_.pieces();
-  const DeepestPair of_first = deepest_pair(first, second, from, outside, shortest);
-  from = of_first.pair.at;
-  if (!(of_first.depth_m > contact.depth_m)) return;
+  const DeepestPair first_deepest = deepest_pair(first, second, from, outside, shortest);
+  from = first_deepest.pair.at;
+  if (!(first_deepest.depth_m > contact.depth_m)) return;
   // The surfaces face each other where they are deep.
-  const PairParameters& deep = of_first.pair.at;
-  const double outside_first = side_facing(of_first.normal, unit_normal(first_.surface(), deep.u, deep.v));
+  const PairParameters& deep = first_deepest.pair.at;
+  const double outside_first =
+      facing_side(first_deepest.normal, unit_normal(first_.surface(), deep.u, deep.v));
   if (first_closed && outside_first < 0.0) return;
-  const DeepestPair of_second =
+  const DeepestPair second_deepest =
       deepest_pair(second, first, {deep.s, deep.t, deep.u, deep.v}, outside_first, shortest);
-  if (!(of_second.depth_m > contact.depth_m)) return;
-  if (of_first.depth_m <= of_second.depth_m) {
-    contact.pair = of_first.pair;
-    contact.normal = of_first.normal;
-    contact.depth_m = of_first.depth_m;
+  if (!(second_deepest.depth_m > contact.depth_m)) return;
+  if (first_deepest.depth_m <= second_deepest.depth_m) {
+    contact.pair = first_deepest.pair;
+    contact.normal = first_deepest.normal;
+    contact.depth_m = first_deepest.depth_m;
   } else {
-    const SurfacePair& pair = of_second.pair;
+    const SurfacePair& pair = second_deepest.pair;
     contact.pair = {{pair.at.s, pair.at.t, pair.at.u, pair.at.v}, pair.second_m, pair.first_m};
-    contact.normal = -of_second.normal;
-    contact.depth_m = of_second.depth_m;
+    contact.normal = -second_deepest.normal;
+    contact.depth_m = second_deepest.depth_m;
   }
 }
 
-// One body is inside the other only where its box is.
+// One body can be inside the other only if its box is.
 bool SurfacePairCollider::may_contain(const PairQuery& query) const {
   const Box& first = cells_.first_tree().box(cells_.first_tree().root());
   const Box& second = cells_.second_tree().box(cells_.second_tree().root());
@@ -274,15 +277,16 @@ void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& resul
   const Box& second = cells_.second_tree().box(cells_.second_tree().root());
   if (reach <= 0.0 || first.gap(second) > reach) return;
   search_.forget_best();
-  search_.offer(RegionCells{&first_, &second_, {}}.middle_of(cells_.likely_near()));
+  search_.offer(RegionCells{&first_, &second_, {}}.pair_centre(cells_.find_likely_near_elements()));
   if (nearest_known_) search_.offer(nearest_);
-  // Beside a first guess far too long, nearer points were let go: once more, beside the one found.
+  // A first guess that is much too long has a large tolerance, which may have skipped nearer points. The
+  // search is repeated from the point found.
   while (search_all(reach) > 2.0 * tolerance()) continue;
   nearest_ = search_.best().at;
   nearest_known_ = true;
   if (nested && is_contained(query)) {
-    contacts_.push_back(containment());
-    take_tangents(first_.pieces(), contacts_.back());
+    contacts_.push_back(make_containment_contact());
+    set_tangents(first_.pieces(), contacts_.back());
     result.touching = result.contained = true;
   } else if (search_.best_distance_m() <= query.reach_m) {
     result.nearest = search_.best();
@@ -290,8 +294,8 @@ void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& resul
   }
 }
 
-// Of bodies whose surfaces do not meet, the nearest points tell: the point of the one inside lies behind the
-// other's surface.
+// If the surfaces of two bodies do not meet, the nearest points decide: the inner body's point is behind the
+// outer surface.
 bool SurfacePairCollider::is_contained(const PairQuery& query) const {
   const SurfacePair& best = search_.best();
   const Vector3 apart = best.first_m - best.second_m;
@@ -302,15 +306,17 @@ bool SurfacePairCollider::is_contained(const PairQuery& query) const {
   return first_inside || second_inside;
 }
 
-// Through the nearest wall: by the distance to it and by how long the inner one is along that way.
-PairContact SurfacePairCollider::containment() const {
+// The exit leads through the nearest wall. The depth is the distance to it plus the length of the inner body
+// along the normal.
+PairContact SurfacePairCollider::make_containment_contact() const {
   const Surface& first = first_.surface();
   const Surface& second = second_.surface();
   PairContact contact;
   contact.pair = search_.best();
-  const Vector3 between = contact.pair.second_m - contact.pair.first_m, way = between.normalized();
-  contact.normal = way;
-  contact.depth_m = between.norm() + std::min(length_along(first.net, way), length_along(second.net, way));
+  const Vector3 between = contact.pair.second_m - contact.pair.first_m, direction = between.normalized();
+  contact.normal = direction;
+  contact.depth_m =
+      between.norm() + std::min(length_along(first.net, direction), length_along(second.net, direction));
   contact.first = {first.u.domain_start(), first.u.domain_end(), first.v.domain_start(),
                    first.v.domain_end()};
   contact.second = {second.u.domain_start(), second.u.domain_end(), second.v.domain_start(),

@@ -1,6 +1,6 @@
 // Contact of two B-spline surfaces through levels of detail of their blending matrices (section 4.1 of
-// Pungotra et al. 2013): the cells that could meet are found from coarse to fine, grouped to regions, and
-// what they do is settled on the true surfaces.
+// Pungotra et al. 2013). Cells that may meet are found from coarse to fine and grouped into regions, whose
+// contacts are computed on the exact surfaces.
 #pragma once
 
 #include <limits>
@@ -8,28 +8,28 @@
 
 #include "engine/collision/levels/cell_pairs.h"
 #include "engine/collision/surfaces/contact_regions.h"
-#include "engine/collision/surfaces/pair_contact.h"
+#include "engine/collision/surfaces/pair_polish.h"
 #include "engine/collision/surfaces/pair_search.h"
-#include "engine/collision/surfaces/region_middle.h"
-#include "engine/collision/surfaces/region_places.h"
 
 namespace spoonbill {
 
+// Options of SurfacePairCollider::collide().
 struct PairQuery {
-  // Whether they bound bodies: du x dv then points outwards, and one body may be inside the other. An open
-  // surface has two sides, and the shorter way out counts.
+  // True if the surface bounds a body: du x dv then points outward, and one body may be inside the other. An
+  // open surface has two sides, and the one with the shorter exit counts.
   bool first_closed = false, second_closed = false;
-  // Up to which distance the nearest points of surfaces that do not touch are searched for.
+  // Distance up to which the nearest points of surfaces that do not touch are searched, in metres.
   double reach_m = 0.0;
-  // All samples of a grid, where they are known already (see SurfaceLevels::begin()): none is then evaluated.
+  // Optional samples of the whole grid, see SurfaceLevels::begin(). If given, none is evaluated.
   PlanarPoints first_samples, second_samples;
 };
 
+// Result of SurfacePairCollider::collide().
 struct PairResult {
-  bool touching = false;   // decided to touch_tolerance_m
-  bool contained = false;  // touching, with one inside the other: the one contact says how it gets out
-  // Of surfaces that do not touch, infinite beyond the reach. No points are nearer by more than a
-  // ten-thousandth of it or of the smaller surface's size.
+  bool touching = false;   // to within touch_tolerance_m
+  bool contained = false;  // one body is inside the other; the only contact describes its exit
+  // Distance of surfaces that do not touch; infinite beyond the reach. No points are nearer by more than 1e-4
+  // of it or of the smaller surface's size.
   double distance_m = std::numeric_limits<double>::infinity();
   SurfacePair nearest;
   // A capacity was met, and a contact may be missing. Remedy: surfaces of fewer elements or a smaller reach.
@@ -37,69 +37,71 @@ struct PairResult {
   int samples_evaluated = 0;
 };
 
-// Keeps what it evaluated of a surface until its control points move, and looks first where it found the last
-// contacts. One owner, one thread; allocates only when made. The grids must outlive it.
+// Contact search of two surfaces. Reuses what it evaluated until control points move, and starts from the
+// last contacts. One owner, one thread; allocates only on construction. The grids must outlive it.
 class SurfacePairCollider {
  public:
   SurfacePairCollider(const NestedGrid& first, const NestedGrid& second);
   SurfacePairCollider(const SurfacePairCollider&) = delete;
   SurfacePairCollider& operator=(const SurfacePairCollider&) = delete;
 
+  // Finds the contacts, or the nearest points within the query's reach if there are none.
   PairResult collide(const Surface& first, const Surface& second, const PairQuery& query);
 
-  // Of the last collide().
+  // Contacts of the last collide(), one per region.
   const std::vector<PairContact>& contacts() const { return contacts_; }
-  // The pairs of cells in which the surfaces could cross or touch, of regions that do and of others.
+  // Cell pairs of the last search in which the surfaces may meet, including regions without contact.
   const std::vector<CellPair>& cells() const { return cells_.pairs(); }
 
-  // For overlays, after collide(), of the same surfaces. Asked for pairs, they leave others in cells().
+  // Cell search for overlays, after collide() of the same surfaces. Its searches change cells().
   CellPairs& cell_pairs() { return cells_; }
   SurfaceLevels& first_levels() { return first_; }
   SurfaceLevels& second_levels() { return second_; }
 
  private:
-  // By side of the second surface: behind it, before it.
+  // Starting parameters by side of the second surface: 0 behind it, 1 in front of it.
   struct Seeds {
-    double middle_depth = 0.0;
+    double centre_depth = 0.0;
     double depth[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     PairParameters at[2];
   };
   using Pairs = std::vector<CellPair>;
   using Region = ContactRegions::Region;
 
-  // Where the surfaces touched or crossed, and where the first was deepest, by side of the second as in
-  // Seeds.
+  // Result of a region that the next collide() starts from: where the surfaces touched, and where the first
+  // was deepest, by side as in Seeds.
   struct Seed {
     PairParameters touch, deepest[2];
     bool deep[2] = {false, false};
   };
 
-  void take_contacts(const PairQuery& query);
+  void find_contacts(const PairQuery& query);
   const Seed* last_seed(const PairContact& contact) const;
   bool touches(const RegionCells& cells, const Seed* last);
-  Seed settle(const RegionCells& cells, const PairQuery& query, const Seed* last, PairContact& contact) const;
-  RegionMiddle middle_of(const RegionCells& cells) const;
-  Seeds seeds_of(const RegionCells& cells, const Seed* last) const;
-  void take_inner_touch(const RegionCells& cells, PairContact& contact) const;
-  void settle_from(PairContact& contact, PairParameters& from, double outside, bool first_closed,
-                   double shortest) const;
+  Seed resolve_contact(const RegionCells& cells, const PairQuery& query, const Seed* last,
+                       PairContact& contact) const;
+  RegionCentre find_centre(const RegionCells& cells) const;
+  Seeds find_seeds(const RegionCells& cells, const Seed* last) const;
+  void find_inner_touch(const RegionCells& cells, PairContact& contact) const;
+  void deepen_contact(PairContact& contact, PairParameters& from, double outside, bool first_closed,
+                      double shortest) const;
   void find_nearest(const PairQuery& query, PairResult& result);
   bool may_contain(const PairQuery& query) const;
   double tolerance() const;
   double search_all(double reach);
   bool is_contained(const PairQuery& query) const;
-  PairContact containment() const;
+  PairContact make_containment_contact() const;
 
   SurfaceLevels first_, second_;
   CellPairs cells_;
   ContactRegions regions_;
   PairSearch search_;
   std::vector<PairContact> contacts_;
-  std::vector<Seed> seeds_, last_seeds_;  // of the contacts, and of those of the last collide()
+  std::vector<Seed> seeds_, last_seeds_;  // seeds of the contacts, and of the previous collide()
   std::size_t query_ = 0;
-  PairParameters nearest_;  // of the last surfaces that did not touch
+  PairParameters nearest_;  // nearest points of the last surfaces that did not touch
   bool nearest_known_ = false;
-  bool touched_ = false;  // in the last collide(): tells what to try first, never what comes of it
+  bool touched_last_ = false;  // in the last collide(); affects the order of the search, not its result
 };
 
 }  // namespace spoonbill

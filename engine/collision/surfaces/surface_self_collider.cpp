@@ -3,16 +3,141 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
-#include "engine/collision/levels/patch_distance.h"
+#include "engine/base/assert.h"
+#include "engine/collision/levels/surface_levels.h"
 
 namespace spoonbill {
+
+namespace {
+
+constexpr double all_directions = std::numbers::pi;
+constexpr double right_angle = 0.5 * std::numbers::pi;
+
+// Half angle of the cone of all vectors within `radius` of a vector.
+double half_angle(double length, double radius) {
+  return radius < length ? std::asin(radius / length) : all_directions;
+}
+
+double angle_between(const Vector3& one, const Vector3& other) {
+  return std::atan2(one.cross(other).norm(), one.dot(other));
+}
+
+}  // namespace
+
+PatchFolds::Direction PatchFolds::unroll(const KnotVector& knots) {
+  Direction direction;
+  const std::vector<double>& u = knots.extended_knots();
+  const int p = direction.degree = knots.degree();
+  const int count = static_cast<int>(u.size()) - p - 1;
+  const std::vector<double> breaks = knots.breakpoints();
+  for (std::size_t b = 0; b + 1 < breaks.size(); ++b) {
+    direction.span.push_back(knots.find_span(0.5 * (breaks[b] + breaks[b + 1])));
+  }
+  for (int i = 0; i < count; ++i) {
+    direction.control.push_back(knots.control_index(i, p));
+    const double length = i + 1 < count ? u[i + p + 1] - u[i + 1] : 0.0;
+    direction.scale.push_back(length > 0.0 ? p / length : 0.0);
+  }
+  return direction;
+}
+
+PatchFolds::PatchFolds(SurfaceLevels& levels)
+    : levels_(&levels), u_(unroll(levels.nested().grid.u.knots)), v_(unroll(levels.nested().grid.v.knots)) {
+  mixed_.resize(u_.span.size() * v_.span.size());
+  steps_.resize(u_.control.size() * v_.control.size());
+  cones_.resize(static_cast<std::size_t>(levels.total_cell_count()));
+  computed_at_.assign(cones_.size(), 0);
+}
+
+void PatchFolds::begin() {
+  ++generation_;
+  levels_->bounds().update(levels_->surface().net);
+  update_mixed_bounds();
+}
+
+// S_uv is a B-spline of one degree less in both directions, bounded by its own control points.
+void PatchFolds::update_mixed_bounds() {
+  const ControlNet& net = levels_->surface().net;
+  const int rows = static_cast<int>(u_.control.size()), columns = static_cast<int>(v_.control.size());
+  for (int i = 0; i + 1 < rows; ++i) {
+    for (int j = 0; j + 1 < columns; ++j) {
+      const int here = u_.control[i], next = u_.control[i + 1];
+      const Vector3 low = net.point(next, v_.control[j]) - net.point(here, v_.control[j]);
+      const Vector3 high = net.point(next, v_.control[j + 1]) - net.point(here, v_.control[j + 1]);
+      steps_[i * columns + j] = u_.scale[i] * v_.scale[j] * (high - low).norm();
+    }
+  }
+  for (std::size_t eu = 0; eu < u_.span.size(); ++eu) {
+    for (std::size_t ev = 0; ev < v_.span.size(); ++ev) {
+      double most = 0.0;
+      for (int i = u_.span[eu] - u_.degree; i < u_.span[eu]; ++i) {
+        for (int j = v_.span[ev] - v_.degree; j < v_.span[ev]; ++j) {
+          most = std::max(most, steps_[i * columns + j]);
+        }
+      }
+      mixed_[eu * v_.span.size() + ev] = most;
+    }
+  }
+}
+
+// The cones are around the tangents at the cell's centre, which change at most by the second derivatives.
+PatchFolds::Cones PatchFolds::compute_cones(const LevelCell& cell) {
+  const Grid& grid = levels_->nested().grid;
+  const int step = levels_->step(cell.level), shift = levels_->nested().levels;
+  const int eu = cell.i >> shift, ev = cell.j >> shift;
+  const double u0 = grid.u.parameters[cell.i], u1 = grid.u.parameters[cell.i + step];
+  const double v0 = grid.v.parameters[cell.j], v1 = grid.v.parameters[cell.j + step];
+  const double half_u = 0.5 * (u1 - u0), half_v = 0.5 * (v1 - v0);
+  const SurfacePoint centre = evaluate(levels_->pieces(), u0 + half_u, v0 + half_v);
+  const SurfaceBounds& bounds = levels_->bounds();
+  const double mixed = mixed_[static_cast<std::size_t>(eu) * v_.span.size() + static_cast<std::size_t>(ev)];
+  // A bulge is an eighth of the second derivative times the square of the side.
+  const double radius_u = 8.0 * bounds.bulge(eu, ev, 1.0, 0.0) * half_u + mixed * half_v;
+  const double radius_v = 8.0 * bounds.bulge(eu, ev, 0.0, 1.0) * half_v + mixed * half_u;
+  const double length_u = centre.du.norm(), length_v = centre.dv.norm();
+  return {{centre.du / std::max(length_u, 1e-300), half_angle(length_u, radius_u)},
+          {centre.dv / std::max(length_v, 1e-300), half_angle(length_v, radius_v)}};
+}
+
+const PatchFolds::Cones& PatchFolds::cones_at(const LevelCell& cell) {
+  const int index = levels_->cell_index(cell);
+  if (computed_at_[index] != generation_) {
+    computed_at_[index] = generation_;
+    cones_[index] = compute_cones(cell);
+  }
+  return cones_[index];
+}
+
+bool PatchFolds::never_meets_itself(std::span<const LevelCell> cells) {
+  SPOONBILL_ASSERT(!cells.empty());
+  SPOONBILL_ASSERT_DEBUG(std::all_of(
+      cells.begin(), cells.end(), [&](const LevelCell& cell) { return cell.level == cells.front().level; }));
+  Cones sum;
+  for (const LevelCell& cell : cells) {
+    const Cones& cones = cones_at(cell);
+    sum.along_u.axis += cones.along_u.axis;
+    sum.along_v.axis += cones.along_v.axis;
+  }
+  for (const LevelCell& cell : cells) {
+    const Cones& cones = cones_at(cell);
+    sum.along_u.angle = std::max(sum.along_u.angle,
+                                 angle_between(sum.along_u.axis, cones.along_u.axis) + cones.along_u.angle);
+    sum.along_v.angle = std::max(sum.along_v.angle,
+                                 angle_between(sum.along_v.axis, cones.along_v.axis) + cones.along_v.angle);
+  }
+  if (!(sum.along_u.angle < right_angle && sum.along_v.angle < right_angle)) return false;
+  const double between = angle_between(sum.along_u.axis, sum.along_v.axis);
+  return std::min(between, std::numbers::pi - between) > sum.along_u.angle + sum.along_v.angle;
+}
+
 namespace {
 
 constexpr std::size_t contact_capacity = 64;
-// Of more, a coarser level tells as much.
-constexpr std::size_t fine_pairs = 1 << 17;
-// Candidates of a region from which Newton's method looks for a touch before all of it is searched.
+// Largest number of pairs at a level below the coarsest; beyond it a coarser level is used.
+constexpr std::size_t fine_pair_capacity = 1 << 17;
+// Number of candidates from which Newton's method looks for a touch before the whole region is searched.
 constexpr std::size_t region_seeds = 8;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -20,7 +145,7 @@ int cell_count(const GridDirection& direction) {
   return static_cast<int>(direction.parameters.size()) - 1;
 }
 
-int cell_of(const GridDirection& direction, double parameter) {
+int find_cell(const GridDirection& direction, double parameter) {
   const std::vector<double>& all = direction.parameters;
   const auto next = std::upper_bound(all.begin(), all.end(), parameter) - all.begin();
   return std::clamp(static_cast<int>(next) - 1, 0, cell_count(direction) - 1);
@@ -40,9 +165,9 @@ SurfaceSelfCollider::SurfaceSelfCollider(const NestedGrid& nested)
       search_(levels_, levels_, &not_joined_),
       regions_(levels_, levels_) {
   pairs_.reserve(cell_pair_capacity);
-  // Each step down leaves two pairs of nodes behind, or fifteen of cells.
+  // Each descent leaves two node pairs on the stack, or fifteen cell pairs.
   nodes_.reserve(256);
-  path_.reserve(static_cast<std::size_t>(16 * (2 + nested.levels)));
+  pending_.reserve(static_cast<std::size_t>(16 * (2 + nested.levels)));
   contacts_.reserve(contact_capacity);
 }
 
@@ -53,34 +178,34 @@ SelfResult SurfaceSelfCollider::collide(const Surface& surface, const SelfQuery&
   levels_.begin(surface);
   folds_.begin();
   tree_.update(levels_);
-  u_ = joints_of(true);
-  v_ = joints_of(false);
+  u_ = find_joints(true);
+  v_ = find_joints(false);
   search_.begin();
   int level = levels_.nested().levels;
-  take_pairs(level);
-  // Coarser, cells that are joined are larger, and what they do with each other is not told.
+  collect_pairs(level);
+  // At a coarser level adjacent cells are larger, and contacts between them are missed.
   const bool coarser = overflow_;
-  while (overflow_ && level > 0 && !stopped_) take_pairs(--level);
+  while (overflow_ && level > 0 && !stopped_) collect_pairs(--level);
   const std::vector<Region>& regions = regions_.group(pairs_);
   for (const Region& region : regions) {
-    const RegionCells cells = cells_of(levels_, levels_, pairs_, region);
+    const RegionCells cells = region_cells(levels_, levels_, pairs_, region);
     if (stopped_) break;
     if (is_mirror_of_earlier(region) || !touches(cells)) continue;
-    contacts_.push_back(contact_of(cells, query));
+    contacts_.push_back(make_contact(cells, query));
   }
   query_ = nullptr;
   return {!contacts_.empty(), coarser || search_.overflow(), stopped_};
 }
 
-// Not for every pair: to look for a signal is a call of the system.
-bool SurfaceSelfCollider::goes_on(double fraction) {
-  constexpr std::uint64_t between_looks = 64;
-  if (!stopped_ && asked_++ % between_looks == 0) stopped_ = !query_->progress.report(fraction);
+// Reports progress every 64 calls only, because looking for a signal is a system call.
+bool SurfaceSelfCollider::should_continue(double fraction) {
+  constexpr std::uint64_t calls_between_reports = 64;
+  if (!stopped_ && calls_++ % calls_between_reports == 0) stopped_ = !query_->progress.report(fraction);
   return !stopped_;
 }
 
-// By the samples of the two edges.
-SurfaceSelfCollider::Joints SurfaceSelfCollider::joints_of(bool in_u) {
+// Compares the samples of the two edges of a direction.
+SurfaceSelfCollider::Joints SurfaceSelfCollider::find_joints(bool in_u) {
   const Grid& grid = levels_.nested().grid;
   const GridDirection& direction = in_u ? grid.u : grid.v;
   if (direction.knots.is_periodic()) return {true, false, false};
@@ -116,21 +241,21 @@ bool SurfaceSelfCollider::are_joined(const LevelCell& a, const LevelCell& b) con
 
 LevelCell SurfaceSelfCollider::cell_at(double u, double v) const {
   const NestedGrid& nested = levels_.nested();
-  return {cell_of(nested.grid.u, u), cell_of(nested.grid.v, v), nested.levels};
+  return {find_cell(nested.grid.u, u), find_cell(nested.grid.v, v), nested.levels};
 }
 
-bool SurfaceSelfCollider::NotJoined::counts(const PairParameters& at) const {
-  return !of_->are_joined(of_->cell_at(at.u, at.v), of_->cell_at(at.s, at.t));
+bool SurfaceSelfCollider::NotJoinedJudge::counts(const PairParameters& at) const {
+  return !collider_->are_joined(collider_->cell_at(at.u, at.v), collider_->cell_at(at.s, at.t));
 }
 
-// All pairs of cells of the level that could meet, each both ways round.
-void SurfaceSelfCollider::take_pairs(int level) {
+// Collects all pairs of cells of the level that may meet, each in both orders.
+void SurfaceSelfCollider::collect_pairs(int level) {
   pairs_.clear();
   overflow_ = false;
   nodes_.clear();
   nodes_.push_back({tree_.root(), tree_.root()});
   const int step = levels_.step(0);
-  while (!nodes_.empty() && !overflow_ && goes_on(0.0)) {
+  while (!nodes_.empty() && !overflow_ && should_continue(0.0)) {
     const auto [a, b] = nodes_.back();
     nodes_.pop_back();
     const ElementTree::Node &one = tree_.node(a), &other = tree_.node(b);
@@ -152,14 +277,14 @@ void SurfaceSelfCollider::take_pairs(int level) {
 }
 
 void SurfaceSelfCollider::descend(const CellPair& elements, int level) {
-  path_.clear();
-  path_.push_back(elements);
-  while (!path_.empty() && !overflow_) {
-    const CellPair pair = path_.back();
-    path_.pop_back();
+  pending_.clear();
+  pending_.push_back(elements);
+  while (!pending_.empty() && !overflow_) {
+    const CellPair pair = pending_.back();
+    pending_.pop_back();
     if (!can_meet(pair, level)) continue;
     if (pair.first.level == level) {
-      emit(pair, level);
+      add_pair(pair, level);
     } else {
       split(pair);
     }
@@ -169,20 +294,20 @@ void SurfaceSelfCollider::descend(const CellPair& elements, int level) {
 bool SurfaceSelfCollider::can_meet(const CellPair& pair, int level) {
   const auto& [a, b, region] = pair;
   if (are_joined(a, b)) return a.level < level && joined_can_meet(pair);
-  const PatchCorners of_a = levels_.corners(a), of_b = levels_.corners(b);
+  const PatchCorners corners_a = levels_.corners(a), corners_b = levels_.corners(b);
   const double bulge_a = levels_.bulge(a), bulge_b = levels_.bulge(b);
-  return patch_distance(of_a, bulge_a, of_b, bulge_b) <= touch_tolerance_m &&
-         patch_distance_aside(of_a, bulge_a, of_b, bulge_b) <= touch_tolerance_m;
+  return patch_distance(corners_a, bulge_a, corners_b, bulge_b) <= touch_tolerance_m &&
+         patch_distance_in_plane(corners_a, bulge_a, corners_b, bulge_b) <= touch_tolerance_m;
 }
 
-// Elsewhere than where they are joined.
+// Returns true if two adjacent cells may meet other than where they are joined.
 bool SurfaceSelfCollider::joined_can_meet(const CellPair& pair) {
   const auto& [a, b, region] = pair;
   const Grid& grid = levels_.nested().grid;
   const int step = levels_.step(a.level), in_u = std::abs(a.i - b.i), in_v = std::abs(a.j - b.j);
   const bool beside_u = in_u <= step || cell_count(grid.u) - in_u <= step;
   const bool beside_v = in_v <= step || cell_count(grid.v) - in_v <= step;
-  // In a pole alone they make no rectangle.
+  // Cells that are joined only at a pole do not form a rectangle.
   if (!beside_u || !beside_v) return true;
   if (are_same(a, b)) return !folds_.never_meets_itself(std::array{a});
   if (in_u == 0 || in_v == 0) return !folds_.never_meets_itself(std::array{a, b});
@@ -190,8 +315,8 @@ bool SurfaceSelfCollider::joined_can_meet(const CellPair& pair) {
       std::array{a, b, LevelCell{a.i, b.j, a.level}, LevelCell{b.i, a.j, a.level}});
 }
 
-void SurfaceSelfCollider::emit(const CellPair& pair, int level) {
-  overflow_ = pairs_.size() + 2 > (level == 0 ? cell_pair_capacity : fine_pairs);
+void SurfaceSelfCollider::add_pair(const CellPair& pair, int level) {
+  overflow_ = pairs_.size() + 2 > (level == 0 ? cell_pair_capacity : fine_pair_capacity);
   if (overflow_) return;
   pairs_.push_back({pair.first, pair.second});
   pairs_.push_back({pair.second, pair.first});
@@ -203,13 +328,13 @@ void SurfaceSelfCollider::split(const CellPair& pair) {
   const bool same = are_same(a, b);
   for (int k = 0; k < 4; ++k) {
     for (int m = same ? k : 0; m < 4; ++m) {
-      path_.push_back({{a.i + (k >> 1) * half, a.j + (k & 1) * half, finer},
-                       {b.i + (m >> 1) * half, b.j + (m & 1) * half, finer}});
+      pending_.push_back({{a.i + (k >> 1) * half, a.j + (k & 1) * half, finer},
+                          {b.i + (m >> 1) * half, b.j + (m & 1) * half, finer}});
     }
   }
 }
 
-// Whether its pairs are those of a region before, the other way round.
+// Returns true if an earlier region has the same pairs in the opposite order.
 bool SurfaceSelfCollider::is_mirror_of_earlier(const Region& region) const {
   const CellPair& sought = pairs_[region.begin];
   const auto end = pairs_.begin() + static_cast<std::ptrdiff_t>(region.begin);
@@ -218,64 +343,63 @@ bool SurfaceSelfCollider::is_mirror_of_earlier(const Region& region) const {
   });
 }
 
-// First from a few places, which mostly finds a touch at once; then everywhere, to be sure that there is
-// none.
+// Tries a few candidates, which mostly succeeds at once, before searching all pairs.
 bool SurfaceSelfCollider::touches(const RegionCells& cells) {
   search_.forget_best();
   const std::size_t seeds = cells.at_most(region_seeds);
   for (std::size_t k = 0; k < seeds; ++k) {
-    search_.offer(cells.middle_of(k, seeds));
+    search_.offer(cells.pair_centre(k, seeds));
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }
   for (const CellPair& pair : cells.pairs) {
     const auto searched = static_cast<double>(&pair - pairs_.data());
-    if (!goes_on(searched / static_cast<double>(pairs_.size()))) return false;
+    if (!should_continue(searched / static_cast<double>(pairs_.size()))) return false;
     search_.search(pair.first, pair.second, infinity, touch_tolerance_m);
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }
   return false;
 }
 
-PairContact SurfaceSelfCollider::contact_of(const RegionCells& cells, const SelfQuery& query) const {
+PairContact SurfaceSelfCollider::make_contact(const RegionCells& cells, const SelfQuery& query) const {
   PairContact contact;
-  const auto [first, second] = ranges_of(cells);
+  const auto [first, second] = region_ranges(cells);
   contact.first = first;
   contact.second = second;
   contact.pair = search_.best();
   contact.normal = unit_normal(levels_.surface(), contact.pair.at.s, contact.pair.at.t);
   double shortest = infinity;
-  settle(contact, deepest_place(cells, search_.best().at, 1.0), 1.0, query, shortest);
+  deepen_contact(contact, find_deepest_seed(cells, search_.best().at, 1.0), 1.0, query, shortest);
   if (!query.closed) {
-    settle(contact, deepest_place(cells, search_.best().at, -1.0), -1.0, query, shortest);
+    deepen_contact(contact, find_deepest_seed(cells, search_.best().at, -1.0), -1.0, query, shortest);
   }
-  take_tangents(levels_.pieces(), contact);
+  set_tangents(levels_.pieces(), contact);
   return contact;
 }
 
-// How deep either part is behind the other: the less of both moves them apart. Kept where the way out is
-// shorter than the shortest known.
-void SurfaceSelfCollider::settle(PairContact& contact, const PairParameters& from, double outside,
-                                 const SelfQuery& query, double& shortest) const {
+// Updates the contact if the smaller depth of the two parts behind each other is less than `shortest`.
+void SurfaceSelfCollider::deepen_contact(PairContact& contact, const PairParameters& from, double outside,
+                                         const SelfQuery& query, double& shortest) const {
   const PiecewiseSurface pieces = levels_.pieces();
-  const DeepestPair of_first = deepest_pair(pieces, pieces, from, outside, infinity);
-  const PairParameters& deep = of_first.pair.at;
-  if (!(of_first.depth_m > 0.0) || !not_joined_.counts(deep)) return;
+  const DeepestPair first_deepest = deepest_pair(pieces, pieces, from, outside, infinity);
+  const PairParameters& deep = first_deepest.pair.at;
+  if (!(first_deepest.depth_m > 0.0) || !not_joined_.counts(deep)) return;
   // The parts face each other where they are deep.
-  const double outside_first = side_facing(of_first.normal, unit_normal(levels_.surface(), deep.u, deep.v));
+  const double outside_first =
+      facing_side(first_deepest.normal, unit_normal(levels_.surface(), deep.u, deep.v));
   if (query.closed && outside_first < 0.0) return;
-  const DeepestPair of_second =
+  const DeepestPair second_deepest =
       deepest_pair(pieces, pieces, {deep.s, deep.t, deep.u, deep.v}, outside_first, infinity);
-  const SurfacePair& other = of_second.pair;
-  if (!(of_second.depth_m > 0.0) || !not_joined_.counts(other.at)) return;
-  const double depth = std::min(of_first.depth_m, of_second.depth_m);
+  const SurfacePair& other = second_deepest.pair;
+  if (!(second_deepest.depth_m > 0.0) || !not_joined_.counts(other.at)) return;
+  const double depth = std::min(first_deepest.depth_m, second_deepest.depth_m);
   if (!(depth < shortest)) return;
   shortest = contact.depth_m = depth;
-  if (of_first.depth_m <= of_second.depth_m) {
-    contact.pair = of_first.pair;
-    contact.normal = of_first.normal;
+  if (first_deepest.depth_m <= second_deepest.depth_m) {
+    contact.pair = first_deepest.pair;
+    contact.normal = first_deepest.normal;
   } else {
     contact.pair = {{other.at.s, other.at.t, other.at.u, other.at.v}, other.second_m, other.first_m};
-    contact.normal = -of_second.normal;
+    contact.normal = -second_deepest.normal;
   }
 }
 

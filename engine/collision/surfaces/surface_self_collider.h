@@ -1,41 +1,93 @@
-// Contact of a B-spline surface with itself, open, periodic or closed: the descent of surface_pair_collider.h
-// with both sides the same surface. Cells that are joined, having a corner in common, across a seam or in a
-// pole too, always meet there: they are left out as soon as they provably meet nowhere else (patch_folds.h),
-// and split until then.
+// Contact of a B-spline surface with itself, open, periodic or closed, by the descent of SurfacePairCollider
+// with the same surface on both sides. Cells that are joined (at a corner, across a seam or in a pole) always
+// meet there. They are skipped as soon as PatchFolds proves that they meet nowhere else, and split until
+// then.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/base/progress.h"
-#include "engine/collision/levels/element_tree.h"
+#include "engine/collision/levels/cell_pairs.h"
+#include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/surfaces/contact_regions.h"
-#include "engine/collision/surfaces/pair_contact.h"
+#include "engine/collision/surfaces/pair_polish.h"
 #include "engine/collision/surfaces/pair_search.h"
-#include "engine/collision/surfaces/patch_folds.h"
-#include "engine/collision/surfaces/region_places.h"
 
 namespace spoonbill {
 
-struct SelfQuery {
-  // Whether it bounds a body: du x dv then points outwards. An open surface has two sides, and the shorter
-  // way out counts.
-  bool closed = false;
-  Progress progress = {};  // of what is searched; may stop the search
+// Tangent cones of one surface's cells, which prove that patches do not intersect themselves. One owner, one
+// thread; allocates only on construction. The levels must outlive it.
+//
+// Over a parameter rectangle S(p) - S(q) = (u_p - u_q) a + (v_p - v_q) b. Here a and b are the means of S_u
+// and S_v over the path from q to p, and each mean is in the convex cone of its tangents. Let the cones
+// around the axes A and B have the half angles alpha and beta. If the lines of A and B are more than alpha +
+// beta apart, a and b are never parallel and the difference never vanishes.
+//
+// This is stronger than a cone of normals (Volino and Magnenat-Thalmann 1994), which needs a test of the
+// boundary too: a flat spiral has one normal and still overlaps itself.
+class PatchFolds {
+ public:
+  explicit PatchFolds(SurfaceLevels& levels);
+
+  // Updates to the current shape. Call after SurfaceLevels::begin().
+  void begin();
+
+  // Returns true if it is proven that the patch of the cells does not intersect itself. The cells must be of
+  // one level and form a rectangle, possibly across a seam.
+  bool never_meets_itself(std::span<const LevelCell> cells);
+
+ private:
+  struct Cone {
+    Vector3 axis = Vector3::Zero();  // unit
+    double angle = 0.0;              // half angle; above a right angle the cone is all directions
+  };
+  struct Cones {
+    Cone along_u, along_v;
+  };
+  const Cones& cones_at(const LevelCell& cell);
+  Cones compute_cones(const LevelCell& cell);
+  void update_mixed_bounds();
+
+  SurfaceLevels* levels_;
+  // Largest norm of S_uv over each element, by u and v. SurfaceBounds has those of S_uu and S_vv.
+  std::vector<double> mixed_;
+  struct Direction {
+    std::vector<int> span, control;  // knot span of each element; unrolled index to control index
+    std::vector<double> scale;       // degree / (u_{i+p+1} - u_{i+1}) of the unrolled index i
+    int degree = 0;
+  };
+  static Direction unroll(const KnotVector& knots);
+  Direction u_, v_;
+  std::vector<double> steps_;  // working memory: norms of the mixed differences, by unrolled control point
+  std::vector<Cones> cones_;   // by SurfaceLevels::cell_index()
+  std::vector<std::uint32_t> computed_at_;
+  std::uint32_t generation_ = 0;
 };
 
+// Options of SurfaceSelfCollider::collide().
+struct SelfQuery {
+  // True if the surface bounds a body: du x dv then points outward. An open surface has two sides, and the
+  // one with the shorter exit counts.
+  bool closed = false;
+  Progress progress = {};  // fraction searched; may stop the search
+};
+
+// Result of SurfaceSelfCollider::collide().
 struct SelfResult {
-  bool touching = false;  // decided to touch_tolerance_m
+  bool touching = false;  // to within touch_tolerance_m
   // A capacity was met, and a contact may be missing. Remedy: a surface of fewer elements or fewer levels.
   bool overflow = false;
-  bool stopped = false;  // on request: what was found until then
+  bool stopped = false;  // by the progress callback; contacts found so far are valid
 };
 
-// One owner, one thread; allocates only when made. The grid must outlive it.
+// Self-contact search of one surface. One owner, one thread; allocates only on construction. The grid must
+// outlive it.
 //
-// Joined cells of the finest level are not told apart: a loop that the surface makes within two of them, and
-// the sharp edge along which it folds back, are no contact. More levels find smaller loops.
+// Joined cells of the finest level are not separated: a loop within two of them, and the sharp edge of a
+// fold, are no contact. More levels find smaller loops.
 class SurfaceSelfCollider {
  public:
   explicit SurfaceSelfCollider(const NestedGrid& nested);
@@ -44,56 +96,57 @@ class SurfaceSelfCollider {
 
   SelfResult collide(const Surface& surface, const SelfQuery& query);
 
-  // Of the last collide(): each region once, by the places on both parts of the surface, in any order.
+  // Contacts of the last collide(), one per region, with the two parts of the surface in arbitrary order.
   const std::vector<PairContact>& contacts() const { return contacts_; }
 
  private:
-  // What joins cells beyond having a corner in common in the grid.
+  // Joints of cells at the ends of a direction, in addition to corners of the grid.
   struct Joints {
-    bool seam = false;                         // both ends of the direction are one edge
+    bool seam = false;                         // both ends of the direction are the same edge
     bool low_pole = false, high_pole = false;  // an end is a single point
   };
-  class NotJoined final : public PairJudge {
+  // Rejects pairs of points in joined cells.
+  class NotJoinedJudge final : public PairJudge {
    public:
-    explicit NotJoined(const SurfaceSelfCollider& of) : of_(&of) {}
+    explicit NotJoinedJudge(const SurfaceSelfCollider& of) : collider_(&of) {}
     bool counts(const PairParameters& at) const override;
 
    private:
-    const SurfaceSelfCollider* of_;
+    const SurfaceSelfCollider* collider_;
   };
   using Pairs = std::vector<CellPair>;
   using Region = ContactRegions::Region;
 
-  Joints joints_of(bool in_u);
+  Joints find_joints(bool in_u);
   bool are_joined(const LevelCell& a, const LevelCell& b) const;
   LevelCell cell_at(double u, double v) const;
-  void take_pairs(int level);
+  void collect_pairs(int level);
   void descend(const CellPair& elements, int level);
   bool can_meet(const CellPair& pair, int level);
   bool joined_can_meet(const CellPair& pair);
-  void emit(const CellPair& pair, int level);
+  void add_pair(const CellPair& pair, int level);
   void split(const CellPair& pair);
   bool is_mirror_of_earlier(const Region& region) const;
   bool touches(const RegionCells& cells);
-  bool goes_on(double fraction);
-  PairContact contact_of(const RegionCells& cells, const SelfQuery& query) const;
-  void settle(PairContact& contact, const PairParameters& from, double outside, const SelfQuery& query,
-              double& shortest) const;
+  bool should_continue(double fraction);
+  PairContact make_contact(const RegionCells& cells, const SelfQuery& query) const;
+  void deepen_contact(PairContact& contact, const PairParameters& from, double outside,
+                      const SelfQuery& query, double& shortest) const;
 
   SurfaceLevels levels_;
   ElementTree tree_;
   PatchFolds folds_;
-  NotJoined not_joined_;
+  NotJoinedJudge not_joined_;
   PairSearch search_;
   ContactRegions regions_;
   Joints u_, v_;
-  Pairs pairs_;                            // both ways round
-  std::vector<CellPair> path_;             // working memory: what is left to split of two elements
-  std::vector<std::array<int, 2>> nodes_;  // working memory: a path down the tree, twice
+  Pairs pairs_;                            // in both orders
+  std::vector<CellPair> pending_;          // working memory: stack of cell pairs still to be split
+  std::vector<std::array<int, 2>> nodes_;  // working memory: stack of node pairs
   std::vector<PairContact> contacts_;
   bool overflow_ = false, stopped_ = false;
-  const SelfQuery* query_ = nullptr;  // while it is answered
-  std::uint64_t asked_ = 0;
+  const SelfQuery* query_ = nullptr;  // the current query
+  std::uint64_t calls_ = 0;
 };
 
 }  // namespace spoonbill

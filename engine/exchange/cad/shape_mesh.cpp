@@ -23,7 +23,7 @@
 
 #include "engine/base/containers.h"
 #include "engine/base/text.h"
-#include "engine/collision/meshes/nearest_on_triangle.h"
+#include "engine/collision/meshes/triangle.h"
 #include "engine/exchange/cad/occt_surface.h"
 
 namespace spoonbill {

@@ -12,7 +12,7 @@
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_area.h"
-#include "engine/collision/levels/surface_bounds.h"
+#include "engine/collision/levels/surface_levels.h"
 #include "engine/exchange/mesh_export/slivers.h"
 #include "engine/inspection/closing.h"
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/collision/meshes/nearest_on_triangle.h"
 #include "engine/collision/meshes/triangle.h"
 
 namespace spoonbill {

@@ -51,7 +51,7 @@ ClosedSkin coarse_skin(const Surface& surface, double longest_m) {
     for (std::size_t i = 0; i < u.size(); ++i) longest = std::max(longest, way_m(i, from, i, to));
     return longest;
   };
-  return skin_between(surface, thinned(u, longest_m, over_u), thinned(v, longest_m, over_v));
+  return sample_skin(surface, thinned(u, longest_m, over_u), thinned(v, longest_m, over_v));
 }
 
 }  // namespace
@@ -64,8 +64,8 @@ BodySkin body_skin(const Surface& surface, const LatticeMesh& box,
   skin.triangles = coarse.mesh.triangles;
   skin.points.reserve(coarse.mesh.vertices_m.size());
   for (const Vector3& point : coarse.mesh.vertices_m) skin.points.push_back(point_in_box(box, point));
-  skin.middles.reserve(coarse.middles.size());
-  for (const auto& [u, v] : coarse.middles) skin.middles.push_back(place_at(u, v));
+  skin.middles.reserve(coarse.triangle_centres.size());
+  for (const auto& [u, v] : coarse.triangle_centres) skin.middles.push_back(place_at(u, v));
   return skin;
 }
 

@@ -8,7 +8,7 @@
 
 namespace spoonbill {
 
-// Of the samples of skin_of() so many that none is further from the next than two thirds of a cell's shortest
+// Of the samples of make_skin() so many that none is further from the next than two thirds of a cell's shortest
 // edge where they are so near, and eight a direction at least: what is left out of a round body are slivers
 // of its volume. `place_at` tells where on the surface (u, v) is. Its points lie in filled cells where
 // those samples do.

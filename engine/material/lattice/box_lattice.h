@@ -8,7 +8,7 @@
 
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
-#include "engine/collision/meshes/shell_distance.h"
+#include "engine/collision/meshes/mesh_distance.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/material/lattice/lattice_mesh.h"
 

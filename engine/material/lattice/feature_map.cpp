@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/collision/solids/implicit/exponential.h"
+#include "engine/collision/solids/exponential.h"
 
 namespace spoonbill {
 namespace {

@@ -12,7 +12,7 @@
 #include "engine/bspline/tube_rings.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/meshes/mesh_parts.h"
-#include "engine/collision/meshes/shell_distance.h"
+#include "engine/collision/meshes/mesh_distance.h"
 #include "engine/collision/surfaces/closed_surface.h"
 #include "engine/material/lattice/body_skin.h"
 #include "engine/material/lattice/box_lattice.h"
@@ -163,7 +163,7 @@ bool is_slender(const Surface& surface, const ClosedSkin& skin, const ShellDista
 }  // namespace
 
 Result<LatticeMesh> surface_in_box(const Surface& surface, const LatticeRequest& request) {
-  const ClosedSkin skin = skin_of(surface);
+  const ClosedSkin skin = make_skin(surface);
   const double volume = enclosed_volume_m3(skin);
   const ShellDistance inside(skin.mesh.vertices_m, skin.mesh.triangles, ShellDistance::Kind::solid);
   const Vector3 size = inside.bounds().high - inside.bounds().low;

@@ -42,7 +42,7 @@ TEST(SolidCheck, ThicknessOfABoxIsItsLeastSide) {
   ASSERT_TRUE(check.thinnest);
   EXPECT_NEAR(check.thinnest->thickness_m, 0.004, 1e-12);
   EXPECT_NEAR((check.thinnest->position_m - check.thinnest->opposite_m).norm(), 0.004, 1e-12);
-  EXPECT_TRUE(check.self_meetings.empty());
+  EXPECT_TRUE(check.self_intersections.empty());
   EXPECT_TRUE(check.self_meetings_complete);
 }
 
@@ -61,7 +61,7 @@ TEST(SolidCheck, TheWallAboutACavityIsTheThickness) {
   const SolidCheck check = checked(hollow);
   ASSERT_TRUE(check.thinnest);
   EXPECT_NEAR(check.thinnest->thickness_m, 0.002, 1e-12);
-  EXPECT_TRUE(check.self_meetings.empty());
+  EXPECT_TRUE(check.self_intersections.empty());
 }
 
 // Faces drafted by 3 degrees meet the bottom at 87, between which lines are as short as one likes.
@@ -106,14 +106,14 @@ TriangleMesh dented(double below_m) {
 
 TEST(SolidCheck, FacesThatPassThroughEachOtherAreFound) {
   const SolidCheck check = checked(dented(0.002), 1e-4);
-  ASSERT_FALSE(check.self_meetings.empty());
-  EXPECT_NEAR(check.self_meetings[0].depth_m, 0.002, 1e-9);
-  EXPECT_NEAR(check.self_meetings[0].position_m.z(), 0.0, 1e-9);
-  EXPECT_TRUE(checked(dented(-0.002), 1e-4).self_meetings.empty());
+  ASSERT_FALSE(check.self_intersections.empty());
+  EXPECT_NEAR(check.self_intersections[0].depth_m, 0.002, 1e-9);
+  EXPECT_NEAR(check.self_intersections[0].position_m.z(), 0.0, 1e-9);
+  EXPECT_TRUE(checked(dented(-0.002), 1e-4).self_intersections.empty());
 }
 
 TEST(SolidCheck, WhatTheMeshMayHaveWrongIsNoMeeting) {
-  EXPECT_TRUE(checked(dented(0.002), 1.1e-3).self_meetings.empty());
+  EXPECT_TRUE(checked(dented(0.002), 1.1e-3).self_intersections.empty());
 }
 
 TEST(SolidCheck, StopsWhenAsked) {

@@ -17,7 +17,7 @@ using Vector2 = Eigen::Vector2d;
 constexpr double pi = std::numbers::pi;
 
 bool is_clean(const SurfaceCheck& check) {
-  return check.bad_spots.empty() && check.self_meetings.empty() && check.self_meetings_complete;
+  return check.bad_spots.empty() && check.self_intersections.empty() && check.self_meetings_complete;
 }
 
 TEST(SurfaceCheck, StartingShapesAreSound) {
@@ -83,8 +83,8 @@ TEST(SurfaceCheck, FindsWhereATubePassesThroughItself) {
                    Vector3(0.0, 0.006 * std::sin(around) + 0.006 * v, 0.0));
   };
   const SurfaceCheck check = *check_surface(fitted(Result<ExactShape>(shape)).surface);
-  ASSERT_FALSE(check.self_meetings.empty());
-  const SelfMeeting& meeting = check.self_meetings[0];
+  ASSERT_FALSE(check.self_intersections.empty());
+  const SelfMeeting& meeting = check.self_intersections[0];
   // Near the start of the loop on one side, near its end on the other.
   EXPECT_LT(std::min(meeting.v, meeting.other_v), 0.15);
   EXPECT_GT(std::max(meeting.v, meeting.other_v), 0.85);

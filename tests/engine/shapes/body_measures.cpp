@@ -128,7 +128,7 @@ double seam_jump(const Surface& surface) {
   return largest;
 }
 
-bool meets_itself(const Surface& surface, bool closed) {
+bool is_self_intersecting(const Surface& surface, bool closed) {
   const auto grid = make_nested_grid(surface.u, surface.v, 0);
   EXPECT_TRUE(grid.ok());
   SurfaceSelfCollider collider(grid.value());

@@ -31,7 +31,7 @@ Evenness evenness(const Surface& surface);
 double seam_jump(const Surface& surface);
 
 // Whether elements that are not joined meet: the finer levels take seconds on flat faces.
-bool meets_itself(const Surface& surface, bool closed);
+bool is_self_intersecting(const Surface& surface, bool closed);
 
 FittedShape fitted(const Result<ExactShape>& shape, const ShapeFit& fit = {});
 

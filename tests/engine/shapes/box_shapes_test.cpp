@@ -51,7 +51,7 @@ void expect_box(const FittedShape& shape, const Rounded& box, double most_uneven
   EXPECT_NEAR(volume_m3(shape.surface), volume, tolerance_m * area);
   EXPECT_NEAR(area_m2(shape.surface), area, 1e-3 * area);
   EXPECT_GT(least_outward(shape.surface, distance), 0.9);
-  EXPECT_FALSE(meets_itself(shape.surface, true));
+  EXPECT_FALSE(is_self_intersecting(shape.surface, true));
   EXPECT_LT(seam_jump(shape.surface), 1e-3);
   const Evenness even = evenness(shape.surface);
   EXPECT_LT(even.along, most_uneven_along);
@@ -101,7 +101,7 @@ TEST(Box, MayBeLongOrWideOrBoth) {
     const FittedShape box = fitted(shape, fit);
     EXPECT_LE(box.deviation_m, fit.tolerance_m);
     EXPECT_NEAR(volume_m3(box.surface), size_m.prod(), 0.06 * size_m.prod());
-    EXPECT_FALSE(meets_itself(box.surface, true));
+    EXPECT_FALSE(is_self_intersecting(box.surface, true));
   }
 }
 

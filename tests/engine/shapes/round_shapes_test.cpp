@@ -27,7 +27,7 @@ void expect_sound(const FittedShape& shape, double volume, double area) {
   EXPECT_LE(shape.deviation_m, tolerance_m);
   EXPECT_NEAR(volume_m3(shape.surface), volume, tolerance_m * area);
   EXPECT_NEAR(area_m2(shape.surface), area, 1e-3 * area);
-  EXPECT_FALSE(meets_itself(shape.surface, true));
+  EXPECT_FALSE(is_self_intersecting(shape.surface, true));
   EXPECT_LT(seam_jump(shape.surface), 1e-3);
 }
 
@@ -126,7 +126,7 @@ TEST(Cone, IsAConeWithRoundedEdgeAndTip) {
     EXPECT_LE(cone.surface.net.rows * cone.surface.net.columns, 800);
     EXPECT_LE(largest_distance_m(cone.surface, distance), tolerance_m);
     EXPECT_GT(least_outward(cone.surface, distance), 0.95);
-    EXPECT_FALSE(meets_itself(cone.surface, true));
+    EXPECT_FALSE(is_self_intersecting(cone.surface, true));
     // Below the sharp cone by what the roundings take.
     const double sharp = pi / 3.0 * size.radius_m * size.radius_m * size.height_m;
     EXPECT_LT(volume_m3(cone.surface), sharp);

@@ -21,7 +21,7 @@ SmoothCurve curve_through(const std::vector<Vector3>& points) {
 
 void expect_closed(const FittedShape& shape) {
   EXPECT_LE(shape.deviation_m, tolerance_m);
-  EXPECT_FALSE(meets_itself(shape.surface, true));
+  EXPECT_FALSE(is_self_intersecting(shape.surface, true));
   EXPECT_LT(seam_jump(shape.surface), 1e-3);
   const Status closed = check_closed_tube(shape.surface);
   EXPECT_TRUE(closed.ok()) << closed.error().message;

@@ -71,10 +71,10 @@ double depth_in_itself(const Surface& surface, bool* touching = nullptr) {
 // A free body, pulled at where one likes; with or without contact with itself.
 class Folding {
  public:
-  Folding(const Body& body, bool meets_itself)
+  Folding(const Body& body, bool is_self_intersecting)
       : body_(make_body_state(body, {}, InstructionSet::baseline).value()),
         self_(body_),
-        meets_itself_(meets_itself) {}
+        meets_itself_(is_self_intersecting) {}
 
   // Opposite forces along y on both ends, and so much damping that they come slowly.
   void pull_ends_together(double force_n) {

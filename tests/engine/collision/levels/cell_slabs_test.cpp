@@ -1,10 +1,9 @@
-#include "engine/collision/levels/cell_slabs.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
 
+#include "engine/collision/levels/cell_pairs.h"
 #include "tests/engine/collision/surfaces/random_pairs.h"
 
 namespace spoonbill {
@@ -48,11 +47,12 @@ TEST(CellSlabs, SlabsHoldTheirPatches) {
     SurfaceLevels levels(nested);
     levels.begin(surface);
     CellSlabs slabs(levels);
-    const CellSlabs::Place element = slabs.element(random.integer(0, levels.bounds().elements_u() - 1),
-                                                   random.integer(0, levels.bounds().elements_v() - 1));
+    const CellSlabs::QuadtreeCell element =
+        slabs.element(random.integer(0, levels.bounds().elements_u() - 1),
+                      random.integer(0, levels.bounds().elements_v() - 1));
     const int lane = random.integer(0, 3);
-    const SlabGroup& group = slabs.within(element);
-    const LevelCell cell = slabs.finer(element, lane).cell;
+    const SlabGroup& group = slabs.children(element);
+    const LevelCell cell = slabs.child(element, lane).cell;
     const auto vector = [&](const float(&values)[3][slab_lanes]) {
       return Vector3(values[0][lane], values[1][lane], values[2][lane]);
     };
@@ -87,9 +87,9 @@ TEST(CellSlabs, EveryInstructionSetFindsTheSameCells) {
       first.begin(pair.first);
       second.begin(pair.second);
       CellSlabs of_first(first), of_second(second);
-      const SlabGroup groups[2] = {of_first.within(of_first.element(0, 0)),
-                                   of_second.within(of_second.element(0, 0))};
-      const unsigned bits = first.kernels().meeting(groups[0], slab_lanes, groups[1], 0.1F);
+      const SlabGroup groups[2] = {of_first.children(of_first.element(0, 0)),
+                                   of_second.children(of_second.element(0, 0))};
+      const unsigned bits = first.kernels().find_meeting(groups[0], slab_lanes, groups[1], 0.1F);
       if (set == InstructionSet::baseline) {
         std::memcpy(static_cast<void*>(reference), groups, sizeof groups);
         expected = bits;

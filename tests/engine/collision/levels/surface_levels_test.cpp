@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/collision/levels/patch_distance.h"
-
 namespace spoonbill {
 namespace {
 
@@ -76,9 +74,9 @@ TEST(PatchDistance, TellsSliversApartThatLieSideBySide) {
   };
   const PatchCorners one = sliver(5.0, -0.3, 0.0), other = sliver(8.0, 0.02, 0.2);
   EXPECT_LE(patch_distance(one, 0.0, other, 0.0), 0.0);
-  EXPECT_NEAR(patch_distance_aside(one, 0.0, other, 0.0), 0.16, 1e-12);
-  EXPECT_NEAR(patch_distance_aside(other, 0.02, one, 0.01), 0.13, 1e-12);
-  EXPECT_LE(patch_distance_aside(one, 0.0, sliver(8.0, -0.1, 0.2), 0.0), 0.0);
+  EXPECT_NEAR(patch_distance_in_plane(one, 0.0, other, 0.0), 0.16, 1e-12);
+  EXPECT_NEAR(patch_distance_in_plane(other, 0.02, one, 0.01), 0.13, 1e-12);
+  EXPECT_LE(patch_distance_in_plane(one, 0.0, sliver(8.0, -0.1, 0.2), 0.0), 0.0);
 }
 
 }  // namespace

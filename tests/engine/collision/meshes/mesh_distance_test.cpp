@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/collision/meshes/solid_angle.h"
+#include "engine/collision/meshes/triangle.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
 #include "tests/engine/effort.h"

@@ -113,7 +113,7 @@ TEST(MeshProximity, FindsEverySampleThatIsNear) {
     EXPECT_FALSE(proximity.overflow());
     const Grid& grid = scene.nested.grid;
     std::set<int> told;
-    for (const SampleNearMesh& near : proximity.of_surface()) {
+    for (const SampleNearMesh& near : proximity.surface_samples()) {
       EXPECT_TRUE(told.insert(near.sample).second) << "told once";
       EXPECT_LE(proximity.least_gap_m(), near.mesh.gap_m);
     }
@@ -125,7 +125,7 @@ TEST(MeshProximity, FindsEverySampleThatIsNear) {
       if (std::abs(distance - margin) < 1e-9) continue;
       EXPECT_EQ(told.count(sample) == 1, distance < margin) << distance;
     }
-    for (const SampleNearMesh& near : proximity.of_surface()) {
+    for (const SampleNearMesh& near : proximity.surface_samples()) {
       const Vector3 point = evaluate(scene.surface, grid.u.parameters[near.sample / grid.columns()],
                                      grid.v.parameters[near.sample % grid.columns()])
                                 .position_m;
@@ -151,7 +151,7 @@ TEST(MeshProximity, FindsEveryVertexThatIsNear) {
     MeshProximity proximity(scene.nested, each_its_own(triangles.vertices_m.size()));
     proximity.find(scene.surface, DeformingMesh(triangles), margin);
     std::vector<const VertexNearSurface*> told(triangles.vertices_m.size(), nullptr);
-    for (const VertexNearSurface& near : proximity.of_mesh()) {
+    for (const VertexNearSurface& near : proximity.mesh_vertices()) {
       EXPECT_EQ(told[near.vertex], nullptr) << "told once";
       told[near.vertex] = &near;
     }
@@ -182,14 +182,14 @@ TEST(MeshProximity, TellsTheDeepestOfAPatch) {
   MeshProximity one(scene.nested, std::vector<int>(ball.vertices_m.size(), 0));
   all.find(scene.surface, mesh, 1e-3);
   one.find(scene.surface, mesh, 1e-3);
-  ASSERT_GT(all.of_mesh().size(), 5u);
-  ASSERT_EQ(one.of_mesh().size(), 1u);
+  ASSERT_GT(all.mesh_vertices().size(), 5u);
+  ASSERT_EQ(one.mesh_vertices().size(), 1u);
   double least = 1.0;
-  for (const VertexNearSurface& near : all.of_mesh()) least = std::min(least, near.gap_m);
+  for (const VertexNearSurface& near : all.mesh_vertices()) least = std::min(least, near.gap_m);
   EXPECT_LT(least, -2e-4);
   // It is chosen by the plane at the foot of another, here up to 6 mm away on a surface of some 20 mm of
   // radius.
-  EXPECT_NEAR(one.of_mesh()[0].gap_m, least, 3e-4);
+  EXPECT_NEAR(one.mesh_vertices()[0].gap_m, least, 3e-4);
 }
 
 TEST(MeshProximity, AllocatesNothing) {
@@ -200,7 +200,7 @@ TEST(MeshProximity, AllocatesNothing) {
   const std::size_t before = allocation_count();
   proximity.find(scene.surface, mesh, 1e-3);
   EXPECT_EQ(allocation_count(), before);
-  EXPECT_FALSE(proximity.of_surface().empty());
+  EXPECT_FALSE(proximity.surface_samples().empty());
 }
 
 }  // namespace

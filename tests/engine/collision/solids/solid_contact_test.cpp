@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/collision/solids/implicit/implicit_shapes.h"
+#include "engine/collision/solids/implicit_shapes.h"
 #include "engine/collision/solids/surface_collider.h"
 #include "tests/engine/collision/solids/implicit/support_function.h"
 #include "tests/engine/collision/surfaces/sheets.h"

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "engine/collision/solids/implicit/implicit_shapes.h"
+#include "engine/collision/solids/implicit_shapes.h"
 #include "engine/collision/solids/surface_collider.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/tube.h"
@@ -246,7 +246,7 @@ TEST(SolidSearch, AllocatesNothing) {
       const Vector3 at(0.004 * k, 0.012, 0.005 * k);
       const ToolShape tool = ToolShape::solid(*solid, {at, Quaternion::Identity()});
       (void)collider.collide(body, tool, 0.002, true);
-      (void)collider.take_regions(body, tool);
+      (void)collider.find_contact_regions(body, tool);
     }
     EXPECT_EQ(allocation_count(), before) << kind;
   }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/collision/solids/implicit/implicit_shapes.h"
+#include "engine/collision/solids/implicit_shapes.h"
 #include "engine/collision/solids/surface_collider.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
@@ -21,7 +21,7 @@ struct Asked {
 
   Regions regions(const Surface& surface, const ToolShape& tool) {
     result = collider.collide(surface, tool, 0.0, false);
-    return collider.take_regions(surface, tool);
+    return collider.find_contact_regions(surface, tool);
   }
 
   NestedGrid nested;

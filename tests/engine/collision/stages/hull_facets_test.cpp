@@ -1,5 +1,3 @@
-#include "engine/collision/stages/hull_facets.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <numbers>
 #include <set>
 
+#include "engine/collision/stages/contact_stages.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
 

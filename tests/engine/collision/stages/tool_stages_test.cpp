@@ -7,7 +7,7 @@
 #include <cmath>
 #include <memory>
 
-#include "engine/collision/solids/implicit/implicit_shapes.h"
+#include "engine/collision/solids/implicit_shapes.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/effort.h"
 

@@ -1,7 +1,6 @@
-#include "engine/collision/surfaces/convex_hull.h"
-
 #include <gtest/gtest.h>
 
+#include "engine/collision/surfaces/pair_search.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/collision/surfaces/random_pairs.h"
 

@@ -1,4 +1,4 @@
-#include "engine/collision/solids/implicit/implicit_shapes.h"
+#include "engine/collision/solids/implicit_shapes.h"
 
 #include <gtest/gtest.h>
 

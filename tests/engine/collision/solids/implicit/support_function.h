@@ -2,7 +2,7 @@
 // directions, the distance.
 #pragma once
 
-#include "engine/collision/solids/implicit/implicit_shapes.h"
+#include "engine/collision/solids/implicit_shapes.h"
 #include "tests/engine/bspline/random_surface.h"
 
 namespace spoonbill {

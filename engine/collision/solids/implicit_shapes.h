@@ -1,5 +1,5 @@
-// The shapes that a tool may have without any mesh, as plain descriptions, and their exact signed distances.
-// Lengths in metres; each shape in its own frame, about the origin unless it says otherwise.
+// Analytic tool shapes as plain descriptions, and their signed distances. Lengths are in metres. Each shape
+// is in its own frame, centred on the origin unless noted.
 #pragma once
 
 #include <array>
@@ -13,18 +13,19 @@
 namespace spoonbill {
 
 struct SphereShape {
-  double radius_m = 0.01;  // a point where it is 0
+  double radius_m = 0.01;  // 0 for a point
 };
 
 struct EllipsoidShape {
-  Vector3 semi_axes_m = Vector3::Constant(0.01);  // none a thousandth of another
+  Vector3 semi_axes_m = Vector3::Constant(0.01);  // ratio of any two at most greatest_axis_ratio
 };
 
 struct CylinderShape {  // along y
   double radius_m = 0.01, half_length_m = 0.01;
 };
 
-struct CapsuleShape {  // all within radius_m of the segment from -half_length_m to half_length_m along y
+struct CapsuleShape {  // points within radius_m of the segment from -half_length_m to half_length_m on the y
+                       // axis
   double radius_m = 0.01, half_length_m = 0.01;
 };
 
@@ -32,21 +33,22 @@ struct BoxShape {
   Vector3 half_extents_m = Vector3::Constant(0.01);
 };
 
-struct ConeShape {  // along y: the centre of its base is the origin, its tip at (0, height_m, 0)
+struct ConeShape {  // along y: base centred on the origin, tip at (0, height_m, 0)
   double base_radius_m = 0.01, height_m = 0.02;
 };
 
-struct TorusShape {  // about y: all within tube_radius_m of a ring of ring_radius_m, which is the larger
+struct TorusShape {  // around y; tube_radius_m must be less than ring_radius_m
   double ring_radius_m = 0.02, tube_radius_m = 0.005;
 };
 
-struct HalfSpaceShape {};  // all below y = 0
+struct HalfSpaceShape {};  // y < 0
 
-// (|x / a|^(2 / e2) + |z / c|^(2 / e2))^(e2 / e1) + |y / b|^(2 / e1) <= 1, where a, b, c are the semi-axes
-// and e1, e2 the exponents (Barr 1981, with y for his z). Convex over the range of the exponents: nearly a
-// box at the low end, an ellipsoid at 1, nearly an octahedron at the high end.
+// Superquadric with the semi-axes a, b, c and the exponents e1, e2 (Barr 1981, with y for his z):
+//   (|x / a|^(2 / e2) + |z / c|^(2 / e2))^(e2 / e1) + |y / b|^(2 / e1) <= 1.
+// Convex over the range of the exponents: nearly a box at the low end, an ellipsoid at 1, nearly an
+// octahedron at the high end.
 struct SuperquadricShape {
-  Vector3 semi_axes_m = Vector3::Constant(0.01);  // none a thousandth of another
+  Vector3 semi_axes_m = Vector3::Constant(0.01);  // ratio of any two at most greatest_axis_ratio
   double exponent_along = 1.0;                    // e1
   double exponent_around = 1.0;                   // e2
 };
@@ -54,9 +56,9 @@ struct SuperquadricShape {
 using ImplicitShape = std::variant<SphereShape, EllipsoidShape, CylinderShape, CapsuleShape, BoxShape,
                                    ConeShape, TorusShape, HalfSpaceShape, SuperquadricShape>;
 
-// Radius of a sphere and half length of a capsule, which may be 0.
+// Range of a sphere's radius and a capsule's half length, which may be 0.
 inline constexpr Range<double> shape_length_or_none_m{0.0, 0.5};
-// All other lengths.
+// Range of all other lengths.
 inline constexpr Range<double> shape_length_m{1e-5, 0.5};
 inline constexpr double greatest_axis_ratio = 1000.0;
 inline constexpr Range<double> superquadric_exponent{0.2, 1.8};
@@ -128,14 +130,15 @@ inline constexpr auto fields_of<SuperquadricShape> = std::to_array<Field<Superqu
     number_field("exponent_around", &SuperquadricShape::exponent_around, superquadric_exponent),
 });
 
-// Refused, with the field named: a length or an exponent out of its range, semi-axes too unlike, a torus
-// whose tube is as wide as its ring.
+// Checks ranges and proportions. The error's field names the value: a length or exponent out of range,
+// semi-axes of too different lengths, or a torus with a tube as wide as its ring.
 Status check_implicit_shape(const ImplicitShape& shape);
 
-// The shape must have passed the check. The distance is exact to 1e-12 of the size. Inside a superquadric it
-// is the best of several searches, which can all miss the nearest wall: it is never less deep than the truth,
-// in about one of 100,000 places deeper by up to some thousandths of the size, and its gradient is always
-// that of a plane which leaves the whole solid on one side. It takes about 20 us, a hundred times the others.
+// Makes the signed distance of a shape that passed check_implicit_shape(). It is exact to 1e-12 of the size.
+//
+// Inside a superquadric it is the best of several searches, which can all miss the nearest wall. The depth is
+// then too large, in about one of 100,000 points and by up to some thousandths of the size. The gradient
+// always belongs to a plane that bounds the solid. A query takes about 20 us, a hundred times the others.
 std::shared_ptr<const SignedDistance> make_signed_distance(const ImplicitShape& shape);
 
 }  // namespace spoonbill

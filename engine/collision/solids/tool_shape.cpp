@@ -1,4 +1,4 @@
-#include "engine/collision/solids/tool_bounds.h"
+#include "engine/collision/solids/tool_shape.h"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +8,7 @@
 #include "engine/base/assert.h"
 
 namespace spoonbill {
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -25,47 +26,47 @@ CornerValues tangent_at_corners(const DistanceSample& sample, const Vector3& fro
   return values;
 }
 
-// The largest that the least corner can be made by mixing two tangents: a concave function of the share.
+// Largest minimum over the corners of a mixture of two tangents, a concave function of the mixing fraction.
 double best_mix(const CornerValues& a, const CornerValues& b) {
   double low = 0.0, high = 1.0;
-  const auto mixed = [&](double share) {
+  const auto mixed = [&](double fraction) {
     CornerValues values;
-    for (int k = 0; k < 4; ++k) values[k] = a[k] + share * (b[k] - a[k]);
+    for (int k = 0; k < 4; ++k) values[k] = a[k] + fraction * (b[k] - a[k]);
     return least(values);
   };
-  // The share where two corners meet is the best one or next to none.
+  // The optimal fraction is one where two corners have equal values, or close to it.
   double best = std::max(mixed(low), mixed(high));
   for (int i = 0; i < 4; ++i) {
     for (int k = i + 1; k < 4; ++k) {
       const double slope = (b[i] - a[i]) - (b[k] - a[k]);
-      const double share = slope != 0.0 ? (a[k] - a[i]) / slope : -1.0;
-      if (share > 0.0 && share < 1.0) best = std::max(best, mixed(share));
+      const double fraction = slope != 0.0 ? (a[k] - a[i]) / slope : -1.0;
+      if (fraction > 0.0 && fraction < 1.0) best = std::max(best, mixed(fraction));
     }
   }
   return best;
 }
 
-// No convex solid is nearer than any of its tangents says, nor than any mixture of two, which is what tells
-// at its edges: the least of a tangent over the hull of the corners is at a corner. Of other solids a tangent
-// may fail by half the concavity times the square of the way, and none is nearer than the way moved says.
+// A convex solid is no nearer than any of its tangents or a mixture of two, which matters at its edges. The
+// minimum of a tangent over the corners' hull is at a corner. For other solids a tangent may be too large by
+// half the concavity times the squared distance; the distance moved is always a bound.
 double solid_bound(const ToolShape& tool, const PatchCorners& corners, double enough) {
-  const Vector3 middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+  const Vector3 centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
   double radius = 0.0;
-  for (const Vector3& corner : corners) radius = std::max(radius, (corner - middle).norm());
-  const double concavity = tool.made_of->concavity(tool.into_frame(middle), radius);
-  CornerValues at_middle;
-  const auto bound_by = [&](const DistanceSample& centre) {
-    const double ball = centre.distance_m - radius;
+  for (const Vector3& corner : corners) radius = std::max(radius, (corner - centre).norm());
+  const double concavity = tool.distance_field->concavity(tool.into_frame(centre), radius);
+  CornerValues at_centre;
+  const auto bound_by = [&](const DistanceSample& sample) {
+    const double ball = sample.distance_m - radius;
     if (!(concavity < infinity)) return ball;
-    at_middle = tangent_at_corners(centre, middle, corners);
-    return std::max(ball, least(at_middle) - 0.5 * concavity * radius * radius);
+    at_centre = tangent_at_corners(sample, centre, corners);
+    return std::max(ball, least(at_centre) - 0.5 * concavity * radius * radius);
   };
-  // A plane that takes little work often does.
-  double bound = bound_by(tool.at_within(middle, -infinity));
+  // A cheap bounding plane is often enough.
+  double bound = bound_by(tool.at_within(centre, -infinity));
   if (bound >= enough || concavity > 0.0) return bound;
-  bound = std::max(bound, bound_by(tool.at(middle)));
+  bound = std::max(bound, bound_by(tool.at(centre)));
   if (bound >= enough) return bound;
-  std::array<CornerValues, 5> tangents{at_middle};
+  std::array<CornerValues, 5> tangents{at_centre};
   for (int k = 0; k < 4; ++k) {
     tangents[k + 1] = tangent_at_corners(tool.at(corners[k]), corners[k], corners);
     for (int other = 0; other <= k; ++other) {
@@ -80,12 +81,13 @@ double solid_bound(const ToolShape& tool, const PatchCorners& corners, double en
 
 double lower_bound(const ToolShape& tool, const Box& box) {
   if (tool.is_solid()) {
-    const Vector3 half = 0.5 * (box.high - box.low), middle = box.low + half;
-    const DistanceSample centre = tool.at_within(middle, -infinity);
-    const double radius = half.norm(), concavity = tool.made_of->concavity(tool.into_frame(middle), radius);
-    const double ball = centre.distance_m - radius;
+    const Vector3 half = 0.5 * (box.high - box.low), centre = box.low + half;
+    const DistanceSample sample = tool.at_within(centre, -infinity);
+    const double radius = half.norm(),
+                 concavity = tool.distance_field->concavity(tool.into_frame(centre), radius);
+    const double ball = sample.distance_m - radius;
     if (!(concavity < infinity)) return ball;
-    const double tangent = centre.distance_m - centre.gradient.cwiseAbs().dot(half);
+    const double tangent = sample.distance_m - sample.gradient.cwiseAbs().dot(half);
     return std::max(ball, tangent - 0.5 * concavity * radius * radius);
   }
   if (tool.kind == ToolShape::Kind::sphere) {
@@ -95,9 +97,9 @@ double lower_bound(const ToolShape& tool, const Box& box) {
   return tool.distance(foremost);
 }
 
-// The bilinear patch lies in the hull of its corners, the surface within `bulge` of that, and no point of a
-// hull is nearer than its foremost corner along any one direction. Unlike a ball's, this bound is off by the
-// square of the patch's size, so that few patches are cut again.
+// A bilinear patch is in the hull of its corners, and the surface within `bulge` of it. Along a direction no
+// point of a hull is nearer than its foremost corner. Unlike the bound by a ball, the error is quadratic in
+// the patch's size, so few patches are cut again.
 double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bulge, double enough) {
   SPOONBILL_ASSERT_DEBUG(bulge >= 0.0);
   if (tool.is_solid()) return solid_bound(tool, corners, enough + bulge) - bulge;
@@ -110,17 +112,17 @@ double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bu
   }
   double foremost = infinity;
   for (const Vector3& corner : corners) foremost = std::min(foremost, direction.dot(corner - tool.centre_m));
-  // Behind the centre the direction says nothing; the distance to a point is never below zero.
+  // Behind the centre the direction gives no bound; the distance to a point is never negative.
   if (tool.kind == ToolShape::Kind::sphere) foremost = std::max(foremost, 0.0);
   return foremost - tool.radius_m - bulge;
 }
 
-// From far away along a direction, the nearest point of a solid is its farthest along that direction.
+// Seen from far away along a direction, the nearest point of a solid is its extreme point along it.
 double depth_behind(const ToolShape& tool, const Vector3& point, const Vector3& normal) {
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-6);
   if (tool.kind == ToolShape::Kind::half_space) return infinity;
   if (tool.kind == ToolShape::Kind::sphere) return normal.dot(point - tool.centre_m) + tool.radius_m;
-  const Box bounds = tool.made_of->bounds();
+  const Box bounds = tool.distance_field->bounds();
   const double size = bounds.size();
   if (!(size < infinity)) return infinity;
   const Vector3 far_m = tool.centre_m + tool.turn * (0.5 * (bounds.low + bounds.high)) -

@@ -1,4 +1,4 @@
-#include "engine/collision/solids/implicit/exponential.h"
+#include "engine/collision/solids/exponential.h"
 
 #include <array>
 #include <bit>
@@ -7,14 +7,15 @@
 #include "engine/base/assert.h"
 
 namespace spoonbill {
+
 namespace {
 
-// The first with zeros at its end, so that a multiple of it is exact; both together are log(2).
+// log(2) as a sum; the high part ends in zeros, so that integer multiples of it are exact.
 constexpr double log_2_high = 0x1.62e42feep-1, log_2_low = 0x1.a39ef35793c76p-33;
 
-constexpr int parts = 64;  // of an octave
+constexpr int parts = 64;  // number of parts of an octave
 
-// 2^(k / parts), by the Taylor series.
+// Values of 2^(k / parts) by the Taylor series.
 constexpr std::array<double, parts> make_roots_of_two() {
   std::array<double, parts> values{};
   for (int k = 0; k < parts; ++k) {
@@ -27,7 +28,7 @@ constexpr std::array<double, parts> make_roots_of_two() {
 }
 constexpr std::array<double, parts> roots_of_two = make_roots_of_two();
 
-// Added and taken away again, rounds a number below 2^51 to a whole one.
+// Adding and subtracting this rounds a number below 2^51 to an integer.
 constexpr double to_whole = 0x1.8p52;
 
 // 1 / 3, 1 / 5 and so on.
@@ -44,7 +45,7 @@ double power_of_two(int power) {
 
 }  // namespace
 
-// The Taylor series within half a part of an octave, whose sixth term is below rounding.
+// Taylor series within half a part of an octave, where the sixth term is below rounding.
 double stable_exp(double x) {
   if (!(x > -700.0)) return 0.0;
   const double whole = (x * (parts * 1.4426950408889634) + to_whole) - to_whole;
@@ -54,12 +55,12 @@ double stable_exp(double x) {
       rest + square * (0.5 + rest * (1.0 / 6.0) + square * (1.0 / 24.0 + rest * (1.0 / 120.0)));
   const int number = static_cast<int>(whole), part = number & (parts - 1);
   const double root = roots_of_two[part];
-  // Neither factor is out of range where the product is not.
+  // Two factors, each in range wherever the product is.
   const int power = (number - part) / parts, half = power / 2;
   return (root + root * beyond) * power_of_two(half) * power_of_two(power - half);
 }
 
-// log(m) = 2 artanh((m - 1) / (m + 1)), m within sqrt(2) of 1.
+// log(m) = 2 artanh((m - 1) / (m + 1)) with m within a factor of sqrt(2) of 1.
 double stable_log(double x) {
   SPOONBILL_ASSERT_DEBUG(x > 0.0);
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(x), mantissa_bits = (std::uint64_t{1} << 52) - 1;

@@ -1,0 +1,52 @@
+// Signed distance of a superquadric, which has no closed form.
+#pragma once
+
+#include "engine/collision/solids/implicit_shapes.h"
+
+namespace spoonbill {
+
+// With q1 = 2 / e1, q2 = 2 / e2 the solid is |(|(x/a, z/c)|_q2, y/b)|_q1 <= 1, a ball of nested norms.
+//
+// Outside, the nearest point x of p solves p_i - x_i = mu_i |x_i / a_i|^(q-1) / a_i. The multiplier is mu for
+// x and z, and lambda for y. Each of these equations has one root. The multipliers are related by lambda = mu
+// rho^(q2-q1), rho = |(x/a, z/c)|_q2. Minimising the distance for a given price lambda of the constraint is
+// convex, so lambda and mu increase together. One monotone equation in mu remains.
+//
+// Inside, the distance has several local minima over the surface. Newton's method finds each from its own
+// start, in logit coordinates of the surface (Spot). The tangent plane at each point found gives the
+// distance.
+class SuperquadricDistance final : public SignedDistance {
+ public:
+  explicit SuperquadricDistance(const SuperquadricShape& shape);
+  DistanceSample at(const Vector3& point_m) const override;
+  // Returns the distance to the tangent plane where the ray from the centre leaves the solid, if that is
+  // enough.
+  DistanceSample at_within(const Vector3& point_m, double enough_m) const override;
+  // Points inside are rejected by the gauge alone.
+  bool is_beyond(const Vector3& point_m, double limit_m) const override;
+  bool is_convex() const override { return true; }
+  Box bounds() const override { return {-axes_, axes_}; }
+
+ private:
+  // A point of the surface in the first octant. `around` is the logit of the fraction (x/a)^q2 against
+  // (z/c)^q2, `along` that of rho^q1 against (y/b)^q1. Logits keep precision near an edge.
+  struct Spot {
+    double around, along;
+  };
+  struct Expansion;
+
+  double log_gauge(const Vector3& point) const;
+  DistanceSample outside(const Vector3& point) const;
+  DistanceSample inside(const Vector3& point) const;
+  DistanceSample at_surface(const Vector3& point) const;
+  Spot radial_exit(const Vector3& point) const;
+  Spot axis_exit(const Vector3& point, int axis) const;
+  void expand(const Spot& spot, const Vector3& point, Expansion& out) const;
+  DistanceSample tangent(const Spot& spot, const Vector3& point) const;
+  Spot improve(Spot spot, const Vector3& point) const;
+
+  Vector3 axes_, log_axes_;
+  double along_, around_;  // q1, q2
+};
+
+}  // namespace spoonbill
