@@ -21,14 +21,14 @@ constexpr double damping_reserve = 2.0;
 constexpr double least_force_scale = 1e-9;
 
 // Along the way to the proxy, and never away from it, so that nothing sticks.
-Vector3 damped_spring(const DeviceSpecification& specification, const Vector3& way_m,
+Vector3 damped_spring(const DeviceSpecification& specification, const Vector3& displacement_m,
                       const Vector3& velocity_m_per_s) {
-  const double length_m = way_m.norm();
+  const double length_m = displacement_m.norm();
   if (!(length_m > 0.0)) return Vector3::Zero();
   const double stiffness = specification.maximum_stiffness_n_per_m;
   const double damping =
       std::min(specification.maximum_damping_n_s_per_m, damping_reserve * stiffness * force_lag_s);
-  const Vector3 direction = way_m / length_m;
+  const Vector3 direction = displacement_m / length_m;
   const double force_n = stiffness * length_m - damping * velocity_m_per_s.dot(direction);
   return std::max(0.0, force_n) * direction;
 }
@@ -36,14 +36,14 @@ Vector3 damped_spring(const DeviceSpecification& specification, const Vector3& w
 }  // namespace
 
 TickResult couple(CouplingState& coupling, const DeviceSpecification& specification,
-                  const Vector3& position_m, const Vector3& way_m) {
+                  const Vector3& position_m, const Vector3& displacement_m) {
   Vector3 velocity_m_per_s = Vector3::Zero();
   if (coupling.position_known) velocity_m_per_s = (position_m - coupling.position_m) / tick_s;
   coupling.position_m = position_m;
   coupling.position_known = true;
 
   TickResult result;
-  Vector3 wanted = damped_spring(specification, way_m, velocity_m_per_s);
+  Vector3 wanted = damped_spring(specification, displacement_m, velocity_m_per_s);
   const double norm = wanted.norm();
   if (norm > specification.maximum_force_n) {
     wanted *= specification.maximum_force_n / norm;
@@ -67,9 +67,9 @@ TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpe
   input.coupling_n_per_m = scale > least_force_scale ? stiffness / scale : 0.0;
   const Reaction reaction = simulation.advance(input);
 
-  Vector3 way_m = Vector3::Zero();
-  if (reaction.touching) way_m = reaction.proxy.position_m - input.pose.position_m;
-  TickResult result = couple(coupling, specification, input.pose.position_m, way_m);
+  Vector3 displacement_m = Vector3::Zero();
+  if (reaction.touching) displacement_m = reaction.proxy.position_m - input.pose.position_m;
+  TickResult result = couple(coupling, specification, input.pose.position_m, displacement_m);
   result.flags |= reaction.flags;
   result.touching = reaction.touching || reaction.mirror_touching;
   return result;

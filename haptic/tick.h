@@ -6,7 +6,6 @@
 #include <cstdint>
 
 #include "engine/simulation/simulation.h"
-#include "engine/simulation/state_hash.h"
 #include "haptic/device.h"
 
 namespace spoonbill {
@@ -36,9 +35,9 @@ struct TickResult {
 TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpecification& specification,
                 const DeviceReading& reading);
 
-// The coupling alone. `way_m` leads from the device to where something stops it, zero where nothing does.
+// The coupling alone. `displacement_m` leads from the device to where something stops it, zero where nothing does.
 TickResult couple(CouplingState& coupling, const DeviceSpecification& specification,
-                  const Vector3& position_m, const Vector3& way_m);
+                  const Vector3& position_m, const Vector3& displacement_m);
 
 // The coupling's part of the state hash.
 void add_to_hash(const CouplingState& coupling, StateHash& hash);

@@ -16,7 +16,6 @@
 #include "app/report/progress_bar.h"
 #include "app/report/solid_check_facts.h"
 #include "app/report/surface_extent.h"
-#include "engine/inspection/body_meetings.h"
 #include "engine/inspection/solid_check.h"
 
 namespace spoonbill {
@@ -113,7 +112,7 @@ Result<CheckedBodies> check_bodies(FactSheet& facts, const std::vector<Body>& al
   CheckedBodies checked;
   Json& bodies = checked.facts;
   for (const Body& body : all) {
-    const auto trim = trim_of(body);
+    const auto trim = make_trimmed_area(body);
     if (!trim) return Error{"body \"" + body.name + "\": " + trim.error().message};
     const TrimmedArea area = trim.value() ? *trim.value() : TrimmedArea();
     const double done = static_cast<double>(bodies.size());
@@ -141,13 +140,13 @@ Status check_meetings(FactSheet& facts, const std::vector<std::size_t>& solids, 
   surfaces.reserve(solids.size());
   for (const std::size_t place : solids) surfaces.push_back(&all[place].surface);
   const auto meetings =
-      find_body_meetings(surfaces, Progress([&](double) { return !interrupt.requested(); }));
+      find_body_overlaps(surfaces, Progress([&](double) { return !interrupt.requested(); }));
   if (!meetings) {
     interrupt.answer();
     return Error{"stopped"};
   }
   Json json = Json::array();
-  for (const BodyMeeting& meeting : meetings->found) {
+  for (const BodyOverlap& meeting : meetings->found) {
     json.push_back(
         add_meeting_facts(facts, meeting, all[solids[meeting.first]], all[solids[meeting.second]]));
   }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/inspection/closing.h"
+#include "engine/inspection/surface_check.h"
 #include "engine/scene/scene.h"
 
 namespace spoonbill {
@@ -23,8 +23,8 @@ inline void leave_out_shares(Body& body, std::vector<std::string>& remarks) {
 
 // A thickness belongs to what is open. Where the surface closed or opened, a remark says what became of it.
 inline void settle_thickness(Body& body, const Surface& before, std::vector<std::string>& remarks) {
-  const bool was_solid = closing_of(before).closedness == Closedness::solid;
-  const bool solid = closing_of(body.surface).closedness == Closedness::solid;
+  const bool was_solid = find_closing(before).closedness == Closedness::solid;
+  const bool solid = find_closing(body.surface).closedness == Closedness::solid;
   if (solid == was_solid) return;
   if (solid && body.shell_thickness_m) {
     body.shell_thickness_m.reset();

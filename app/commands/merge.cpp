@@ -23,8 +23,8 @@
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
 #include "engine/base/text.h"
-#include "engine/inspection/closing.h"
-#include "engine/inspection/enclosed_mass.h"
+#include "engine/inspection/surface_check.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/merging/intersection_merge.h"
 #include "engine/merging/trimmed_patch.h"
 
@@ -120,7 +120,7 @@ void add_remarks_of_merging(const MergeOptions& options, const Outcome& outcome,
   if (options.request.join.blend_m > 0.0) add_unused_blends(outcome.merged.joints, remarks);
   add_left_open(outcome.merged.left_open, remarks);
   const Surface& surface = outcome.merged.surface;
-  if (closing_of(surface).closedness == Closedness::solid && enclosed_mass(surface).volume_m3 < 0.0) {
+  if (find_closing(surface).closedness == Closedness::solid && compute_enclosed_mass(surface).volume_m3 < 0.0) {
     remarks.emplace_back("its normals point inwards; reverse u with change");
   }
   for (const std::size_t place : outcome.turned) {
@@ -165,7 +165,7 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   body.trims.clear();
   const bool one_solid = std::all_of(patches.begin(), patches.end(),
                                      [&](const Body& patch) { return patch.solid == body.solid; });
-  if (!one_solid || closing_of(body.surface).closedness == Closedness::solid) body.solid.clear();
+  if (!one_solid || find_closing(body.surface).closedness == Closedness::solid) body.solid.clear();
   if (patches.size() > 1) {
     body.name = document.name;
     document.view = Json::object();  // so that the whole of it is framed

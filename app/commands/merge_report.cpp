@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "engine/base/text.h"
-#include "engine/inspection/curvature_range.h"
+#include "engine/inspection/curvature.h"
 
 namespace spoonbill {
 
@@ -72,7 +72,7 @@ double tightest_radius_m(const Surface& merged, const Joint& corner) {
   const KnotVector &u = merged.u, &v = merged.v;
   for (const double at_v : within_pieces(v, corner.blend_start, corner.blend_end)) {
     for (const double at_u : within_pieces(u, u.domain_start(), u.domain_end())) {
-      const auto curvatures = principal_curvatures(evaluate(merged, at_u, at_v));
+      const auto curvatures = compute_principal_curvatures(evaluate(merged, at_u, at_v));
       if (curvatures && curvatures->smallest < 0.0) least = std::min(least, -1.0 / curvatures->smallest);
     }
   }

@@ -24,7 +24,7 @@
 #include "engine/base/text.h"
 #include "engine/base/progress.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
-#include "engine/inspection/enclosed_mass.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/shapes/fit_shape.h"
 #include "engine/shapes/stock_shapes.h"
 
@@ -91,7 +91,7 @@ void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShap
             {rows, columns});
   facts.add("Deviation", deviation_text(fitted.deviation_m), "deviation_m", fitted.deviation_m);
   facts.add("", "", "tolerance_m", tolerance_m);
-  const EnclosedMass mass = enclosed_mass(fitted.surface);
+  const EnclosedMass mass = compute_enclosed_mass(fitted.surface);
   const bool closed = shape.is_closed();
   facts.add("", "", "closed", closed);
   facts.add("Area", area_text(mass.area_m2), "area_m2", mass.area_m2);

@@ -17,7 +17,7 @@
 #include "app/session/lockstep.h"
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
-#include "engine/scene/tool_actions.h"
+#include "engine/scene/tool.h"
 #include "haptic/devices/playback_device.h"
 #include "haptic/devices/scripted_device.h"
 

@@ -27,7 +27,7 @@ Json numbers(const Vector3& vector) {
 }
 
 void add_if_not_elastic(const Material& material, FactSheet& facts) {
-  if (is_plainly_elastic(material)) return;
+  if (is_linear_elastic(material)) return;
   facts.add("  Material", material.name + ", as if it were elastic", "", nullptr);
 }
 
@@ -44,7 +44,7 @@ void add_body(FactSheet& facts, const Body& body, const RestShape& shape, Json& 
   facts.add("  Strain",
             "at most " + percent_text(std::abs(shape.largest_strain)) +
                 (shape.largest_strain < 0.0 ? " pressed" : " stretched") + ", at " +
-                position_text(shape.strained_m),
+                position_text(shape.largest_strain_position_m),
             "", nullptr);
   add_if_not_elastic(body.material, facts);
   for (const MaterialRegion& region : body.regions) {
@@ -59,7 +59,7 @@ void add_body(FactSheet& facts, const Body& body, const RestShape& shape, Json& 
                   {"load_n", numbers(shape.load_n)},
                   {"reaction_n", numbers(shape.reaction_n)},
                   {"largest_strain", shape.largest_strain},
-                  {"strained_m", numbers(shape.strained_m)},
+                  {"strained_m", numbers(shape.largest_strain_position_m)},
                   {"energy_j", shape.result.energy_j},
                   {"newton_steps", shape.result.newton_steps}});
 }
@@ -87,7 +87,7 @@ Status rest(const RestOptions& options, Console& console) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     ProgressBar bar(console, "Bending " + body.name, false);
-    const auto shape = rest_shape(scene, static_cast<int>(b), Progress([&](double fraction) {
+    const auto shape = compute_rest_shape(scene, static_cast<int>(b), Progress([&](double fraction) {
                                     bar.show(fraction);
                                     return true;
                                   }));

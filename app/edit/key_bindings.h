@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "engine/scene/tool_actions.h"
+#include "engine/scene/tool.h"
 
 namespace spoonbill {
 

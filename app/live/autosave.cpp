@@ -5,7 +5,7 @@
 #include "app/report/hash_text.h"
 #include "engine/base/file.h"
 #include "engine/exchange/field_reader.h"
-#include "engine/simulation/state_hash.h"
+#include "engine/simulation/simulation.h"
 
 namespace spoonbill {
 namespace {

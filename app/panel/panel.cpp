@@ -69,7 +69,7 @@ bool is_field(const Field<Object>& field, Value Object::*member) {
 
 // Only a sphere shows its radius, whatever the action.
 bool goes_by(const Tool& tool, const Field<Tool>& field) {
-  if (parameter_of(tool.action, field.form.name) == nullptr) return false;
+  if (find_tool_parameter(tool.action, field.form.name) == nullptr) return false;
   return tool.kind == ToolKind::sphere || !is_field(field, &Tool::radius_m);
 }
 
@@ -115,15 +115,15 @@ bool draw_presets(const PanelModel& model, Material& material) {
 // And what steps it: springs, which may hold a part of the stiffness, or an implicit method, which holds all
 // of it.
 std::string felt_text(const PanelModel& model) {
-  const std::string felt = modulus_text(model.felt_youngs_modulus_pa);
+  const std::string felt = modulus_text(model.effective_youngs_modulus_pa);
   if (model.implicit_nodes > 0) return felt + "  (implicit)";
-  return felt + "  (" + percent_text(model.felt_youngs_modulus_pa / model.material.youngs_modulus_pa) +
+  return felt + "  (" + percent_text(model.effective_youngs_modulus_pa / model.material.youngs_modulus_pa) +
          " of E)";
 }
 
 std::string after_touch_text(const Material& material) {
   if (material.plastic) return "keeps its bend";
-  if (!(material.relaxing_share > 0.0)) return "springs back";
+  if (!(material.relaxing_fraction > 0.0)) return "springs back";
   return "creeps, " + rounded(material.relaxation_time_s, 0, " s");
 }
 

@@ -23,7 +23,7 @@ struct PanelModel {
   int region_count = 0;           // of what is not of that material
   std::vector<Material> presets;  // to choose from
 
-  double felt_youngs_modulus_pa = 0.0;
+  double effective_youngs_modulus_pa = 0.0;
   int implicit_nodes = 0;  // 0: springs, stepped explicitly
   double mass_kg = 0.0;
   int plane_count = 0;

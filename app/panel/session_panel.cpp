@@ -15,7 +15,7 @@ PanelModel panel_of(const SessionFacts& facts, const Snapshot& snapshot, const V
   model.sculpting = facts.sculpting;
   model.material = facts.material;
   model.region_count = facts.region_count;
-  model.felt_youngs_modulus_pa = snapshot.bodies.front().material.felt_youngs_modulus_pa;
+  model.effective_youngs_modulus_pa = snapshot.bodies.front().material.effective_youngs_modulus_pa;
   model.implicit_nodes = snapshot.bodies.front().material.implicit_nodes;
   for (std::size_t b = 0; b < snapshot.bodies.size(); ++b) {
     const double residual_m = snapshot.bodies[b].residual.largest_m;

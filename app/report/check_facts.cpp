@@ -8,8 +8,7 @@
 #include "app/report/closing_text.h"
 #include "app/report/quantity_text.h"
 #include "engine/base/text.h"
-#include "engine/inspection/material_mix.h"
-#include "engine/inspection/shell_mass.h"
+#include "engine/inspection/mass_properties.h"
 
 namespace spoonbill {
 namespace {
@@ -21,7 +20,7 @@ Json numbers(const Vector3& vector) {
   return Json::array({vector.x(), vector.y(), vector.z()});
 }
 
-Json place_json(const CurvaturePlace& place) {
+Json place_json(const CurvatureExtreme& place) {
   return {{"per_m", place.curvature_per_m},
           {"u", place.u},
           {"v", place.v},
@@ -33,7 +32,7 @@ Json radius_json(double curvature_per_m) {
   return curvature_per_m > least_curvature_per_m ? Json(1.0 / curvature_per_m) : Json(nullptr);
 }
 
-void add_radius(FactSheet& facts, const char* label, double curvature_per_m, const CurvaturePlace& place) {
+void add_radius(FactSheet& facts, const char* label, double curvature_per_m, const CurvatureExtreme& place) {
   if (!(curvature_per_m > least_curvature_per_m)) return;
   facts.add(label, short_length_text(1.0 / curvature_per_m) + " at " + position_text(place.position_m), "",
             nullptr);
@@ -77,16 +76,16 @@ std::string names_text(const std::vector<std::string>& names) {
 }
 
 // Where regions have no cells, and so no share, all is the body's own material.
-void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector3& middle_m, Json& json) {
+void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector3& centre_m, Json& json) {
   MaterialMix mix{body.material.density_kg_per_m3, Vector3::Zero(), {body.material.name}};
   std::string remark;
   if (has_material_regions(body)) {
-    const auto found = material_mix(body);
+    const auto found = compute_material_mix(body);
     if (found) mix = found.value();
     if (!found) remark = ", its regions left out: " + found.error().message;
   }
   const double mass_kg = volume_m3 * mix.density_kg_per_m3;
-  const Vector3 centre_m = middle_m + mix.from_middle_m;
+  const Vector3 centre_m = centre_m + mix.mass_offset_m;
   facts.add("  Volume", volume_text(volume_m3), "", nullptr);
   facts.add("  Mass", grams_text(mass_kg) + " of " + names_text(mix.materials) + remark, "", nullptr);
   facts.add("  Centre of mass", position_text(centre_m), "", nullptr);
@@ -101,20 +100,20 @@ void add_content(FactSheet& facts, const Body& body, CheckedAs as, const Trimmed
   facts.add("  Area", area_text(check.mass.area_m2), "", nullptr);
   json["area_m2"] = check.mass.area_m2;
   if (body.shell_thickness_m) {
-    const ShellMass shell = shell_mass(body.surface, *body.shell_thickness_m, area);
+    const ShellMass shell = compute_shell_mass(body.surface, *body.shell_thickness_m, area);
     facts.add("  Shell", length_text(*body.shell_thickness_m) + " thick", "", nullptr);
     json["shell_thickness_m"] = *body.shell_thickness_m;
-    return add_mass(facts, body, shell.volume_m3, shell.middle_m, json);
+    return add_mass(facts, body, shell.volume_m3, shell.centre_m, json);
   }
   if (!check.encloses() || as == CheckedAs::face) return;
   json["normals_outward"] = check.mass.volume_m3 > 0.0;
-  add_mass(facts, body, std::abs(check.mass.volume_m3), check.mass.middle_m, json);
+  add_mass(facts, body, std::abs(check.mass.volume_m3), check.mass.centre_m, json);
   add_thickness(facts, check, json);
 }
 
 void add_places(const SurfaceCheck& check, Json& json) {
   json["self_intersections"] = Json::array();
-  for (const SelfMeeting& meeting : check.self_intersections) {
+  for (const SelfIntersection& meeting : check.self_intersections) {
     json["self_intersections"].push_back({{"u", meeting.u},
                                           {"v", meeting.v},
                                           {"other_u", meeting.other_u},
@@ -122,9 +121,9 @@ void add_places(const SurfaceCheck& check, Json& json) {
                                           {"depth_m", meeting.depth_m},
                                           {"point_m", numbers(meeting.position_m)}});
   }
-  json["self_intersections_complete"] = check.self_meetings_complete;
+  json["self_intersections_complete"] = check.self_intersections_complete;
   json["degenerate"] = Json::array();
-  for (const BadSpot& spot : check.bad_spots) {
+  for (const SurfaceDefect& spot : check.surface_defects) {
     json["degenerate"].push_back(
         {{"u", spot.u}, {"v", spot.v}, {"folds", spot.folds}, {"point_m", numbers(spot.position_m)}});
   }
@@ -153,11 +152,11 @@ std::vector<std::string> problems_of(const Body& body, CheckedAs as, const Surfa
                        count_text(check.self_intersections.size(), "place", "places") + ", one at " +
                        position_text(check.self_intersections[0].position_m));
   }
-  if (!check.self_meetings_complete) {
+  if (!check.self_intersections_complete) {
     problems.emplace_back("may pass through itself: too many places are near each other to be searched");
   }
-  if (!check.bad_spots.empty()) {
-    const BadSpot& spot = check.bad_spots[0];
+  if (!check.surface_defects.empty()) {
+    const SurfaceDefect& spot = check.surface_defects[0];
     problems.push_back(std::string(spot.folds ? "folds over" : "has no area") + " at " +
                        position_text(spot.position_m));
   }
@@ -194,7 +193,7 @@ Json add_check_facts(FactSheet& facts, const Body& body, CheckedAs as, const Tri
   return json;
 }
 
-Json add_meeting_facts(FactSheet& facts, const BodyMeeting& meeting, const Body& first, const Body& second) {
+Json add_meeting_facts(FactSheet& facts, const BodyOverlap& meeting, const Body& first, const Body& second) {
   facts.add("In each other",
             first.name + " and " + second.name + ", " + short_length_text(meeting.depth_m) + " deep at " +
                 position_text(meeting.position_m),

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/report/fact_sheet.h"
-#include "engine/inspection/body_meetings.h"
+#include "engine/inspection/solid_check.h"
 #include "engine/inspection/surface_check.h"
 #include "engine/scene/scene.h"
 
@@ -26,6 +26,6 @@ Json add_check_facts(FactSheet& facts, const Body& body, CheckedAs as, const Tri
                      const SurfaceCheck& check);
 
 // Of two bodies that are in each other.
-Json add_meeting_facts(FactSheet& facts, const BodyMeeting& meeting, const Body& first, const Body& second);
+Json add_meeting_facts(FactSheet& facts, const BodyOverlap& meeting, const Body& first, const Body& second);
 
 }  // namespace spoonbill

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/inspection/closing.h"
+#include "engine/inspection/surface_check.h"
 
 namespace spoonbill {
 

@@ -63,7 +63,7 @@ std::string decimals_text(double value, int decimals) {
 }
 
 void add_trim_facts(FactSheet& facts, const Body& body, Json& json) {
-  const auto trim = trim_of(body);
+  const auto trim = make_trimmed_area(body);
   if (!trim || !trim.value()) return;
   const double away = 1.0 - remaining_area_fraction(body.surface, *trim.value());
   const std::string loops = body.trims.size() == 1 ? " loop" : " loops";
@@ -87,7 +87,7 @@ void add_region_facts(FactSheet& facts, const Body& body, Json& json) {
 // Lines go to the sheet, the body's JSON is returned.
 Json add_body_facts(FactSheet& facts, const std::string& label, const Body& body, const Vector3& size_m,
                     bool at_length) {
-  const Closing closing = closing_of(body.surface);
+  const Closing closing = find_closing(body.surface);
   Json json = {{"name", body.name}, {"size_mm", millimetres_of(size_m)}};
   json["closedness"] = name_of(closing.closedness);
   json["material"] = material_to_json(body.material);
@@ -139,7 +139,7 @@ Json add_simulated_body(FactSheet& facts, const std::string& of, const BodySnaps
                 std::to_string(lattice.count[2]) + " nodes, " + std::to_string(fixed) + " of them fixed",
             "", nullptr);
   facts.add("Mass" + of, grams_text(body.material.mass_kg) + " (the lattice's)", "", nullptr);
-  facts.add("Felt E" + of, modulus_text(body.material.felt_youngs_modulus_pa), "", nullptr);
+  facts.add("Felt E" + of, modulus_text(body.material.effective_youngs_modulus_pa), "", nullptr);
   const int implicit = body.material.implicit_nodes;
   facts.add(
       "Solver" + of,
@@ -148,7 +148,7 @@ Json add_simulated_body(FactSheet& facts, const std::string& of, const BodySnaps
   const Json counts = {lattice.count[0], lattice.count[1], lattice.count[2]};
   return {{"lattice", {{"nodes", counts}, {"node_count", lattice.x.size()}, {"fixed_node_count", fixed}}},
           {"mass_kg", body.material.mass_kg},
-          {"felt_youngs_modulus_pa", body.material.felt_youngs_modulus_pa},
+          {"felt_youngs_modulus_pa", body.material.effective_youngs_modulus_pa},
           {"solver", {{"kind", implicit > 0 ? "implicit" : "explicit"}, {"implicit_nodes", implicit}}}};
 }
 

@@ -73,7 +73,7 @@ void add_body(FactSheet& facts, const FittedBody& body, Json& list) {
 }
 
 std::string unfitted_text(const UnfittedIsland& island) {
-  const auto along = [&](int axis) { return millimetres_text(island.middle_m[axis]); };
+  const auto along = [&](int axis) { return millimetres_text(island.centre_m[axis]); };
   return "the island of " + size_text(island.size_m) + " about " + along(0) + ", " + along(1) + ", " +
          along(2) + " was left out, with " + count_text(island.points, "point", "points") + ": " + island.why;
 }

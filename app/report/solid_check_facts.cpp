@@ -42,11 +42,11 @@ Json numbers(const Vector3& vector) {
 std::vector<std::string> problems_of(const SolidCheck& check) {
   std::vector<std::string> problems;
   if (!check.self_intersections.empty()) {
-    const SolidMeeting& deepest = check.self_intersections.front();
+    const SolidSelfIntersection& deepest = check.self_intersections.front();
     problems.push_back("passes through itself at " + position_text(deepest.position_m) + ", by at least " +
                        short_length_text(deepest.depth_m));
   }
-  if (!check.self_meetings_complete) {
+  if (!check.self_intersections_complete) {
     problems.emplace_back("may pass through itself: too many places are near each other to be searched");
   }
   return problems;
@@ -54,11 +54,11 @@ std::vector<std::string> problems_of(const SolidCheck& check) {
 
 void add_self_meetings(const SolidCheck& check, Json& json) {
   json["self_intersections"] = Json::array();
-  for (const SolidMeeting& meeting : check.self_intersections) {
+  for (const SolidSelfIntersection& meeting : check.self_intersections) {
     json["self_intersections"].push_back(
         {{"depth_m", meeting.depth_m}, {"point_m", numbers(meeting.position_m)}});
   }
-  json["self_intersections_complete"] = check.self_meetings_complete;
+  json["self_intersections_complete"] = check.self_intersections_complete;
 }
 
 // Another wall may seem thicker than it is by what the mesh misses both of its sides by.
@@ -101,8 +101,8 @@ Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const SolidC
   json["area_m2"] = solid.area_m2;
   json["volume_m3"] = solid.volume_m3;
   add_mass(facts, solid, bodies, json);
-  facts.add("  Centre of mass", position_text(solid.middle_m), "", nullptr);
-  json["centre_of_mass_m"] = numbers(solid.middle_m);
+  facts.add("  Centre of mass", position_text(solid.centre_m), "", nullptr);
+  json["centre_of_mass_m"] = numbers(solid.centre_m);
   add_thickness(facts, solid, check, json);
   add_self_meetings(check, json);
   return json;

@@ -13,7 +13,7 @@
 
 #include "engine/base/result.h"
 #include "engine/exchange/json.h"
-#include "engine/scene/command.h"
+#include "engine/scene/scene.h"
 #include "haptic/recording/timed_command.h"
 
 namespace spoonbill {

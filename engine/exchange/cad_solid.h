@@ -17,7 +17,7 @@ struct CadSolid {
   double chord_error_m = 0.0;
   double gap_m = 0.0;  // the widest between two faces that one edge joins
   double volume_m3 = 0.0, area_m2 = 0.0;
-  Vector3 middle_m = Vector3::Zero();  // of its material, were that of one density
+  Vector3 centre_m = Vector3::Zero();  // of its material, were that of one density
 };
 
 struct CadSolids {

@@ -32,7 +32,7 @@ void read_numbers(FieldReader& reader, std::size_t surfaces, CadSolid& solid, Co
   solid.gap_m = reader.number("gap_m", length_range_m);
   solid.volume_m3 = reader.number("volume_m3", measure_range);
   solid.area_m2 = reader.number("area_m2", measure_range);
-  solid.middle_m = reader.vector("middle_m", coordinate_range_m);
+  solid.centre_m = reader.vector("middle_m", coordinate_range_m);
   counts.vertices = static_cast<std::size_t>(reader.integer("vertices", count_range));
   counts.triangles = static_cast<std::size_t>(reader.integer("triangles", count_range));
   reader.finish();
@@ -67,7 +67,7 @@ std::string cad_solid_to_bytes(const CadSolid& solid) {
                      {"gap_m", solid.gap_m},
                      {"volume_m3", solid.volume_m3},
                      {"area_m2", solid.area_m2},
-                     {"middle_m", {solid.middle_m.x(), solid.middle_m.y(), solid.middle_m.z()}},
+                     {"middle_m", {solid.centre_m.x(), solid.centre_m.y(), solid.centre_m.z()}},
                      {"vertices", solid.mesh.vertices_m.size()},
                      {"triangles", solid.mesh.triangles.size()}};
   std::string bytes = json_to_line(head) + '\n';

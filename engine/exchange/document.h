@@ -67,7 +67,6 @@
 
 #include "engine/base/result.h"
 #include "engine/exchange/json.h"
-#include "engine/scene/command.h"
 #include "engine/scene/scene.h"
 
 namespace spoonbill {

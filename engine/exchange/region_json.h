@@ -5,7 +5,7 @@
 
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/json.h"
-#include "engine/scene/material_region.h"
+#include "engine/scene/material.h"
 
 namespace spoonbill {
 

@@ -34,7 +34,7 @@ struct FittedBody {
 // An island of several that no surface could be laid out on.
 struct UnfittedIsland {
   std::size_t points = 0;
-  Vector3 size_m = Vector3::Zero(), middle_m = Vector3::Zero();  // of the box around it
+  Vector3 size_m = Vector3::Zero(), centre_m = Vector3::Zero();  // of the box around it
   std::string why;
 };
 

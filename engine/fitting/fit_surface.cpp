@@ -16,7 +16,7 @@
 #include "engine/fitting/outer_side.h"
 #include "engine/fitting/refine_knots.h"
 #include "engine/fitting/surface_fitter.h"
-#include "engine/inspection/enclosed_mass.h"
+#include "engine/inspection/mass_properties.h"
 
 namespace spoonbill {
 namespace {
@@ -217,12 +217,12 @@ bool SurfaceFitter::faces_inwards() const {
     if (normal.allFinite()) along += normal.dot(points_->node_normals[n]);
   }
   if (along != 0.0) return along < 0.0;
-  return closed() ? enclosed_mass(surface_).volume_m3 < 0.0 : faces_inner_side(surface_);
+  return closed() ? compute_enclosed_mass(surface_).volume_m3 < 0.0 : faces_inner_side(surface_);
 }
 
 // The first rounds of a thin wall may enclose less than nothing.
 Status SurfaceFitter::face_outwards() {
-  if (!closed() || enclosed_mass(surface_).volume_m3 >= 0.0) return {};
+  if (!closed() || compute_enclosed_mass(surface_).volume_m3 >= 0.0) return {};
   surface_ = reversed(surface_, Direction::u);
   for (Vector2& uv : all_.uv) uv.x() = 1.0 - uv.x();
   folds_ = check_folds(surface_, {all_.uv, all_normals_});

@@ -26,9 +26,9 @@ void measure(const PointGraph& graph, Rim& rim) {
   for (std::size_t k = 0; k < rim.nodes.size(); ++k) {
     const double step = graph.length(rim.nodes[k], rim.nodes[(k + 1) % rim.nodes.size()]);
     rim.length_m += step;
-    rim.middle_m += graph.points_m[rim.nodes[k]];
+    rim.centre_m += graph.points_m[rim.nodes[k]];
   }
-  rim.middle_m /= static_cast<double>(rim.nodes.size());
+  rim.centre_m /= static_cast<double>(rim.nodes.size());
 }
 
 void longest_first(std::vector<Rim>& rims) {

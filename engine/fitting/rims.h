@@ -12,7 +12,7 @@ namespace spoonbill {
 struct Rim {
   std::vector<std::uint32_t> nodes;
   double length_m = 0.0;
-  Vector3 middle_m = Vector3::Zero();
+  Vector3 centre_m = Vector3::Zero();
 };
 
 // Of a mesh: along its edges with one triangle. `node_of` gives each vertex its node of the graph. The

@@ -22,8 +22,8 @@ constexpr double roundness = 0.12;
 Vector3 area_within(const PointGraph& graph, const Rim& rim) {
   Vector3 area = Vector3::Zero();
   for (std::size_t k = 0; k < rim.nodes.size(); ++k) {
-    const Vector3 a = graph.points_m[rim.nodes[k]] - rim.middle_m;
-    area += 0.5 * a.cross(graph.points_m[rim.nodes[(k + 1) % rim.nodes.size()]] - rim.middle_m);
+    const Vector3 a = graph.points_m[rim.nodes[k]] - rim.centre_m;
+    area += 0.5 * a.cross(graph.points_m[rim.nodes[(k + 1) % rim.nodes.size()]] - rim.centre_m);
   }
   return area;
 }

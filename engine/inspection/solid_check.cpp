@@ -10,21 +10,22 @@
 #include "engine/collision/meshes/box_tree.h"
 #include "engine/collision/meshes/triangle.h"
 #include "engine/collision/meshes/mesh_edges.h"
-#include "engine/inspection/exact_wall.h"
-#include "engine/inspection/piece_sampling.h"
+#include "engine/collision/rigid/body_tree.h"
+#include "engine/collision/surfaces/surface_pair_collider.h"
 
 namespace spoonbill {
 namespace {
 
-constexpr std::size_t most_meetings = 100'000, most_told = 16;
-// Samples lie this share of the size apart, though not more of them than that along a side of a triangle.
-constexpr double sample_share = 0.005;
-constexpr int most_along_side = 200;
-// Beside one in each triangle; more are made wider.
-constexpr std::size_t most_samples = 500'000;
-constexpr double wider = 1.4;
-// Of a triangle, kept off its sides, where a line meets what lies beside it.
-constexpr double off_sides = 1e-6;
+constexpr std::size_t max_meetings = 100'000, max_reported = 16;
+// Spacing of the samples as a fraction of the solid's size, and the most samples along a triangle's side.
+constexpr double relative_spacing = 0.005;
+constexpr int max_along_side = 200;
+// Most samples besides one per triangle, and the growth of the spacing while there are more.
+constexpr std::size_t max_samples = 500'000;
+constexpr double spacing_growth = 1.4;
+// Margin between samples and the sides of their triangle, as a fraction of the triangle. A line from a side
+// would meet the neighbouring triangle.
+constexpr double side_margin = 1e-6;
 
 std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   std::vector<Triangle> triangles;
@@ -35,56 +36,57 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   return triangles;
 }
 
-// Where a side of one goes through the other; between their middles where rounding hides that.
-Vector3 place_of(const Triangle& first, const Triangle& second) {
+// Returns the point where a side of one triangle passes through the other, or the mean of their corners if
+// rounding hides it.
+Vector3 find_crossing(const Triangle& first, const Triangle& second) {
   for (const auto& [sides, through] : {std::pair(first, second), std::pair(second, first)}) {
     for (std::size_t k = 0; k < sides.size(); ++k) {
-      const Vector3 way = sides[(k + 1) % sides.size()] - sides[k];
-      const auto met = intersect_line_triangle(sides[k], way, through[0], through[1], through[2], 0.0);
-      if (met && met->along >= 0.0 && met->along <= 1.0) return sides[k] + met->along * way;
+      const Vector3 side = sides[(k + 1) % sides.size()] - sides[k];
+      const auto met = intersect_line_triangle(sides[k], side, through[0], through[1], through[2], 0.0);
+      if (met && met->along >= 0.0 && met->along <= 1.0) return sides[k] + met->along * side;
     }
   }
   return (first[0] + first[1] + first[2] + second[0] + second[1] + second[2]) / 6.0;
 }
 
-void find_self_meetings(const TriangleMesh& mesh, const LineExits& exits, double error_m,
-                        const Progress& progress, SolidCheck& check) {
+void find_self_intersections(const TriangleMesh& mesh, const LineExits& exits, double error_m,
+                             const Progress& progress, SolidCheck& check) {
   const std::vector<std::uint32_t>& order = exits.tree().order();
   std::vector<TriangleCorners> in_order;
   in_order.reserve(order.size());
   for (const std::uint32_t index : order) in_order.push_back(mesh.triangles[index]);
-  const MeshIntersections meetings =
-      self_intersections(mesh.vertices_m, in_order, exits.tree(), most_meetings, progress);
-  check.self_meetings_complete = meetings.complete;
-  for (const MeshIntersection& meeting : meetings.found) {
-    if (!(meeting.depth_m > 2.0 * error_m)) continue;
-    const Triangle& first = exits.triangles()[order[meeting.first]];
-    const Triangle& second = exits.triangles()[order[meeting.second]];
-    check.self_intersections.push_back({place_of(first, second), meeting.depth_m});
+  const MeshIntersections contacts =
+      self_intersections(mesh.vertices_m, in_order, exits.tree(), max_meetings, progress);
+  check.self_intersections_complete = contacts.complete;
+  for (const MeshIntersection& contact : contacts.found) {
+    if (!(contact.depth_m > 2.0 * error_m)) continue;
+    const Triangle& first = exits.triangles()[order[contact.first]];
+    const Triangle& second = exits.triangles()[order[contact.second]];
+    check.self_intersections.push_back({find_crossing(first, second), contact.depth_m});
   }
   std::stable_sort(check.self_intersections.begin(), check.self_intersections.end(),
                    [](const auto& a, const auto& b) { return a.depth_m > b.depth_m; });
-  check.self_intersections.resize(std::min(check.self_intersections.size(), most_told));
+  check.self_intersections.resize(std::min(check.self_intersections.size(), max_reported));
 }
 
-// All triangles side by side over one parameter plane: triangle k spans u from k to k + 1 along its first
-// side and v from 0 there to 1 at its third corner.
+// Walls behind all triangles, over one parameter plane. Triangle k spans u from k to k + 1 along its first
+// side, and v from 0 at that side to 1 at its third corner.
 class Walls {
  public:
-  // What is less high than the error is too narrow to tell which way it faces.
+  // Skips triangles whose height is below the error, because their normals are unreliable.
   Walls(const LineExits& exits, const TriangleMesh& mesh, double error_m)
-      : exits_(exits), normals_(mesh), least_height_m_(error_m) {}
+      : exits_(exits), normals_(mesh), min_height_m_(error_m) {}
 
   std::vector<PieceCell> cells() const {
-    double spacing = sample_share * exits_.tree().nodes()[0].box.size();
-    while (cell_count(spacing) > most_samples + exits_.triangles().size()) spacing *= wider;
+    double spacing = relative_spacing * exits_.tree().nodes()[0].box.size();
+    while (cell_count(spacing) > max_samples + exits_.triangles().size()) spacing *= spacing_growth;
     std::vector<PieceCell> cells;
     for (std::size_t k = 0; k < exits_.triangles().size(); ++k) {
-      const Cut cut = cut_of(exits_.triangles()[k], spacing);
-      for (int i = 0; i < cut.along; ++i) {
-        for (int j = 0; j < cut.across; ++j) {
-          cells.push_back({inside(k, i, cut.along), inside(k, i + 1, cut.along), inside(0, j, cut.across),
-                           inside(0, j + 1, cut.across)});
+      const Division division = divide(exits_.triangles()[k], spacing);
+      for (int i = 0; i < division.along; ++i) {
+        for (int j = 0; j < division.across; ++j) {
+          cells.push_back({inside(k, i, division.along), inside(k, i + 1, division.along),
+                           inside(0, j, division.across), inside(0, j + 1, division.across)});
         }
       }
     }
@@ -102,89 +104,89 @@ class Walls {
   }
 
  private:
-  struct Cut {
+  struct Division {
     int along = 0, across = 0;
   };
-  Cut cut_of(const Triangle& triangle, double spacing) const {
+  Division divide(const Triangle& triangle, double spacing) const {
     const Vector3 side = triangle[1] - triangle[0], other = triangle[2] - triangle[0];
     const double length = side.norm(), height = length > 0.0 ? side.cross(other).norm() / length : 0.0;
-    if (!(height > least_height_m_)) return {};
+    if (!(height > min_height_m_)) return {};
     return {count_over(length, spacing), count_over(height, spacing)};
   }
   std::size_t cell_count(double spacing) const {
     std::size_t count = 0;
     for (const Triangle& triangle : exits_.triangles()) {
-      const Cut cut = cut_of(triangle, spacing);
-      count += static_cast<std::size_t>(cut.along) * static_cast<std::size_t>(cut.across);
+      const Division division = divide(triangle, spacing);
+      count += static_cast<std::size_t>(division.along) * static_cast<std::size_t>(division.across);
     }
     return count;
   }
   static int count_over(double length, double spacing) {
-    return std::clamp(static_cast<int>(std::ceil(length / spacing)), 1, most_along_side);
+    return std::clamp(static_cast<int>(std::ceil(length / spacing)), 1, max_along_side);
   }
   static double inside(std::size_t k, int part, int parts) {
-    const double share = static_cast<double>(part) / parts;
-    return static_cast<double>(k) + std::clamp(share, off_sides, 1.0 - off_sides);
+    const double fraction = static_cast<double>(part) / parts;
+    return static_cast<double>(k) + std::clamp(fraction, side_margin, 1.0 - side_margin);
   }
 
   const LineExits& exits_;
   SmoothNormals normals_;
-  double least_height_m_;
+  double min_height_m_;
 };
 
-// The thinnest cells by their middles that the surfaces agree with, and what they tell of a place; by the
-// mesh alone where they agree with none.
-class Thinnest {
+// Search for the thinnest wall among the cells whose mesh thickness at the centre is smallest and agrees with
+// the surfaces. Uses the mesh alone if no cell agrees.
+class ThinnestWallSearch {
  public:
-  Thinnest(const Walls& walls, const ExactWalls& exact) : walls_(walls), exact_(exact) {}
+  ThinnestWallSearch(const Walls& walls, const ExactWalls& exact) : walls_(walls), exact_(exact) {}
 
-  std::optional<WallThickness> found(const Progress& progress) {
+  std::optional<WallThickness> find(const Progress& progress) {
     const std::vector<PieceCell> cells = walls_.cells();
-    const auto order = thinnest_first(cells, progress);
-    std::vector<PieceCell> chosen = chosen_of(cells, order);
-    is_exact_ = !chosen.empty();
-    const std::size_t by_mesh = is_exact_ ? 0 : std::min(most_chosen, order.size());
-    for (std::size_t k = 0; k < by_mesh; ++k) chosen.push_back(cells[order[k].second]);
-    const ParameterPlace place = least_place(chosen, [&](double u, double v) {
+    const auto order = sort_by_thickness(cells, progress);
+    std::vector<PieceCell> chosen = choose_cells(cells, order);
+    uses_exact_walls_ = !chosen.empty();
+    const std::size_t mesh_cells = uses_exact_walls_ ? 0 : std::min(max_chosen, order.size());
+    for (std::size_t k = 0; k < mesh_cells; ++k) chosen.push_back(cells[order[k].second]);
+    const ParameterMinimum found = find_minimum(chosen, [&](double u, double v) {
       const auto wall = at(u, v);
       return wall ? wall->thickness_m : std::numeric_limits<double>::infinity();
     });
-    return std::isfinite(place.value) ? at(place.u, place.v) : std::nullopt;
+    return std::isfinite(found.value) ? at(found.u, found.v) : std::nullopt;
   }
 
  private:
-  static constexpr std::size_t most_chosen = 12, most_asked = 20'000, cells_between_looks = 1024;
+  static constexpr std::size_t max_chosen = 12, max_tested = 20'000, cells_between_reports = 1024;
   using Order = std::vector<std::pair<double, std::size_t>>;
 
-  Order thinnest_first(const std::vector<PieceCell>& cells, const Progress& progress) const {
+  Order sort_by_thickness(const std::vector<PieceCell>& cells, const Progress& progress) const {
     Order order;
     for (std::size_t k = 0; k < cells.size(); ++k) {
-      const double share = static_cast<double>(k) / static_cast<double>(cells.size());
-      if (k % cells_between_looks == 0 && !progress.report(share)) return {};
-      const auto wall = walls_.at(cells[k].middle_u(), cells[k].middle_v());
+      const double fraction = static_cast<double>(k) / static_cast<double>(cells.size());
+      if (k % cells_between_reports == 0 && !progress.report(fraction)) return {};
+      const auto wall = walls_.at(cells[k].centre_u(), cells[k].centre_v());
       if (wall) order.emplace_back(wall->thickness_m, k);
     }
     std::sort(order.begin(), order.end());
     return order;
   }
 
-  std::vector<PieceCell> chosen_of(const std::vector<PieceCell>& cells, const Order& order) const {
+  std::vector<PieceCell> choose_cells(const std::vector<PieceCell>& cells, const Order& order) const {
     std::vector<PieceCell> chosen;
-    for (std::size_t k = 0; k < std::min(most_asked, order.size()) && chosen.size() < most_chosen; ++k) {
+    for (std::size_t k = 0; k < std::min(max_tested, order.size()) && chosen.size() < max_chosen; ++k) {
       const PieceCell& cell = cells[order[k].second];
-      if (exact_.at(*walls_.at(cell.middle_u(), cell.middle_v()))) chosen.push_back(cell);
+      if (exact_.at(*walls_.at(cell.centre_u(), cell.centre_v()))) chosen.push_back(cell);
     }
     return chosen;
   }
 
   std::optional<WallThickness> at(double u, double v) const {
     const auto wall = walls_.at(u, v);
-    return wall && is_exact_ ? exact_.at(*wall) : wall;
+    return wall && uses_exact_walls_ ? exact_.at(*wall) : wall;
   }
 
   const Walls& walls_;
   const ExactWalls& exact_;
-  bool is_exact_ = false;
+  bool uses_exact_walls_ = false;
 };
 
 }  // namespace
@@ -193,15 +195,64 @@ std::optional<SolidCheck> check_solid(const TriangleMesh& mesh, const std::vecto
                                       double error_m, const Progress& progress) {
   SPOONBILL_ASSERT(error_m >= 0.0 && !mesh.triangles.empty());
   SolidCheck check;
-  bool goes_on = true;
-  const Progress asked([&](double fraction) { return goes_on = goes_on && progress.report(fraction); });
+  bool continues = true;
+  const Progress watched([&](double fraction) { return continues = continues && progress.report(fraction); });
   const LineExits exits(triangles_of(mesh));
-  find_self_meetings(mesh, exits, error_m, asked.part(0.1, 0.1), check);
-  if (!asked.report(0.1)) return std::nullopt;
+  find_self_intersections(mesh, exits, error_m, watched.part(0.1, 0.1), check);
+  if (!watched.report(0.1)) return std::nullopt;
   const Walls walls(exits, mesh, error_m);
   const ExactWalls exact(surfaces, error_m);
-  check.thinnest = Thinnest(walls, exact).found(asked.part(0.1, 1.0));
-  return goes_on ? std::optional(check) : std::nullopt;
+  check.thinnest = ThinnestWallSearch(walls, exact).find(watched.part(0.1, 1.0));
+  return continues ? std::optional(check) : std::nullopt;
+}
+
+namespace {
+
+// Cells are a quarter of an element wide, as for reported collisions.
+constexpr int levels = 2;
+
+std::optional<BodyOverlap> find_overlap(const SurfacePairCollider& collider, const PairResult& result) {
+  const std::vector<PairContact>& contacts = collider.contacts();
+  if (!result.touching || contacts.empty()) return std::nullopt;
+  const auto deepest = std::max_element(
+      contacts.begin(), contacts.end(),
+      [](const PairContact& one, const PairContact& other) { return one.depth_m < other.depth_m; });
+  return BodyOverlap{0, 0, result.contained, deepest->depth_m, deepest->pair.first_m};
+}
+
+}  // namespace
+
+std::optional<BodyOverlaps> find_body_overlaps(const std::vector<const Surface*>& bodies,
+                                               const Progress& progress) {
+  std::vector<Box> boxes;
+  boxes.reserve(bodies.size());
+  for (const Surface* body : bodies) {
+    const Box box = bounding_box(body->net);
+    boxes.push_back({box.low.array() - touch_tolerance_m, box.high.array() + touch_tolerance_m});
+  }
+  BodyOverlaps overlaps;
+  const std::vector<BodyPair> pairs = BodyTree(boxes).near_pairs();
+  double done = 0.0;
+  for (const auto& [first, second] : pairs) {
+    if (!progress.report(done++ / static_cast<double>(pairs.size()))) return std::nullopt;
+    const Surface &a = *bodies[first], &b = *bodies[second];
+    const auto grid_a = make_nested_grid(a.u, a.v, levels), grid_b = make_nested_grid(b.u, b.v, levels);
+    if (!grid_a || !grid_b) {
+      overlaps.complete = false;
+      continue;
+    }
+    SurfacePairCollider collider(grid_a.value(), grid_b.value());
+    PairQuery query;
+    query.first_closed = query.second_closed = true;
+    const PairResult result = collider.collide(a, b, query);
+    overlaps.complete = overlaps.complete && !result.overflow;
+    if (auto overlap = find_overlap(collider, result)) {
+      overlap->first = first;
+      overlap->second = second;
+      overlaps.found.push_back(*overlap);
+    }
+  }
+  return overlaps;
 }
 
 }  // namespace spoonbill

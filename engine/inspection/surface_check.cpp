@@ -1,30 +1,92 @@
 #include "engine/inspection/surface_check.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
 #include "engine/base/assert.h"
 #include "engine/bspline/knot_vector.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
-#include "engine/inspection/piece_sampling.h"
 
 namespace spoonbill {
+namespace {
+
+constexpr int edge_samples = 512;
+
+double parameter_at(const KnotVector& knots, double fraction) {
+  return knots.domain_start() + fraction * (knots.domain_end() - knots.domain_start());
+}
+
+// Compares the two ends of u if `along_u`, whose edges run along v; else those of v.
+EdgeGap measure_edge_gap(const Surface& surface, bool along_u) {
+  EdgeGap gap;
+  const KnotVector& knots = along_u ? surface.u : surface.v;
+  if (knots.is_periodic()) return gap;
+  const KnotVector& across = along_u ? surface.v : surface.u;
+  const auto point = [&](double end, double fraction) {
+    const double t = parameter_at(across, fraction);
+    return along_u ? position(surface, end, t) : position(surface, t, end);
+  };
+  const Vector3 first_start = point(knots.domain_start(), 0.0), last_start = point(knots.domain_end(), 0.0);
+  for (int k = 0; k <= edge_samples; ++k) {
+    const double fraction = static_cast<double>(k) / edge_samples;
+    const Vector3 first = point(knots.domain_start(), fraction), last = point(knots.domain_end(), fraction);
+    gap.apart_m = std::max(gap.apart_m, (first - last).norm());
+    gap.first_width_m = std::max(gap.first_width_m, (first - first_start).norm());
+    gap.last_width_m = std::max(gap.last_width_m, (last - last_start).norm());
+  }
+  return gap;
+}
+
+bool is_closed_around(const EdgeGap& gap) {
+  return gap.apart_m <= closing_tolerance_m;
+}
+
+bool ends_in_poles(const EdgeGap& gap) {
+  return gap.first_width_m <= closing_tolerance_m && gap.last_width_m <= closing_tolerance_m;
+}
+
+double find_widest_end(const EdgeGap& gap) {
+  return is_closed_around(gap) ? 0.0 : std::max(gap.first_width_m, gap.last_width_m);
+}
+
+}  // namespace
+
+Closing find_closing(const Surface& surface) {
+  Closing closing;
+  closing.u = measure_edge_gap(surface, true);
+  closing.v = measure_edge_gap(surface, false);
+  const bool around_u = is_closed_around(closing.u), around_v = is_closed_around(closing.v);
+  const bool solid =
+      (around_u && (around_v || ends_in_poles(closing.v))) || (around_v && ends_in_poles(closing.u));
+  closing.closedness = solid                  ? Closedness::solid
+                       : around_u || around_v ? Closedness::tube
+                                              : Closedness::sheet;
+  if (solid) return closing;
+  closing.gap_m = around_u   ? find_widest_end(closing.v)
+                  : around_v ? find_widest_end(closing.u)
+                             : std::min(std::max(closing.u.apart_m, find_widest_end(closing.v)),
+                                        std::max(closing.v.apart_m, find_widest_end(closing.u)));
+  return closing;
+}
 
 namespace {
 
+// Cells in each direction of a polynomial piece.
 constexpr int parts = 4;
-// Of the mean over the surface, the area that a parameter step may shrink to.
-constexpr double least_area_share = 1e-7;
-constexpr std::size_t most_spots = 16;
-// Halved once, elements of usual nets tell loops of half a cell; larger nets are fine enough already.
+// Smallest |du x dv| that is no defect, as a fraction of the mean over the surface.
+constexpr double min_area_ratio = 1e-7;
+constexpr std::size_t max_defects = 16;
+// Number of control points above which elements are not halved. Halving resolves loops of half a cell on
+// usual nets; larger nets are fine enough.
 constexpr std::size_t large_net = 2500;
 
-// Along one direction, which cells have one beside them whose normal must not be another by far: not across
-// an edge, a knot as often as the degree, where two sides may meet at any angle.
-class SmoothSteps {
+// Tells which neighbouring cells of one direction belong to the same smooth sheet. An edge, which is a knot
+// of multiplicity at least the degree, separates sheets that may meet at any angle.
+class SmoothNeighbours {
  public:
-  explicit SmoothSteps(const KnotVector& knots) {
-    // One for the start of each piece; the end of the last is the start of the first, or an end.
+  explicit SmoothNeighbours(const KnotVector& knots) {
+    // Each entry is the start of a piece. The last piece ends at the first entry, or at an open end.
     const std::vector<KnotMultiplicity> starts = knot_multiplicities(knots);
     for (std::size_t piece = 0; piece < starts.size(); ++piece) {
       smooth_after_.push_back(starts[(piece + 1) % starts.size()].multiplicity < knots.degree());
@@ -32,52 +94,55 @@ class SmoothSteps {
   }
 
   std::size_t cells() const { return parts * smooth_after_.size(); }
-  // Whether the cell and the next one, which at the end of a closed direction is the first, lie in one sheet.
-  bool goes_on(std::size_t cell) const { return (cell + 1) % parts != 0 || smooth_after_[cell / parts]; }
+  // Returns whether the cell and next(cell) belong to one sheet.
+  bool is_smooth_after(std::size_t cell) const {
+    return (cell + 1) % parts != 0 || smooth_after_[cell / parts];
+  }
+  // The next cell; the first one after the last.
   std::size_t next(std::size_t cell) const { return cell + 1 < cells() ? cell + 1 : 0; }
 
  private:
-  std::vector<bool> smooth_after_;  // of each piece
+  std::vector<bool> smooth_after_;  // by piece
 };
 
-// Whether the normal flips on the straight way between two parameters, rather than turn as about a tight rim:
-// it then does so too from one of ever finer steps to the next.
-class Flips {
+// Detects flips of the normal on the straight line between two parameters. A flip persists under refinement
+// of the steps, unlike a normal that turns quickly about a tight rim.
+class NormalFlips {
  public:
-  Flips(const Surface& surface, double least_area) : surface_(surface), least_area_(least_area) {}
+  NormalFlips(const Surface& surface, double least_area) : surface_(surface), least_area_(least_area) {}
 
   bool between(const PieceCell& from, const PieceCell& to) const {
-    // Over the seam of a closed direction the way goes on, not back.
-    const double u = from.middle_u(), v = from.middle_v();
-    return looked_at({u, v}, {onwards(surface_.u, u, to.middle_u()), onwards(surface_.v, v, to.middle_v())},
-                     looks);
+    // The line crosses the seam of a closed direction.
+    const double u = from.centre_u(), v = from.centre_v();
+    return flips_between({u, v}, {unwrap(surface_.u, u, to.centre_u()), unwrap(surface_.v, v, to.centre_v())},
+                         refinements);
   }
 
  private:
-  using Place = Eigen::Vector2d;
-  static constexpr int steps = 6, looks = 2;
+  using Parameters = Eigen::Vector2d;
+  static constexpr int steps = 6, refinements = 2;
 
-  static double onwards(const KnotVector& knots, double from, double to) {
+  static double unwrap(const KnotVector& knots, double from, double to) {
     return to < from ? to + knots.domain_end() - knots.domain_start() : to;
   }
 
-  bool looked_at(const Place& from, const Place& to, int looks_left) const {
+  bool flips_between(const Parameters& from, const Parameters& to, int refinements_left) const {
     Vector3 before = product(from);
-    Place since = from;
+    Parameters since = from;
     for (int step = 1; step <= steps; ++step) {
-      const Place place = from + (to - from) * step / steps;
-      const Vector3 here = product(place);
-      // On the very line of a fold the normal has no side.
+      const Parameters point = from + (to - from) * step / steps;
+      const Vector3 here = product(point);
+      // The normal has no direction on the fold itself.
       if (here.norm() < least_area_ && step < steps) continue;
       const bool turns = before.dot(here) < 0.0;
-      if (turns && (looks_left == 1 || looked_at(since, place, looks_left - 1))) return true;
+      if (turns && (refinements_left == 1 || flips_between(since, point, refinements_left - 1))) return true;
       before = here;
-      since = place;
+      since = point;
     }
     return false;
   }
 
-  Vector3 product(const Place& at) const {
+  Vector3 product(const Parameters& at) const {
     const SurfacePoint point =
         evaluate(surface_, surface_.u.into_domain(at.x()), surface_.v.into_domain(at.y()));
     return point.du.cross(point.dv);
@@ -87,47 +152,50 @@ class Flips {
   double least_area_;
 };
 
-// Cells of a piece whose middle has no area, or between which and the cell beside them the normal flips.
-void find_bad_spots(const Surface& surface, const TrimmedArea& area, SurfaceCheck& check) {
+// Finds cells with a degenerate centre, and cells between which and a neighbour the normal flips.
+void find_defects(const Surface& surface, const TrimmedArea& area, SurfaceCheck& check) {
   const std::vector<PieceCell> cells = piece_cells(surface, parts);
   std::vector<Vector3> products;
   double mean = 0.0;
   for (const PieceCell& cell : cells) {
-    const SurfacePoint point = evaluate(surface, cell.middle_u(), cell.middle_v());
+    const SurfacePoint point = evaluate(surface, cell.centre_u(), cell.centre_v());
     products.push_back(point.du.cross(point.dv));
     mean += products.back().norm() / static_cast<double>(cells.size());
   }
-  const SmoothSteps along_u(surface.u), along_v(surface.v);
-  const Flips flips(surface, least_area_share * mean);
+  const SmoothNeighbours along_u(surface.u), along_v(surface.v);
+  const NormalFlips normal_flips(surface, min_area_ratio * mean);
   const auto index = [&](std::size_t i, std::size_t j) { return i * along_v.cells() + j; };
-  const auto is_kept = [&](std::size_t k) { return area.contains(cells[k].middle_u(), cells[k].middle_v()); };
-  const auto turns = [&](std::size_t k, std::size_t other) {
-    return is_kept(other) && products[k].dot(products[other]) < 0.0 && flips.between(cells[k], cells[other]);
+  const auto is_inside = [&](std::size_t k) {
+    return area.contains(cells[k].centre_u(), cells[k].centre_v());
   };
-  for (std::size_t k = 0; k < cells.size() && check.bad_spots.size() < most_spots; ++k) {
-    if (!is_kept(k)) continue;
+  const auto flips_towards = [&](std::size_t k, std::size_t other) {
+    return is_inside(other) && products[k].dot(products[other]) < 0.0 &&
+           normal_flips.between(cells[k], cells[other]);
+  };
+  for (std::size_t k = 0; k < cells.size() && check.surface_defects.size() < max_defects; ++k) {
+    if (!is_inside(k)) continue;
     const std::size_t i = k / along_v.cells(), j = k % along_v.cells();
-    const bool shrinks = !(products[k].norm() > least_area_share * mean);
-    const bool folds = (along_v.goes_on(j) && turns(k, index(i, along_v.next(j)))) ||
-                       (along_u.goes_on(i) && turns(k, index(along_u.next(i), j)));
+    const bool shrinks = !(products[k].norm() > min_area_ratio * mean);
+    const bool folds = (along_v.is_smooth_after(j) && flips_towards(k, index(i, along_v.next(j)))) ||
+                       (along_u.is_smooth_after(i) && flips_towards(k, index(along_u.next(i), j)));
     if (!shrinks && !folds) continue;
-    const double u = cells[k].middle_u(), v = cells[k].middle_v();
-    check.bad_spots.push_back({u, v, position(surface, u, v), !shrinks});
+    const double u = cells[k].centre_u(), v = cells[k].centre_v();
+    check.surface_defects.push_back({u, v, position(surface, u, v), !shrinks});
   }
 }
 
-void find_self_meetings(const Surface& surface, const TrimmedArea& area, const Progress& progress,
-                        SurfaceCheck& check) {
+void find_self_intersections(const Surface& surface, const TrimmedArea& area, const Progress& progress,
+                             SurfaceCheck& check) {
   const auto grid = make_nested_grid(surface.u, surface.v, surface.net.size() > large_net ? 0 : 1);
   if (!grid) {
-    check.self_meetings_complete = false;
+    check.self_intersections_complete = false;
     return;
   }
   SurfaceSelfCollider collider(grid.value());
   SelfQuery query;
   query.closed = check.closing.closedness == Closedness::solid;
   query.progress = progress;
-  check.self_meetings_complete = !collider.collide(surface, query).overflow;
+  check.self_intersections_complete = !collider.collide(surface, query).overflow;
   for (const PairContact& contact : collider.contacts()) {
     const PairParameters& at = contact.pair.at;
     if (!area.contains(at.u, at.v) || !area.contains(at.s, at.t)) continue;
@@ -140,24 +208,24 @@ void find_self_meetings(const Surface& surface, const TrimmedArea& area, const P
 std::optional<SurfaceCheck> check_surface(const Surface& surface, const TrimmedArea& area,
                                           const Progress& progress) {
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
-  bool goes_on = true;
-  const Progress asked([&](double fraction) { return goes_on = goes_on && progress.report(fraction); });
+  bool continues = true;
+  const Progress watched([&](double fraction) { return continues = continues && progress.report(fraction); });
   SurfaceCheck check;
-  check.closing = closing_of(surface);
+  check.closing = find_closing(surface);
   check.is_trimmed = !area.is_whole();
-  check.mass = enclosed_mass(surface, area);
-  if (!asked.report(0.05)) return std::nullopt;
-  check.curvature = curvature_range(surface, area, asked.part(0.05, 0.4));
-  if (!goes_on) return std::nullopt;
-  check.bending = bending_measure(surface, area);
-  find_bad_spots(surface, area, check);
-  if (!asked.report(0.5)) return std::nullopt;
-  find_self_meetings(surface, area, asked.part(0.5, 0.6), check);
-  if (!asked.report(0.6)) return std::nullopt;
+  check.mass = compute_enclosed_mass(surface, area);
+  if (!watched.report(0.05)) return std::nullopt;
+  check.curvature = find_curvature_range(surface, area, watched.part(0.05, 0.4));
+  if (!continues) return std::nullopt;
+  check.bending = compute_bending_energy(surface, area);
+  find_defects(surface, area, check);
+  if (!watched.report(0.5)) return std::nullopt;
+  find_self_intersections(surface, area, watched.part(0.5, 0.6), check);
+  if (!watched.report(0.6)) return std::nullopt;
   if (check.encloses() && check.mass.volume_m3 > 0.0) {
-    check.thinnest = ThicknessSearch(surface).smallest(asked.part(0.6, 1.0));
+    check.thinnest = ThicknessSearch(surface).smallest(watched.part(0.6, 1.0));
   }
-  return goes_on ? std::optional(check) : std::nullopt;
+  return continues ? std::optional(check) : std::nullopt;
 }
 
 }  // namespace spoonbill

@@ -1,50 +1,73 @@
-// Whether a surface bounds a body as it should, and what there is to know of its shape: for reports, not for
-// the tick. Deterministic; any thread.
+// Checks that a surface bounds a body properly, and measures its shape for reports. Outside the tick;
+// deterministic; any thread.
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "engine/base/progress.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_area.h"
-#include "engine/inspection/closing.h"
-#include "engine/inspection/curvature_range.h"
-#include "engine/inspection/enclosed_mass.h"
+#include "engine/inspection/curvature.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/inspection/thickness.h"
 
 namespace spoonbill {
 
-// A place other than a pole where du x dv vanishes, or turns over from one side to the other within a smooth
-// part of the surface.
-struct BadSpot {
-  double u = 0.0, v = 0.0;
-  Vector3 position_m = Vector3::Zero();
-  bool folds = false;
+// Edges nearer to each other than this coincide.
+inline constexpr double closing_tolerance_m = 1e-6;
+
+enum class Closedness {
+  solid,  // bounds a body: periodic in one direction, and closed by poles or periodic in the other
+  tube,   // closed in one direction, open in the other
+  sheet,  // open in both directions
 };
 
-struct SelfMeeting {
+// Distances between the two ends of one direction. All are 0 for a periodic direction.
+struct EdgeGap {
+  double apart_m = 0.0;  // largest distance between corresponding points of the ends
+  double first_width_m = 0.0, last_width_m = 0.0;  // extent of each end, 0 for a pole
+};
+
+struct Closing {
+  Closedness closedness = Closedness::sheet;
+  EdgeGap u, v;
+  // Width of the gap that keeps the surface from being closed: 0 for a solid, otherwise that of the widest
+  // open end.
+  double gap_m = 0.0;
+};
+
+// Samples the edges of a surface, ignoring trims.
+Closing find_closing(const Surface& surface);
+
+// Point other than a pole where du x dv vanishes, or flips within a smooth part of the surface.
+struct SurfaceDefect {
+  double u = 0.0, v = 0.0;
+  Vector3 position_m = Vector3::Zero();
+  bool folds = false;  // du x dv flips; false: it vanishes
+};
+
+struct SelfIntersection {
   double u = 0.0, v = 0.0, other_u = 0.0, other_v = 0.0, depth_m = 0.0;
   Vector3 position_m = Vector3::Zero();
 };
 
 struct SurfaceCheck {
-  Closing closing;          // of the surface as if it had no trims
-  bool is_trimmed = false;  // what follows is of what is kept
-  EnclosedMass mass;        // volume and middle where it encloses() only
+  Closing closing;  // ignores trims; everything below applies to the area within the trims
+  bool is_trimmed = false;
+  EnclosedMass mass;  // volume and its centre are valid only if encloses()
   CurvatureRange curvature;
-  double bending = 0.0;  // see bending_measure()
-  std::vector<BadSpot> bad_spots;
-  std::vector<SelfMeeting> self_intersections;
-  bool self_meetings_complete = true;      // false where there were too many to be searched
-  std::optional<Thickness> thinnest = {};  // where it encloses()
+  double bending = 0.0;  // compute_bending_energy()
+  std::vector<SurfaceDefect> surface_defects;
+  std::vector<SelfIntersection> self_intersections;
+  bool self_intersections_complete = true;  // false: too many to search them all
+  std::optional<Thickness> thinnest = {};   // only if encloses() and the volume is positive
 
-  // Whether it bounds a body by itself.
+  // Returns whether the surface bounds a body by itself.
   bool encloses() const { return closing.closedness == Closedness::solid && !is_trimmed; }
 };
 
-// Nothing where it was stopped.
+// Returns nothing if `progress` stopped it.
 std::optional<SurfaceCheck> check_surface(const Surface& surface, const TrimmedArea& area = {},
                                           const Progress& progress = {});
 

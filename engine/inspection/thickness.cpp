@@ -8,19 +8,19 @@
 #include "engine/base/assert.h"
 
 namespace spoonbill {
-
 namespace {
 
 constexpr int parts = 3;
 constexpr int newton_steps = 12;
-// Of the way to it: how near to the line Newton's method has to come.
-constexpr double exact = 1e-9;
+// Largest distance from the line at which Newton's method has converged, as a fraction of the distance to the
+// exit.
+constexpr double newton_tolerance = 1e-9;
 
-double within(const KnotVector& knots, double parameter) {
+double clamp_to_domain(const KnotVector& knots, double parameter) {
   return knots.is_periodic() ? parameter : std::clamp(parameter, knots.domain_start(), knots.domain_end());
 }
 
-std::vector<double> cut_evenly(const std::vector<double>& ends) {
+std::vector<double> subdivide(const std::vector<double>& ends) {
   std::vector<double> all;
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
     for (int p = 0; p < parts; ++p) all.push_back(ends[k] + (ends[k + 1] - ends[k]) * p / parts);
@@ -37,8 +37,8 @@ ThicknessSearch::ThicknessSearch(const Surface& surface)
 }
 
 std::vector<Triangle> ThicknessSearch::facets() {
-  const std::vector<double> u = cut_evenly(surface_->u.breakpoints());
-  const std::vector<double> v = cut_evenly(surface_->v.breakpoints());
+  const std::vector<double> u = subdivide(surface_->u.breakpoints());
+  const std::vector<double> v = subdivide(surface_->v.breakpoints());
   std::vector<Triangle> facets;
   for (std::size_t i = 0; i + 1 < u.size(); ++i) {
     for (std::size_t j = 0; j + 1 < v.size(); ++j) {
@@ -66,12 +66,13 @@ std::optional<SurfaceExit> ThicknessSearch::exit(const Vector3& from, const Vect
   SPOONBILL_ASSERT(std::abs(direction.squaredNorm() - 1.0) < 1e-6);
   const auto met = exits_.first(from, direction);
   if (!met || !exits_through_wall(exits_.triangles()[met->triangle], direction)) return std::nullopt;
-  return settled(*met, from, direction);
+  return refine_exit(*met, from, direction);
 }
 
-// Newton's method from the facet to the surface itself.
-SurfaceExit ThicknessSearch::settled(const LineExit& exit, const Vector3& from,
-                                     const Vector3& direction) const {
+// Moves the exit from the facet to the surface by Newton's method. Keeps the facet's exit if that does not
+// converge, as at a pole.
+SurfaceExit ThicknessSearch::refine_exit(const LineExit& exit, const Vector3& from,
+                                         const Vector3& direction) const {
   const Triangle& facet = exits_.triangles()[exit.triangle];
   const Parameters& at = parameters_[exit.triangle];
   const double b = std::clamp(exit.to_b, 0.0, 1.0), c = std::clamp(exit.to_c, 0.0, 1.0 - b);
@@ -85,7 +86,7 @@ SurfaceExit ThicknessSearch::settled(const LineExit& exit, const Vector3& from,
   for (int step = 0; step < newton_steps; ++step) {
     const SurfacePoint point = evaluate(*surface_, unknown.y(), unknown.z());
     const Vector3 miss = point.position_m - from - unknown.x() * direction;
-    if (miss.norm() <= exact * exit.distance_m && unknown.x() > 0.0 && unknown.x() < near) {
+    if (miss.norm() <= newton_tolerance * exit.distance_m && unknown.x() > 0.0 && unknown.x() < near) {
       return exit_at(unknown);
     }
     Eigen::Matrix3d jacobian;
@@ -93,19 +94,70 @@ SurfaceExit ThicknessSearch::settled(const LineExit& exit, const Vector3& from,
     const Eigen::Vector3d move = Eigen::PartialPivLU<Eigen::Matrix3d>(jacobian).solve(miss);
     if (!move.allFinite()) break;
     unknown -= move;
-    unknown.y() = within(surface_->u, unknown.y());
-    unknown.z() = within(surface_->v, unknown.z());
+    unknown.y() = clamp_to_domain(surface_->u, unknown.y());
+    unknown.z() = clamp_to_domain(surface_->v, unknown.z());
   }
-  return exit_at(start);  // where that does not come to the line, as at a pole
+  return exit_at(start);
 }
 
 std::optional<Thickness> ThicknessSearch::smallest(const Progress& progress) const {
   const auto value = [&](double u, double v) {
-    const auto found = at(u, v);
-    return found ? found->thickness_m : std::numeric_limits<double>::infinity();
+    const auto thickness = at(u, v);
+    return thickness ? thickness->thickness_m : std::numeric_limits<double>::infinity();
   };
-  const ParameterPlace place = least_place(cells_, value, progress);
-  return std::isfinite(place.value) ? at(place.u, place.v) : std::nullopt;
+  const ParameterMinimum found = find_minimum(cells_, value, progress);
+  return std::isfinite(found.value) ? at(found.u, found.v) : std::nullopt;
+}
+
+namespace {
+
+constexpr double rounding_m = 1e-8;
+
+}  // namespace
+
+ExactWalls::ExactWalls(const std::vector<const Surface*>& surfaces, double error_m)
+    : reach_m_(2.0 * error_m + rounding_m) {
+  SPOONBILL_ASSERT(error_m >= 0.0);
+  SPOONBILL_ASSERT_DEBUG(
+      std::none_of(surfaces.begin(), surfaces.end(), [](const Surface* one) { return one == nullptr; }));
+  faces_.reserve(surfaces.size());
+  for (const Surface* surface : surfaces) {
+    faces_.push_back({surface, bounding_box(surface->net), ThicknessSearch(*surface)});
+  }
+}
+
+// Returns the exit nearest to `expected`, through any surface whose net reaches there.
+std::optional<ExactWalls::FoundExit> ExactWalls::find_exit_near(const Vector3& from, const Vector3& expected,
+                                                                const Vector3& direction) const {
+  std::optional<FoundExit> best;
+  const double distance_m = (expected - from).norm();
+  for (const Face& face : faces_) {
+    if (!face.net.is_near({expected, expected}, reach_m_)) continue;
+    const auto exit = face.search.exit(from, direction);
+    if (!exit) continue;
+    const double error_m = std::abs(exit->distance_m - distance_m);
+    if (!best || error_m < std::abs(best->exit.distance_m - distance_m))
+      best = FoundExit{face.surface, *exit};
+  }
+  return best;
+}
+
+std::optional<WallThickness> ExactWalls::at(const WallThickness& mesh_wall) const {
+  if (!(mesh_wall.thickness_m > 0.0)) return std::nullopt;
+  const Vector3 centre = 0.5 * (mesh_wall.position_m + mesh_wall.opposite_m);
+  const Vector3 outward = (mesh_wall.position_m - mesh_wall.opposite_m).stableNormalized();
+  const auto start = find_exit_near(centre, mesh_wall.position_m, outward);
+  if (!start) return std::nullopt;
+  const Vector3 inward = -unit_normal(*start->surface, start->exit.u, start->exit.v);
+  if (!(inward.squaredNorm() > 0.5)) return std::nullopt;
+  WallThickness wall;
+  wall.position_m = centre + start->exit.distance_m * outward;
+  const auto end = find_exit_near(wall.position_m, mesh_wall.opposite_m, inward);
+  if (!end) return std::nullopt;
+  wall.thickness_m = end->exit.distance_m;
+  wall.opposite_m = wall.position_m + wall.thickness_m * inward;
+  if (std::abs(wall.thickness_m - mesh_wall.thickness_m) > 2.0 * reach_m_) return std::nullopt;
+  return wall;
 }
 
 }  // namespace spoonbill

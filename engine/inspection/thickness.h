@@ -1,59 +1,96 @@
-// How thick a closed body is: from a point of its surface straight inwards to where the line comes out again
-// through a wall. Outside the tick; any thread.
+// Thickness of closed bodies: the distance from a surface point straight inwards to where the line leaves the
+// body through a wall. Outside the tick; any thread.
 #pragma once
 
 #include <array>
 #include <optional>
 #include <vector>
 
+#include "engine/base/geometry.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/meshes/box_tree.h"
-#include "engine/inspection/piece_sampling.h"
+#include "engine/inspection/curvature.h"
 
 namespace spoonbill {
 
-// Where a line inwards from a place of the surface leaves the body.
+// Inward line from a surface point to the opposite wall.
 struct Thickness {
   double thickness_m = 0.0;
   double u = 0.0, v = 0.0, opposite_u = 0.0, opposite_v = 0.0;
   Vector3 position_m = Vector3::Zero(), opposite_m = Vector3::Zero();
 };
 
-// Where a line goes out through a surface.
+// Point where a line leaves through a surface.
 struct SurfaceExit {
   double distance_m = 0.0;
   double u = 0.0, v = 0.0;
 };
 
-// One owner. The surface, which is closed or one of several that close together, and whose normals point
-// outwards, must outlive it.
+// Thickness search on one surface, which must outlive it. The surface is closed, or one of several that close
+// together, and has outward normals. One owner.
 class ThicknessSearch {
  public:
   explicit ThicknessSearch(const Surface& surface);
 
-  // Along a unit direction, through a wall (exits_through_wall()); to rounding where Newton's method finds to it.
+  // Returns the first exit along a unit direction through a wall (exits_through_wall()). Exact up to rounding
+  // where Newton's method converges, on the facets elsewhere.
   std::optional<SurfaceExit> exit(const Vector3& from, const Vector3& direction) const;
 
-  // None where there is no normal, or the line meets the surface nowhere, as between samples at an edge, or
-  // beside an edge alone (exits_through_wall()).
+  // Returns nothing where the surface has no normal or the inward line meets no wall: it misses the surface
+  // between samples at an edge, or passes an edge alone (exits_through_wall()).
   std::optional<Thickness> at(double u, double v) const;
 
-  // From samples, refined about the least of them. A wall thinner than a cell of samples is wide is found
-  // where a sample looks through it.
+  // Returns the smallest thickness found from samples and refined about the smallest of them. Finds a wall
+  // thinner than the spacing of the samples only if a sample's line crosses it.
   std::optional<Thickness> smallest(const Progress& progress = {}) const;
 
  private:
-  // Of the corners of a facet.
+  // Parameters of a facet's corners.
   struct Parameters {
     std::array<double, 3> u, v;
   };
   std::vector<Triangle> facets();
-  SurfaceExit settled(const LineExit& exit, const Vector3& from, const Vector3& direction) const;
+  SurfaceExit refine_exit(const LineExit& exit, const Vector3& from, const Vector3& direction) const;
 
   const Surface* surface_;
   std::vector<PieceCell> cells_;
   std::vector<Parameters> parameters_;
   LineExits exits_;
+};
+
+// Distance through a solid from one side straight inwards to the other.
+struct WallThickness {
+  double thickness_m = 0.0;
+  Vector3 position_m = Vector3::Zero(), opposite_m = Vector3::Zero();
+};
+
+// Corrects thicknesses measured on a mesh to the surfaces that the mesh approximates. The surfaces must
+// outlive it, and all their normals point out of the material. One owner.
+class ExactWalls {
+ public:
+  // `error_m`, at least 0, is the largest distance of the mesh from the surfaces.
+  ExactWalls(const std::vector<const Surface*>& surfaces, double error_m);
+
+  // Returns the wall between the surfaces nearest to the ends of `mesh_wall`, along the normal of the first,
+  // exact up to rounding. Returns nothing if no two surfaces are there, or if their distance differs by more
+  // than the mesh's error explains, as at a sliver that faces askew.
+  std::optional<WallThickness> at(const WallThickness& mesh_wall) const;
+
+ private:
+  struct Face {
+    const Surface* surface;
+    Box net;
+    ThicknessSearch search;
+  };
+  struct FoundExit {
+    const Surface* surface;
+    SurfaceExit exit;
+  };
+  std::optional<FoundExit> find_exit_near(const Vector3& from, const Vector3& expected,
+                                          const Vector3& direction) const;
+
+  std::vector<Face> faces_;
+  double reach_m_;
 };
 
 }  // namespace spoonbill

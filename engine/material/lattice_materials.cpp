@@ -15,7 +15,7 @@ Error about(std::size_t region, const std::string& message) {
 
 // Which of the lattice's cells the region holds become of its material.
 Status take_material(const MaterialRegion& region, const LatticeMesh& mesh,
-                     const std::vector<BodyPlace>& cells, LatticeMaterials& materials) {
+                     const std::vector<BodyCoordinates>& cells, LatticeMaterials& materials) {
   const auto number = static_cast<std::uint8_t>(materials.materials.size());
   materials.materials.push_back(*region.material);
   materials.of_cell.resize(cells.size(), 0);
@@ -29,7 +29,7 @@ Status take_material(const MaterialRegion& region, const LatticeMesh& mesh,
   return Error{": holds the middle of no cell of the lattice; make it larger or give the lattice more nodes"};
 }
 
-Status take_friction(const MaterialRegion& region, const std::vector<BodyPlace>& nodes,
+Status take_friction(const MaterialRegion& region, const std::vector<BodyCoordinates>& nodes,
                      LatticeMaterials& materials) {
   const auto number = static_cast<std::uint8_t>(materials.frictions.size());
   materials.frictions.push_back(region.friction ? *region.friction : region.material->friction);
@@ -57,7 +57,7 @@ Result<LatticeMaterials> lattice_materials(const LatticeMesh& mesh, const Materi
     return status.error();
   }
   if (regions.empty()) return materials;
-  const std::vector<BodyPlace> nodes = node_places(mesh), cells = cell_places(mesh);
+  const std::vector<BodyCoordinates> nodes = node_places(mesh), cells = cell_places(mesh);
   for (std::size_t r = 0; r < regions.size(); ++r) {
     if (const Status status = check_material_region(regions[r]); !status.ok()) {
       return about(r, "." + status.error().message);
@@ -81,16 +81,16 @@ Status check_materials(const LatticeMaterials& materials) {
   }
   if (are_plainly_elastic(materials)) return {};
   for (const Material& material : materials.materials) {
-    if (material.poissons_ratio >= least_spring_poissons_ratio) continue;
+    if (material.poissons_ratio >= min_spring_poissons_ratio) continue;
     return Error{"material " + material.name + ": poissons_ratio is " + number_text(material.poissons_ratio) +
-                 ", must be " + number_text(least_spring_poissons_ratio) +
+                 ", must be " + number_text(min_spring_poissons_ratio) +
                  " or more beside a material that is plastic, creeps or stiffens"};
   }
   return {};
 }
 
 bool are_plainly_elastic(const LatticeMaterials& materials) {
-  return std::all_of(materials.materials.begin(), materials.materials.end(), is_plainly_elastic);
+  return std::all_of(materials.materials.begin(), materials.materials.end(), is_linear_elastic);
 }
 
 double largest_youngs_modulus_pa(const LatticeMaterials& materials) {

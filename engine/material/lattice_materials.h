@@ -10,7 +10,6 @@
 #include "engine/base/result.h"
 #include "engine/material/lattice/body_place.h"
 #include "engine/scene/material.h"
-#include "engine/scene/material_region.h"
 
 namespace spoonbill {
 

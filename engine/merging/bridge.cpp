@@ -110,7 +110,7 @@ BridgeForm form_between(const Surface& before, const Surface& after) {
   const Eigen::Matrix3d turn = turn_towards(a, b);
   constexpr double long_share = 2.0;  // of both radii
   const bool bends = is_bend(turn);
-  const bool is_long = (b.middle_m - a.middle_m).norm() > long_share * (a.radius_m + b.radius_m);
+  const bool is_long = (b.centre_m - a.centre_m).norm() > long_share * (a.radius_m + b.radius_m);
   const bool leads = !a.outward.isZero() && !b.outward.isZero();
   return {turn, bends, bends || (is_long && leads)};
 }

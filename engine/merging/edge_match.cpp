@@ -65,7 +65,7 @@ EdgeMatch match_open(const Edge& a, const Edge& b, std::optional<bool> asked) {
 // as it is when it has been turned towards the first.
 class EdgeRing {
  public:
-  explicit EdgeRing(const Edge& edge) : curve_(edge.curve), centre_(edge.place.middle_m) {}
+  explicit EdgeRing(const Edge& edge) : curve_(edge.curve), centre_(edge.place.centre_m) {}
   void turn(const Eigen::Matrix3d& turn) { turn_ = turn; }
 
   // At a share of the way around from a parameter, forwards or backwards.
@@ -140,7 +140,7 @@ RingFit best_turned_fit(const Edge& a, const Edge& b, std::optional<bool> asked)
   EdgeRing ring_b(b);
   const RingFit as_they_lie = best_fit(ring_a, ring_b, asked);
   const double upon_m = upon_share * a.place.radius_m;
-  const bool upon = (b.place.middle_m - a.place.middle_m).norm() <= upon_m &&
+  const bool upon = (b.place.centre_m - a.place.centre_m).norm() <= upon_m &&
                     as_they_lie.misfit <= samples_of_ring * upon_m * upon_m;
   if (upon) return as_they_lie;
   const Eigen::Matrix3d turn = turn_towards(a.place, b.place);

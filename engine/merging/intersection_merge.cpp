@@ -11,7 +11,7 @@
 #include "engine/base/assert.h"
 #include "engine/base/text.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/inspection/enclosed_mass.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/merging/crossing_lines.h"
 #include "engine/merging/fold_search.h"
 #include "engine/merging/joint_edges.h"
@@ -181,7 +181,7 @@ Joint corner_of(const Joined& joined) {
 bool is_inward(const Surface& patch) {
   if (!is_tube(patch)) return false;
   const auto [start, end] = tube_sides(patch);
-  return is_pole(patch, start) && is_pole(patch, end) && enclosed_mass(patch).volume_m3 < 0.0;
+  return is_pole(patch, start) && is_pole(patch, end) && compute_enclosed_mass(patch).volume_m3 < 0.0;
 }
 
 Result<IntersectionMerge> merge_outward(const Surface& first, const Surface& second,

@@ -33,15 +33,15 @@ RingPlace ring_place(const Surface& surface, Side side) {
   RingPlace place;
   place.outward = outward(surface, side);
   const std::vector<double> around = uniform_parameters_without_seam(ring.knots, samples_around);
-  for (const double t : around) place.middle_m += position(ring, t) / samples_around;
+  for (const double t : around) place.centre_m += position(ring, t) / samples_around;
   for (const double t : around) {
-    place.radius_m = std::max(place.radius_m, (position(ring, t) - place.middle_m).norm());
+    place.radius_m = std::max(place.radius_m, (position(ring, t) - place.centre_m).norm());
   }
   return place;
 }
 
 Eigen::Matrix3d turn_towards(const RingPlace& a, const RingPlace& b) {
-  const Vector3 inward_b = -b.outward, apart = b.middle_m - a.middle_m;
+  const Vector3 inward_b = -b.outward, apart = b.centre_m - a.centre_m;
   const double cosine = inward_b.dot(a.outward);
   const bool within = apart.norm() < std::max(a.radius_m, b.radius_m);
   const bool nowhere = a.outward.isZero() || b.outward.isZero();

@@ -11,7 +11,7 @@ namespace spoonbill {
 // Where a tube ends: the middle and the largest radius of its ring, and the unit direction out of the tube,
 // zero where there is none.
 struct RingPlace {
-  Vector3 middle_m = Vector3::Zero();
+  Vector3 centre_m = Vector3::Zero();
   double radius_m = 0.0;
   Vector3 outward = Vector3::Zero();
 };

@@ -24,7 +24,7 @@ constexpr int samples_around = 48;
 constexpr double quarter_circle = 0.5522847498307936;
 
 struct RingShape {
-  Vector3 middle_m = Vector3::Zero();
+  Vector3 centre_m = Vector3::Zero();
   double radius_m = 0.0;
 };
 
@@ -35,9 +35,9 @@ RingShape ring_at(const Surface& tube, double v) {
   std::vector<Vector3> points;
   for (const double u : around) {
     points.push_back(position(tube, u, v));
-    ring.middle_m += points.back() / samples_around;
+    ring.centre_m += points.back() / samples_around;
   }
-  for (const Vector3& point : points) ring.radius_m += (point - ring.middle_m).norm() / samples_around;
+  for (const Vector3& point : points) ring.radius_m += (point - ring.centre_m).norm() / samples_around;
   return ring;
 }
 
@@ -68,7 +68,7 @@ Result<Surface> cap_of(const Surface& tube, double height_m) {
   const double length = (round ? 3.0 * quarter_circle * height_m : ring.radius_m) / speed;
   const auto knots = KnotVector::open(3, {0, 0, 0, 0, length, length, length, length});
   if (!knots) return knots.error();
-  const Vector3 pole = ring.middle_m + height_m * ring.outward;
+  const Vector3 pole = ring.centre_m + height_m * ring.outward;
   ControlNet net(tube.net.rows, 4);
   const KnotVector& v = tube.v;
   const int last = v.control_point_count() - 1;
@@ -76,7 +76,7 @@ Result<Surface> cap_of(const Surface& tube, double height_m) {
   for (int i = 0; i < net.rows; ++i) {
     const Vector3 rim = tube.net.point(i, last);
     const Vector3 slope = v.degree() * (tube.net.point(i, last) - tube.net.point(i, last - 1)) / step;
-    const Vector3 spoke = rim - ring.middle_m;
+    const Vector3 spoke = rim - ring.centre_m;
     const Vector3 level = spoke - spoke.dot(ring.outward) * ring.outward;
     net.set_point(i, 0, rim);
     net.set_point(i, 1, round ? Vector3(rim + length / 3.0 * slope) : Vector3(rim + (pole - rim) / 3.0));
@@ -130,9 +130,9 @@ TubeEnd tube_end(const Surface& surface, Side side) {
   const Surface along = with_end_at_v_end(surface, side);
   const double start = along.v.domain_start(), end = along.v.domain_end();
   const RingShape ring = ring_at(along, end);
-  if (!is_pole(surface, side)) return {ring.middle_m, ring.radius_m, outward(surface, side)};
-  const Vector3 inside = ring_at(along, end - 0.02 * (end - start)).middle_m;
-  return {ring.middle_m, 0.0, (ring.middle_m - inside).normalized()};
+  if (!is_pole(surface, side)) return {ring.centre_m, ring.radius_m, outward(surface, side)};
+  const Vector3 inside = ring_at(along, end - 0.02 * (end - start)).centre_m;
+  return {ring.centre_m, 0.0, (ring.centre_m - inside).normalized()};
 }
 
 Result<Joined> with_cap(const Surface& surface, Side side, double height_m, const JoinRequest& request) {
@@ -171,7 +171,7 @@ Result<Surface> opened_pole(const Surface& surface, Side side, double wide_enoug
   for (int k = 1; k < steps / 2; ++k) {
     const double v = end + (start - end) * k / steps;
     const RingShape ring = ring_at(along, v);
-    const double way = (ring.middle_m - last.middle_m).norm();
+    const double way = (ring.centre_m - last.centre_m).norm();
     const bool is_straight = k > 2 && ring.radius_m - last.radius_m < straight * way;
     if (is_straight || ring.radius_m >= wide_enough_m) {
       auto cut = part_of(along, Direction::v, start, v);
@@ -203,7 +203,7 @@ std::vector<std::pair<PatchEdge, PatchEdge>> nearest_ends(const std::vector<Surf
       const TubeEnd &one = ends[a].second, &other = ends[b].second;
       pairs.push_back(
           {ends[a].first, ends[b].first,
-           (one.middle_m - other.middle_m).norm() + width_share * std::abs(one.radius_m - other.radius_m)});
+           (one.centre_m - other.centre_m).norm() + width_share * std::abs(one.radius_m - other.radius_m)});
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(),

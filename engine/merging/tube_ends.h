@@ -21,7 +21,7 @@ bool is_pole(const Surface& surface, Side side);
 // The tube's ring at a side: its middle and mean radius, which is zero at a pole, and the unit direction out
 // of the tube.
 struct TubeEnd {
-  Vector3 middle_m = Vector3::Zero();
+  Vector3 centre_m = Vector3::Zero();
   double radius_m = 0.0;
   Vector3 outward = Vector3::Zero();
 };

@@ -15,8 +15,8 @@ double smooth_step(double t) {
   return s * s * s * (10.0 + s * (6.0 * s - 15.0));
 }
 
-// Taylor's series over a quarter turn: the C library's sine differs with the processor, and motions enter the
-// state. The first term left out is below 1e-14.
+// Taylor series of the sine over a quarter turn, truncated below 1e-14. Motions enter the state, which must
+// not depend on the processor as the C library's sine does.
 double sine_of_turns(double turns) {
   double t = turns - std::floor(turns);
   if (t > 0.5) return -sine_of_turns(t - 0.5);
@@ -30,13 +30,13 @@ double sine_of_turns(double turns) {
   return sum;
 }
 
-struct CheckOf {
-  template <class OnRegion>
-  Status operator()(const OnRegion& load) const {
+struct LoadChecker {
+  template <class RegionLoad>
+  Status operator()(const RegionLoad& load) const {
     if (Status status = check_region(load.region); !status.ok()) return status;
     return check_fields("", load);
   }
-  // Whether u and v are on the surface is checked with the body.
+  // check_loads() checks u and v, which depend on the body.
   Status operator()(const PointLoad& load) const {
     return check_value("", field_of(&PointLoad::force_n).form, load.force_n);
   }
@@ -46,28 +46,35 @@ Status check_motion(const SupportMotion& motion) {
   if (Status status = check_fields("", motion); !status.ok()) return status;
   const double speed = top_speed_m_per_s(motion);
   if (speed <= motion_speed_limit_m_per_s) return {};
-  return Error{"motion reaches " + number_text(speed) + " m/s, must stay below " +
-               number_text(motion_speed_limit_m_per_s) + "; take a shorter way or more time"};
+  return Error{ErrorCode::out_of_range,
+               "motion reaches " + number_text(speed) + " m/s, must stay below " +
+                   number_text(motion_speed_limit_m_per_s) + "; shorten the displacement or allow more time",
+               "motion"};
 }
 
 }  // namespace
 
-Vector3 way_at(const SupportMotion& motion, double time_s) {
+Vector3 displacement_at(const SupportMotion& motion, double time_s) {
   SPOONBILL_ASSERT(time_s >= 0.0);
-  if (motion.kind == MotionKind::ramp) return smooth_step(time_s / motion.duration_s) * motion.way_m;
+  if (motion.kind == MotionKind::ramp) return smooth_step(time_s / motion.duration_s) * motion.displacement_m;
   const double turns = time_s * motion.frequency_hz;
-  return smooth_step(turns) * sine_of_turns(turns) * motion.way_m;
+  return smooth_step(turns) * sine_of_turns(turns) * motion.displacement_m;
 }
 
-// Of the ramp in its middle, 15/8 of the mean; a sine that grows is never faster than when it has grown.
+// A ramp is fastest at half its duration, at 15/8 of the mean speed. A growing sine is never faster than at
+// its full amplitude.
 double top_speed_m_per_s(const SupportMotion& motion) {
-  const double way = motion.way_m.norm();
-  if (motion.kind == MotionKind::ramp) return 1.875 * way / motion.duration_s;
-  return 2.0 * std::numbers::pi * motion.frequency_hz * way;
+  const double distance_m = motion.displacement_m.norm();
+  if (motion.kind == MotionKind::ramp) return 1.875 * distance_m / motion.duration_s;
+  return 2.0 * std::numbers::pi * motion.frequency_hz * distance_m;
+}
+
+Status check_fixing_plane(const FixingPlane& plane) {
+  return check_fields("fixing plane: ", plane);
 }
 
 Status check_load(const Load& load) {
-  return std::visit(CheckOf{}, load);
+  return std::visit(LoadChecker{}, load);
 }
 
 Status check_support(const Support& support) {

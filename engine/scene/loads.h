@@ -1,4 +1,5 @@
-// What loads a body and what holds it. Plain data; directions are the world's, regions the body's own.
+// Loads, supports, fixing planes and the ground. Plain data; vectors are in world axes, regions in the body's
+// own coordinates.
 #pragma once
 
 #include <array>
@@ -9,26 +10,38 @@
 #include "engine/base/field.h"
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
-#include "engine/scene/body_region.h"
+#include "engine/scene/material.h"
 
 namespace spoonbill {
 
-// Pushes the surface inwards, and follows it as it deforms; below zero it pulls.
+// Plane that fixes every node behind it, on the side opposite to the normal.
+struct FixingPlane {
+  Vector3 point_m = Vector3::Zero();
+  Vector3 normal = Vector3::UnitX();  // unit
+};
+
+template <>
+inline constexpr auto fields_of<FixingPlane> = std::to_array<Field<FixingPlane>>({
+    position_field("point_mm", &FixingPlane::point_m),
+    direction_field("normal", &FixingPlane::normal),
+});
+
+// Pressure on the surface of a region. It acts inwards, follows the deformation, and pulls if negative.
 struct PressureLoad {
   BodyRegion region;
   double pressure_pa = 0.0;
 };
 
-enum class ForceShare { surface, volume };
+enum class ForceDistribution { surface, volume };
 
-// One force over all of a region: by the area of its surface, or by its volume.
+// Total force on a region, distributed by surface area or by volume.
 struct ForceLoad {
   BodyRegion region;
   Vector3 force_n = Vector3::Zero();
-  ForceShare shared_by = ForceShare::surface;
+  ForceDistribution distributed_by = ForceDistribution::surface;
 };
 
-// On a point of the surface, in the knot domain.
+// Force on the surface point (u, v) of the knot domain.
 struct PointLoad {
   double u = 0.0, v = 0.0;
   Vector3 force_n = Vector3::Zero();
@@ -38,47 +51,50 @@ using Load = std::variant<PressureLoad, ForceLoad, PointLoad>;
 
 enum class MotionKind { ramp, oscillation };
 
-// From the first tick on, in the time of the hand: a tick is a millisecond of it whatever the iterations.
+// Prescribed motion of a support from the first tick on. It runs on the hand's clock: one tick is one
+// millisecond, whatever the number of iterations.
 //
-// A ramp goes the way once, without a jerk: at t = time / duration, 10 t^3 - 15 t^4 + 6 t^5 of it, of which
-// speed and acceleration are zero at both ends. An oscillation is a sine to both sides of where it began,
-// which grows in the same manner over its first period.
+// A ramp moves once over the displacement, as 10 t^3 - 15 t^4 + 6 t^5 of t = time / duration. Its speed and
+// acceleration vanish at both ends. An oscillation is a sine about the start, whose amplitude grows in the
+// same manner over the first period.
 struct SupportMotion {
   MotionKind kind = MotionKind::ramp;
-  Vector3 way_m = Vector3::Zero();  // of a ramp; of an oscillation, to one side
-  double duration_s = 1.0;          // of a ramp
-  double frequency_hz = 1.0;        // of an oscillation
+  Vector3 displacement_m = Vector3::Zero();  // of a ramp; amplitude of an oscillation
+  double duration_s = 1.0;                   // ramps only
+  double frequency_hz = 1.0;                 // oscillations only
 };
 
-// Holds the nodes of a region where they are, or moves them. What a fixing plane holds stays; of what two
-// supports would hold, the later one has it.
+// Fixes the nodes of a region, or moves them. Fixing planes take precedence over supports, and later supports
+// over earlier ones.
 struct Support {
   BodyRegion region;
   std::optional<SupportMotion> motion = {};
 };
 
-// A rigid half-space that nothing moves, on which bodies lie; soft tools do not meet it.
+// Rigid, immovable half-space on which bodies rest. Soft tools do not touch it.
 struct Ground {
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitY();  // unit, outward
-  double friction = 0.5;              // the smoother of ground and body counts
+  double friction = 0.5;              // the smaller coefficient of ground and body applies
 };
 
-// How far a motion is, and the most that it ever moves in a second.
-Vector3 way_at(const SupportMotion& motion, double time_s);
+// Returns the displacement of a moving support at a time of at least 0.
+Vector3 displacement_at(const SupportMotion& motion, double time_s);
+// Returns an upper bound of a motion's speed, which a ramp attains.
 double top_speed_m_per_s(const SupportMotion& motion);
 
-inline constexpr Range<int> load_count_range{0, 64};  // of a body
-inline constexpr Range<int> support_count_range{0, 64};
+inline constexpr Range<int> fixing_plane_count_range{0, 64};
+inline constexpr Range<int> load_count_range{0, 64};     // per body
+inline constexpr Range<int> support_count_range{0, 64};  // per body
 inline constexpr Range<double> pressure_range_pa{-1e9, 1e9};
-inline constexpr double force_limit_n = 1e6;  // of the vector's length
-inline constexpr double way_limit_m = 1.0;    // of the vector's length
+inline constexpr double force_limit_n = 1e6;         // length of the vector
+inline constexpr double displacement_limit_m = 1.0;  // length of the vector
 inline constexpr Range<double> motion_duration_range_s{0.01, 3600.0};
 inline constexpr Range<double> motion_frequency_range_hz{0.01, 100.0};
 inline constexpr double motion_speed_limit_m_per_s = 5.0;
 inline constexpr Range<double> ground_friction_range{0.0, 5.0};
 
-// Each after the region that it acts on, but for the point's.
+// Fields of each load after its region; a point load has none.
 template <>
 inline constexpr const char* kind_name<PressureLoad> = "pressure";
 template <>
@@ -86,16 +102,16 @@ inline constexpr auto fields_of<PressureLoad> = std::to_array<Field<PressureLoad
     number_field("pressure_pa", &PressureLoad::pressure_pa, pressure_range_pa, FieldUnit::pascal),
 });
 
-inline constexpr const char* force_share_names[] = {"surface", "volume"};
+inline constexpr const char* force_distribution_names[] = {"surface", "volume"};
 template <>
 inline constexpr const char* kind_name<ForceLoad> = "force";
 template <>
 inline constexpr auto fields_of<ForceLoad> = std::to_array<Field<ForceLoad>>({
     vector_field("force_n", &ForceLoad::force_n, force_limit_n, FieldUnit::newton),
-    choice_field<&ForceLoad::shared_by>("shared_by", force_share_names),
+    choice_field<&ForceLoad::distributed_by>("shared_by", force_distribution_names),
 });
 
-// Files keep u and v within the domain of the body's surface.
+// The readers of files check u and v against the domain of the body's surface.
 template <>
 inline constexpr const char* kind_name<PointLoad> = "point";
 template <>
@@ -109,7 +125,7 @@ inline constexpr const char* motion_kind_names[] = {"ramp", "oscillation"};
 template <>
 inline constexpr auto fields_of<SupportMotion> = std::to_array<Field<SupportMotion>>({
     choice_field<&SupportMotion::kind>("kind", motion_kind_names),
-    vector_field("way_mm", &SupportMotion::way_m, way_limit_m, FieldUnit::metre),
+    vector_field("way_mm", &SupportMotion::displacement_m, displacement_limit_m, FieldUnit::metre),
     number_field("duration_s", &SupportMotion::duration_s, motion_duration_range_s, FieldUnit::second)
         .only_if([](const SupportMotion& motion) { return motion.kind == MotionKind::ramp; }),
     number_field("frequency_hz", &SupportMotion::frequency_hz, motion_frequency_range_hz, FieldUnit::hertz)
@@ -123,8 +139,9 @@ inline constexpr auto fields_of<Ground> = std::to_array<Field<Ground>>({
     number_field("friction", &Ground::friction, ground_friction_range),
 });
 
-// Each names the field, the value and the range of the first thing that is not within it.
-Status check_load(const Load& load);
+// Each check's error names the first field that is out of range, with its value and range.
+Status check_fixing_plane(const FixingPlane& plane);
+Status check_load(const Load& load);  // u and v of a point load excepted: see check_loads()
 Status check_support(const Support& support);
 Status check_ground(const Ground& ground);
 

@@ -1,7 +1,9 @@
-// A material as the designer names it. Plain data; SI units.
+// Materials in SI units, and the parts of a body that have a material or a friction of their own. Plain data.
 #pragma once
 
 #include <array>
+#include <limits>
+#include <optional>
 #include <string>
 
 #include "engine/base/field.h"
@@ -10,47 +12,50 @@
 
 namespace spoonbill {
 
-// Here is what the numbers mean to the solvers; files, the panel and the checks go by the table below.
+// Properties of a material as the solvers use them. The table below defines how files, the panel and the
+// checks name and limit them.
 struct Material {
   std::string name;
   std::string source;
   double youngs_modulus_pa = 0.0;
   double poissons_ratio = 0.0;
   double density_kg_per_m3 = 0.0;
-  // Voigt damping along each spring: the ratio z of the lattice's fastest mode.
+  // Voigt damping along each spring, as the damping ratio of the lattice's fastest mode.
   double damping_ratio = 0.0;
   bool plastic = false;
-  double yield_strain = 0.0;     // deviatoric strain of a spring from which its rest length flows
-  double flow_rate_per_s = 0.0;  // of the rest length, by the strain beyond yield
-  double hardening = 0.0;        // by how much the yield strain grows with the strain that stays
-  // Above 0, springs stiffen with their strain e as 1 + b e^2, up to twice; below 0, they soften as
-  // (1 - b e^2)^(-1/2).
+  double yield_strain = 0.0;     // deviatoric strain of a spring above which its rest length flows
+  double flow_rate_per_s = 0.0;  // rate of the rest length per unit of strain beyond yield
+  double hardening = 0.0;        // growth of the yield strain per unit of permanent strain
+  // Stiffening b of the springs with their strain e: the factor 1 + b e^2, at most 2, for b > 0; the factor
+  // (1 - b e^2)^(-1/2) for b < 0, which softens.
   double stiffening = 0.0;
-  // Of a material that creeps: at a constant strain this share of the stress goes, with this time constant.
-  double relaxing_share = 0.0;
+  // Fraction of the stress that relaxes at constant strain, with the time constant below. 0: no creep.
+  double relaxing_fraction = 0.0;
   double relaxation_time_s = 1.0;
-  double friction = 0.0;  // Coulomb's coefficient of its surface
+  double friction = 0.0;  // Coulomb coefficient of the surface
 };
 
-// From the softest gel to beyond diamond, from an aerogel to beyond osmium: every solver stays finite inside.
+// The ranges reach from the softest gel to beyond diamond and from aerogel to beyond osmium. Every solver
+// stays finite within them.
 inline constexpr Range<double> youngs_modulus_range_pa{1.0, 1e12};
 inline constexpr Range<double> poissons_ratio_range{0.0, 0.49};
-// Of what flows, creeps or stiffens, which springs do. Below, a volume force that makes springs so is
-// unstable under contact.
-inline constexpr double least_spring_poissons_ratio = 0.2;
+// Smallest Poisson's ratio of plastic, creeping and stiffening materials, which springs step. The volume
+// force that springs need below it is unstable under contact.
+inline constexpr double min_spring_poissons_ratio = 0.2;
 inline constexpr Range<double> density_range_kg_per_m3{1.0, 30000.0};
 inline constexpr Range<double> damping_ratio_range{0.0, 2.0};
-inline constexpr Range<double> yield_strain_range{1e-4, 0.5};         // of plastic materials
-inline constexpr Range<double> elastic_yield_strain_range{0.0, 0.5};  // kept but unused where nothing flows
+inline constexpr Range<double> yield_strain_range{1e-4, 0.5};  // plastic materials
+inline constexpr Range<double> elastic_yield_strain_range{0.0,
+                                                          0.5};  // other materials, which ignore the value
 inline constexpr Range<double> flow_rate_range_per_s{0.0, 1000.0};
-// Harder, clay springs back.
+// Above the upper limit, clay springs back.
 inline constexpr Range<double> hardening_range{0.0, 1.0};
 inline constexpr Range<double> stiffening_range{-1000.0, 1000.0};
-inline constexpr Range<double> relaxing_share_range{0.0, 1.0};
+inline constexpr Range<double> relaxing_fraction_range{0.0, 1.0};
 inline constexpr Range<double> relaxation_time_range_s{0.1, 1e6};
 inline constexpr Range<double> friction_range{0.0, 5.0};
 
-inline constexpr Range<double> yield_strain_range_of(bool plastic) {
+inline constexpr Range<double> yield_strain_range_for(bool plastic) {
   return plastic ? yield_strain_range : elastic_yield_strain_range;
 }
 
@@ -66,27 +71,63 @@ inline constexpr auto fields_of<Material> = std::to_array<Field<Material>>({
     number_field("density_kg_per_m3", &Material::density_kg_per_m3, density_range_kg_per_m3,
                  FieldUnit::kilogram_per_m3)
         .with_slider({"Density", {50.0, 20000.0}, true}),
-    // Of a Voigt element a mode's loss factor is twice its damping ratio.
+    // The loss factor of a Voigt element's mode is twice its damping ratio.
     number_field("damping_ratio", &Material::damping_ratio, damping_ratio_range)
         .with_alias({"loss_factor", 2.0, "Twice the damping ratio"}),
     switch_field("plastic", &Material::plastic),
     number_field("yield_strain", &Material::yield_strain, elastic_yield_strain_range, FieldUnit::none,
                  "Of a plastic material at least 1e-4")
-        .with_range_by([](const Material& material) { return yield_strain_range_of(material.plastic); }),
+        .with_range_by([](const Material& material) { return yield_strain_range_for(material.plastic); }),
     number_field("flow_rate_per_s", &Material::flow_rate_per_s, flow_rate_range_per_s, FieldUnit::per_second),
     number_field("hardening", &Material::hardening, hardening_range).optional(),
     number_field("stiffening", &Material::stiffening, stiffening_range).optional(),
     number_field("friction", &Material::friction, friction_range).optional(),
-    number_field("relaxing_share", &Material::relaxing_share, relaxing_share_range).optional(),
+    number_field("relaxing_share", &Material::relaxing_fraction, relaxing_fraction_range).optional(),
     number_field("relaxation_time_s", &Material::relaxation_time_s, relaxation_time_range_s,
                  FieldUnit::second)
         .with_partner("relaxing_share"),
 });
 
-// Whether it is elastic and nothing else, as hexahedra are: those serve any Poisson's ratio.
-bool is_plainly_elastic(const Material& material);
+// Returns whether the material neither flows, creeps nor stiffens. Hexahedra step such a material, at any
+// Poisson's ratio.
+bool is_linear_elastic(const Material& material);
 
-// The ranges within which every solver stays finite; the message names the field, the value and the range.
+// Refuses a material outside the ranges above, or one that both flows and creeps. The error names the field,
+// its value and its range.
 Status check_material(const Material& material);
+
+// Position of a point in the body's own coordinates. NaN for lattice nodes outside the body.
+struct BodyCoordinates {
+  double along = 0.0;   // fraction of the body's length, 0 to 1; of the turn for a ring
+  double around = 0.0;  // fraction of a turn, 0 to 1; 0 on the axis, where it is undefined
+  double depth_m = 0.0;
+};
+
+// Part of a body in the body's own coordinates, which deformation does not change. The default is the whole
+// body.
+struct BodyRegion {
+  Range<double> along{0.0, 1.0};   // fraction of the length in the direction of v; of the turn for a ring
+  Range<double> around{0.0, 1.0};  // fraction of a turn in the direction of u; crosses the seam if low > high
+  Range<double> depth_m{0.0, std::numeric_limits<double>::infinity()};  // below the surface, at rest
+};
+
+bool contains(const BodyRegion& region, const BodyCoordinates& point);
+
+// Requires fractions within 0 to 1 and in order, and depths of at least 0 and in order. The error names the
+// field.
+Status check_region(const BodyRegion& region);
+
+// Region of a body whose material or friction differs from the rest.
+struct MaterialRegion {
+  BodyRegion region;
+  std::optional<Material> material = {};  // empty: the material that the region has without this entry
+  std::optional<double> friction =
+      {};  // empty: the friction of `material`, or unchanged if that is empty too
+};
+
+inline constexpr Range<int> material_region_count_range{0, 16};
+
+// The error names the field.
+Status check_material_region(const MaterialRegion& region);
 
 }  // namespace spoonbill

@@ -1,66 +1,55 @@
 #include "engine/scene/scene.h"
 
+#include <cmath>
+
+#include "engine/base/assert.h"
+
 namespace spoonbill {
-namespace {
 
-Status check_in_domain(const std::string& field, double parameter, const KnotVector& knots) {
-  return check_range(field, parameter, Range<double>{knots.domain_start(), knots.domain_end()});
+Vector3 mirror_point(const Symmetry& symmetry, const Vector3& point_m) {
+  SPOONBILL_ASSERT_DEBUG(std::abs(symmetry.normal.squaredNorm() - 1.0) < 1e-5);
+  return point_m - 2.0 * symmetry.normal.dot(point_m - symmetry.point_m) * symmetry.normal;
 }
 
-// Points are on the surface. What else is wrong with a load is said where it is put on the lattice.
-Status check_point(const Load& load, std::size_t place, const Surface& surface) {
-  const auto* point = std::get_if<PointLoad>(&load);
-  if (point == nullptr) return {};
-  const std::string name = "loads[" + std::to_string(place) + "]: ";
-  if (Status status = check_in_domain(name + "u", point->u, surface.u); !status.ok()) return status;
-  return check_in_domain(name + "v", point->v, surface.v);
+// A reflection reverses rotations. The axis, a pseudovector, keeps its component along the normal and negates
+// the rest.
+Pose mirror_pose(const Symmetry& symmetry, const Pose& pose) {
+  SPOONBILL_ASSERT_DEBUG(std::abs(symmetry.normal.squaredNorm() - 1.0) < 1e-5);
+  const Vector3 axis = pose.orientation.vec();
+  const Vector3 mirrored = 2.0 * symmetry.normal.dot(axis) * symmetry.normal - axis;
+  return {mirror_point(symmetry, pose.position_m),
+          Quaternion(pose.orientation.w(), mirrored.x(), mirrored.y(), mirrored.z())};
 }
-
-}  // namespace
 
 Status check_body_count(const Scene& scene) {
   const auto count = static_cast<int>(scene.bodies.size());
   if (count <= sculpted_body_count_range.high) return check_range("bodies", count, sculpted_body_count_range);
-  return Error{"holds " + std::to_string(count) + " bodies, and at most " +
-               std::to_string(sculpted_body_count_range.high) +
-               " are sculpted together; choose some with `spoonbill convert MODEL OUT.json --bodies 1,3-5`"};
+  return Error{
+      ErrorCode::too_many,
+      "holds " + std::to_string(count) + " bodies, and at most " +
+          std::to_string(sculpted_body_count_range.high) +
+          " are sculpted together; choose some with `spoonbill convert MODEL OUT.json --bodies 1,3-5`",
+      "bodies"};
+}
+
+Status check_sculpting(const Sculpting& sculpting) {
+  return check_fields("sculpting: ", sculpting);
 }
 
 Status check_symmetry(const Symmetry& symmetry) {
   return check_fields("symmetry: ", symmetry);
 }
 
-Result<std::shared_ptr<const TrimmedArea>> trim_of(const Body& body) {
-  std::shared_ptr<const TrimmedArea> trim;
-  if (body.trims.empty()) return trim;
-  Result<TrimmedArea> area = TrimmedArea::make(body.surface.u, body.surface.v, body.trims);
-  if (!area.ok()) return area.error();
-  trim = std::make_shared<const TrimmedArea>(std::move(area).value());
-  return trim;
-}
-
-Status check_loads(const Body& body) {
-  if (Status status = check_range("loads", static_cast<int>(body.loads.size()), load_count_range);
-      !status.ok()) {
-    return status;
-  }
-  for (std::size_t l = 0; l < body.loads.size(); ++l) {
-    if (Status status = check_point(body.loads[l], l, body.surface); !status.ok()) return status;
-  }
-  return check_range("supports", static_cast<int>(body.supports.size()), support_count_range);
-}
-
-Status check_together(const Tool& tool, const Symmetry& symmetry) {
+Status check_tool_and_symmetry(const Tool& tool, const Symmetry& symmetry) {
   if (tool.kind != ToolKind::solid || !tool.body->soft) return {};
-  if (!row_of(tool.action).with_soft_tool) {
-    return Error{"tool: a soft one can only push; make it rigid to pull"};
+  if (!row_of(tool.action).allows_soft_tool) {
+    return Error{ErrorCode::unsupported, "tool: a soft tool can only push; make it rigid to pull", "action"};
   }
-  if (symmetry.on) return Error{"tool: a soft one has no mirror image; make it rigid or turn symmetry off"};
+  if (symmetry.on) {
+    return Error{ErrorCode::unsupported,
+                 "tool: a soft tool has no mirror image; make it rigid or turn symmetry off", "symmetry"};
+  }
   return {};
-}
-
-Status check_sculpting(const Sculpting& sculpting) {
-  return check_fields("sculpting: ", sculpting);
 }
 
 }  // namespace spoonbill

@@ -1,75 +1,56 @@
-// A scene: what a simulation is built from. Plain data; lengths in metres.
+// A scene, from which a simulation is built, and the commands that change it. Plain data; lengths in metres.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "engine/base/field.h"
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
-#include "engine/bspline/surface.h"
-#include "engine/bspline/trim_loop.h"
-#include "engine/bspline/trimmed_area.h"
-#include "engine/scene/fixing_plane.h"
-#include "engine/scene/lattice_request.h"
+#include "engine/scene/body.h"
 #include "engine/scene/loads.h"
 #include "engine/scene/material.h"
-#include "engine/scene/material_region.h"
 #include "engine/scene/tool.h"
 
 namespace spoonbill {
 
-// A solid body bounded by one tube, periodic in u and closed by a pole at both ends of v, or by one ring,
-// periodic in both. Or, with a thickness, a thin shell behind one (see shell_lattice.h).
-struct Body {
-  std::string name;
-  Surface surface;
-  Material material;  // of what no region says otherwise
-  LatticeRequest lattice;
-  std::vector<MaterialRegion> regions = {};  // later ones win over earlier ones
-  std::vector<Load> loads = {};
-  std::vector<Support> supports = {};
-  std::optional<double> shell_thickness_m = {};
-  std::vector<TrimLoop> trims = {};  // keep a part of the surface: what is drawn and touched (trimmed_area.h)
-  // The name of the solid of a CAD model that it is a face of; empty where it is none.
-  std::string solid = {};
-};
-
-// How sculpting differs from the real thing: no gravity by default, damped, with a capped stiffness.
+// Deviations of sculpting from real behaviour: no gravity by default, damping, capped stiffness.
 struct Sculpting {
   double damping_per_s = 4.0;  // mass-proportional
   Vector3 gravity_m_per_s2 = Vector3::Zero();
-  double force_scale = 1.0;  // newtons at the hand for each newton of contact
-  // Damped besides as each body needs it to come to rest without swinging: see settling.h.
+  double force_scale = 1.0;  // newtons at the hand per newton of contact
+  // Damps each body critically as well, so that it comes to rest without ringing (settling.h).
   bool settles = false;
 };
 
-// Sculpting both sides at once: what the hand does on one side of the plane, a second tool does mirrored.
+// Symmetric sculpting: a second tool mirrors the hand's at a plane.
 struct Symmetry {
   bool on = false;
-  Vector3 point_m = Vector3::Zero();  // any of the plane
+  Vector3 point_m = Vector3::Zero();  // any point of the plane
   Vector3 normal = Vector3::UnitZ();  // unit
 };
 
+// Returns the mirror image of a point or a pose at the plane of symmetry.
+Vector3 mirror_point(const Symmetry& symmetry, const Vector3& point_m);
+Pose mirror_pose(const Symmetry& symmetry, const Pose& pose);
+
 struct Scene {
-  std::vector<Body> bodies;         // those that touch push each other; of a document more than are simulated
-  std::vector<FixingPlane> planes;  // each holds nodes of any body
+  std::vector<Body>
+      bodies;  // touching bodies push each other; a document may have more than can be simulated
+  std::vector<FixingPlane> planes;  // each fixes nodes of every body
   Tool tool;
   Sculpting sculpting;
   Symmetry symmetry = {};
   std::optional<Ground> ground = {};
 };
 
-// What files, commands and the panel's sliders accept: wide enough for any concept, finite for every solver.
-inline constexpr Range<int> control_point_count_range{2, 200};  // in each direction
-inline constexpr Range<double> shell_thickness_range_m{1e-5, 0.1};
-inline constexpr Range<int> body_count_range{1, 1000};        // of a document
-inline constexpr Range<int> sculpted_body_count_range{1, 8};  // that are simulated together
-inline constexpr Range<int> fixing_plane_count_range{0, 64};
+// Limits of files, commands and the panel's sliders, within which every solver stays finite.
+inline constexpr Range<int> body_count_range{1, 1000};        // in a document
+inline constexpr Range<int> sculpted_body_count_range{1, 8};  // in a simulation
 inline constexpr Range<double> sculpting_damping_range_per_s{0.0, 1000.0};
-inline constexpr double gravity_limit_m_per_s2 = 100.0;  // of the vector's length
+inline constexpr double gravity_limit_m_per_s2 = 100.0;  // length of the vector
 inline constexpr Range<double> force_scale_range{0.0, 1e6};
 
 template <>
@@ -91,17 +72,72 @@ inline constexpr auto fields_of<Symmetry> = std::to_array<Field<Symmetry>>({
     direction_field("normal", &Symmetry::normal),
 });
 
-// What its trims keep of its surface; null without trims.
-Result<std::shared_ptr<const TrimmedArea>> trim_of(const Body& body);
-
-// Whether so many bodies are simulated together; says how to choose some.
+// Refuses more bodies than can be simulated together; the error explains how to select some.
 Status check_body_count(const Scene& scene);
 
-// Each names the field, the value and the range of the first thing that is not within it.
-Status check_loads(const Body& body);  // and supports
+// Each check's error names the first field that is out of range, with its value and range.
 Status check_sculpting(const Sculpting& sculpting);
 Status check_symmetry(const Symmetry& symmetry);
-// What goes with what: a soft tool pushes, on one side.
-Status check_together(const Tool& tool, const Symmetry& symmetry);
+// Refuses a soft tool with an action other than push, or with symmetry.
+Status check_tool_and_symmetry(const Tool& tool, const Symmetry& symmetry);
+
+// The commands that the panel, a script or a recording sends to a simulation between two ticks.
+
+// Adds a fixing plane. Knots are inserted where it cuts the surface, so that the fixed part stays exactly.
+struct PlacePlane {
+  FixingPlane plane;
+};
+struct RemovePlanes {};
+struct SetTool {
+  Tool tool;
+};
+// Sets the material of a body outside its regions.
+struct SetMaterial {
+  Material material;
+  int body = 0;  // index in the scene
+};
+struct SetSculpting {
+  Sculpting sculpting;
+};
+struct SetSymmetry {
+  Symmetry symmetry;
+};
+// Moves the tool to the hand without contact along the path between. Sent after the hand was not followed for
+// a while.
+struct ResetProxy {};
+// Suspends the tool until it has left the body.
+struct LiftTool {};
+// Makes the current shape the rest shape.
+struct KeepShape {};
+// Inserts a knot in each direction where a body's surface follows its lattice worst. The shape stays the same
+// and gains control points for the next strokes.
+struct RefineKnots {
+  int body = 0;  // index in the scene
+};
+
+using Command = std::variant<PlacePlane, RemovePlanes, SetTool, SetMaterial, SetSculpting, SetSymmetry,
+                             ResetProxy, LiftTool, KeepShape, RefineKnots>;
+
+// Names in scripts and recordings.
+template <>
+inline constexpr const char* kind_name<PlacePlane> = "place_plane";
+template <>
+inline constexpr const char* kind_name<RemovePlanes> = "remove_planes";
+template <>
+inline constexpr const char* kind_name<SetTool> = "set_tool";
+template <>
+inline constexpr const char* kind_name<SetMaterial> = "set_material";
+template <>
+inline constexpr const char* kind_name<SetSculpting> = "set_sculpting";
+template <>
+inline constexpr const char* kind_name<SetSymmetry> = "set_symmetry";
+template <>
+inline constexpr const char* kind_name<ResetProxy> = "reset_proxy";
+template <>
+inline constexpr const char* kind_name<LiftTool> = "lift_tool";
+template <>
+inline constexpr const char* kind_name<KeepShape> = "keep_shape";
+template <>
+inline constexpr const char* kind_name<RefineKnots> = "refine_knots";
 
 }  // namespace spoonbill

@@ -10,8 +10,8 @@
 namespace spoonbill {
 namespace {
 
-// What an action goes by is a field of Tool, and no wider.
-constexpr bool is_described(const ToolParameter& parameter) {
+// Returns whether a parameter is a field of Tool with a range within that field's.
+constexpr bool is_tool_field(const ToolParameter& parameter) {
   for (const Field<Tool>& field : fields_of<Tool>) {
     if (std::string_view(field.form.name) != parameter.field) continue;
     return field.form.range.contains(parameter.range.low) && field.form.range.contains(parameter.range.high);
@@ -19,14 +19,16 @@ constexpr bool is_described(const ToolParameter& parameter) {
   return false;
 }
 
-static_assert([] {
-  for (const ToolActionRow& row : tool_actions) {
-    for (const ToolParameter& parameter : row.parameters) {
-      if (parameter.field != nullptr && !is_described(parameter)) return false;
-    }
-  }
-  return true;
-}());
+static_assert(
+    [] {
+      for (const ToolActionRow& row : tool_actions) {
+        for (const ToolParameter& parameter : row.parameters) {
+          if (parameter.field != nullptr && !is_tool_field(parameter)) return false;
+        }
+      }
+      return true;
+    }(),
+    "the parameters of tool_actions must be fields of Tool, within their ranges");
 
 Status check_solid(const ImplicitShape& shape) {
   return check_implicit_shape(shape);
@@ -43,18 +45,24 @@ Status check_solid(const SurfaceSolid& solid) {
 }
 
 Status check_soft(const ImplicitShape&) {
-  return Error{"only a mesh or a B-spline surface can be soft; leave soft out"};
+  return Error{ErrorCode::unsupported, "only a mesh or a B-spline surface can be soft; leave soft out",
+               "soft"};
 }
 
 Status check_soft(const MeshSolid& solid) {
   const std::size_t triangles = solid.mesh.mesh.triangles.size();
   if (triangles > soft_mesh_triangle_limit) {
-    return Error{"mesh: has " + std::to_string(triangles) + " triangles, a soft one at most " +
-                 std::to_string(soft_mesh_triangle_limit) + "; reduce it, or leave soft out"};
+    return Error{ErrorCode::too_many,
+                 "mesh: has " + std::to_string(triangles) + " triangles, a soft mesh may have at most " +
+                     std::to_string(soft_mesh_triangle_limit) + "; reduce it or leave soft out",
+                 "mesh"};
   }
   const bool closed = std::all_of(solid.mesh.parts.begin(), solid.mesh.parts.end(),
                                   [](const MeshPart& part) { return part.closed; });
-  if (!closed) return Error{"mesh: is not closed, as a soft one must be; close its holes, or leave soft out"};
+  if (!closed) {
+    return Error{ErrorCode::inconsistent,
+                 "mesh: is open, a soft mesh must be closed; close its holes or leave soft out", "mesh"};
+  }
   return {};
 }
 
@@ -65,10 +73,10 @@ Status check_soft(const SurfaceSolid&) {
 }  // namespace
 
 Status check_tool_body(const ToolBody& body) {
-  Status solid = std::visit([](const auto& of) { return check_solid(of); }, body.solid);
+  Status solid = std::visit([](const auto& shape) { return check_solid(shape); }, body.solid);
   if (!solid.ok()) return solid;
   if (!body.soft) return {};
-  Status soft = std::visit([](const auto& of) { return check_soft(of); }, body.solid);
+  Status soft = std::visit([](const auto& shape) { return check_soft(shape); }, body.solid);
   if (!soft.ok()) return soft;
   for (const Status& status : {check_material(body.soft->material), check_lattice_request(body.soft->lattice),
                                check_fixing_plane(body.soft->grip)}) {
@@ -80,9 +88,9 @@ Status check_tool_body(const ToolBody& body) {
 Status check_tool(const Tool& tool) {
   if (Status status = check_fields("tool: ", tool); !status.ok()) return status;
   if (tool.kind != ToolKind::solid) return {};
-  if (!tool.body) return Error{"tool: a solid must have a body"};
+  if (!tool.body) return Error{ErrorCode::missing, "tool: a solid must have a body", "solid"};
   const Status status = check_tool_body(*tool.body);
-  return status.ok() ? status : Error{"tool: " + status.error().message};
+  return status.ok() ? status : status.error().in("tool");
 }
 
 }  // namespace spoonbill

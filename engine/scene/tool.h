@@ -1,28 +1,144 @@
-// The tool: its shape, what it does where it touches, and what it is made of. Plain data; lengths in metres.
+// The tool: its shape, its action and its material. Plain data; lengths in metres.
+//
+// The table `tool_actions` defines the actions for files, commands, the panel, keys, help and JSON schema. A
+// new action is an enumerator and a row here, and a kernel in engine/simulation/tool_step.cpp for the tick.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <variant>
 
 #include "engine/base/field.h"
+#include "engine/base/geometry.h"
+#include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/collision/solids/implicit_shapes.h"
-#include "engine/scene/fixing_plane.h"
-#include "engine/scene/lattice_request.h"
+#include "engine/scene/body.h"
+#include "engine/scene/loads.h"
 #include "engine/scene/material.h"
-#include "engine/scene/tool_actions.h"
 
 namespace spoonbill {
 
-// A closed tube.
+enum class ToolKind { point, sphere, solid };
+enum class ToolAction { push, pull, smooth };
+
+// Names in files and labels.
+inline constexpr const char* tool_kind_names[] = {"point", "sphere", "solid"};
+
+inline constexpr Range<double> tool_radius_range_m{0.0, 0.5};
+inline constexpr Range<int> tool_iterations_range{1, 8};
+
+// Field of Tool that an action uses, by its name in files, and the range it accepts, in SI units.
+struct ToolParameter {
+  const char* field = nullptr;
+  Range<double> range{0.0, 0.0};
+};
+
+// Key of the window, a digit or a capital letter, that selects a kind of tool with the action.
+struct ToolKey {
+  const char* key = nullptr;  // null: no key
+  ToolKind kind = ToolKind::sphere;
+  const char* help = nullptr;
+};
+
+struct ToolActionRow {
+  ToolAction action;
+  const char* name;   // in files
+  const char* label;  // in the panel
+  const char* help;   // one sentence without a full stop
+  // True if the tool holds what it first touches until the button is released. Other actions let go as the
+  // tool leaves.
+  bool grips;
+  bool allows_soft_tool;
+  ToolAction inverse;  // the action while Ctrl is down; the action itself if it has no inverse
+  std::array<ToolParameter, 4> parameters;
+  std::array<ToolKey, 2> keys;
+};
+
+inline constexpr ToolParameter radius_parameter{"radius_mm", tool_radius_range_m};
+inline constexpr ToolParameter iterations_parameter{"iterations", {1.0, 8.0}};
+
+// Rows in the order of the enumeration.
+inline constexpr auto tool_actions = std::to_array<ToolActionRow>({
+    {.action = ToolAction::push,
+     .name = "push",
+     .label = "Push",
+     .help = "Keeps the surface out of the tool, and lets go as it leaves",
+     .grips = false,
+     .allows_soft_tool = true,
+     .inverse = ToolAction::pull,
+     .parameters = {radius_parameter, iterations_parameter},
+     .keys = {{{"1", ToolKind::sphere, "Sphere that pushes"}, {"3", ToolKind::point, "Point that pushes"}}}},
+    {.action = ToolAction::pull,
+     .name = "pull",
+     .label = "Pull",
+     .help = "Grips what it first touches, and holds it until the button is released",
+     .grips = true,
+     .allows_soft_tool = false,
+     .inverse = ToolAction::push,
+     .parameters = {radius_parameter, iterations_parameter},
+     .keys = {{{"2", ToolKind::sphere, "Sphere that pulls"}, {"4", ToolKind::point, "Point that pulls"}}}},
+    {.action = ToolAction::smooth,
+     .name = "smooth",
+     .label = "Smooth",
+     .help = "Evens out what strokes have done, as far as the radius reaches",
+     .grips = false,
+     .allows_soft_tool = false,
+     .inverse = ToolAction::smooth,
+     .parameters = {radius_parameter, iterations_parameter},
+     .keys = {{{"5", ToolKind::sphere, "Sphere that smooths"}}}},
+});
+
+static_assert(
+    [] {
+      for (std::size_t a = 0; a < tool_actions.size(); ++a) {
+        if (static_cast<std::size_t>(tool_actions[a].action) != a) return false;
+      }
+      return true;
+    }(),
+    "tool_actions must list the actions in the order of the enumeration");
+
+constexpr const ToolActionRow& row_of(ToolAction action) {
+  return tool_actions[static_cast<std::size_t>(action)];
+}
+
+constexpr const char* name_of(ToolKind kind) {
+  return tool_kind_names[static_cast<std::size_t>(kind)];
+}
+constexpr const char* name_of(ToolAction action) {
+  return row_of(action).name;
+}
+
+// Names and labels of the actions, in the order of the table.
+inline constexpr auto tool_action_names = [] {
+  std::array<const char*, tool_actions.size()> names{};
+  for (std::size_t a = 0; a < names.size(); ++a) names[a] = tool_actions[a].name;
+  return names;
+}();
+inline constexpr auto tool_action_labels = [] {
+  std::array<const char*, tool_actions.size()> labels{};
+  for (std::size_t a = 0; a < labels.size(); ++a) labels[a] = tool_actions[a].label;
+  return labels;
+}();
+
+// Returns the parameter of an action for a field of Tool; null if the action does not use the field.
+constexpr const ToolParameter* find_tool_parameter(ToolAction action, std::string_view field) {
+  for (const ToolParameter& parameter : row_of(action).parameters) {
+    if (parameter.field != nullptr && field == parameter.field) return &parameter;
+  }
+  return nullptr;
+}
+
+// Closed tube.
 struct SurfaceSolid {
   Surface surface;
 };
 
-// Triangles, cleaned (triangle_mesh.h).
+// Cleaned triangles (triangle_mesh.h).
 struct MeshSolid {
   CleanMesh mesh;
 };
@@ -34,39 +150,39 @@ inline constexpr const char* kind_name<SurfaceSolid> = "surface";
 
 using ToolSolid = std::variant<ImplicitShape, MeshSolid, SurfaceSolid>;
 
-// What a document may hold of a mesh.
+// Most triangles of a mesh in a document.
 inline constexpr int tool_triangle_limit = 200000;
-// What of a soft one is moved and searched in every tick of a millisecond.
+// Most triangles of a soft mesh, which every tick of a millisecond moves and searches.
 inline constexpr int soft_mesh_triangle_limit = 20000;
 
-// A tool that gives way: a lattice of its own, held by the hand behind a plane.
+// Deformable tool with a lattice of its own, whose nodes behind a plane the hand holds.
 struct SoftTool {
   Material material;
   LatticeRequest lattice;
   FixingPlane grip;  // in the tool's frame
 };
 
-// A tool besides a point and a sphere, in its own frame; never changes once made.
+// Tool other than a point or a sphere, in its own frame. Immutable once made.
 struct ToolBody {
   ToolSolid solid;
-  std::optional<SoftTool> soft;  // rigid without
+  std::optional<SoftTool> soft;  // empty: the tool is rigid
 };
 
 struct Tool {
   ToolKind kind = ToolKind::sphere;
   ToolAction action = ToolAction::push;
-  double radius_m = 0.008;  // of a sphere; 0 for a point; how far smoothing reaches with a solid
-  int iterations = 6;       // relaxation steps a tick: few act locally, many globally (1 to 8)
-  std::shared_ptr<const ToolBody> body = {};  // of a solid; may stay while the tool is another
+  double radius_m = 0.008;  // of a sphere; 0 for a point; reach of smoothing for a solid
+  int iterations = 6;       // relaxation steps per tick, 1 to 8: few act locally, many globally
+  std::shared_ptr<const ToolBody> body = {};  // required for a solid; may stay while another kind is in use
 };
 
-// What this tool's action takes of a field of it, named as in files; what any takes where it goes without.
+// Returns the range that the tool's action accepts for a field, by its name in files; `any` if it uses none.
 inline Range<double> range_in_action(const Tool& tool, const char* field, Range<double> any) {
-  const ToolParameter* parameter = parameter_of(tool.action, field);
+  const ToolParameter* parameter = find_tool_parameter(tool.action, field);
   return parameter == nullptr ? any : parameter->range;
 }
 
-// Before its body, which files hold as "solid" and "soft".
+// Fields of a tool before its body, which files store as "solid" and "soft".
 template <>
 inline constexpr auto fields_of<Tool> = std::to_array<Field<Tool>>({
     choice_field<&Tool::kind>("kind", tool_kind_names),
@@ -83,7 +199,7 @@ inline constexpr auto fields_of<Tool> = std::to_array<Field<Tool>>({
         }),
 });
 
-// Each names the field of the first thing that is wrong.
+// Each check's error names the first field at fault.
 Status check_tool_body(const ToolBody& body);
 Status check_tool(const Tool& tool);
 

@@ -10,16 +10,16 @@
 namespace spoonbill {
 namespace {
 
-// The volume of the cells around each node, an eighth of each.
-std::vector<double> node_volumes(const LatticeMesh& mesh) {
+// Returns the volume of each node: an eighth of each cell around it.
+std::vector<double> compute_node_volumes(const LatticeMesh& mesh) {
   std::vector<double> volumes(mesh.nodes.size(), 0.0);
   for (int i = 0; i + 1 < mesh.count[0]; ++i) {
     for (int j = 0; j + 1 < mesh.count[1]; ++j) {
       for (int k = 0; k + 1 < mesh.count[2]; ++k) {
-        const double share_m3 = mesh.share(i, j, k) * cell_volume(mesh.cell(i, j, k)) / 8.0;
+        const double node_volume_m3 = mesh.share(i, j, k) * cell_volume(mesh.cell(i, j, k)) / 8.0;
         for (int c = 0; c < 8; ++c) {
           volumes[static_cast<std::size_t>(mesh.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1)))] +=
-              share_m3;
+              node_volume_m3;
         }
       }
     }
@@ -27,10 +27,8 @@ std::vector<double> node_volumes(const LatticeMesh& mesh) {
   return volumes;
 }
 
-}  // namespace
-
-// The triangles whose middles are in the region.
-std::vector<std::size_t> triangles_in(const BodyRegion& region, const BodySkin& skin) {
+// Returns the triangles whose centres are in the region.
+std::vector<std::size_t> find_triangles(const BodyRegion& region, const BodySkin& skin) {
   std::vector<std::size_t> within;
   for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
     if (contains(region, skin.middles[t])) within.push_back(t);
@@ -46,38 +44,40 @@ Vector3 rest_m(const CellPoint& point, const LatticeMesh& mesh) {
   return sum;
 }
 
-// Each load becomes forces on nodes, or pressed faces.
-struct BodyLoads::Making {
+}  // namespace
+
+// Converts each load to forces on nodes or to pressed faces.
+struct BodyLoads::Builder {
   const LatticeMesh& mesh;
   const std::function<EmbeddedPoint(double u, double v)>& point_at;
-  std::vector<BodyPlace> places;
+  std::vector<BodyCoordinates> coordinates;
   std::vector<ShellFace> faces;
   BodyLoads result{};
 
-  bool in_box() const { return !mesh.skin.triangles.empty(); }
+  bool is_boxed() const { return !mesh.skin.triangles.empty(); }
 
   Status operator()(const PressureLoad& load) {
-    if (in_box()) return press_skin(load);
-    const std::vector<ShellFace> within = faces_in(load.region, mesh, faces, places);
+    if (is_boxed()) return press_skin(load);
+    const std::vector<ShellFace> within = faces_in(load.region, mesh, faces, coordinates);
     if (within.empty()) return no_face();
     for (const ShellFace& face : within) result.pressures_.push_back({face, load.pressure_pa});
     return {};
   }
 
   Status operator()(const ForceLoad& load) {
-    std::vector<double> shares(mesh.nodes.size(), 0.0);
-    if (load.shared_by == ForceShare::surface) {
-      in_box() ? share_by_skin(load.region, shares) : share_by_faces(load.region, shares);
-      if (std::all_of(shares.begin(), shares.end(), [](double share) { return share == 0.0; })) {
+    std::vector<double> weights(mesh.nodes.size(), 0.0);
+    if (load.distributed_by == ForceDistribution::surface) {
+      is_boxed() ? weigh_by_skin(load.region, weights) : weigh_by_faces(load.region, weights);
+      if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0.0; })) {
         return no_face();
       }
     } else {
-      const std::vector<double> volumes = node_volumes(mesh);
-      for (std::size_t n = 0; n < shares.size(); ++n) {
-        if (contains(load.region, places[n])) shares[n] = volumes[n];
+      const std::vector<double> volumes = compute_node_volumes(mesh);
+      for (std::size_t n = 0; n < weights.size(); ++n) {
+        if (contains(load.region, coordinates[n])) weights[n] = volumes[n];
       }
     }
-    return share_out(load.force_n, shares);
+    return distribute(load.force_n, weights);
   }
 
   Status operator()(const PointLoad& load) {
@@ -89,7 +89,7 @@ struct BodyLoads::Making {
   }
 
   Status press_skin(const PressureLoad& load) {
-    const std::vector<std::size_t> within = triangles_in(load.region, mesh.skin);
+    const std::vector<std::size_t> within = find_triangles(load.region, mesh.skin);
     if (within.empty()) return no_face();
     for (const std::size_t triangle : within) {
       result.pressed_skin_.press(mesh.skin, triangle, load.pressure_pa);
@@ -97,16 +97,16 @@ struct BodyLoads::Making {
     return {};
   }
 
-  void share_by_faces(const BodyRegion& region, std::vector<double>& shares) const {
-    for (const ShellFace& face : faces_in(region, mesh, faces, places)) {
+  void weigh_by_faces(const BodyRegion& region, std::vector<double>& weights) const {
+    for (const ShellFace& face : faces_in(region, mesh, faces, coordinates)) {
       const auto at = [&](std::size_t c) { return mesh.nodes[static_cast<std::size_t>(face[c])]; };
       const double area = vector_area(at(0), at(1), at(2), at(3)).norm();
-      for (const int node : face) shares[static_cast<std::size_t>(node)] += 0.25 * area;
+      for (const int node : face) weights[static_cast<std::size_t>(node)] += 0.25 * area;
     }
   }
 
-  void share_by_skin(const BodyRegion& region, std::vector<double>& shares) const {
-    for (const std::size_t triangle : triangles_in(region, mesh.skin)) {
+  void weigh_by_skin(const BodyRegion& region, std::vector<double>& weights) const {
+    for (const std::size_t triangle : find_triangles(region, mesh.skin)) {
       const auto point = [&](std::size_t c) -> const CellPoint& {
         return mesh.skin.points[mesh.skin.triangles[triangle][c]];
       };
@@ -114,24 +114,26 @@ struct BodyLoads::Making {
           triangle_area(rest_m(point(0), mesh), rest_m(point(1), mesh), rest_m(point(2), mesh));
       for (std::size_t corner = 0; corner < 3; ++corner) {
         for (std::size_t c = 0; c < 8; ++c) {
-          shares[static_cast<std::size_t>(point(corner).nodes[c])] += area / 3.0 * point(corner).weights[c];
+          weights[static_cast<std::size_t>(point(corner).nodes[c])] += area / 3.0 * point(corner).weights[c];
         }
       }
     }
   }
 
-  Status share_out(const Vector3& force_n, const std::vector<double>& shares) {
+  Status distribute(const Vector3& force_n, const std::vector<double>& weights) {
     double sum = 0.0;
-    for (const double share : shares) sum += share;
-    if (!(sum > 0.0)) return Error{"its region holds no node of the lattice; make it larger"};
-    for (std::size_t n = 0; n < shares.size(); ++n) {
-      if (shares[n] > 0.0) result.forces_.push_back({static_cast<int>(n), shares[n] / sum * force_n});
+    for (const double weight : weights) sum += weight;
+    if (!(sum > 0.0))
+      return Error{ErrorCode::too_few, "the region contains no lattice node; enlarge it", "region"};
+    for (std::size_t n = 0; n < weights.size(); ++n) {
+      if (weights[n] > 0.0) result.forces_.push_back({static_cast<int>(n), weights[n] / sum * force_n});
     }
     return {};
   }
 
   static Status no_face() {
-    return Error{"its region holds no middle of a face of the lattice's shell; make it larger"};
+    return Error{ErrorCode::too_few, "the region contains no face centre of the lattice's shell; enlarge it",
+                 "region"};
   }
 };
 
@@ -139,42 +141,119 @@ Result<BodyLoads> BodyLoads::make(const std::vector<Load>& loads, const LatticeM
                                   const std::function<EmbeddedPoint(double u, double v)>& point_at) {
   SPOONBILL_ASSERT(static_cast<bool>(point_at));
   if (loads.empty()) return BodyLoads();
-  Making making{mesh, point_at, node_places(mesh), shell_faces(mesh)};
+  Builder builder{mesh, point_at, node_places(mesh), shell_faces(mesh)};
   for (std::size_t l = 0; l < loads.size(); ++l) {
     Status status = check_load(loads[l]);
-    if (status.ok()) status = std::visit(making, loads[l]);
-    if (!status.ok()) return Error{"loads[" + std::to_string(l) + "]: " + status.error().message};
+    if (status.ok()) status = std::visit(builder, loads[l]);
+    if (!status.ok()) return status.error().in("loads[" + std::to_string(l) + "]");
   }
-  BodyLoads result = std::move(making.result);
+  BodyLoads result = std::move(builder.result);
   for (const NodeForce& force : result.forces_) result.nodes_.push_back(force.node);
   for (const PressedFace& face : result.pressures_) {
     result.nodes_.insert(result.nodes_.end(), face.nodes.begin(), face.nodes.end());
   }
-  const std::vector<int> under_skin = result.pressed_skin_.nodes();
-  result.nodes_.insert(result.nodes_.end(), under_skin.begin(), under_skin.end());
+  const std::vector<int> skin_nodes = result.pressed_skin_.nodes();
+  result.nodes_.insert(result.nodes_.end(), skin_nodes.begin(), skin_nodes.end());
   std::sort(result.nodes_.begin(), result.nodes_.end());
   result.nodes_.erase(std::unique(result.nodes_.begin(), result.nodes_.end()), result.nodes_.end());
   result.force_n_.assign(mesh.nodes.size(), Vector3::Zero());
   return result;
 }
 
-void BodyLoads::apply(double share, SpringLattice& lattice, ImplicitCore* core) {
-  SPOONBILL_ASSERT(share >= 0.0);
+void BodyLoads::apply(double fraction, SpringLattice& lattice, ImplicitCore* solver) {
+  SPOONBILL_ASSERT(fraction >= 0.0);
   if (empty()) return;
   for (const int n : nodes_) force_n_[static_cast<std::size_t>(n)].setZero();
   for (const NodeForce& force : forces_) {
-    force_n_[static_cast<std::size_t>(force.node)] += share * force.force_n;
+    force_n_[static_cast<std::size_t>(force.node)] += fraction * force.force_n;
   }
   for (const PressedFace& face : pressures_) {
     const auto at = [&](std::size_t c) { return lattice.position(face.nodes[c]); };
-    const Vector3 force = -0.25 * share * face.pressure_pa * vector_area(at(0), at(1), at(2), at(3));
+    const Vector3 force = -0.25 * fraction * face.pressure_pa * vector_area(at(0), at(1), at(2), at(3));
     for (const int node : face.nodes) force_n_[static_cast<std::size_t>(node)] += force;
   }
-  pressed_skin_.find_forces(
-      [&](int node) { return lattice.position(node); },
-      [&](int node, const Vector3& force_n) { force_n_[static_cast<std::size_t>(node)] += share * force_n; });
+  pressed_skin_.find_forces([&](int node) { return lattice.position(node); },
+                            [&](int node, const Vector3& force_n) {
+                              force_n_[static_cast<std::size_t>(node)] += fraction * force_n;
+                            });
   for (const int n : nodes_) lattice.set_node_force(n, force_n_[static_cast<std::size_t>(n)]);
-  if (core) core->take_node_forces(lattice, nodes_);
+  if (solver) solver->take_node_forces(lattice, nodes_);
+}
+
+namespace {
+
+// Sets the support's displacement to that of its first node; without nodes it stays.
+void measure_displacement(const SpringLattice& lattice, SupportedNodes& support) {
+  if (support.nodes.empty()) return;
+  support.end_m = lattice.displacement(support.nodes.front()) - support.base_m.front();
+}
+
+void record_base(const SpringLattice& lattice, SupportedNodes& support) {
+  support.base_m.clear();
+  for (const int node : support.nodes) {
+    support.base_m.push_back(lattice.displacement(node) - support.end_m);
+  }
+}
+
+}  // namespace
+
+Result<BodySupports> BodySupports::make(const std::vector<Support>& supports, const LatticeMesh& mesh) {
+  BodySupports result;
+  if (supports.empty()) return result;
+  const std::vector<BodyCoordinates> coordinates = node_places(mesh);
+  for (std::size_t s = 0; s < supports.size(); ++s) {
+    const std::string name = "supports[" + std::to_string(s) + "]";
+    if (Status status = check_support(supports[s]); !status.ok()) return status.error().in(name);
+    std::vector<int> nodes;
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      if (contains(supports[s].region, coordinates[static_cast<std::size_t>(n)])) nodes.push_back(n);
+    }
+    if (nodes.empty()) {
+      return Error{ErrorCode::too_few, "the region contains no lattice node; enlarge it", "region"}.in(name);
+    }
+    result.region_nodes_.push_back(std::move(nodes));
+  }
+  result.definitions_ = supports;
+  result.supported_.resize(supports.size());
+  return result;
+}
+
+void BodySupports::claim_nodes(const SpringLattice& lattice, std::vector<std::uint8_t>& fixed) {
+  SPOONBILL_ASSERT(fixed.size() == static_cast<std::size_t>(lattice.mesh().node_count()));
+  for (std::size_t s = supported_.size(); s-- > 0;) {
+    SupportedNodes& support = supported_[s];
+    measure_displacement(lattice, support);
+    support.moves = definitions_[s].motion.has_value();
+    support.nodes.clear();
+    for (const int node : region_nodes_[s]) {
+      std::uint8_t& is_fixed = fixed[static_cast<std::size_t>(node)];
+      if (is_fixed == 0) support.nodes.push_back(node);
+      is_fixed = 1;
+    }
+    record_base(lattice, support);
+  }
+}
+
+void BodySupports::rebase(const SpringLattice& before, const SpringLattice& after) {
+  for (SupportedNodes& support : supported_) {
+    measure_displacement(before, support);
+    record_base(after, support);
+  }
+}
+
+std::span<SupportedNodes> BodySupports::begin_tick(const SpringLattice& lattice, double end_s,
+                                                   double tick_s) {
+  SPOONBILL_ASSERT(tick_s > 0.0);
+  for (std::size_t s = 0; s < supported_.size(); ++s) {
+    SupportedNodes& support = supported_[s];
+    support.impulse_ns.setZero();
+    if (!support.moves) continue;
+    measure_displacement(lattice, support);
+    support.start_m = support.end_m;
+    support.end_m = displacement_at(*definitions_[s].motion, end_s);
+    support.fastest_m = tick_s * top_speed_m_per_s(*definitions_[s].motion);
+  }
+  return supported_;
 }
 
 }  // namespace spoonbill

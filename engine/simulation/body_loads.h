@@ -1,43 +1,73 @@
-// The loads of one body on the nodes of its lattice.
+// Loads and supports of one body, applied to the nodes of its lattice.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/material/implicit/implicit_core.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "engine/material/statics/static_body.h"
+#include "engine/material/supports/supported_nodes.h"
 #include "engine/scene/loads.h"
 
 namespace spoonbill {
 
-// One owner, the body; built outside the tick, apply() allocates nothing.
+// Loads of a body, which owns them. Built outside the tick; apply() allocates nothing.
 class BodyLoads {
  public:
   BodyLoads() = default;
-  // `point_at` embeds a point (u, v) of the body's surface. Refused, with the load's place in the list: one
-  // whose region holds no face or node of the lattice.
+  // `point_at` embeds a point (u, v) of the body's surface in the lattice. Refuses a load whose region
+  // contains no face or node of the lattice; the error names the load's index.
   static Result<BodyLoads> make(const std::vector<Load>& loads, const LatticeMesh& mesh,
                                 const std::function<EmbeddedPoint(double u, double v)>& point_at);
 
   bool empty() const { return nodes_.empty(); }
   const std::vector<NodeForce>& forces() const { return forces_; }
   const std::vector<PressedFace>& pressures() const { return pressures_; }
-  const PressedSkin& pressed_skin() const { return pressed_skin_; }  // of a body in a box of cells
+  const PressedSkin& pressed_skin() const { return pressed_skin_; }  // used by a body in a box of cells
 
-  // Sets the node forces of the lattice, and of what moves it where something does, to this share of the
-  // loads as the body is bent now.
-  void apply(double share, SpringLattice& lattice, ImplicitCore* core);
+  // Sets the node forces of the lattice, and of the implicit solver if not null, to a fraction (at least 0)
+  // of the loads on the current shape.
+  void apply(double fraction, SpringLattice& lattice, ImplicitCore* solver);
 
  private:
-  struct Making;
+  struct Builder;
 
   std::vector<NodeForce> forces_;
   std::vector<PressedFace> pressures_;
   PressedSkin pressed_skin_;
-  std::vector<int> nodes_;        // all that are loaded
-  std::vector<Vector3> force_n_;  // by node of the lattice: working memory
+  std::vector<int> nodes_;        // all loaded nodes, sorted
+  std::vector<Vector3> force_n_;  // by node of the lattice; working memory
+};
+
+// Supports of a body, which owns them. A support's displacement is that of its nodes. begin_tick() allocates
+// nothing.
+class BodySupports {
+ public:
+  BodySupports() = default;
+  // Builds the supports at rest. Refuses a support whose region contains no node of the lattice; the error
+  // names the support's index.
+  static Result<BodySupports> make(const std::vector<Support>& supports, const LatticeMesh& mesh);
+
+  // Assigns each support the nodes of its region that are not fixed yet, later supports first, and marks them
+  // in `fixed`, one byte a node.
+  void claim_nodes(const SpringLattice& lattice, std::vector<std::uint8_t>& fixed);
+  // Keeps the supports' displacements when the rest shape of the lattice changes from `before` to `after`.
+  void rebase(const SpringLattice& before, const SpringLattice& after);
+
+  // Updates the motions for a tick of `tick_s` that ends at `end_s`, both on the hand's clock.
+  std::span<SupportedNodes> begin_tick(const SpringLattice& lattice, double end_s, double tick_s);
+
+  std::span<const SupportedNodes> supports() const { return supported_; }
+
+ private:
+  std::vector<Support> definitions_;
+  std::vector<std::vector<int>> region_nodes_;  // by support
+  std::vector<SupportedNodes> supported_;
 };
 
 }  // namespace spoonbill

@@ -6,35 +6,36 @@
 
 #include "engine/base/assert.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/material/lattice/box_lattice.h"
 
 namespace spoonbill {
 namespace {
 
-// Two cells for each element and direction: of single knots at least twice as many samples as control points,
-// where the refit is well conditioned. Elements between repeated knots have as many control points as the
-// degree, and ask for more.
-constexpr int refit_levels = 1, most_refit_levels = 4;
-static_assert(1 << most_refit_levels > max_degree);
+// Number of times that elements are halved for sampling. One halving gives at least twice as many samples as
+// control points for simple knots, and a well-conditioned refit. Elements between repeated knots have as many
+// control points as the degree and need more samples.
+constexpr int refit_levels = 1, max_refit_levels = 4;
+static_assert(1 << max_refit_levels > max_degree);
 constexpr int edge_stations = 512;
 constexpr int edge_bisections = 40;
 
-constexpr int around = 64;
+constexpr int samples_around = 64;
 
-bool ring_behind(const Surface& surface, const FixingPlane& plane, double v) {
+bool is_ring_behind(const Surface& surface, const FixingPlane& plane, double v) {
   const double start = surface.u.domain_start(), length = surface.u.domain_end() - start;
-  for (int s = 0; s <= around; ++s) {
-    const Vector3 point = evaluate(surface, start + length * s / around, v).position_m;
+  for (int s = 0; s <= samples_around; ++s) {
+    const Vector3 point = evaluate(surface, start + length * s / samples_around, v).position_m;
     if (plane.normal.dot(point - plane.point_m) > 0.0) return false;
   }
   return true;
 }
 
-// How far from one end of v (share 0 to 1) the surface lies wholly behind the plane.
-double share_behind(const Surface& surface, const FixingPlane& plane, bool from_end) {
+// Returns the fraction of v, from one end, over which the surface is wholly behind the plane.
+double find_fraction_behind(const Surface& surface, const FixingPlane& plane, bool from_end) {
   const double start = surface.v.domain_start(), end = surface.v.domain_end();
-  const auto behind = [&](double share) {
-    return ring_behind(surface, plane,
-                       from_end ? end - share * (end - start) : start + share * (end - start));
+  const auto behind = [&](double fraction) {
+    return is_ring_behind(surface, plane,
+                          from_end ? end - fraction * (end - start) : start + fraction * (end - start));
   };
   int station = 0;
   while (station <= edge_stations && behind(static_cast<double>(station) / edge_stations)) ++station;
@@ -43,38 +44,37 @@ double share_behind(const Surface& surface, const FixingPlane& plane, bool from_
   double low = static_cast<double>(station - 1) / edge_stations,
          high = static_cast<double>(station) / edge_stations;
   for (int b = 0; b < edge_bisections; ++b) {
-    const double middle = 0.5 * (low + high);
-    (behind(middle) ? low : high) = middle;
+    const double midpoint = 0.5 * (low + high);
+    (behind(midpoint) ? low : high) = midpoint;
   }
   return low;
 }
 
-// The stretch of v at each end that lies wholly behind some plane.
+// Stretches of v at both ends that are wholly behind some plane.
 struct FixedStretch {
-  double low_end;     // fixed from the domain's start to here
-  double high_start;  // and from here to its end
+  double low_end;     // end of the stretch from the domain's start
+  double high_start;  // start of the stretch to the domain's end
 };
 
-FixedStretch fixed_stretch(const Surface& surface, const std::vector<FixingPlane>& planes) {
+FixedStretch find_fixed_stretch(const Surface& surface, const std::vector<FixingPlane>& planes) {
   const double start = surface.v.domain_start(), length = surface.v.domain_end() - start;
   double low = 0.0, high = 0.0;
   for (const FixingPlane& plane : planes) {
     if (surface.v.is_periodic()) break;
-    low = std::max(low, share_behind(surface, plane, false));
-    high = std::max(high, share_behind(surface, plane, true));
+    low = std::max(low, find_fraction_behind(surface, plane, false));
+    high = std::max(high, find_fraction_behind(surface, plane, true));
   }
   return {start + low * length, start + (1.0 - high) * length};
 }
 
-// A knot of multiplicity degree - 1: the displacement may start there with a curvature of its own, the
-// surface stays smooth (C1). Near an existing knot that one is used, so that no sliver of an element arises.
-// Without it, where a document could not hold the control points any more, more columns are held, by up to a
-// degree.
-Result<Surface> with_edge_knot(const Surface& surface, double& v) {
+// Inserts a knot of multiplicity degree - 1 at v: the displacement may start there with its own curvature,
+// and the surface stays C1. Moves v to an existing knot nearby, which avoids sliver elements. Inserts nothing
+// beyond the largest number of control points; up to a degree more columns are fixed then.
+Result<Surface> insert_edge_knot(const Surface& surface, double& v) {
   const std::vector<double> breaks = surface.v.breakpoints();
-  const double near = 1e-3 * (surface.v.domain_end() - surface.v.domain_start());
+  const double tolerance = 1e-3 * (surface.v.domain_end() - surface.v.domain_start());
   for (const double knot : breaks) {
-    if (std::abs(knot - v) < near) v = knot;
+    if (std::abs(knot - v) < tolerance) v = knot;
   }
   if (v <= surface.v.domain_start() || v >= surface.v.domain_end()) return surface;
   const int multiplicity = std::max(1, surface.v.degree() - 1);
@@ -82,29 +82,29 @@ Result<Surface> with_edge_knot(const Surface& surface, double& v) {
   return insert_knot(surface, Direction::v, v, multiplicity);
 }
 
-// The middle of the element that holds the parameter, of two the one before it.
-double middle_of_element(const KnotVector& knots, double parameter) {
+// Returns the midpoint of the element that contains the parameter; of the element before it at a knot.
+double find_element_midpoint(const KnotVector& knots, double parameter) {
   const std::vector<double> breaks = knots.breakpoints();
   auto next = std::lower_bound(breaks.begin() + 1, breaks.end() - 1, parameter);
   return 0.5 * (*(next - 1) + *next);
 }
 
-Result<Surface> with_element_halved(const Surface& surface, double u, double v) {
-  const Result<Surface> finer = insert_knot(surface, Direction::u, middle_of_element(surface.u, u), 1);
+Result<Surface> halve_element(const Surface& surface, double u, double v) {
+  const Result<Surface> finer = insert_knot(surface, Direction::u, find_element_midpoint(surface.u, u), 1);
   if (!finer.ok()) return finer.error();
-  return insert_knot(finer.value(), Direction::v, middle_of_element(surface.v, v), 1);
+  return insert_knot(finer.value(), Direction::v, find_element_midpoint(surface.v, v), 1);
 }
 
-// Columns whose basis function reaches into the fixed stretch.
-std::vector<std::uint8_t> columns_to_hold(const KnotVector& v, const FixedStretch& fixed) {
+// Returns 1 for each column whose basis function reaches into a fixed stretch.
+std::vector<std::uint8_t> find_fixed_columns(const KnotVector& v, const FixedStretch& fixed) {
   const std::vector<double>& knots = v.extended_knots();
-  std::vector<std::uint8_t> held(static_cast<std::size_t>(v.control_point_count()), 0);
+  std::vector<std::uint8_t> fixed_columns(static_cast<std::size_t>(v.control_point_count()), 0);
   for (int c = 0; c < v.control_point_count(); ++c) {
     const bool in_low = fixed.low_end > v.domain_start() && knots[c] < fixed.low_end;
     const bool in_high = fixed.high_start < v.domain_end() && knots[c + v.degree() + 1] > fixed.high_start;
-    held[static_cast<std::size_t>(c)] = in_low || in_high;
+    fixed_columns[static_cast<std::size_t>(c)] = in_low || in_high;
   }
-  return held;
+  return fixed_columns;
 }
 
 bool is_clamped(const KnotVector& knots, bool at_end) {
@@ -114,27 +114,27 @@ bool is_clamped(const KnotVector& knots, bool at_end) {
   return at_end ? all.back() == all[all.size() - 1 - degree] : all.front() == all[degree];
 }
 
-// Whether an end of v is a single point, to a millionth of the net's extent.
+// Returns whether an end of v is a single point.
 bool is_pole(const Surface& surface, bool at_end) {
-  constexpr double share = 1e-6;
+  constexpr double tolerance = 1e-6;  // fraction of the net's extent
   if (!surface.u.is_periodic() || surface.v.is_periodic()) return false;
   const double v = at_end ? surface.v.domain_end() : surface.v.domain_start();
   const double start = surface.u.domain_start(), length = surface.u.domain_end() - start;
   const Vector3 first = position(surface, start, v);
   double farthest = 0.0, extent = 0.0;
-  for (int s = 1; s < around; ++s) {
-    farthest = std::max(farthest, (position(surface, start + length * s / around, v) - first).norm());
+  for (int s = 1; s < samples_around; ++s) {
+    farthest = std::max(farthest, (position(surface, start + length * s / samples_around, v) - first).norm());
   }
   for (int i = 0; i < surface.net.rows; ++i) {
     for (int j = 0; j < surface.net.columns; ++j) {
       extent = std::max(extent, (surface.net.point(i, j) - first).norm());
     }
   }
-  return farthest <= share * extent;
+  return farthest <= tolerance * extent;
 }
 
-void offer_cells_around(const LatticeMesh& mesh, int node, const Vector3& point, CellLocation& best,
-                        std::array<int, 3>& cell) {
+void search_cells_around(const LatticeMesh& mesh, int node, const Vector3& point, CellLocation& best,
+                         std::array<int, 3>& cell) {
   const auto [ni, nj, nk] = mesh.place(node);
   for (int i = std::max(0, ni - 1); i <= std::min(ni, mesh.count[0] - 2); ++i) {
     for (int j = std::max(0, nj - 1); j <= std::min(nj, mesh.count[1] - 2); ++j) {
@@ -149,7 +149,7 @@ void offer_cells_around(const LatticeMesh& mesh, int node, const Vector3& point,
   }
 }
 
-// The cell in which a point lies, or which it lies nearest to, among those around the nearest node.
+// Embeds a point in the cell that contains it or is nearest to it, among the cells around the nearest node.
 EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
   int nearest = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -163,8 +163,8 @@ EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
   CellLocation best;
   best.outside = std::numeric_limits<double>::infinity();
   std::array<int, 3> cell{};
-  offer_cells_around(mesh, nearest, point, best, cell);
-  if (mesh.twin(nearest) != nearest) offer_cells_around(mesh, mesh.twin(nearest), point, best, cell);
+  search_cells_around(mesh, nearest, point, best, cell);
+  if (mesh.twin(nearest) != nearest) search_cells_around(mesh, mesh.twin(nearest), point, best, cell);
   EmbeddedPoint embedded;
   if (!(best.outside < 1.0)) {
     embedded.count = 1;
@@ -186,15 +186,15 @@ struct SampledRefit {
   DisplacementRefit refit;
 };
 
-// On the coarsest grid whose samples determine the control points.
-Result<SampledRefit> sampled_refit(const Surface& surface, const RefitConstraints& constraints,
-                                   InstructionSet set) {
+// Makes the refit on the coarsest grid whose samples determine the control points.
+Result<SampledRefit> make_sampled_refit(const Surface& surface, const RefitConstraints& constraints,
+                                        InstructionSet set) {
   for (int levels = refit_levels;; ++levels) {
     Result<NestedGrid> nested = make_nested_grid(surface.u, surface.v, levels);
     if (!nested.ok()) return nested.error();
     Result<DisplacementRefit> refit = DisplacementRefit::make(nested->grid, constraints, set);
     if (refit.ok()) return SampledRefit{std::move(nested).value(), std::move(refit).value()};
-    if (levels == most_refit_levels) return refit.error();
+    if (levels == max_refit_levels) return refit.error();
   }
 }
 
@@ -205,26 +205,25 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
                                       InstructionSet set) {
   SPOONBILL_ASSERT_DEBUG(rest.u == current.u && rest.v == current.v);
   BodyMapping mapping(rest, current, set);
-  FixedStretch fixed = fixed_stretch(current, planes);
+  FixedStretch fixed = find_fixed_stretch(current, planes);
   for (double* edge : {&fixed.low_end, &fixed.high_start}) {
-    Result<Surface> finer_rest = with_edge_knot(mapping.rest_, *edge);
+    Result<Surface> finer_rest = insert_edge_knot(mapping.rest_, *edge);
     if (!finer_rest.ok()) return finer_rest.error();
-    Result<Surface> finer = with_edge_knot(mapping.current_, *edge);
+    Result<Surface> finer = insert_edge_knot(mapping.current_, *edge);
     if (!finer.ok()) return finer.error();
     mapping.rest_ = std::move(finer_rest).value();
     mapping.current_ = std::move(finer).value();
   }
   mapping.base_ = mapping.current_;
   const KnotVector& v = mapping.rest_.v;
-  RefitConstraints constraints{columns_to_hold(v, fixed), true, true};
+  RefitConstraints constraints{find_fixed_columns(v, fixed), true, true};
   if (lattice.mesh().thin || v.is_periodic()) {
     constraints.keep_first = is_clamped(v, false);
     constraints.keep_last = is_clamped(v, true);
     mapping.first_pole_ = is_pole(mapping.rest_, false);
     mapping.last_pole_ = is_pole(mapping.rest_, true);
   }
-  mapping.held_columns_ = constraints.fixed_columns;
-  Result<SampledRefit> sampled = sampled_refit(mapping.rest_, constraints, set);
+  Result<SampledRefit> sampled = make_sampled_refit(mapping.rest_, constraints, set);
   if (!sampled.ok()) return sampled.error();
   mapping.nested_ = std::make_shared<NestedGrid>(std::move(sampled->nested));
   mapping.refit_.push_back(std::move(sampled->refit));
@@ -235,7 +234,7 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
   return mapping;
 }
 
-int BodyMapping::twin_of(int row, int column) const {
+int BodyMapping::find_twin(int row, int column) const {
   const Grid& grid = nested_->grid;
   const int last_column = grid.columns() - 1;
   const bool pole = (column == 0 && first_pole_) || (column == last_column && last_pole_);
@@ -252,8 +251,8 @@ void BodyMapping::embed(const SpringLattice& lattice) {
   embedding_.reserve(samples);
   for (int i = 0; i < grid.rows(); ++i) {
     for (int j = 0; j < grid.columns(); ++j) {
-      // What is one place must have one embedding to the last bit to stay so.
-      const int twin = twin_of(i, j);
+      // Samples at the same point share one embedding, bit for bit, so that they stay together.
+      const int twin = find_twin(i, j);
       if (twin != i * grid.columns() + j) {
         embedding_.push_back(embedding_[static_cast<std::size_t>(twin)]);
         continue;
@@ -300,7 +299,7 @@ void BodyMapping::sample_displacements(const SpringLattice& lattice) {
       const auto term = [&](int c) { return cell.weight[c] * moves[cell.node[c]]; };
       const Vector4 sum =
           ((term(0) + term(1)) + (term(2) + term(3))) + ((term(4) + term(5)) + (term(6) + term(7)));
-      // The base last, so that what did not move is exactly zero.
+      // Subtracting the base last makes the displacement of unmoved samples exactly zero.
       const Vector4 moved = sum - base[s];
       x_row[j] = moved[0];
       y_row[j] = moved[1];
@@ -330,23 +329,23 @@ void BodyMapping::measure_residual() {
   std::size_t worst = 0;
   for (std::size_t s = 0; s < embedding_.size(); ++s) {
     const std::size_t from = s / columns * stride + s % columns;
-    const Vector3 left(static_cast<double>(sample_[0][from] - followed_.x[s]),
-                       static_cast<double>(sample_[1][from] - followed_.y[s]),
-                       static_cast<double>(sample_[2][from] - followed_.z[s]));
-    sum += left.squaredNorm();
-    if (left.squaredNorm() <= largest) continue;
-    largest = left.squaredNorm();
+    const Vector3 residual_m(static_cast<double>(sample_[0][from] - followed_.x[s]),
+                             static_cast<double>(sample_[1][from] - followed_.y[s]),
+                             static_cast<double>(sample_[2][from] - followed_.z[s]));
+    sum += residual_m.squaredNorm();
+    if (residual_m.squaredNorm() <= largest) continue;
+    largest = residual_m.squaredNorm();
     worst = s;
   }
   residual_ = {std::sqrt(largest), std::sqrt(sum / static_cast<double>(embedding_.size())),
                grid.u.parameters[worst / columns], grid.v.parameters[worst % columns]};
 }
 
-Result<BodyMapping> BodyMapping::refined_at(double u, double v, const SpringLattice& lattice,
-                                            const std::vector<FixingPlane>& planes) const {
-  const Result<Surface> finer_rest = with_element_halved(rest_, u, v);
+Result<BodyMapping> BodyMapping::refine_at(double u, double v, const SpringLattice& lattice,
+                                           const std::vector<FixingPlane>& planes) const {
+  const Result<Surface> finer_rest = halve_element(rest_, u, v);
   if (!finer_rest.ok()) return finer_rest.error();
-  const Result<Surface> finer = with_element_halved(current_, u, v);
+  const Result<Surface> finer = halve_element(current_, u, v);
   if (!finer.ok()) return finer.error();
   return make(finer_rest.value(), finer.value(), lattice, planes, set_);
 }
@@ -368,6 +367,79 @@ EmbeddedPoint BodyMapping::at(double u, double v) const {
   point.add(embedding_[first + 1], static_cast<float>((1 - a) * b));
   point.add(embedding_[first + grid.columns()], static_cast<float>(a * (1 - b)));
   point.add(embedding_[first + grid.columns() + 1], static_cast<float>(a * b));
+  return point;
+}
+
+namespace {
+
+// Returns a number for the octant of a cell that contains the point: its first node and a bit for each
+// direction.
+int find_cell_octant(const EmbeddedPoint& point) {
+  int octant = 0;
+  for (int bit = 0; bit < 3; ++bit) {
+    float upper_weight = 0.0f;
+    for (int c = 0; c < 8; ++c) {
+      if ((c >> bit & 1) != 0) upper_weight += point.weight[c];
+    }
+    octant |= upper_weight > 0.5f ? 1 << bit : 0;
+  }
+  return 8 * point.node[0] + octant;
+}
+
+}  // namespace
+
+MeshMapping::MeshMapping(const TriangleMesh& rest, const SpringLattice& lattice)
+    : rest_m_(rest.vertices_m),
+      triangles_(std::make_shared<const std::vector<TriangleCorners>>(rest.triangles)),
+      node_moves_(4 * static_cast<std::size_t>(lattice.mesh().node_count()), 0.0f),
+      current_(rest) {
+  SPOONBILL_ASSERT(!rest.triangles.empty());
+  embedding_.reserve(rest_m_.size());
+  patches_.reserve(rest_m_.size());
+  for (const Vector3& vertex : rest_m_) {
+    const EmbeddedPoint point = embed_in_box(lattice.mesh(), vertex);
+    patches_.push_back(find_cell_octant(point));
+    CellWeights& weights = embedding_.emplace_back();
+    std::copy_n(point.node.begin(), 8, weights.node);
+    std::copy_n(point.weight.begin(), 8, weights.weight);
+  }
+  std::vector<int> found = patches_;
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  for (int& patch : patches_) {
+    patch = static_cast<int>(std::lower_bound(found.begin(), found.end(), patch) - found.begin());
+  }
+}
+
+void MeshMapping::update(const SpringLattice& lattice) {
+  using Vector4 = float __attribute__((vector_size(16)));
+  const auto nodes = static_cast<std::size_t>(lattice.mesh().node_count());
+  const float *x = lattice.displacements(0), *y = lattice.displacements(1), *z = lattice.displacements(2);
+  auto* const moves = reinterpret_cast<Vector4*>(node_moves_.data());
+  for (std::size_t n = 0; n < nodes; ++n) moves[n] = Vector4{x[n], y[n], z[n], 0.0f};
+  std::vector<Vector3>& vertices = current_.mutable_vertices_m();
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const CellWeights& cell = embedding_[v];
+    const auto term = [&](int c) { return cell.weight[c] * moves[cell.node[c]]; };
+    const Vector4 sum =
+        ((term(0) + term(1)) + (term(2) + term(3))) + ((term(4) + term(5)) + (term(6) + term(7)));
+    vertices[v] = rest_m_[v] + Vector3(sum[0], sum[1], sum[2]);
+  }
+  current_.refit();
+}
+
+EmbeddedPoint MeshMapping::vertex(std::uint32_t vertex) const {
+  const CellWeights& cell = embedding_[vertex];
+  EmbeddedPoint point;
+  point.count = 8;
+  std::copy_n(cell.node, 8, point.node.begin());
+  std::copy_n(cell.weight, 8, point.weight.begin());
+  return point;
+}
+
+EmbeddedPoint MeshMapping::at(const PointOnMesh& on) const {
+  EmbeddedPoint point;
+  for (std::size_t c = 0; c < 3; ++c) point.add(vertex(on.vertex[c]), static_cast<float>(on.weight[c]));
   return point;
 }
 

@@ -1,8 +1,10 @@
-// From lattice to surface: grid samples are embedded in the lattice's cells by fixed trilinear weights,
-// follow the nodes, and carry the control points with them through the displacement refit.
+// Mappings from a lattice to a skin: a B-spline surface or triangles. Points of the skin are embedded in the
+// lattice's cells by fixed trilinear weights.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "engine/base/containers.h"
@@ -11,29 +13,33 @@
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/surface.h"
+#include "engine/collision/meshes/deforming_mesh.h"
+#include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/collision/solids/surface_collider.h"
 #include "engine/material/contact/contact_constraints.h"
+#include "engine/material/lattice/embedded_point.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "engine/scene/scene.h"
 
 namespace spoonbill {
 
-// How far the surface stays behind what it should follow: the displacement of the samples that the control
-// net cannot take, in metres, and where the largest of it is.
+// Displacement of the samples that the control net cannot follow, and the parameters of its largest value.
 struct MappingResidual {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;
   double u = 0.0, v = 0.0;
 };
 
-// One owner, the simulation; update() and measure_residual() allocate nothing.
+// Mapping to a B-spline surface: embedded grid samples move with the nodes, and the displacement refit moves
+// the control points with the samples. One owner, the simulation; update() and measure_residual() allocate
+// nothing.
 class BodyMapping {
  public:
-  // `rest` is the surface that the lattice's rest shape was filled from, `current` the surface as it is now,
-  // with the same knots; the lattice's present displacements belong to `current`. Behind each plane the part
-  // of the surface that lies wholly there stays exactly: knots are inserted at its edge (which changes no
-  // shape), and the control points that reach into it are held. Only along v, and where v is open: a sheet
-  // that is fixed across u is so as its nodes are.
+  // `rest` is the surface from which the lattice's rest shape was made. `current` is the surface for the
+  // lattice's present displacements, with the same knots. The part of the surface wholly behind a plane stays
+  // exactly fixed: knots are inserted at its edge, which changes no shape, and the control points that reach
+  // into it are fixed. This holds along v only, and only where v is open; a sheet fixed across u is fixed by
+  // its nodes.
   static Result<BodyMapping> make(const Surface& rest, const Surface& current, const SpringLattice& lattice,
                                   const std::vector<FixingPlane>& planes, InstructionSet set);
 
@@ -41,55 +47,85 @@ class BodyMapping {
   const Surface& current() const { return current_; }
   const NestedGrid& nested() const { return *nested_; }
 
-  // Moves current() by what the nodes moved since make().
+  // Moves current() by the nodes' displacement since make().
   void update(const SpringLattice& lattice);
 
-  // Of the displacements since make(), as last measured.
+  // Residual of the displacements since make(), as last measured.
   const MappingResidual& residual() const { return residual_; }
   void measure_residual();
 
-  // The same with a knot in the middle of the elements, one in each direction, that hold this place: more
-  // control points there, and the same shape to rounding. Refused at the most control points.
-  Result<BodyMapping> refined_at(double u, double v, const SpringLattice& lattice,
-                                 const std::vector<FixingPlane>& planes) const;
+  // Returns the mapping with a knot at the midpoint of the elements that contain u and v. The shape stays the
+  // same up to rounding and gains control points there. Refused at the largest number of control points.
+  Result<BodyMapping> refine_at(double u, double v, const SpringLattice& lattice,
+                                const std::vector<FixingPlane>& planes) const;
 
-  // The embedding of a grid sample, and of any point by blending the samples around it.
+  // Embedding of a grid sample, and of any point by blending the samples around it.
   const EmbeddedPoint& sample(int index) const { return embedding_[index]; }
   EmbeddedPoint at(double u, double v) const;
-
-  // The control points of v (columns) that are held, for tests and the panel.
-  const std::vector<std::uint8_t>& fixed_columns() const { return held_columns_; }
 
  private:
   BodyMapping(Surface rest, Surface current, InstructionSet set)
       : set_(set), rest_(std::move(rest)), base_(current), current_(std::move(current)) {}
-  // Of a sample, the one with whose place it is one: over a seam, or at a pole. Itself of most.
-  int twin_of(int row, int column) const;
+  // Index of the first sample at the same point, over a seam or at a pole; otherwise the sample's own.
+  int find_twin(int row, int column) const;
   void embed(const SpringLattice& lattice);
-  // The embedding of one sample without gaps, as the tick reads it: a place that is not used has weight 0.
+  // Embedding of one sample as the tick reads it, without gaps. An unused entry has weight 0.
   struct CellWeights {
     int node[8];
     float weight[8];
   };
-  // What each sample moved since make().
+  // Computes the displacement of each sample since make().
   void sample_displacements(const SpringLattice& lattice);
 
   InstructionSet set_;
   Surface rest_, base_, current_;
-  // By pointer, because the collider keeps the grid's address when the mapping moves.
+  // Shared pointer, because colliders hold the grid's address when the mapping moves.
   std::shared_ptr<NestedGrid> nested_;
   std::vector<EmbeddedPoint> embedding_;
-  std::vector<CellWeights> cell_weights_;  // the same
-  AlignedVector<float> node_moves_;        // x, y, z, 0 of each node
-  AlignedVector<float> base_moves_;        // the same of each sample, at make()
-  AlignedVector<float> sample_[3];         // as the refit takes them
+  std::vector<CellWeights> cell_weights_;  // by sample, equal to embedding_
+  AlignedVector<float> node_moves_;        // x, y, z, 0 by node
+  AlignedVector<float> base_moves_;        // x, y, z, 0 by sample, at make()
+  AlignedVector<float> sample_[3];         // by axis, in the layout of the refit
   std::vector<float> control_[3];
-  std::vector<std::uint8_t> held_columns_;
-  bool first_pole_ = true, last_pole_ = true;    // of v
-  std::vector<DisplacementRefit> refit_;         // one, once made
-  std::vector<GridEvaluator<float>> evaluator_;  // the same
-  GridSamples<float> followed_;                  // what the surface moved at the samples
+  bool first_pole_ = true, last_pole_ = true;    // whether v starts and ends with a pole
+  std::vector<DisplacementRefit> refit_;         // one element once made
+  std::vector<GridEvaluator<float>> evaluator_;  // one element once made
+  GridSamples<float> followed_;                  // displacement of the surface at the samples
   MappingResidual residual_;
+};
+
+// Mapping to triangles, whose vertices are embedded in a box lattice. One owner, the simulation; update()
+// allocates nothing.
+class MeshMapping {
+ public:
+  // `lattice` is a box_lattice() about the mesh, at rest. DeformingMesh states the requirements on the mesh.
+  MeshMapping(const TriangleMesh& rest, const SpringLattice& lattice);
+
+  const DeformingMesh& current() const { return current_; }
+  // Triangles in the mesh's own order, shared with snapshots.
+  const std::shared_ptr<const std::vector<TriangleCorners>>& triangles() const { return triangles_; }
+
+  // Moves current() to the nodes.
+  void update(const SpringLattice& lattice);
+
+  EmbeddedPoint vertex(std::uint32_t vertex) const;
+  EmbeddedPoint at(const PointOnMesh& point) const;
+
+  // Patch of each vertex: its octant of a cell at rest, numbered without gaps. Constraints denser than half a
+  // cell would act on the same nodes twice.
+  const std::vector<int>& patches() const { return patches_; }
+
+ private:
+  struct CellWeights {
+    int node[8];
+    float weight[8];
+  };
+  std::vector<Vector3> rest_m_;
+  std::vector<CellWeights> embedding_;
+  std::vector<int> patches_;
+  std::shared_ptr<const std::vector<TriangleCorners>> triangles_;
+  AlignedVector<float> node_moves_;  // x, y, z, 0 by node
+  DeformingMesh current_;
 };
 
 }  // namespace spoonbill

@@ -14,16 +14,16 @@ std::string rounded_text(double number) {
   return number_text(std::round(10.0 * number) / 10.0);
 }
 
-// Of a body that its springs move.
-std::string remark_on_slender_cells(const BodyState& body) {
-  if (body.core) return {};
+// Returns a warning about the cells of a body without an implicit solver.
+std::string describe_slender_cells(const BodyState& body) {
+  if (body.implicit_solver) return {};
   const LatticeReport& report = body.lattice.report();
   int worst = 0;
-  const auto off = [&](int axis) { return std::abs(report.youngs_modulus_ratio[axis] - 1.0); };
+  const auto error = [&](int axis) { return std::abs(report.youngs_modulus_ratio[axis] - 1.0); };
   for (int axis = 1; axis < 3; ++axis) {
-    if (off(axis) > off(worst)) worst = axis;
+    if (error(axis) > error(worst)) worst = axis;
   }
-  if (!(off(worst) > slender_stiffness_limit)) return {};
+  if (!(error(worst) > slender_stiffness_limit)) return {};
   return std::string("cells too slender to sculpt with, ") +
          rounded_text(report.youngs_modulus_ratio[worst]) + " times as stiff as the material along " +
          "xyz"[worst] + "; give a node_budget instead of nodes";
@@ -31,9 +31,9 @@ std::string remark_on_slender_cells(const BodyState& body) {
 
 }  // namespace
 
-Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const LatticeMaterials& materials,
-                                        InstructionSet set) {
-  // Measured at 1 Pa: frequencies scale with the root of the modulus, the springs with the modulus.
+Result<SpringLattice> make_sculpting_lattice(const LatticeMesh& mesh, const LatticeMaterials& materials,
+                                             InstructionSet set) {
+  // The frequency is measured at 1 Pa: it scales with the root of the modulus, the springs with the modulus.
   Result<SpringLattice> unit = SpringLattice::make(mesh, materials, 1.0, set);
   if (!unit.ok()) return unit;
   const Material& own = materials.own();
@@ -42,55 +42,58 @@ Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const LatticeMa
   return SpringLattice::make(mesh, materials, std::min(own.youngs_modulus_pa, unit_limit), set);
 }
 
-Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const std::vector<Vector3>& rest_m,
-                                            InstructionSet set) {
+Result<std::optional<ImplicitCore>> make_implicit_solver(const SpringLattice& lattice,
+                                                         const std::vector<Vector3>& rest_m,
+                                                         InstructionSet set) {
   const LatticeMaterials& materials = lattice.materials();
   const bool for_springs = largest_youngs_modulus_pa(materials) < stiff_youngs_modulus_pa &&
                            !lattice.mesh().thin &&
-                           least_poissons_ratio(materials) >= least_spring_poissons_ratio;
+                           least_poissons_ratio(materials) >= min_spring_poissons_ratio;
   if (!are_plainly_elastic(materials) || for_springs) return std::optional<ImplicitCore>();
-  Result<ImplicitCore> core = ImplicitCore::make(lattice.mesh(), rest_m, materials, set);
-  if (!core.ok()) return core.error();
-  return std::optional<ImplicitCore>(std::move(core).value());
+  Result<ImplicitCore> solver = ImplicitCore::make(lattice.mesh(), rest_m, materials, set);
+  if (!solver.ok()) return solver.error();
+  return std::optional<ImplicitCore>(std::move(solver).value());
 }
 
-std::string remark_on(const BodyState& body) {
-  const std::string slender = remark_on_slender_cells(body);
+std::string describe_lattice_warning(const BodyState& body) {
+  const std::string slender = describe_slender_cells(body);
   if (body.lattice.mesh().along.empty()) return slender.empty() ? slender : "lattice: " + slender;
-  return "lattice: a box of cells about the body, since none along it holds; nodes count along x, y and z, "
-         "a feature map does nothing, and what is thinner than a cell is stiffer in bending than its "
-         "material" +
+  return "lattice: a box of cells around the body, because no block of cells fits along it; nodes count "
+         "along x, y "
+         "and z, feature_map is ignored, and parts thinner than a cell are too stiff in bending" +
          (slender.empty() ? slender : "; " + slender);
 }
 
-std::vector<std::uint8_t> nodes_behind(const SpringLattice& lattice, const std::vector<FixingPlane>& planes) {
-  std::vector<std::uint8_t> held(static_cast<std::size_t>(lattice.mesh().node_count()), 0);
+std::vector<std::uint8_t> find_nodes_behind(const SpringLattice& lattice,
+                                            const std::vector<FixingPlane>& planes) {
+  std::vector<std::uint8_t> behind(static_cast<std::size_t>(lattice.mesh().node_count()), 0);
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
     for (const FixingPlane& plane : planes) {
-      if (plane.normal.dot(lattice.position(n) - plane.point_m) <= 0.0) held[static_cast<std::size_t>(n)] = 1;
+      if (plane.normal.dot(lattice.position(n) - plane.point_m) <= 0.0)
+        behind[static_cast<std::size_t>(n)] = 1;
     }
   }
-  return held;
+  return behind;
 }
 
-void BodyState::hold_behind(const std::vector<FixingPlane>& planes) {
-  std::vector<std::uint8_t> nodes = nodes_behind(lattice, planes);
-  supports.take_nodes(lattice, nodes);
-  hold(std::move(nodes));
+void BodyState::fix_nodes_behind(const std::vector<FixingPlane>& planes) {
+  std::vector<std::uint8_t> nodes = find_nodes_behind(lattice, planes);
+  supports.claim_nodes(lattice, nodes);
+  fix(std::move(nodes));
 }
 
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
                                   InstructionSet set, const FeatureMapWatch& watch) {
-  Result<std::shared_ptr<const TrimmedArea>> trim = trim_of(body);
+  Result<std::shared_ptr<const TrimmedArea>> trim = make_trimmed_area(body);
   if (!trim.ok()) return trim.error();
   Result<LatticeMesh> mesh = lattice_of(body, watch);
   if (!mesh.ok()) return mesh.error();
   const Result<LatticeMaterials> materials = lattice_materials(mesh.value(), body.material, body.regions);
   if (!materials.ok()) return materials.error();
-  Result<SpringLattice> lattice = sculpting_lattice(mesh.value(), materials.value(), set);
+  Result<SpringLattice> lattice = make_sculpting_lattice(mesh.value(), materials.value(), set);
   if (!lattice.ok()) return lattice.error();
-  Result<std::optional<ImplicitCore>> core = core_of(lattice.value(), mesh->nodes, set);
-  if (!core.ok()) return core.error();
+  Result<std::optional<ImplicitCore>> solver = make_implicit_solver(lattice.value(), mesh->nodes, set);
+  if (!solver.ok()) return solver.error();
   Result<BodyMapping> mapping = BodyMapping::make(body.surface, body.surface, lattice.value(), planes, set);
   if (!mapping.ok()) return mapping.error();
   Result<BodyLoads> loads =
@@ -107,8 +110,8 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
   state.trim = std::move(trim).value();
   state.loads = std::move(loads).value();
   state.supports = std::move(supports).value();
-  state.hold_behind(planes);
-  state.set_core(std::move(core).value());
+  state.fix_nodes_behind(planes);
+  state.set_implicit_solver(std::move(solver).value());
   return state;
 }
 

@@ -1,4 +1,4 @@
-// One body of a simulation: its lattice, its surface and what holds it.
+// One body of a simulation: lattice, skin, loads, supports and fixed nodes.
 #pragma once
 
 #include <cstdint>
@@ -19,57 +19,62 @@
 #include "engine/scene/scene.h"
 #include "engine/simulation/body_loads.h"
 #include "engine/simulation/body_mapping.h"
-#include "engine/simulation/body_supports.h"
-#include "engine/simulation/mesh_mapping.h"
 #include "engine/simulation/smoothing.h"
 
 namespace spoonbill {
 
-// Plain data, one owner: the simulation.
+// Plain data with one owner, the simulation.
 struct BodyState {
   SpringLattice lattice;
   std::variant<BodyMapping, MeshMapping> skin;
   Smoothing smoothing;
-  std::vector<std::uint8_t> held, touched;  // one byte a node
-  std::optional<ImplicitCore> core = {};    // where the material is too stiff for the lattice's springs
-  bool core_rests = false;
+  std::vector<std::uint8_t> fixed, touched;          // one byte a node
+  std::optional<ImplicitCore> implicit_solver = {};  // for materials too stiff for the lattice's springs
+  bool implicit_suspended = false;
   BodyLoads loads = {};
   BodySupports supports = {};
-  double shell_thickness_m = 0.0;                // 0: a solid
-  std::shared_ptr<const TrimmedArea> trim = {};  // what is there of its surface; none: all
+  double shell_thickness_m = 0.0;                // 0 for a solid
+  std::shared_ptr<const TrimmedArea> trim = {};  // area within the trims; null without trims
 
-  // Lets the supports hold what the planes do not.
-  void hold_behind(const std::vector<FixingPlane>& planes);
-  // One byte a node.
-  void hold(std::vector<std::uint8_t> nodes) {
+  // Fixes the nodes behind the planes, then those of the supports.
+  void fix_nodes_behind(const std::vector<FixingPlane>& planes);
+  // Sets the fixed nodes, one byte a node.
+  void fix(std::vector<std::uint8_t> nodes) {
     SPOONBILL_ASSERT(nodes.size() == static_cast<std::size_t>(lattice.mesh().node_count()));
-    held = std::move(nodes);
-    lattice.hold(held);
-    if (core) core->hold(held);
+    fixed = std::move(nodes);
+    lattice.hold(fixed);
+    if (implicit_solver) implicit_solver->hold(fixed);
   }
-  void set_core(std::optional<ImplicitCore> made) {
-    core = std::move(made);
-    if (core) core->hold(held);
-    rest_core(core_rests);
+  void set_implicit_solver(std::optional<ImplicitCore> solver) {
+    implicit_solver = std::move(solver);
+    if (implicit_solver) implicit_solver->hold(fixed);
+    suspend_implicit(implicit_suspended);
   }
-  // While a tool grips, the springs step the body: grips hold both ways, and those of a tool much heavier
-  // than a stiff body would shake it.
-  void rest_core(bool rests) {
-    core_rests = rests;
-    lattice.set_contact_inverse_mass(mover() ? core->contact_inverse_mass() : 0.0);
-    lattice.hold(held);
-    if (mover()) core->take_shape(lattice);
+  // Lets the springs step the body while a tool grips. Grips act in both directions, and those of a tool much
+  // heavier than a stiff body would shake it.
+  void suspend_implicit(bool suspended) {
+    implicit_suspended = suspended;
+    lattice.set_contact_inverse_mass(active_solver() ? implicit_solver->contact_inverse_mass() : 0.0);
+    lattice.hold(fixed);
+    if (active_solver()) implicit_solver->take_shape(lattice);
   }
-  ImplicitCore* mover() { return core && !core_rests ? &*core : nullptr; }
-  const ImplicitCore* mover() const { return core && !core_rests ? &*core : nullptr; }
-  // The Young's modulus that is stepped.
-  double felt_youngs_modulus_pa() const {
-    return mover() ? lattice.material().youngs_modulus_pa : lattice.youngs_modulus_pa();
+  // Returns the implicit solver if it steps the body; null if the springs do.
+  ImplicitCore* active_solver() {
+    return implicit_solver && !implicit_suspended ? &*implicit_solver : nullptr;
+  }
+  const ImplicitCore* active_solver() const {
+    return implicit_solver && !implicit_suspended ? &*implicit_solver : nullptr;
+  }
+  // Young's modulus with which the body is stepped.
+  double effective_youngs_modulus_pa() const {
+    return active_solver() ? lattice.material().youngs_modulus_pa : lattice.youngs_modulus_pa();
   }
 
-  const LatticeReport& report() const { return mover() ? mover()->report() : lattice.report(); }
+  const LatticeReport& report() const {
+    return active_solver() ? active_solver()->report() : lattice.report();
+  }
 
-  // What every body has but a tessellated tool that gives way.
+  // Surface of any body except a soft mesh tool.
   BodyMapping& mapping() {
     SPOONBILL_ASSERT(mesh() == nullptr);
     return *std::get_if<BodyMapping>(&skin);
@@ -78,41 +83,45 @@ struct BodyState {
     SPOONBILL_ASSERT(mesh() == nullptr);
     return *std::get_if<BodyMapping>(&skin);
   }
-  // Of such a tool; null of any other body.
+  // Triangles of a soft mesh tool; null for any other body.
   const MeshMapping* mesh() const { return std::get_if<MeshMapping>(&skin); }
 
-  // The skin follows the lattice.
+  // Moves the skin to the lattice.
   void update_skin() {
-    std::visit([this](auto& of) { of.update(lattice); }, skin);
+    std::visit([this](auto& mapping) { mapping.update(lattice); }, skin);
   }
 };
 
-// Refused with the field named where the body cannot be simulated.
+// Refuses a body that cannot be simulated; the error names the field.
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
                                   InstructionSet set, const FeatureMapWatch& watch = {});
 
-// The lattice of a body at the stiffness that sculpting can hold: all its materials softened alike.
-Result<SpringLattice> sculpting_lattice(const LatticeMesh& mesh, const LatticeMaterials& materials,
-                                        InstructionSet set);
+// Makes the spring lattice of a body. All its materials are softened by one factor to the stiffness that
+// sculpting can step.
+Result<SpringLattice> make_sculpting_lattice(const LatticeMesh& mesh, const LatticeMaterials& materials,
+                                             InstructionSet set);
 
-// Elastic bodies are stepped with their true stiffness from here on: the few newtons of a hand dent them by
-// less than a third of a millimetre, and what they do is bend. Softer ones are dented, which takes the finer
-// lattice and its springs.
+// Young's modulus from which elastic bodies are stepped implicitly at their true stiffness. The few newtons
+// of a hand dent them by less than a third of a millimetre; they bend. Softer bodies are dented, which takes
+// the finer lattice and its springs.
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
 
-// What moves a lattice instead of its springs: of one whose materials are all plainly elastic, and whose
-// stiffest is as stiff as that; and of an elastic shell, which bends where springs in one layer would be
-// twice too stiff. Unstrained at `rest_m`. None where the springs do.
-Result<std::optional<ImplicitCore>> core_of(const SpringLattice& lattice, const std::vector<Vector3>& rest_m,
-                                            InstructionSet set);
+// Makes the implicit solver of a lattice, unstrained at `rest_m`. It steps bodies whose materials are all
+// linear elastic and whose stiffest reaches stiff_youngs_modulus_pa. It also steps elastic shells, which a
+// single layer of springs would make twice too stiff in bending. Empty for bodies that their springs step.
+Result<std::optional<ImplicitCore>> make_implicit_solver(const SpringLattice& lattice,
+                                                         const std::vector<Vector3>& rest_m,
+                                                         InstructionSet set);
 
-// What is wrong with a body that can be simulated all the same, in a line with its remedy; empty: nothing.
-// Cells too slender for springs are stiffer along them than the material, by a share that this is the limit
-// of: such a lattice may be drawn and felt, but not as the material named.
+// Largest relative error of a lattice's Young's modulus along an axis without a warning. Cells too slender
+// for springs exceed it.
 inline constexpr double slender_stiffness_limit = 0.25;
-std::string remark_on(const BodyState& body);
+// Returns a warning in one line about a lattice that can be simulated but deviates from its material, with a
+// remedy; empty without one.
+std::string describe_lattice_warning(const BodyState& body);
 
-// One byte a node, 1 where a plane holds it.
-std::vector<std::uint8_t> nodes_behind(const SpringLattice& lattice, const std::vector<FixingPlane>& planes);
+// Returns one byte a node, 1 for nodes behind a plane.
+std::vector<std::uint8_t> find_nodes_behind(const SpringLattice& lattice,
+                                            const std::vector<FixingPlane>& planes);
 
 }  // namespace spoonbill

@@ -1,10 +1,9 @@
-#include "engine/simulation/command_applier.h"
-
 #include <string>
 #include <utility>
 
-namespace spoonbill {
+#include "engine/simulation/simulation_state.h"
 
+namespace spoonbill {
 std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies) {
   std::vector<BodyPairContact> pairs;
   for (std::size_t second = 1; second < bodies.size(); ++second) {
@@ -15,15 +14,15 @@ std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies) {
   return pairs;
 }
 
-std::vector<BodySelfContact> make_self(const std::vector<BodyState>& bodies) {
+std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bodies) {
   std::vector<BodySelfContact> self;
   self.reserve(bodies.size());
   for (const BodyState& body : bodies) self.emplace_back(body);
   return self;
 }
 
-BodyContacts make_between() {
-  // Each with the nodes around it; some hundreds act at once where two handles lie on each other.
+BodyContacts make_contact_buffer() {
+  // Number of constraints, each with the nodes around it. Two handles on each other need some hundreds.
   constexpr int capacity = 8192;
   return BodyContacts(capacity);
 }
@@ -43,9 +42,9 @@ Status CommandApplier::operator()(const RemovePlanes&) {
   return set_planes({});
 }
 
-// A body was checked when it was modelled; a B-spline surface takes as long as a mesh of it does.
 Status CommandApplier::check_changes(const Tool& tool) const {
-  if (tool.kind != ToolKind::solid || !tool.body || tool.body != state.kept.back()) return check_tool(tool);
+  if (tool.kind != ToolKind::solid || !tool.body || tool.body != state.retired_bodies.back())
+    return check_tool(tool);
   Tool bodiless = tool;
   bodiless.kind = ToolKind::point;
   return check_tool(bodiless);
@@ -54,17 +53,17 @@ Status CommandApplier::check_changes(const Tool& tool) const {
 Status CommandApplier::operator()(const SetTool& command) {
   const Tool& tool = command.tool;
   if (Status status = check_changes(tool); !status.ok()) return status;
-  if (Status status = check_together(tool, state.scene.symmetry); !status.ok()) return status;
-  if (tool.kind == ToolKind::solid && tool.body != state.kept.back()) {
+  if (Status status = check_tool_and_symmetry(tool, state.scene.symmetry); !status.ok()) return status;
+  if (tool.kind == ToolKind::solid && tool.body != state.retired_bodies.back()) {
     Result<ToolModel> model = make_tool_model(tool, state.set);
     if (!model.ok()) return model.error();
-    state.kept.push_back(tool.body);
-    take_model(std::move(model).value());
+    state.retired_bodies.push_back(tool.body);
+    adopt_model(std::move(model).value());
   }
   state.scene.tool = tool;
   const bool grips = row_of(tool.action).grips;
   for (BodyState& body : state.scene_bodies()) {
-    if (body.core_rests != grips) body.rest_core(grips);
+    if (body.implicit_suspended != grips) body.suspend_implicit(grips);
   }
   if (state.tool_is_soft()) state.tool.placed = false;
   release();
@@ -73,7 +72,8 @@ Status CommandApplier::operator()(const SetTool& command) {
 
 Status CommandApplier::operator()(const SetSymmetry& command) {
   if (Status status = check_symmetry(command.symmetry); !status.ok()) return status;
-  if (Status status = check_together(state.scene.tool, command.symmetry); !status.ok()) return status;
+  if (Status status = check_tool_and_symmetry(state.scene.tool, command.symmetry); !status.ok())
+    return status;
   state.scene.symmetry = command.symmetry;
   state.mirrored.contact.release();
   state.mirrored.placed = false;
@@ -100,51 +100,52 @@ Status CommandApplier::operator()(const SetSculpting& command) {
 
 Status CommandApplier::operator()(const SetMaterial& command) {
   if (Status status = check_body(command.body); !status.ok()) return status;
-  const std::size_t at = static_cast<std::size_t>(command.body);
-  BodyState& body = state.bodies[at];
+  const std::size_t index = static_cast<std::size_t>(command.body);
+  BodyState& body = state.bodies[index];
   LatticeMaterials materials = body.lattice.materials();
   materials.set_own(command.material);
-  Result<SpringLattice> lattice = sculpting_lattice(body.lattice.mesh(), materials, state.set);
+  Result<SpringLattice> lattice = make_sculpting_lattice(body.lattice.mesh(), materials, state.set);
   if (!lattice.ok()) return lattice.error();
   lattice->set_shape(body.lattice.shape());
-  // Cast in a stiff material, a body keeps the shape that it has; from one stiff material to another, the
-  // shape that it would have unloaded.
-  Result<std::optional<ImplicitCore>> core =
-      core_of(lattice.value(), body.core ? body.core->rest_m() : body.lattice.positions(), state.set);
-  if (!core.ok()) return core.error();
+  // A body that becomes stiff keeps its current shape as the rest shape. A body that was stiff keeps its rest
+  // shape.
+  Result<std::optional<ImplicitCore>> solver = make_implicit_solver(
+      lattice.value(), body.implicit_solver ? body.implicit_solver->rest_m() : body.lattice.positions(),
+      state.set);
+  if (!solver.ok()) return solver.error();
   body.lattice = std::move(lattice).value();
-  body.set_core(std::move(core).value());
-  state.scene.bodies[at].material = command.material;
+  body.set_implicit_solver(std::move(solver).value());
+  state.scene.bodies[index].material = command.material;
   release();
   return {};
 }
 
 Status CommandApplier::operator()(const KeepShape&) {
   std::vector<SpringLattice> lattices;
-  std::vector<std::optional<ImplicitCore>> cores;
+  std::vector<std::optional<ImplicitCore>> solvers;
   std::vector<BodyMapping> mappings;
   for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
     const BodyState& body = state.bodies[b];
     LatticeMesh mesh = body.lattice.mesh();
     mesh.nodes = body.lattice.positions();
-    Result<SpringLattice> lattice = sculpting_lattice(mesh, body.lattice.materials(), state.set);
+    Result<SpringLattice> lattice = make_sculpting_lattice(mesh, body.lattice.materials(), state.set);
     if (!lattice.ok()) return lattice.error();
-    lattice->hold(body.held);
+    lattice->hold(body.fixed);
     const Surface& surface = body.mapping().current();
     Result<BodyMapping> mapping =
         BodyMapping::make(surface, surface, lattice.value(), state.scene.planes, state.set);
     if (!mapping.ok()) return mapping.error();
-    Result<std::optional<ImplicitCore>> core = core_of(lattice.value(), mesh.nodes, state.set);
-    if (!core.ok()) return core.error();
-    cores.push_back(std::move(core).value());
+    Result<std::optional<ImplicitCore>> solver = make_implicit_solver(lattice.value(), mesh.nodes, state.set);
+    if (!solver.ok()) return solver.error();
+    solvers.push_back(std::move(solver).value());
     lattices.push_back(std::move(lattice).value());
     mappings.push_back(std::move(mapping).value());
   }
   for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
     state.bodies[b].smoothing = Smoothing(lattices[b].mesh());
-    state.bodies[b].supports.begin_anew(state.bodies[b].lattice, lattices[b]);
+    state.bodies[b].supports.rebase(state.bodies[b].lattice, lattices[b]);
     state.bodies[b].lattice = std::move(lattices[b]);
-    state.bodies[b].set_core(std::move(cores[b]));
+    state.bodies[b].set_implicit_solver(std::move(solvers[b]));
   }
   set_mappings(std::move(mappings));
   return {};
@@ -152,15 +153,16 @@ Status CommandApplier::operator()(const KeepShape&) {
 
 Status CommandApplier::operator()(const RefineKnots& command) {
   if (Status status = check_body(command.body); !status.ok()) return status;
-  const std::size_t at = static_cast<std::size_t>(command.body);
-  BodyMapping& mapping = state.bodies[at].mapping();
+  const std::size_t index = static_cast<std::size_t>(command.body);
+  BodyMapping& mapping = state.bodies[index].mapping();
   mapping.measure_residual();
   const MappingResidual& residual = mapping.residual();
   if (!(residual.largest_m > 0.0)) {
-    return Error{"refine_knots: nothing moved since the knots were last changed; shape the body first"};
+    return Error{ErrorCode::inconsistent,
+                 "refine_knots: nothing moved since the knots were last changed; shape the body first"};
   }
   Result<BodyMapping> finer =
-      mapping.refined_at(residual.u, residual.v, state.bodies[at].lattice, state.scene.planes);
+      mapping.refine_at(residual.u, residual.v, state.bodies[index].lattice, state.scene.planes);
   if (!finer.ok()) return finer.error();
   for (const KnotVector* knots : {&finer->rest().u, &finer->rest().v}) {
     if (Status status = check_range("refine_knots: control points in one direction",
@@ -170,7 +172,7 @@ Status CommandApplier::operator()(const RefineKnots& command) {
     }
   }
   mapping = std::move(finer).value();
-  state.scene.bodies[at].surface = mapping.current();
+  state.scene.bodies[index].surface = mapping.current();
   release();
   make_contacts();
   return {};
@@ -194,7 +196,7 @@ Status CommandApplier::set_planes(std::vector<FixingPlane> planes) {
     mappings.push_back(std::move(mapping).value());
   }
   for (BodyState& body : state.scene_bodies()) {
-    body.hold_behind(planes);
+    body.fix_nodes_behind(planes);
   }
   state.scene.planes = std::move(planes);
   set_mappings(std::move(mappings));
@@ -209,12 +211,12 @@ void CommandApplier::set_mappings(std::vector<BodyMapping> mappings) {
   make_contacts();
 }
 
-// Of the last tool at most its soft body is in the list.
-void CommandApplier::take_model(ToolModel model) {
+// Replaces the last tool's model, and its soft body at the end of the list.
+void CommandApplier::adopt_model(ToolModel model) {
   while (state.bodies.size() > state.scene.bodies.size()) state.bodies.pop_back();
   if (model.soft) state.bodies.push_back(*std::move(model.soft));
   model.soft.reset();
-  if (state.model.triangles) state.kept_triangles.push_back(std::move(state.model.triangles));
+  if (state.model.triangles) state.retired_triangles.push_back(std::move(state.model.triangles));
   state.model = std::move(model);
   make_contacts();
 }
@@ -223,9 +225,10 @@ void CommandApplier::make_contacts() {
   state.tool.contact = ToolContact(state.scene_bodies(), state.model);
   state.mirrored.contact = ToolContact(state.scene_bodies(), state.model);
   state.pairs = make_pairs(state.bodies);
-  state.self = make_self(state.bodies);
-  state.between = make_between();
-  state.on_ground = OnGround(state.scene_bodies().first(state.scene.ground ? state.scene.bodies.size() : 0));
+  state.self = make_self_contacts(state.bodies);
+  state.between = make_contact_buffer();
+  state.ground_contact =
+      BodyGroundContact(state.scene_bodies().first(state.scene.ground ? state.scene.bodies.size() : 0));
 }
 
 }  // namespace spoonbill

@@ -12,26 +12,26 @@
 namespace spoonbill {
 namespace {
 
-Vector3 last_way(const Support& support) {
+Vector3 final_displacement(const Support& support) {
   if (!support.motion || support.motion->kind == MotionKind::oscillation) return Vector3::Zero();
-  return support.motion->way_m;
+  return support.motion->displacement_m;
 }
 
-std::vector<HeldAxis> held_axes(const BodyState& state, const Body& body) {
-  std::vector<Vector3> way_m(state.held.size(), Vector3::Zero());
+std::vector<HeldAxis> find_fixed_axes(const BodyState& state, const Body& body) {
+  std::vector<Vector3> displacement_m(state.fixed.size(), Vector3::Zero());
   for (std::size_t s = 0; s < body.supports.size(); ++s) {
     for (const int node : state.supports.supports()[s].nodes) {
-      way_m[static_cast<std::size_t>(node)] = last_way(body.supports[s]);
+      displacement_m[static_cast<std::size_t>(node)] = final_displacement(body.supports[s]);
     }
   }
-  std::vector<HeldAxis> held;
-  for (std::size_t n = 0; n < way_m.size(); ++n) {
-    if (state.held[n] != 0) hold_node(static_cast<int>(n), way_m[n], held);
+  std::vector<HeldAxis> fixed;
+  for (std::size_t n = 0; n < displacement_m.size(); ++n) {
+    if (state.fixed[n] != 0) hold_node(static_cast<int>(n), displacement_m[n], fixed);
   }
-  return held;
+  return fixed;
 }
 
-// The largest by size.
+// Returns the principal Green-Lagrange strain of the largest magnitude at a point of a cell.
 double principal_strain(const CellCorners& rest, const CellCorners& bent, const Vector3& at) {
   const Eigen::Matrix3d gradient = trilinear_jacobian(bent, at.x(), at.y(), at.z()) *
                                    trilinear_jacobian(rest, at.x(), at.y(), at.z()).inverse();
@@ -52,7 +52,7 @@ void find_strain(const LatticeMesh& bent, RestShape& shape) {
           const double strain = principal_strain(corners, moved, at);
           if (std::abs(strain) <= std::abs(shape.largest_strain)) continue;
           shape.largest_strain = strain;
-          shape.strained_m = trilinear(corners, at.x(), at.y(), at.z());
+          shape.largest_strain_position_m = trilinear(corners, at.x(), at.y(), at.z());
         }
       }
     }
@@ -85,13 +85,15 @@ void measure(const StaticBody& body, const StaticLoads& loads, RestShape& shape)
 
 }  // namespace
 
-Result<RestShape> rest_shape(const Scene& scene, int body, const Progress& progress) {
+Result<RestShape> compute_rest_shape(const Scene& scene, int body, const Progress& progress) {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(scene.bodies.size()));
-  const Body& as_set = scene.bodies[static_cast<std::size_t>(body)];
-  Result<BodyState> state = make_body_state(as_set, scene.planes, InstructionSet::baseline);
+  const Body& definition = scene.bodies[static_cast<std::size_t>(body)];
+  Result<BodyState> state = make_body_state(definition, scene.planes, InstructionSet::baseline);
   if (!state.ok()) return state.error();
-  const std::vector<HeldAxis> held = held_axes(state.value(), as_set);
-  if (held.empty()) return Error{"nothing holds it; give it a support or the document a fixing plane"};
+  const std::vector<HeldAxis> fixed = find_fixed_axes(state.value(), definition);
+  if (fixed.empty())
+    return Error{ErrorCode::missing,
+                 "nothing fixes the body; give it a support or the document a fixing plane"};
   const Result<StaticBody> body_at_rest =
       StaticBody::make(state->lattice.mesh(), state->lattice.materials(), CellKind::hexahedra);
   if (!body_at_rest.ok()) return body_at_rest.error();
@@ -99,10 +101,10 @@ Result<RestShape> rest_shape(const Scene& scene, int body, const Progress& progr
                           state->loads.pressed_skin()};
   StaticSettings settings;
   settings.progress = progress;
-  Result<StaticResult> result = rest_under_load(body_at_rest.value(), loads, held, settings);
+  Result<StaticResult> result = rest_under_load(body_at_rest.value(), loads, fixed, settings);
   if (!result.ok()) return result.error();
-  RestShape shape{state->lattice.mesh(), std::move(result).value(), as_set.surface};
-  shape.held_nodes = static_cast<int>(held.size() / 3);
+  RestShape shape{state->lattice.mesh(), std::move(result).value(), definition.surface};
+  shape.held_nodes = static_cast<int>(fixed.size() / 3);
   measure(body_at_rest.value(), loads, shape);
   for (int n = 0; n < shape.mesh.node_count(); ++n) {
     state->lattice.set_displacement(n, shape.result.displacement_m[static_cast<std::size_t>(n)]);

@@ -1,31 +1,29 @@
-// The shape in which a body of a scene rests under the scene's gravity and its own loads, with the stiffness
-// that its material has.
+// Static shape of a body under gravity and its loads, at the true stiffness of its materials.
 #pragma once
 
-#include <vector>
-
 #include "engine/base/progress.h"
+#include "engine/base/result.h"
 #include "engine/material/statics/static_solver.h"
 #include "engine/scene/scene.h"
 
 namespace spoonbill {
 
 struct RestShape {
-  LatticeMesh mesh;  // as made
+  LatticeMesh mesh;  // undeformed
   StaticResult result;
-  Surface surface;  // as bent
+  Surface surface;  // deformed
   int held_nodes = 0;
-  Vector3 load_n = Vector3::Zero();      // gravity and loads together, as the body is bent
-  Vector3 reaction_n = Vector3::Zero();  // of all that holds it
-  int furthest_node = 0;                 // the one that is displaced most
-  // The largest principal strain, by size, in the middle of a cell's faces (Green and Lagrange's).
+  Vector3 load_n = Vector3::Zero();      // sum of gravity and loads on the deformed body
+  Vector3 reaction_n = Vector3::Zero();  // sum over all fixed nodes
+  int furthest_node = 0;                 // node with the largest displacement
+  // Principal Green-Lagrange strain of the largest magnitude, over the centres of the cells' faces.
   double largest_strain = 0.0;
-  Vector3 strained_m = Vector3::Zero();  // where, at rest
+  Vector3 largest_strain_position_m = Vector3::Zero();  // in the undeformed body
 };
 
-// By the static solver, on hexahedra. Planes and supports hold, at the end of a ramp and in the middle of an
-// oscillation; the ground and the other bodies do nothing. What flows or creeps counts as elastic. Refused:
-// what make_body_state() refuses, a body that nothing holds, loads under which it finds no rest.
-Result<RestShape> rest_shape(const Scene& scene, int body, const Progress& progress = {});
+// Solves with hexahedra. Planes and supports fix their nodes: at the end of a ramp, at the centre of an
+// oscillation. Ground and other bodies are ignored, and plastic or creeping materials count as elastic.
+// Refuses what make_body_state() refuses, a body that nothing fixes, and loads without an equilibrium.
+Result<RestShape> compute_rest_shape(const Scene& scene, int body, const Progress& progress = {});
 
 }  // namespace spoonbill

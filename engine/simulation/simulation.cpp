@@ -10,21 +10,14 @@
 
 #include "engine/base/assert.h"
 #include "engine/base/processor.h"
-#include "engine/simulation/command_applier.h"
-#include "engine/simulation/contact_snapshots.h"
-#include "engine/simulation/hand.h"
 #include "engine/simulation/simulation_state.h"
-#include "engine/simulation/snapshot_parts.h"
-#include "engine/simulation/state_hash.h"
-#include "engine/simulation/tool_kernel.h"
 
 namespace spoonbill {
-
 namespace {
 
 Status check_scene(const Scene& scene) {
   if (Status status = check_tool(scene.tool); !status.ok()) return status;
-  if (Status status = check_together(scene.tool, scene.symmetry); !status.ok()) return status;
+  if (Status status = check_tool_and_symmetry(scene.tool, scene.symmetry); !status.ok()) return status;
   if (Status status = check_sculpting(scene.sculpting); !status.ok()) return status;
   if (Status status = check_body_count(scene); !status.ok()) return status;
   for (const Body& body : scene.bodies) {
@@ -40,9 +33,9 @@ Status check_scene(const Scene& scene) {
   return check_symmetry(scene.symmetry);
 }
 
-// Among several bodies the one that is wrong is named.
-Error about(const Body& body, const Scene& scene, const Error& error) {
-  return scene.bodies.size() == 1 ? error : Error{"body \"" + body.name + "\": " + error.message};
+// Adds the body's name to an error if the scene has several bodies.
+Error name_body(const Body& body, const Scene& scene, const Error& error) {
+  return scene.bodies.size() == 1 ? error : error.in("body \"" + body.name + "\"");
 }
 
 }  // namespace
@@ -52,8 +45,8 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   std::vector<BodyState> bodies;
   for (const Body& body : scene.bodies) {
     Result<BodyState> state = make_body_state(body, scene.planes, set, watch);
-    if (!state.ok()) return about(body, scene, state.error());
-    state->rest_core(row_of(scene.tool.action).grips);
+    if (!state.ok()) return name_body(body, scene, state.error());
+    state->suspend_implicit(row_of(scene.tool.action).grips);
     bodies.push_back(std::move(state).value());
   }
   Result<ToolModel> model = make_tool_model(scene.tool, set);
@@ -62,22 +55,22 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   HeldTool mirrored{ToolContact(bodies, model.value())};
   if (model->soft) bodies.push_back(*std::move(model->soft));
   std::vector<BodyPairContact> pairs = make_pairs(bodies);
-  std::vector<BodySelfContact> self = make_self(bodies);
-  OnGround on_ground({bodies.data(), scene.ground ? scene.bodies.size() : 0});
-  std::vector<std::shared_ptr<const ToolBody>> kept = {modelled_body(scene.tool)};
+  std::vector<BodySelfContact> self = make_self_contacts(bodies);
+  BodyGroundContact ground_contact({bodies.data(), scene.ground ? scene.bodies.size() : 0});
+  std::vector<std::shared_ptr<const ToolBody>> retired_bodies = {find_model_body(scene.tool)};
   return Simulation(std::make_unique<State>(State{std::move(scene),
                                                   set,
                                                   std::move(bodies),
                                                   std::move(model).value(),
                                                   std::move(tool),
                                                   std::move(mirrored),
-                                                  make_between(),
+                                                  make_contact_buffer(),
                                                   std::move(pairs),
                                                   std::move(self),
-                                                  std::move(on_ground),
+                                                  std::move(ground_contact),
                                                   false,
                                                   0.0,
-                                                  std::move(kept),
+                                                  std::move(retired_bodies),
                                                   {}}));
 }
 
@@ -87,7 +80,7 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
 Status Simulation::apply(const Command& command) {
-  const DenormalsFlushed flushed;  // the same bits, whichever thread asks
+  const DenormalsFlushed flushed;  // gives the same bits on every thread
   return std::visit(CommandApplier{*state_}, command);
 }
 
@@ -100,10 +93,10 @@ bool is_tool(const Simulation::State& s, std::size_t body) {
 template <class Visit>
 void visit_pairs(Simulation::State& s, const Visit& visit) {
   auto pair = s.pairs.begin();
-  for (std::size_t second = 1; second < s.stepped(); ++second) {
+  for (std::size_t second = 1; second < s.stepped_count(); ++second) {
     for (std::size_t first = 0; first < second; ++first, ++pair) {
-      visit(*pair, NumberedBody{static_cast<int>(first), &s.bodies[first]},
-            NumberedBody{static_cast<int>(second), &s.bodies[second]}, is_tool(s, second));
+      visit(*pair, IndexedBody{static_cast<int>(first), &s.bodies[first]},
+            IndexedBody{static_cast<int>(second), &s.bodies[second]}, is_tool(s, second));
     }
   }
 }
@@ -113,18 +106,18 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
   s.pairs_overflow = false;
   s.tool_gap_m = std::numeric_limits<double>::infinity();
   visit_pairs(
-      s, [&](BodyPairContact& pair, const NumberedBody& first, const NumberedBody& second, bool of_tool) {
+      s, [&](BodyPairContact& pair, const IndexedBody& first, const IndexedBody& second, bool is_tool_pair) {
         s.pairs_overflow |= !pair.find(first, second);
-        if (of_tool) s.tool_gap_m = std::min(s.tool_gap_m, pair.least_gap_m());
+        if (is_tool_pair) s.tool_gap_m = std::min(s.tool_gap_m, pair.least_gap_m());
       });
   const bool tool_acts =
       !s.tool_is_soft() || s.tool.contact.acts(s.tool_gap_m <= 0.0, std::isfinite(s.tool_gap_m), hold);
-  visit_pairs(s, [&](const BodyPairContact& pair, const NumberedBody& first, const NumberedBody& second,
-                     bool of_tool) {
-    if (of_tool && !tool_acts) return;
+  visit_pairs(s, [&](const BodyPairContact& pair, const IndexedBody& first, const IndexedBody& second,
+                     bool is_tool_pair) {
+    if (is_tool_pair && !tool_acts) return;
     s.pairs_overflow |= !pair.add_contacts(first, second, s.between);
   });
-  for (std::size_t b = 0; b < s.stepped(); ++b) {
+  for (std::size_t b = 0; b < s.stepped_count(); ++b) {
     s.pairs_overflow |= !s.self[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, s.between);
   }
   s.between.begin();
@@ -133,27 +126,26 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
 void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
   const int iterations = s.scene.tool.iterations;
   if (s.scene.ground) {
-    s.on_ground.find(s.scene_bodies(), *s.scene.ground, s.scene.sculpting.gravity_m_per_s2,
-                     iterations * relaxation_step_s);
+    s.ground_contact.find(s.scene_bodies(), *s.scene.ground, s.scene.sculpting.gravity_m_per_s2,
+                          iterations * relaxation_step_s);
   }
   std::array<RelaxedLattice, lattice_capacity> lattices{};
-  for (std::size_t b = 0; b < s.stepped(); ++b) {
-    // What a body sags at rest is its weight over its stiffness: a softer one must weigh less to sag the
-    // same, and bear less.
+  for (std::size_t b = 0; b < s.stepped_count(); ++b) {
+    // Sag is weight over stiffness, so that a softened body gets less weight and load to sag the same.
     BodyState& body = s.bodies[b];
-    const double ratio = real_over_felt(s, b);
-    body.loads.apply(1.0 / ratio, body.lattice, body.mover());
+    const double ratio = stiffness_ratio(s, b);
+    body.loads.apply(1.0 / ratio, body.lattice, body.active_solver());
     const double end_s = static_cast<double>(s.tick + 1) * tick_s;
-    lattices[b] = {&body.lattice, s.scene.sculpting.gravity_m_per_s2 / ratio, body.mover(),
+    lattices[b] = {&body.lattice, s.scene.sculpting.gravity_m_per_s2 / ratio, body.active_solver(),
                    body.supports.begin_tick(body.lattice, end_s, tick_s)};
   }
   const RelaxSettings settings{s.tick, iterations, relaxation_step_s, s.scene.sculpting.damping_per_s,
                                s.scene.sculpting.settles};
-  s.relaxed = relax({lattices.data(), s.stepped()}, settings, tools, &s.between,
-                    s.scene.ground ? &s.on_ground.contacts() : nullptr);
+  s.relaxed = relax({lattices.data(), s.stepped_count()}, settings, tools, &s.between,
+                    s.scene.ground ? &s.ground_contact.contacts() : nullptr);
 }
 
-std::uint32_t flags_of(const Simulation::State& s) {
+std::uint32_t collect_flags(const Simulation::State& s) {
   std::uint32_t flags = tick_flag_none;
   if (s.relaxed.nodes_slowed) flags |= tick_flag_nodes_slowed;
   if (s.relaxed.speed_capped) flags |= tick_flag_speed_capped;
@@ -164,27 +156,23 @@ std::uint32_t flags_of(const Simulation::State& s) {
 }
 
 void mark_touched(Simulation::State& s) {
-  for (std::size_t b = 0; b < s.stepped(); ++b) {
+  for (std::size_t b = 0; b < s.stepped_count(); ++b) {
     std::vector<std::uint8_t>& touched = s.bodies[b].touched;
     std::fill(touched.begin(), touched.end(), std::uint8_t{0});
     const int body = static_cast<int>(b);
     s.between.mark_touched(body, touched.data());
     if (is_tool(s, b)) continue;
-    if (s.scene.ground) s.on_ground.contacts().mark_touched(body, touched.data());
+    if (s.scene.ground) s.ground_contact.contacts().mark_touched(body, touched.data());
     s.tool.contact.constraints().mark_touched(body, touched.data());
     if (s.scene.symmetry.on) s.mirrored.contact.constraints().mark_touched(body, touched.data());
   }
 }
 
-}  // namespace
-
-namespace {
-
-// The panel shows it; one body a turn, a few times a second.
+// Measures one body in turn, a few times a second, for the panel.
 void measure_residuals(Simulation::State& s) {
-  constexpr std::uint64_t pause = 128;
-  if (s.tick % pause != 0) return;
-  s.bodies[s.tick / pause % s.scene.bodies.size()].mapping().measure_residual();
+  constexpr std::uint64_t interval_ticks = 128;
+  if (s.tick % interval_ticks != 0) return;
+  s.bodies[s.tick / interval_ticks % s.scene.bodies.size()].mapping().measure_residual();
 }
 
 }  // namespace
@@ -195,24 +183,24 @@ Reaction Simulation::advance(const ToolInput& input) {
   State& s = *state_;
   const bool both = s.scene.symmetry.on;
   std::array<TouchingTool, 2> tools;
-  const ToolHold hold = hold_of(input);
+  const ToolHold hold = make_hold(input);
   tools[0] = touch(s, s.tool, hold, input.coupling_n_per_m);
   if (both) {
-    tools[1] = touch(s, s.mirrored, mirrored_hold(s.scene.symmetry, input), input.coupling_n_per_m);
+    tools[1] = touch(s, s.mirrored, make_mirrored_hold(s.scene.symmetry, input), input.coupling_n_per_m);
   }
   find_contacts_between(s, hold);
   relax_bodies(s, {tools.data(), both ? std::size_t{2} : std::size_t{1}});
-  if (const auto reform = kernel_of(s.scene.tool.action).reform) {
+  if (const auto reform = find_kernel(s.scene.tool.action).reform) {
     reform(s, s.tool);
     if (both) reform(s, s.mirrored);
   }
-  for (std::size_t b = 0; b < s.stepped(); ++b) s.bodies[b].update_skin();
+  for (std::size_t b = 0; b < s.stepped_count(); ++b) s.bodies[b].update_skin();
   measure_residuals(s);
   ++s.tick;
 
   react(s, input);
   s.reaction.mirror_touching = both && s.mirrored.contact.constraints().acted();
-  s.reaction.flags = flags_of(s);
+  s.reaction.flags = collect_flags(s);
   mark_touched(s);
   return s.reaction;
 }
@@ -227,13 +215,13 @@ void Simulation::write_scene(Scene& scene) const {
   }
 }
 std::vector<std::string> Simulation::remarks() const {
-  std::vector<std::string> remarks;
+  std::vector<std::string> warnings;
   for (const Body& body : state_->scene.bodies) {
     const auto at = static_cast<std::size_t>(&body - state_->scene.bodies.data());
-    const std::string remark = remark_on(state_->bodies[at]);
-    if (!remark.empty()) remarks.push_back(about(body, state_->scene, Error{remark}).message);
+    const std::string warning = describe_lattice_warning(state_->bodies[at]);
+    if (!warning.empty()) warnings.push_back(name_body(body, state_->scene, Error{warning}).message);
   }
-  return remarks;
+  return warnings;
 }
 std::uint64_t Simulation::tick() const {
   return state_->tick;
@@ -245,14 +233,15 @@ const SpringLattice& Simulation::lattice(int body) const {
 Vector3 Simulation::support_force_n(int support, int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   const auto at = static_cast<std::size_t>(body);
-  const SupportedNodes& bears = state_->bodies[at].supports.supports()[static_cast<std::size_t>(support)];
-  return bears.impulse_ns * (real_over_felt(*state_, at) / std::max(state_->relaxed.material_time_s, tick_s));
+  const SupportedNodes& nodes = state_->bodies[at].supports.supports()[static_cast<std::size_t>(support)];
+  return nodes.impulse_ns *
+         (stiffness_ratio(*state_, at) / std::max(state_->relaxed.material_time_s, tick_s));
 }
 Vector3 Simulation::ground_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   if (!state_->scene.ground) return Vector3::Zero();
-  const double ratio = real_over_felt(*state_, static_cast<std::size_t>(body));
-  return state_->on_ground.contacts().impulse_ns(body) *
+  const double ratio = stiffness_ratio(*state_, static_cast<std::size_t>(body));
+  return state_->ground_contact.contacts().impulse_ns(body) *
          (ratio / std::max(state_->relaxed.material_time_s, tick_s));
 }
 const LatticeReport& Simulation::report(int body) const {
@@ -285,23 +274,26 @@ std::uint64_t Simulation::state_hash() const {
   const State& s = *state_;
   StateHash hash;
   hash.add(s.tick);
-  for (std::size_t b = 0; b < s.stepped(); ++b) {
+  for (std::size_t b = 0; b < s.stepped_count(); ++b) {
     const BodyState& body = s.bodies[b];
     body.lattice.visit_state([&](const float* data, std::size_t count) { hash.add(data, count); });
-    if (body.core) {
-      body.core->visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
+    if (body.implicit_solver) {
+      body.implicit_solver->visit_state(
+          [&](const double* data, std::size_t count) { hash.add(data, count); });
     }
-    if (s.scene.ground && body.core) {
-      body.core->visit_state_on_ground([&](const double* data, std::size_t count) { hash.add(data, count); });
+    if (s.scene.ground && body.implicit_solver) {
+      body.implicit_solver->visit_state_on_ground(
+          [&](const double* data, std::size_t count) { hash.add(data, count); });
     }
-    if (body.mesh()) continue;  // its vertices are where the nodes have them
+    if (body.mesh()) continue;  // its vertices follow from the nodes
     const ControlNet& net = body.mapping().current().net;
     for (const std::vector<double>* coordinate : {&net.x, &net.y, &net.z}) {
       for (const double value : *coordinate) hash.add(value);
     }
   }
   if (s.scene.ground) {
-    s.on_ground.contacts().visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
+    s.ground_contact.contacts().visit_state(
+        [&](const double* data, std::size_t count) { hash.add(data, count); });
   }
   add_to_hash(s.tool, hash);
   if (s.scene.symmetry.on) add_to_hash(s.mirrored, hash);
@@ -327,14 +319,14 @@ Status Simulation::restore(const ShapeState& shape) {
   for (std::size_t b = 0; fits && b < shape.lattices.size(); ++b) {
     fits = shape.lattices[b].size() == state_->bodies[b].lattice.shape_size();
   }
-  if (!fits) return Error{"shape: it belongs to another lattice"};
+  if (!fits) return Error{ErrorCode::mismatch, "shape: belongs to another lattice"};
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
     BodyState& body = state_->bodies[b];
     body.lattice.set_shape(shape.lattices[b]);
-    if (body.mover()) body.mover()->take_shape(body.lattice);
+    if (body.active_solver()) body.active_solver()->take_shape(body.lattice);
     body.update_skin();
   }
-  state_->on_ground.contacts().forget();
+  state_->ground_contact.contacts().forget();
   state_->tool.contact.release();
   state_->mirrored.contact.release();
   return {};
@@ -353,8 +345,8 @@ void write_symmetry(const Simulation::State& s, Snapshot& snapshot) {
 void Simulation::write_snapshot(Snapshot& snapshot) const {
   const State& s = *state_;
   snapshot.tick = s.tick;
-  // A soft tool is nowhere before the first tick.
-  const std::size_t drawn = s.tool.placed ? s.stepped() : s.scene.bodies.size();
+  // A soft tool has no position before the first tick.
+  const std::size_t drawn = s.tool.placed ? s.stepped_count() : s.scene.bodies.size();
   write_bodies({s.bodies.data(), drawn}, s.scene, snapshot.bodies);
   snapshot.tool.kind = s.scene.tool.kind;
   snapshot.tool.action = s.scene.tool.action;

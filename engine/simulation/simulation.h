@@ -1,8 +1,10 @@
-// A simulation: a scene and its state at a tick. One owner; after start only the haptic thread (or the
-// lock-step loop) changes it, everybody else sends commands and reads snapshots.
+// The simulation: a scene and its state at a tick. One owner. After the start only the haptic thread or the
+// lock-step loop changes it; all others send commands and read snapshots.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,7 +14,6 @@
 #include "engine/bspline/surface.h"
 #include "engine/material/lattice/feature_map.h"
 #include "engine/material/springs/spring_lattice.h"
-#include "engine/scene/command.h"
 #include "engine/scene/scene.h"
 #include "engine/simulation/snapshot.h"
 
@@ -20,79 +21,111 @@ namespace spoonbill {
 
 inline constexpr double tick_s = 1e-3;
 
-// The hand's part in one tick.
+// Input of the hand in one tick.
 struct ToolInput {
   Pose pose;
-  bool gripping = false;  // holds a pull
-  // The spring by which the hand holds the tool, in N/m of the real material; 0 = held rigidly.
+  bool gripping = false;  // the button is down: holds a pull
+  // Stiffness of the spring between hand and tool, in N/m against the real material. 0: the tool is held
+  // rigidly.
   double coupling_n_per_m = 0.0;
-  bool hovering = false;  // only points: the tool acts on nothing, until it is outside the body again
+  bool hovering = false;  // points without touching: the tool does not act until it is outside the bodies
 };
 
-// What the bodies answer. The force is that of the real stiffness: sculpting computes with the felt one,
-// and a quasi-static force is proportional to it.
+// Response of the bodies to one tick. Sculpting computes with an effective modulus, and scales the
+// quasi-static force to the real stiffness.
 struct Reaction {
   Vector3 force_n = Vector3::Zero();  // on the tool, averaged over the tick's material time
-  Pose proxy;                         // where the material stops the tool
+  Pose proxy;                         // pose at which the material stops the tool
   bool touching = false;
-  bool mirror_touching = false;  // the mirrored tool of a symmetric stroke; its force is not felt
+  bool mirror_touching = false;  // for the mirrored tool, whose force does not reach the hand
   std::uint32_t flags = tick_flag_none;
 };
 
-// Everything that a stroke can change, for undo, bit for bit: the lattice's displacements, velocities, rest
-// lengths and volumes. Control points follow from them.
+// State that a stroke can change, bit for bit, for undo: the lattices' displacements, velocities, rest
+// lengths and volumes. Control points follow from it.
 struct ShapeState {
-  std::vector<std::vector<float>> lattices;  // one a body
+  std::vector<std::vector<float>> lattices;  // by body
   friend bool operator==(const ShapeState&, const ShapeState&) = default;
+};
+
+// FNV-1a hash, 64 bits, of plain values in words of four bytes (Fowler, Noll and Vo 1991). A float takes one
+// multiplication.
+class StateHash {
+ public:
+  void add(const float* values, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      std::uint32_t bits;
+      std::memcpy(&bits, values + i, sizeof bits);
+      mix(bits);
+    }
+  }
+  void add(const double* values, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) add(values[i]);
+  }
+  void add(double value) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    add(bits);
+  }
+  void add(std::uint64_t bits) {
+    mix(static_cast<std::uint32_t>(bits));
+    mix(static_cast<std::uint32_t>(bits >> 32));
+  }
+
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  void mix(std::uint32_t word) { hash_ = (hash_ ^ word) * 1099511628211ull; }
+
+  std::uint64_t hash_ = 14695981039346656037ull;
 };
 
 class Simulation {
  public:
-  // Builds grids, lattice and working memory. Refused with the field named where the scene cannot be
-  // simulated. `watch` is told how feature maps come along, one body after the other.
+  // Builds grids, lattices and working memory. Refuses a scene that cannot be simulated; the error names the
+  // field. `watch` receives the progress of feature maps, one body after the other.
   static Result<Simulation> make(Scene scene, InstructionSet set, const FeatureMapWatch& watch = {});
 
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  // Between ticks; may allocate. On an error the simulation is as it was.
+  // Carries out a command between ticks; may allocate. An error leaves the simulation unchanged.
   Status apply(const Command& command);
 
-  // One tick: contact of the tool as the hand moves from the last tick's pose to this one's, lattice, control
-  // points. Allocates nothing, never throws.
+  // Computes one tick, while the hand moves from the last tick's pose to this one's: contacts, lattices,
+  // control points. Allocates nothing, never throws.
   Reaction advance(const ToolInput& input);
 
-  // The scene as it was set. Its surfaces are those of the last change of structure: surface() is the one of
-  // now.
+  // Scene as it was set. Its surfaces date from the last structural change; surface() returns the current
+  // ones.
   const Scene& scene() const;
-  // What would be saved now. Allocates only where `scene` is of another structure.
+  // Writes the scene with current surfaces, for saving. Allocates only if `scene` has another structure.
   void write_scene(Scene& scene) const;
   std::uint64_t tick() const;
 
-  // FNV-1a over every bit that the next tick depends on, the tick number included.
+  // Hash of every bit that the next tick depends on, including the tick number.
   std::uint64_t state_hash() const;
 
-  // Writes everything but the force, the button and the device, which the haptic side owns.
+  // Writes everything except force, button and device, which the haptic side owns.
   void write_snapshot(Snapshot& snapshot) const;
 
   ShapeState shape() const;
-  // Allocates only where `shape` is of another size.
+  // Allocates only if `shape` has another size.
   void write_shape(ShapeState& shape) const;
-  // Refused when the state is of another lattice.
+  // Refuses the shape of another lattice.
   Status restore(const ShapeState& shape);
 
-  // See remark_on(): a line for each body of the scene that has one.
+  // Warnings about the bodies' lattices, at most one line a body (describe_lattice_warning()).
   std::vector<std::string> remarks() const;
 
-  // For studies and tests: a body's lattice, and its surface as it is now, where it has one: any of the
-  // scene's.
+  // Lattice and current surface of a body of the scene, for studies and tests.
   const SpringLattice& lattice(int body = 0) const;
   const Surface& surface(int body = 0) const;
-  // What steps the body achieves of its materials' elasticity.
+  // Achieved elasticity of the solver that steps the body.
   const LatticeReport& report(int body = 0) const;
 
-  // The mean force of a support, or of the ground, on a body through the last tick, at the real stiffness.
+  // Mean force of a support or of the ground on a body over the last tick, at the real stiffness.
   Vector3 support_force_n(int support, int body = 0) const;
   Vector3 ground_force_n(int body = 0) const;
 

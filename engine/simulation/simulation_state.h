@@ -1,28 +1,30 @@
-// What a simulation consists of. Private to Simulation and its commands.
+// State of a simulation and the steps that change it. Private to engine/simulation.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/material/lattice_solver.h"
-#include "engine/simulation/body_pair_contact.h"
-#include "engine/simulation/body_self_contact.h"
+#include "engine/simulation/body_contact.h"
 #include "engine/simulation/body_state.h"
-#include "engine/simulation/on_ground.h"
+#include "engine/simulation/ground_contact.h"
 #include "engine/simulation/simulation.h"
+#include "engine/simulation/snapshot.h"
 #include "engine/simulation/tool_contact.h"
 
 namespace spoonbill {
 
-// A tool in a hand: the person's own, or its mirror image. The contact keeps the addresses of the mappings'
-// grids, which the mappings hold by pointer: all of them move freely.
+// Tool in the person's hand, or its mirror image. It can move, because the contact keeps addresses of grids
+// that the mappings hold by pointer.
 struct HeldTool {
   ToolContact contact;
-  Pose hand{};  // of the last tick
+  Pose hand{};  // in the last tick
   ToolState state{};
   bool placed = false;
-  // Where the hand was when a soft tool last began to touch.
+  // Position of the hand when a soft tool last began to touch, and whether it still does.
   Vector3 touch_m = Vector3::Zero();
   bool touched = false;
 
@@ -37,19 +39,19 @@ struct HeldTool {
 struct Simulation::State {
   Scene scene;
   InstructionSet set;
-  std::vector<BodyState> bodies;  // as in the scene; then a soft tool
-  ToolModel model;                // of the last solid
+  std::vector<BodyState> bodies;  // bodies of the scene in its order, then a soft tool
+  ToolModel model;                // of the last solid tool
   HeldTool tool;
   HeldTool mirrored;
   BodyContacts between;
-  std::vector<BodyPairContact> pairs;  // 0 and 1, 0 and 2, 1 and 2, ...: see make_pairs()
-  std::vector<BodySelfContact> self;   // of each body
-  OnGround on_ground;                  // the bodies of the scene, where it has a ground
+  std::vector<BodyPairContact> pairs;  // (0, 1), (0, 2), (1, 2), ...: see make_pairs()
+  std::vector<BodySelfContact> self;   // by body
+  BodyGroundContact ground_contact;    // of the scene's bodies; of none without a ground
   bool pairs_overflow = false;
-  double tool_gap_m = 0.0;  // of a soft tool to the bodies; infinite where it is not near
-  // Of tools that were replaced: snapshots share them, and no tick must free the last of one.
-  std::vector<std::shared_ptr<const ToolBody>> kept;
-  std::vector<std::shared_ptr<const std::vector<TriangleCorners>>> kept_triangles;
+  double tool_gap_m = 0.0;  // smallest gap of a soft tool to a body; infinite if it is not near
+  // Bodies and triangles of replaced tools. Snapshots share them, and no tick may free the last reference.
+  std::vector<std::shared_ptr<const ToolBody>> retired_bodies;
+  std::vector<std::shared_ptr<const std::vector<TriangleCorners>>> retired_triangles;
   std::uint64_t tick = 0;
   RelaxReport relaxed{};
   Reaction reaction{};
@@ -57,17 +59,83 @@ struct Simulation::State {
   bool tool_is_soft() const {
     return scene.tool.kind == ToolKind::solid && bodies.size() > scene.bodies.size();
   }
-  // Those of the scene, and those that are stepped: a soft tool rests while the hand holds another.
   std::span<BodyState> scene_bodies() { return {bodies.data(), scene.bodies.size()}; }
-  std::size_t stepped() const { return scene.bodies.size() + (tool_is_soft() ? 1 : 0); }
+  // Number of bodies that are stepped. A soft tool pauses while the hand holds another tool.
+  std::size_t stepped_count() const { return scene.bodies.size() + (tool_is_soft() ? 1 : 0); }
   const Material& material(std::size_t body) const {
     return body < scene.bodies.size() ? scene.bodies[body].material : scene.tool.body->soft->material;
   }
 };
 
 std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies);
-std::vector<BodySelfContact> make_self(const std::vector<BodyState>& bodies);
-// The memory of all their constraints.
-BodyContacts make_between();
+std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bodies);
+// Makes the memory for the constraints of all bodies.
+BodyContacts make_contact_buffer();
+
+// Returns the real Young's modulus of a body's material divided by the effective one.
+double stiffness_ratio(const Simulation::State& state, std::size_t body);
+
+// Contact of a tool that acts in this tick, as its kernel receives it.
+struct ToolTouch {
+  std::span<const BodyState> bodies;
+  const ToolHold& hold;
+  bool inside = false;  // whether the tool is inside a body
+};
+
+// Kernel of a tool action. Each tick calls constrain() for the tool and its mirror image, moves the bodies,
+// then calls reform() for both. Kernels run in the haptic thread: no allocation, no lock, no clock, no error.
+struct ToolKernel {
+  // Adds the constraints of this tick.
+  void (*constrain)(ToolContact& contact, const ToolTouch& touch) = nullptr;
+  // Changes the form of the bodies under the tool; null if the constraints are all.
+  void (*reform)(Simulation::State& state, const HeldTool& held) = nullptr;
+  // False if the tool slides on the body without denting it (ToolMotion::body_yields).
+  bool body_yields = true;
+};
+
+// Returns the kernel of an action; tool_step.cpp defines them.
+const ToolKernel& find_kernel(ToolAction action);
+
+ToolHold make_hold(const ToolInput& input);
+// Returns the mirror image of the hold, with mirrored axes.
+ToolHold make_mirrored_hold(const Symmetry& symmetry, const ToolInput& input);
+
+// Finds the contact of a tool and its motion from the last tick's pose to that of `hold`.
+TouchingTool touch(Simulation::State& state, HeldTool& held, ToolHold hold, double coupling_n_per_m);
+
+// Computes proxy, force and touch of the person's own tool after the bodies have moved.
+void react(Simulation::State& state, const ToolInput& input);
+
+// Carries out commands, outside the tick; may allocate. Each makes all new parts first and changes the state
+// only if that succeeds.
+struct CommandApplier {
+  Simulation::State& state;
+
+  Status operator()(const PlacePlane& command);
+  Status operator()(const RemovePlanes& command);
+  Status operator()(const SetTool& command);
+  Status operator()(const SetSymmetry& command);
+  Status operator()(const ResetProxy& command);
+  Status operator()(const LiftTool& command);
+  Status operator()(const SetSculpting& command);
+  Status operator()(const SetMaterial& command);
+  Status operator()(const KeepShape& command);
+  Status operator()(const RefineKnots& command);
+
+ private:
+  void release();
+  Status check_body(int body) const;
+  // Checks a tool, except for a body that has been modelled before. Checking a B-spline body takes as long as
+  // modelling it.
+  Status check_changes(const Tool& tool) const;
+  void adopt_model(ToolModel model);
+  void make_contacts();
+  Status set_planes(std::vector<FixingPlane> planes);
+  void set_mappings(std::vector<BodyMapping> mappings);
+};
+
+// Writes bodies and contacts into a snapshot. Allocates only at the first call and after a structural change.
+void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::vector<BodySnapshot>& out);
+void write_contacts(const Simulation::State& state, std::vector<ContactSnapshot>& contacts);
 
 }  // namespace spoonbill

@@ -10,26 +10,26 @@
 namespace spoonbill {
 namespace {
 
-// Nodes that take their turn in a tick.
-constexpr std::size_t turns_a_tick = 24;
+// Number of nodes that are smoothed in a tick.
+constexpr std::size_t nodes_per_tick = 24;
 
-// The share of a bump that goes in one turn. The flow's largest eigenvalue is 8 (two lines, 4 each), so that
-// an explicit step is stable below 2 / 8.
-constexpr double share_a_turn = 0.15;
+// Fraction of a bump that is removed at a time. The largest eigenvalue of the flow is 8 (two lines, 4 each),
+// so that an explicit step is stable below 2 / 8.
+constexpr double shell_fraction = 0.15;
 
-// The same for the nodes inside, which follow to where they lay between their six neighbours, so that cells
-// stay even; stable below 1.
-constexpr double inner_share_a_turn = 0.3;
+// Fraction by which inner nodes return to their rest position among their six neighbours at a time, which
+// keeps cells even. Stable below 1.
+constexpr double inner_fraction = 0.3;
 
-// No turn moves a node further than this share of a cell.
-constexpr double largest_move_cells = 0.05;
+// Largest movement of a node at a time, in lattice cells.
+constexpr double max_move_cells = 0.05;
 
 }  // namespace
 
 Smoothing::Smoothing(const LatticeMesh& mesh)
     : shell_(static_cast<std::size_t>(mesh.node_count())),
       rest_per_m_(shell_.size()),
-      rest_middle_(shell_.size(), Vector3::Zero()),
+      rest_centre_(shell_.size(), Vector3::Zero()),
       stride_{mesh.count[1], 1, mesh.count[0] * mesh.count[1]},
       count_i_(mesh.count[0]),
       closed_(mesh.closed) {
@@ -39,15 +39,14 @@ Smoothing::Smoothing(const LatticeMesh& mesh)
   for (int n = 0; n < mesh.node_count(); ++n) {
     const auto index = static_cast<std::size_t>(n);
     if (shell_[index].pair_count == 0) {
-      const Middle middle = middle_at(n, at_rest);
-      rest_middle_[index] = middle.across.inverse() * middle.offset;  // no cell is folded over
+      const NeighbourCentre centre = neighbour_centre_at(n, at_rest);
+      rest_centre_[index] = centre.across.inverse() * centre.offset;  // invertible, because no cell is folded
     } else if (const auto curvature = curvature_at(n, at_rest)) {
       rest_per_m_[index] = curvature->per_m;
     }
   }
 }
 
-// The neighbours before and after a node inside the block along an axis: over the seam of one that is closed.
 std::array<int, 2> Smoothing::beside(int node, int axis) const {
   const int stride = stride_[static_cast<std::size_t>(axis)];
   std::array<int, 2> nodes = {node - stride, node + stride};
@@ -58,11 +57,10 @@ std::array<int, 2> Smoothing::beside(int node, int axis) const {
   return nodes;
 }
 
-// The pairs in the order that makes their cross product point out of the body.
 void Smoothing::connect(const LatticeMesh& mesh, int node) {
   const std::array<int, 3> at = mesh.place(node);
   ShellNode& shell = shell_[static_cast<std::size_t>(node)];
-  std::array<int, 3> inward{};  // the neighbours into the body, first those along i and j
+  std::array<int, 3> inward{};  // neighbours inside the body, those along i and j first
   std::size_t ends = 0;
   Vector3 outward = Vector3::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -77,7 +75,7 @@ void Smoothing::connect(const LatticeMesh& mesh, int node) {
     const bool between = at[axis] > 0 && at[axis] < mesh.count[axis] - 1;
     if (between || (mesh.closed && axis == 0)) shell.pairs[shell.pair_count++] = beside(node, axis);
   }
-  // Over an edge of the block; at a corner along the ring, which i and j make.
+  // The line crosses an edge of the block; at a corner it follows the ring of i and j.
   if (ends >= 2) shell.pairs[shell.pair_count++] = {inward[0], inward[1]};
   const auto curvature = curvature_at(node, [&](int n) { return mesh.nodes[static_cast<std::size_t>(n)]; });
   if (curvature && curvature->normal.dot(outward) < 0.0) std::swap(shell.pairs[0][0], shell.pairs[0][1]);
@@ -88,15 +86,15 @@ std::optional<Smoothing::Curvature> Smoothing::curvature_at(int node, const Posi
   const ShellNode& shell = shell_[static_cast<std::size_t>(node)];
   if (shell.pair_count < 2) return std::nullopt;
   const Vector3 here = position_of(node);
-  std::array<Vector3, 2> along, over_middle;
+  std::array<Vector3, 2> along, over_chord;
   Curvature curvature;
   for (std::size_t p = 0; p < 2; ++p) {
     const Vector3 a = position_of(shell.pairs[p][0]), b = position_of(shell.pairs[p][1]);
     const double to_a = (here - a).norm(), to_b = (here - b).norm();
     if (!(to_a > 0.0 && to_b > 0.0)) return std::nullopt;
     along[p] = b - a;
-    over_middle[p] = here - (to_b * a + to_a * b) / (to_a + to_b);
-    // A point of a circle lies over the chord between points at distances a and b by a b / 2 times 1 / r.
+    over_chord[p] = here - (to_b * a + to_a * b) / (to_a + to_b);
+    // A point on a circle of radius r is a b / (2 r) above the chord between points at distances a and b.
     curvature.height_factor[p] = 0.5 * to_a * to_b;
   }
   const Vector3 across = along[0].cross(along[1]);
@@ -104,7 +102,7 @@ std::optional<Smoothing::Curvature> Smoothing::curvature_at(int node, const Posi
   if (!(length > 0.0)) return std::nullopt;
   curvature.normal = across / length;
   for (std::size_t p = 0; p < 2; ++p) {
-    curvature.per_m[p] = over_middle[p].dot(curvature.normal) / curvature.height_factor[p];
+    curvature.per_m[p] = over_chord[p].dot(curvature.normal) / curvature.height_factor[p];
   }
   return curvature;
 }
@@ -132,7 +130,7 @@ std::optional<double> Smoothing::bend_toward(const SpringLattice& lattice, int n
   return std::nullopt;
 }
 
-Vector3 Smoothing::off_the_form(const SpringLattice& lattice, int node) const {
+Vector3 Smoothing::measure_bump(const SpringLattice& lattice, int node) const {
   const auto own = bend_at(lattice, node);
   if (!own) return Vector3::Zero();
   const ShellNode& shell = shell_[static_cast<std::size_t>(node)];
@@ -140,7 +138,7 @@ Vector3 Smoothing::off_the_form(const SpringLattice& lattice, int node) const {
   double height = 0.0;
   for (std::size_t p = 0; p < 2; ++p) {
     const auto [a, b] = shell.pairs[p];
-    double height_factor = own->height_factor[p];  // the least of the three: stable where cells differ
+    double height_factor = own->height_factor[p];  // least of the three, for stability with uneven cells
     const auto at_a = bend_toward(lattice, a, node, height_factor);
     const auto at_b = bend_toward(lattice, b, node, height_factor);
     if (!at_a || !at_b) continue;
@@ -151,20 +149,20 @@ Vector3 Smoothing::off_the_form(const SpringLattice& lattice, int node) const {
 }
 
 template <class PositionOf>
-Smoothing::Middle Smoothing::middle_at(int node, const PositionOf& position_of) const {
-  Middle middle{position_of(node), {}};
+Smoothing::NeighbourCentre Smoothing::neighbour_centre_at(int node, const PositionOf& position_of) const {
+  NeighbourCentre centre{position_of(node), {}};
   for (int axis = 0; axis < 3; ++axis) {
     const auto [low, high] = beside(node, axis);
     const Vector3 before = position_of(low), after = position_of(high);
-    middle.offset -= (before + after) / 6.0;
-    middle.across.col(axis) = after - before;
+    centre.offset -= (before + after) / 6.0;
+    centre.across.col(axis) = after - before;
   }
-  return middle;
+  return centre;
 }
 
-Vector3 Smoothing::off_the_middle(const SpringLattice& lattice, int node) const {
-  const Middle middle = middle_at(node, [&](int n) { return lattice.position(n); });
-  return middle.offset - middle.across * rest_middle_[static_cast<std::size_t>(node)];
+Vector3 Smoothing::measure_centre_offset(const SpringLattice& lattice, int node) const {
+  const NeighbourCentre centre = neighbour_centre_at(node, [&](int n) { return lattice.position(n); });
+  return centre.offset - centre.across * rest_centre_[static_cast<std::size_t>(node)];
 }
 
 void Smoothing::apply(SpringLattice& lattice, const SmoothingBrush& brush, std::uint64_t tick) {
@@ -175,15 +173,15 @@ void Smoothing::apply(SpringLattice& lattice, const SmoothingBrush& brush, std::
     if (lattice.is_held(n) || lattice.mesh().joined(n) != n) continue;
     if ((lattice.position(n) - brush.centre_m).squaredNorm() < reach_square) near_.push_back(n);
   }
-  const std::size_t rounds = (near_.size() + turns_a_tick - 1) / turns_a_tick;
+  const std::size_t rounds = (near_.size() + nodes_per_tick - 1) / nodes_per_tick;
   if (rounds == 0) return;
-  const double largest_m = largest_move_cells * static_cast<double>(lattice.cell_size_m());
+  const double largest_m = max_move_cells * static_cast<double>(lattice.cell_size_m());
   for (std::size_t i = tick % rounds; i < near_.size(); i += rounds) {
     const int node = near_[i];
     const bool inner = shell_[static_cast<std::size_t>(node)].pair_count == 0;
     const double inside = 1.0 - (lattice.position(node) - brush.centre_m).squaredNorm() / reach_square;
-    const double weight = inside * inside * (inner ? inner_share_a_turn : share_a_turn);
-    Vector3 move = -weight * (inner ? off_the_middle(lattice, node) : off_the_form(lattice, node));
+    const double weight = inside * inside * (inner ? inner_fraction : shell_fraction);
+    Vector3 move = -weight * (inner ? measure_centre_offset(lattice, node) : measure_bump(lattice, node));
     const double length = move.norm();
     if (length > largest_m) move *= largest_m / length;
     lattice.reform(node, move);

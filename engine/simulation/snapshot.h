@@ -1,5 +1,5 @@
-// A snapshot: everything that drawing and the panel need of one tick, as plain data. Sized when the
-// simulation is built; copying one snapshot onto another of the same sizes allocates nothing.
+// Snapshot of one tick for drawing and the panel. Plain data; copying onto a snapshot of the same sizes
+// allocates nothing.
 #pragma once
 
 #include <array>
@@ -18,26 +18,26 @@ namespace spoonbill {
 
 struct SurfaceSnapshot {
   KnotVector u, v;
-  std::uint64_t structure = 0;  // the knot vectors' fingerprint: while it stays, a Grid can be kept
+  std::uint64_t structure = 0;  // fingerprint of the knot vectors; a Grid stays valid while it is unchanged
   std::vector<float> x, y, z;   // control points in metres, as in ControlNet
-  std::shared_ptr<const TrimmedArea> trim = {};  // what is there of it; none: all
+  std::shared_ptr<const TrimmedArea> trim = {};  // area within the trims; null without trims
 };
 
-// The triangles of a soft tool that is made of them, counter-clockwise seen from outside.
+// Triangles of a soft mesh tool, counter-clockwise seen from outside.
 struct MeshSnapshot {
-  std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles;  // the same while the tool is
+  std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles;  // shared while the tool stays
   std::vector<float> x, y, z;                                                  // vertices in metres
 };
 
-// The nodes of a body's lattice, k fastest: node (i, j, k) at (i * count[1] + j) * count[2] + k, with k along
-// the body. Edges join neighbours along each of the three directions.
+// Nodes of a body's lattice. Node (i, j, k) is at (i * count[1] + j) * count[2] + k, with k along the body.
+// Edges join neighbours in each of the three directions.
 struct LatticeSnapshot {
   int count[3] = {0, 0, 0};
   std::vector<float> x, y, z;          // metres
-  std::vector<std::uint8_t> fixed;     // 1 where the node is held
-  std::vector<std::uint8_t> touched;   // 1 where a contact acts on the node in this tick
-  std::vector<std::uint8_t> on_shell;  // 1 where the node lies on the surface, or about it
-  // 0 where a box about triangles has nodes far from them: those are neither fixed, touched nor drawn.
+  std::vector<std::uint8_t> fixed;     // 1 where the node is fixed
+  std::vector<std::uint8_t> touched;   // 1 where a contact acted on the node in this tick
+  std::vector<std::uint8_t> on_shell;  // 1 where the node is on the surface or next to it
+  // 0 for nodes of a box lattice that are far from the body. They are neither fixed, touched nor drawn.
   std::vector<std::uint8_t> in_body;
 };
 
@@ -46,34 +46,34 @@ struct ToolSnapshot {
   ToolAction action = ToolAction::push;
   int iterations = 0;
   double radius_m = 0.0;
-  std::shared_ptr<const ToolBody> body;  // of a solid; a soft one is drawn as the last of the bodies
-  Pose device;                           // where the hand holds it
-  Pose proxy;                            // where the material stops it; this one is drawn
+  std::shared_ptr<const ToolBody> body;  // of a solid; a soft one is drawn as the last body
+  Pose device;                           // pose of the hand
+  Pose proxy;                            // pose at which the material stops the tool, which is drawn
   bool button = false;
 };
 
-// A fixing plane: everything behind it (opposite to the normal) is held.
+// Fixing plane, which fixes everything on the side opposite to its normal.
 struct PlaneSnapshot {
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitX();
 };
 
-// Where a body is touched deepest: by the tool, or by another body.
+// Deepest contact of a body with the tool or with another body.
 struct ContactSnapshot {
-  int body = 0;                       // of the snapshot's
-  Vector3 point_m = Vector3::Zero();  // on its surface, where the tick found it
+  int body = 0;                       // index in Snapshot::bodies
+  Vector3 point_m = Vector3::Zero();  // on the body's surface, as the tick found it
   Vector3 normal = Vector3::UnitY();  // unit, outward from the body
-  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // tangents_across() it
-  double depth_m = 0.0;  // negative where what pushes it does not yet touch
+  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // tangents_across() the normal
+  double depth_m = 0.0;                                                // negative before the surfaces touch
   double u = 0.0, v = 0.0;
-  EmbeddedPoint nodes;  // of its lattice, which a push there acts on, each by its weight
+  EmbeddedPoint nodes;  // nodes of the body's lattice on which a push acts, with weights
 };
 
 struct MaterialSnapshot {
   std::string name;
-  double youngs_modulus_pa = 0.0;       // of the material
-  double felt_youngs_modulus_pa = 0.0;  // what is stepped at 1 kHz
-  int implicit_nodes = 0;               // of the block that steps it implicitly; 0: springs do, explicitly
+  double youngs_modulus_pa = 0.0;            // true value of the material
+  double effective_youngs_modulus_pa = 0.0;  // value that is stepped at 1 kHz
+  int implicit_nodes = 0;  // nodes of the implicit solver; 0: springs step the body explicitly
   double poissons_ratio = 0.0;
   double density_kg_per_m3 = 0.0;
   double damping_per_s = 0.0;  // mass-proportional
@@ -81,7 +81,7 @@ struct MaterialSnapshot {
   double mass_kg = 0.0;  // of the body
 };
 
-// How far a body's surface stays behind its lattice, metres, since its knots or fixing planes last changed.
+// Distance by which a body's surface lags behind its lattice, since its knots or fixing planes last changed.
 struct ResidualSnapshot {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;
@@ -91,9 +91,9 @@ struct BodySnapshot {
   SurfaceSnapshot surface;
   LatticeSnapshot lattice;
   MaterialSnapshot material;
-  ResidualSnapshot residual = {};  // of a body with a surface
-  MeshSnapshot mesh = {};          // of a soft mesh, which has no surface; no triangles otherwise
-  double shell_thickness_m = 0.0;  // behind the surface; 0: it bounds a solid
+  ResidualSnapshot residual = {};  // bodies with a surface only
+  MeshSnapshot mesh = {};          // soft meshes only, which have no surface
+  double shell_thickness_m = 0.0;  // behind the surface; 0 for a solid
 
   bool is_mesh() const { return mesh.triangles != nullptr; }
 };
@@ -105,28 +105,28 @@ struct DeviceSnapshot {
   double nominal_rate_hz = 1000.0;
 };
 
-// What a tick reports besides its result; each bit names its remedy.
+// Events in a tick. The comment of each bit names the remedy.
 enum TickFlag : std::uint32_t {
   tick_flag_none = 0,
-  tick_flag_nodes_slowed = 1u << 0,      // the substep ceiling was met: strained nodes lag; move more slowly
-  tick_flag_speed_capped = 1u << 1,      // a node met the speed cap: move the tool more slowly
-  tick_flag_contact_overflow = 1u << 2,  // more contact points than the workspace holds: use a smaller tool
-  tick_flag_force_limited = 1u << 3,     // the device's force limit was met: lower the force scale
-  tick_flag_failed = 1u << 4,            // an internal fault broke the tick off: undo the stroke, or save
+  tick_flag_nodes_slowed = 1u << 0,      // substep limit reached, strained nodes lag: move more slowly
+  tick_flag_speed_capped = 1u << 1,      // a node reached the speed limit: move the tool more slowly
+  tick_flag_contact_overflow = 1u << 2,  // too many contact points for the workspace: use a smaller tool
+  tick_flag_force_limited = 1u << 3,     // the device's force limit was reached: lower the force scale
+  tick_flag_failed = 1u << 4,            // an internal fault aborted the tick: undo the stroke, or save
 };
 
 struct Snapshot {
   std::uint64_t tick = 0;
-  std::vector<BodySnapshot> bodies;  // those of the scene, then a soft tool
+  std::vector<BodySnapshot> bodies;  // bodies of the scene, then a soft tool
   ToolSnapshot tool;
   std::vector<PlaneSnapshot> planes;
   bool symmetric = false;  // a second tool mirrors the first
   PlaneSnapshot symmetry;
-  Pose mirrored_proxy;  // of the second tool, when symmetric
+  Pose mirrored_proxy;  // of the second tool, if symmetric
   std::vector<ContactSnapshot> contacts;
-  Vector3 force_n = Vector3::Zero();  // on the hand, after scale and limit
+  Vector3 force_n = Vector3::Zero();  // on the hand, after force scale and limit
   DeviceSnapshot device;
-  int substeps = 0;  // of the last tick
+  int substeps = 0;  // in the last tick
   std::uint32_t flags = tick_flag_none;
 
   double time_s() const { return static_cast<double>(tick) * 1e-3; }

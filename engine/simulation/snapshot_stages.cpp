@@ -9,12 +9,12 @@
 namespace spoonbill {
 namespace {
 
-// More structures than a session soon comes back to.
-constexpr std::size_t structures_kept = 32;
-// Of a tool, among the bodies' fingerprints.
+// Largest number of cached structures, more than a session returns to.
+constexpr std::size_t max_cached_structures = 32;
+// Fingerprint that stands for the tool.
 constexpr std::uint64_t tool_structure = 0;
 
-std::optional<Surface> surface_of(const SurfaceSnapshot& snapshot) {
+std::optional<Surface> make_surface_of(const SurfaceSnapshot& snapshot) {
   ControlNet net(snapshot.u.control_point_count(), snapshot.v.control_point_count());
   if (snapshot.x.size() != net.size() || snapshot.y.size() != net.size() || snapshot.z.size() != net.size()) {
     return std::nullopt;
@@ -27,17 +27,17 @@ std::optional<Surface> surface_of(const SurfaceSnapshot& snapshot) {
   return std::move(surface).value();
 }
 
-// A soft tool is one of the bodies.
-bool is_body(const ToolSnapshot& tool) {
+// Returns whether the tool is one of the snapshot's bodies.
+bool is_soft_body(const ToolSnapshot& tool) {
   return tool.kind == ToolKind::solid && (!tool.body || tool.body->soft);
 }
 
-// The one that `make` makes, once.
+// Returns the cached stages of a key, made by `make` if they are missing; null if that fails.
 template <class Key, class Stages, class Make>
 Stages* find_or_make(std::map<Key, Stages>& all, const Key& key, const Make& make) {
   const auto found = all.find(key);
   if (found != all.end()) return &found->second;
-  if (all.size() >= structures_kept) all.clear();
+  if (all.size() >= max_cached_structures) all.clear();
   Result<Stages> made = make();
   if (!made.ok()) return nullptr;
   return &all.emplace(key, std::move(made).value()).first->second;
@@ -46,21 +46,21 @@ Stages* find_or_make(std::map<Key, Stages>& all, const Key& key, const Make& mak
 }  // namespace
 
 ContactStages SnapshotStages::find(const Snapshot& snapshot) {
-  follow(snapshot.tool);
+  update_solid(snapshot.tool);
   ContactStages stages;
   std::vector<Surface> surfaces;
-  std::vector<Numbered> bodies;
+  std::vector<StructuredSurface> bodies;
   surfaces.reserve(snapshot.bodies.size());
   for (const BodySnapshot& body : snapshot.bodies) {
     if (body.is_mesh()) continue;
-    std::optional<Surface> surface = surface_of(body.surface);
+    std::optional<Surface> surface = make_surface_of(body.surface);
     if (!surface) continue;
     surfaces.push_back(*std::move(surface));
     const bool closed = !(body.shell_thickness_m > 0.0) && !body.surface.trim;
     bodies.push_back({&surfaces.back(), body.surface.structure, closed, body.surface.trim});
     add_hull(surfaces.back().net, stages);
   }
-  if (!is_body(snapshot.tool)) {
+  if (!is_soft_body(snapshot.tool)) {
     const Pose& pose = snapshot.tool.proxy;
     const Eigen::Matrix3d turn = pose.orientation.normalized().toRotationMatrix();
     add_tool(snapshot, pose, turn, bodies, stages);
@@ -78,7 +78,7 @@ ContactStages SnapshotStages::find(const Snapshot& snapshot) {
   return stages;
 }
 
-void SnapshotStages::follow(const ToolSnapshot& tool) {
+void SnapshotStages::update_solid(const ToolSnapshot& tool) {
   const std::shared_ptr<const ToolBody> body = tool.kind == ToolKind::solid ? tool.body : nullptr;
   if (solid_.made_from == body) return;
   solid_ = {body, nullptr, nullptr};
@@ -94,32 +94,34 @@ void SnapshotStages::follow(const ToolSnapshot& tool) {
 }
 
 void SnapshotStages::add_tool(const Snapshot& snapshot, const Pose& pose, const Eigen::Matrix3d& turn,
-                              const std::vector<Numbered>& bodies, ContactStages& stages) {
+                              const std::vector<StructuredSurface>& bodies, ContactStages& stages) {
   if (!pose.position_m.allFinite() || !turn.allFinite()) return;
   if (solid_.surface) {
     Surface placed = *solid_.surface;
     place(solid_.surface->net, turn, pose.position_m, placed.net);
     add_hull(placed.net, stages);
     const bool outward = turn.determinant() > 0.0;
-    for (const Numbered& body : bodies) add_pair(body, {&placed, tool_structure, outward}, stages);
+    for (const StructuredSurface& body : bodies) add_pair(body, {&placed, tool_structure, outward}, stages);
     return;
   }
   const ToolShape shape = solid_.distance ? ToolShape::solid(*solid_.distance, pose.position_m, turn)
                                           : ToolShape::sphere(pose.position_m, snapshot.tool.radius_m);
-  for (const Numbered& body : bodies) {
+  for (const StructuredSurface& body : bodies) {
     const Surface& surface = *body.surface;
-    ToolStages* const with =
+    ToolStages* const tool_stages =
         find_or_make(tool_stages_, body.structure, [&] { return ToolStages::make(surface.u, surface.v); });
-    if (with != nullptr) with->add(surface, shape, stage_margin_m, body.closed, stages, body.trim);
+    if (tool_stages != nullptr)
+      tool_stages->add(surface, shape, stage_margin_m, body.closed, stages, body.trim);
   }
 }
 
-void SnapshotStages::add_pair(const Numbered& first, const Numbered& second, ContactStages& stages) {
+void SnapshotStages::add_pair(const StructuredSurface& first, const StructuredSurface& second,
+                              ContactStages& stages) {
   const std::pair structures{first.structure, second.structure};
-  PairStages* const with = find_or_make(pair_stages_, structures,
-                                        [&] { return PairStages::make(*first.surface, *second.surface); });
-  if (with == nullptr) return;
-  with->add(*first.surface, *second.surface, stage_margin_m, first.closed, second.closed, stages);
+  PairStages* const pair_stages = find_or_make(
+      pair_stages_, structures, [&] { return PairStages::make(*first.surface, *second.surface); });
+  if (pair_stages == nullptr) return;
+  pair_stages->add(*first.surface, *second.surface, stage_margin_m, first.closed, second.closed, stages);
 }
 
 }  // namespace spoonbill

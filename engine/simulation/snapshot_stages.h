@@ -1,5 +1,5 @@
-// The stages of every contact in a snapshot, for drawing: of the tool and, where it is mirrored, its image
-// with each body, and of the bodies with each other.
+// Contact debug views: the collision stages of every contact in a snapshot. They cover the tool, its mirror
+// image and every body against every other body.
 #pragma once
 
 #include <cstdint>
@@ -14,36 +14,38 @@
 
 namespace spoonbill {
 
-// Within which contacts are shown, in metres: what pressed bodies and tools leave between each other.
+// Largest gap at which a contact is drawn, in metres: about the gap between pressed bodies and tools.
 inline constexpr double stage_margin_m = 1e-4;
 
-// One owner, whoever draws, on its own thread; allocates, and keeps what depends on knots and tool alone from
-// snapshot to snapshot. The stages depend on the snapshot alone; they are those of its float control points.
+// Collision stages for drawing. The result depends on the snapshot alone, whose control points are floats.
+// Data that depends only on knots and tool is cached between snapshots. One owner, on the drawing thread;
+// allocates.
 class SnapshotStages {
  public:
-  // Bodies whose control net does not fit their knots or is not finite are left out.
+  // Skips bodies whose control net does not fit their knots or is not finite.
   ContactStages find(const Snapshot& snapshot);
 
  private:
   struct Solid {
     std::shared_ptr<const ToolBody> made_from;
-    std::shared_ptr<const SignedDistance> distance;  // of an implicit or tessellated one
-    std::shared_ptr<const Surface> surface;          // of a B-spline one, in its frame
+    std::shared_ptr<const SignedDistance> distance;  // implicit or tessellated tools
+    std::shared_ptr<const Surface> surface;          // B-spline tools, in the tool's frame
   };
-  struct Numbered {
+  // Surface of a body or a tool, and the fingerprint of its knots.
+  struct StructuredSurface {
     const Surface* surface;
     std::uint64_t structure;
-    bool closed = true;  // with du x dv outward
+    bool closed = true;  // encloses a solid, with du x dv outward
     std::shared_ptr<const TrimmedArea> trim = {};
   };
 
-  void follow(const ToolSnapshot& tool);
+  void update_solid(const ToolSnapshot& tool);
   void add_tool(const Snapshot& snapshot, const Pose& pose, const Eigen::Matrix3d& turn,
-                const std::vector<Numbered>& bodies, ContactStages& stages);
-  void add_pair(const Numbered& first, const Numbered& second, ContactStages& stages);
+                const std::vector<StructuredSurface>& bodies, ContactStages& stages);
+  void add_pair(const StructuredSurface& first, const StructuredSurface& second, ContactStages& stages);
 
   Solid solid_;
-  // By the structures of their surfaces.
+  // Caches by the fingerprints of the surfaces.
   std::map<std::uint64_t, ToolStages> tool_stages_;
   std::map<std::pair<std::uint64_t, std::uint64_t>, PairStages> pair_stages_;
 };

@@ -1,27 +1,157 @@
 #include "engine/simulation/tool_contact.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/simulation/body_pair_contact.h"
-#include "engine/simulation/shell_gap.h"
-#include "engine/simulation/tool_kernel.h"
+#include "engine/collision/meshes/mesh_distance.h"
+#include "engine/collision/meshes/mesh_parts.h"
+#include "engine/collision/meshes/mesh_edges.h"
+#include "engine/material/lattice/box_lattice.h"
+#include "engine/material/lattice/lattice_counts.h"
+#include "engine/simulation/body_contact.h"
+#include "engine/simulation/simulation_state.h"
 
 namespace spoonbill {
 namespace {
 
+double compute_volume(const CleanMesh& mesh) {
+  double volume = 0.0;
+  for (const MeshPart& part : mesh.parts) volume += signed_volume(mesh.mesh, part);
+  return volume;
+}
+
+double find_shortest_cell_edge(const Vector3& size, const std::array<int, 3>& counts) {
+  return size.cwiseQuotient(Vector3(counts[0] - 1, counts[1] - 1, counts[2] - 1)).minCoeff();
+}
+
+}  // namespace
+
+Result<BodyState> make_soft_mesh(const MeshSolid& solid, const SoftTool& soft, InstructionSet set) {
+  const TriangleMesh& mesh = solid.mesh.mesh;
+  const ShellDistance inside(mesh.vertices_m, mesh.triangles, ShellDistance::Kind::solid);
+  if (!inside.uses_normals()) {
+    return Error{
+        ErrorCode::self_intersecting,
+        "mesh: passes through itself or has edges of more than two triangles; mend it, or leave soft out",
+        "mesh"};
+  }
+  const Vector3 size = inside.bounds().high - inside.bounds().low;
+  const Result<std::array<int, 3>> counts = lattice_counts(soft.lattice, size);
+  if (!counts.ok()) return counts.error();
+  Result<TriangleMesh> skin = refine_edges(
+      mesh, soft_edge_cells * find_shortest_cell_edge(size, counts.value()), soft_mesh_triangle_limit);
+  if (!skin.ok()) {
+    return Error{skin.error().code,
+                 "mesh: " + skin.error().message + ", half a lattice cell; use fewer lattice nodes", "mesh"};
+  }
+  Result<LatticeMesh> box = box_lattice(inside, compute_volume(solid.mesh), skin->vertices_m, counts.value());
+  if (!box.ok()) return box.error();
+  Result<SpringLattice> lattice = make_sculpting_lattice(box.value(), soft.material, set);
+  if (!lattice.ok()) return lattice.error();
+  MeshMapping mapping(skin.value(), lattice.value());
+  const std::vector<std::uint8_t> none(static_cast<std::size_t>(box->node_count()), 0);
+  return BodyState{std::move(lattice).value(), std::move(mapping), Smoothing(box.value()), none, none};
+}
+
+namespace {
+
+// Samples of a rigid tool are a quarter of an element apart.
+constexpr int tool_levels = 2;
+
+// Returns the extent of a box, limited to 0.1 m for unbounded tools such as a half-space.
+double measure_extent(const Box& box) {
+  constexpr double limit_m = 0.1;
+  return std::min(box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).norm(), limit_m);
+}
+
+struct ModelBuilder {
+  const ToolBody& body;
+  InstructionSet set;
+
+  Result<ToolModel> operator()(const ImplicitShape& shape) const {
+    ToolModel model;
+    model.distance = make_signed_distance(shape);
+    model.extent_m = measure_extent(model.distance->bounds());
+    return model;
+  }
+
+  Result<ToolModel> operator()(const MeshSolid& solid) const {
+    if (body.soft) return make_soft_model(make_soft_mesh(solid, *body.soft, set));
+    ToolModel model;
+    model.distance = std::make_shared<MeshDistance>(solid.mesh);
+    model.extent_m = measure_extent(model.distance->bounds());
+    return model;
+  }
+
+  Result<ToolModel> operator()(const SurfaceSolid& solid) const {
+    ToolModel model;
+    if (body.soft) {
+      return make_soft_model(
+          make_body_state({"tool", solid.surface, body.soft->material, body.soft->lattice}, {}, set));
+    }
+    Result<NestedGrid> nested = make_nested_grid(solid.surface.u, solid.surface.v, tool_levels);
+    if (!nested.ok()) return nested.error();
+    model.nested = std::make_shared<NestedGrid>(std::move(nested).value());
+    model.surface = std::make_shared<Surface>(solid.surface);
+    const ControlNet& net = solid.surface.net;
+    for (int i = 0; i < net.rows; ++i) {
+      for (int j = 0; j < net.columns; ++j) {
+        model.extent_m = std::max(model.extent_m, net.point(i, j).norm());
+      }
+    }
+    return model;
+  }
+
+  // Makes the model of a soft tool, whose grip plane the hand holds.
+  Result<ToolModel> make_soft_model(Result<BodyState> soft) const {
+    if (!soft.ok()) return soft.error().in("tool");
+    // The springs step a soft tool, because the hand carries nodes of the lattice.
+    soft->set_implicit_solver(std::nullopt);
+    soft->fixed = find_nodes_behind(soft->lattice, {body.soft->grip});
+    ToolModel model;
+    const LatticeMesh& mesh = soft->lattice.mesh();
+    bool holds_any = false;
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      if (soft->fixed[static_cast<std::size_t>(n)] == 0) continue;
+      const auto [i, j, k] = mesh.place(n);
+      holds_any |= mesh.place_of(i, j, k) != NodePlace::beside_body;
+      model.gripped.push_back(n);
+    }
+    if (!holds_any) {
+      return Error{ErrorCode::too_few,
+                   "tool: no lattice node of the tool is behind the grip plane; move the plane", "grip"};
+    }
+    if (soft->mesh()) model.triangles = soft->mesh()->triangles();
+    soft->lattice.hold(soft->fixed);
+    model.soft = std::move(soft).value();
+    return model;
+  }
+};
+
+}  // namespace
+
+Result<ToolModel> make_tool_model(const Tool& tool, InstructionSet set) {
+  SPOONBILL_ASSERT(tool.kind != ToolKind::solid || tool.body != nullptr);
+  if (tool.kind != ToolKind::solid) return ToolModel{};
+  return std::visit(ModelBuilder{*tool.body, set}, tool.body->solid);
+}
+
+namespace {
+
 constexpr int constraint_capacity = 1024;
 
-// How near a sample must be to become a constraint, in lattice cells: what the refit may leave between the
-// surface that collides and the lattice that gives way.
+// Gap below which a sample becomes a constraint, in lattice cells: the largest distance that the refit may
+// leave between the colliding surface and the lattice.
 constexpr double margin_cells = 0.5;
 
-double margin_of(const BodyState& body) {
+double find_margin_m(const BodyState& body) {
   return margin_cells * static_cast<double>(body.lattice.cell_size_m());
 }
 
-// The way in which the tool pushes a point: the gradient of its distance.
-Vector3 push_at(const ToolShape& tool, const Vector3& point_m) {
+// Returns the direction in which the tool pushes a point: the gradient of its distance; zero at a sphere's
+// centre.
+Vector3 push_direction_at(const ToolShape& tool, const Vector3& point_m) {
   if (tool.is_solid()) return tool.at(point_m).gradient;
   const Vector3 from_centre = point_m - tool.centre_m;
   const double distance = from_centre.norm();
@@ -40,7 +170,7 @@ Vector3 position_of(const SpringLattice& lattice, const EmbeddedPoint& point) {
   return position;
 }
 
-ToolShape shape_of(const Tool& tool, const ToolModel& model, const ToolHold& hold) {
+ToolShape make_shape(const Tool& tool, const ToolModel& model, const ToolHold& hold) {
   if (tool.kind == ToolKind::solid && model.distance) {
     return ToolShape::solid(*model.distance, hold.pose.position_m, hold.turn);
   }
@@ -96,10 +226,10 @@ void ToolContact::prepare(std::span<const BodyState> bodies, const Tool& tool, c
     overflow_ |= contacts_[b].collision.overflow;
     const CollisionResult& collision = contacts_[b].collision;
     inside |= is_inside(collision);
-    near |= collision.found && -collision.nearest.depth_m <= margin_of(bodies[b]);
+    near |= collision.found && -collision.nearest.depth_m <= find_margin_m(bodies[b]);
   }
   if (!acts(inside, near, hold)) return release();
-  kernel_of(tool.action).constrain(*this, {bodies, hold, inside});
+  find_kernel(tool.action).constrain(*this, {bodies, hold, inside});
 }
 
 void ToolContact::push(std::span<const BodyState> bodies, const ToolHold& hold) {
@@ -117,11 +247,11 @@ void ToolContact::grip(std::span<const BodyState> bodies, const ToolHold& hold) 
   gripped_ = true;
 }
 
-// A body that the tool has just pressed lies against it, and quivers: the tool has left when it is a margin
-// away, or hovers.
+// A body that the tool has pressed stays against it and vibrates. The tool has left it at a distance of a
+// margin, or when it hovers outside.
 bool ToolContact::acts(bool inside, bool near, const ToolHold& hold) {
-  const bool against = hold.hovering ? inside : near;
-  lifted_ = lifted_ && (against || hold.gripping);
+  const bool is_against = hold.hovering ? inside : near;
+  lifted_ = lifted_ && (is_against || hold.gripping);
   hovered_ = hold.hovering || (hovered_ && inside);
   return !lifted_ && !hovered_;
 }
@@ -134,22 +264,22 @@ void ToolContact::prepare_soft() {
 
 void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& tool, const ToolModel& model,
                        const ToolHold& hold) {
-  // What a fast tool meets within the tick holds it off before it has passed.
-  const double margin = std::max(margin_of(body), hold.reach_m);
-  if (is_surface()) return find_near(contact, body, margin, hold);
-  shape_ = shape_of(tool, model, hold);
+  // The margin grows with the tool's movement, so that a fast tool cannot pass a body within a tick.
+  const double margin = std::max(find_margin_m(body), hold.reach_m);
+  if (is_surface()) return find_near_points(contact, body, margin, hold);
+  shape_ = make_shape(tool, model, hold);
   const double thickness = body.shell_thickness_m;
-  // A trimmed skin is open: through its holes a tool comes inside.
+  // A tool can come inside through the holes of a trimmed surface, which is open.
   const bool closed = !(thickness > 0.0) && !body.trim;
   contact.collision = contact.collider.collide(body.mapping().current(), shape_, margin + thickness, closed);
-  if (thickness > 0.0) take_face(contact, body, margin);
+  if (thickness > 0.0) select_shell_face(contact, body, margin);
 }
 
 bool ToolContact::is_small(const BodyState& body) const {
   return !is_solid_ && shape_.radius_m < static_cast<double>(body.lattice.cell_size_m());
 }
 
-void ToolContact::take_face(BodyContact& contact, const BodyState& body, double margin) const {
+void ToolContact::select_shell_face(BodyContact& contact, const BodyState& body, double margin) const {
   CollisionResult& collision = contact.collision;
   SurfaceContact& nearest = collision.nearest;
   if (!collision.found) return;
@@ -158,16 +288,17 @@ void ToolContact::take_face(BodyContact& contact, const BodyState& body, double 
   Vector3 normal = nearest.normal;
   bool behind = false;
   if (is_small(body)) {
-    // Which may come through the surface's middle: the side tells, not the way that it pushes.
+    // A small tool can be within the shell. Its side then decides which face it touches, not its push
+    // direction.
     double gap = 0.0;
-    collision.found = gap_to_shell(surface, thickness, nearest.u, nearest.v, shape_.centre_m,
-                                   margin + shape_.radius_m, normal, gap);
+    collision.found = find_shell_gap(surface, thickness, nearest.u, nearest.v, shape_.centre_m,
+                                     margin + shape_.radius_m, normal, gap);
     behind = normal.dot(nearest.normal) < 0.0;
     nearest.depth_m = shape_.radius_m - gap;
   } else {
-    const double lead = far_face_lead_m(thickness, normal, push_at(shape_, nearest.point_m));
-    behind = lead > 0.0;
-    nearest.depth_m += lead;
+    const double offset = far_face_offset_m(thickness, normal, push_direction_at(shape_, nearest.point_m));
+    behind = offset > 0.0;
+    nearest.depth_m += offset;
     collision.found = -nearest.depth_m <= margin;
   }
   if (!behind) return;
@@ -176,16 +307,16 @@ void ToolContact::take_face(BodyContact& contact, const BodyState& body, double 
   nearest.tangent_v = -nearest.tangent_v;
 }
 
-void ToolContact::find_near(BodyContact& contact, const BodyState& body, double margin,
-                            const ToolHold& hold) {
+void ToolContact::find_near_points(BodyContact& contact, const BodyState& body, double margin,
+                                   const ToolHold& hold) {
   const Surface& surface = body.mapping().current();
   SurfaceProximity& proximity = *contact.proximity;
   const double thickness = body.shell_thickness_m;
   proximity.find(surface, *placed_, margin + thickness, hold.turn.determinant() < 0.0 ? -1.0 : 1.0);
   if (thickness > 0.0) {
-    const MaybeShell shell{&surface, thickness}, solid{placed_.get(), 0.0};
-    proximity.keep_if([&](NearPoint& near) { return settle_shell_gap(shell, solid, margin, near); },
-                      [&](NearPoint& near) { return settle_shell_gap(solid, shell, margin, near); });
+    const ShellOrSolid shell{&surface, thickness}, solid{placed_.get(), 0.0};
+    proximity.keep_if([&](NearPoint& near) { return resolve_shell_gap(shell, solid, margin, near); },
+                      [&](NearPoint& near) { return resolve_shell_gap(solid, shell, margin, near); });
   }
   if (body.trim) {
     proximity.keep_if([&](const NearPoint& near) { return body.trim->contains(near.u, near.v); },
@@ -201,12 +332,12 @@ void ToolContact::find_near(BodyContact& contact, const BodyState& body, double 
   contact.collision.nearest = contact_at(surface, {deepest->u, deepest->v, deepest->point_m, deepest->gap_m});
 }
 
-// Every point of the body's surface that is near the tool, with the plane of the tool there.
+// Visits every point of the body's surface near the tool, with the tool's tangent plane there.
 template <class Visit>
 void ToolContact::visit_near(BodyContact& contact, const BodyState& state, const Visit& visit) {
   if (is_surface()) {
     for (const NearPoint& near : contact.proximity->first_points()) {
-      visit(Pushed{embedding_of(state.mapping(), near), near.normal, near.gap_m});
+      visit(Pushed{find_embedding(state.mapping(), near), near.normal, near.gap_m});
     }
     for (const NearPoint& near : contact.proximity->second_points()) {
       visit(Pushed{state.mapping().at(near.other_u, near.other_v), -near.normal, near.gap_m});
@@ -229,40 +360,40 @@ void ToolContact::add_pushes(int body, const BodyState& state, const ToolHold& h
   visit_near(contact, state, [&](const Pushed& pushed) { add_plane_push(body, state, pushed, hold); });
 }
 
-double ToolContact::gap_of(const BodyState& state, const NearSample& sample) const {
+double ToolContact::find_gap(const BodyState& state, const NearSample& sample) const {
   if (!(state.shell_thickness_m > 0.0)) return sample.distance_m;
   const Grid& grid = state.mapping().nested().grid;
   const double u = grid.u.parameters[sample.index / grid.columns()],
                v = grid.v.parameters[sample.index % grid.columns()];
   const Vector3 normal = unit_normal(state.mapping().current(), u, v);
-  const Vector3 push = push_at(shape_, position(state.mapping().current(), u, v));
-  return sample.distance_m - far_face_lead_m(state.shell_thickness_m, normal, push);
+  const Vector3 push = push_direction_at(shape_, position(state.mapping().current(), u, v));
+  return sample.distance_m - far_face_offset_m(state.shell_thickness_m, normal, push);
 }
 
-// Away from the tool, whichever face it is at.
+// Adds pushes away from the tool, at either face of the shell.
 void ToolContact::add_shell_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
   const EmbeddedPoint deepest = state.mapping().at(nearest.u, nearest.v);
   if (is_small(state)) return add_plane_push(body, state, {deepest, -nearest.normal, -nearest.depth_m}, hold);
-  const Vector3 push = push_at(shape_, position(state.mapping().current(), nearest.u, nearest.v));
+  const Vector3 push = push_direction_at(shape_, position(state.mapping().current(), nearest.u, nearest.v));
   add_plane_push(body, state, {deepest, push, -nearest.depth_m}, hold);
-  const double margin = std::max(margin_of(state), hold.reach_m);
+  const double margin = std::max(find_margin_m(state), hold.reach_m);
   for (const NearSample& sample : contact.collider.near_samples()) {
-    const double gap = gap_of(state, sample);
+    const double gap = find_gap(state, sample);
     if (gap > margin) continue;
-    const Vector3 away = push_at(shape_, contact.collider.levels().sample(sample.index));
+    const Vector3 away = push_direction_at(shape_, contact.collider.levels().sample(sample.index));
     add_plane_push(body, state, {state.mapping().sample(sample.index), away, gap}, hold);
   }
 }
 
-// The samples, and the plane of the nearest point: for a tool that fits between samples always, for others
-// where they are so near that it is still the nearest a tick later.
+// Adds pushes for the samples and for the nearest point's tangent plane. The latter is added for a tool that
+// fits between samples, or if it is so near that its nearest point stays the nearest over a tick.
 void ToolContact::add_sphere_pushes(int body, const BodyState& state) {
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
   const double cell = static_cast<double>(state.lattice.cell_size_m());
-  if (-nearest.depth_m <= margin_of(state) || shape_.radius_m < cell) {
+  if (-nearest.depth_m <= find_margin_m(state) || shape_.radius_m < cell) {
     overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping().at(nearest.u, nearest.v),
                                               -nearest.normal, shape_.radius_m);
   }
@@ -271,7 +402,7 @@ void ToolContact::add_sphere_pushes(int body, const BodyState& state) {
   }
 }
 
-// The gap is that of the surface; what its embedding is off by now stays the same over a tick.
+// Uses the surface's gap; the offset of its embedding from the surface is constant over a tick.
 void ToolContact::add_plane_push(int body, const BodyState& state, const Pushed& pushed,
                                  const ToolHold& hold) {
   const Vector3 from_centre = position_of(state.lattice, pushed.point) - hold.pose.position_m;
@@ -294,7 +425,7 @@ void ToolContact::add_grips(int body, const BodyState& state, const Pose& pose) 
     return;
   }
   for (const NearSample& sample : contact.collider.near_samples()) {
-    if (gap_of(state, sample) <= 0.0) grip(state.mapping().sample(sample.index));
+    if (find_gap(state, sample) <= 0.0) grip(state.mapping().sample(sample.index));
   }
 }
 

@@ -1,64 +1,95 @@
-// The tool on the bodies: finds where it touches their surfaces and turns that into constraints on their
-// lattices.
+// The tool as the simulation uses it: its model, made outside the tick, and its contact with the bodies in a
+// tick.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "engine/base/processor.h"
+#include "engine/base/result.h"
+#include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/proximity/surface_proximity.h"
+#include "engine/collision/solids/signed_distance.h"
 #include "engine/collision/solids/surface_collider.h"
 #include "engine/material/contact/contact_constraints.h"
 #include "engine/scene/scene.h"
 #include "engine/simulation/body_state.h"
-#include "engine/simulation/tool_model.h"
 
 namespace spoonbill {
 
-// A tool that is held: where, and what the hand does with it.
+// Longest edge of a soft mesh, in lattice cells. Longer edges would not follow a dent and are halved.
+inline constexpr double soft_edge_cells = 0.5;
+
+// Makes the body of a soft tool from triangles, with no node fixed. Refuses a mesh that passes through
+// itself, or that has more than soft_mesh_triangle_limit triangles once its edges are short enough; the error
+// names the field.
+Result<BodyState> make_soft_mesh(const MeshSolid& solid, const SoftTool& soft, InstructionSet set);
+
+// Body of a tool prepared for contact; empty for a point or a sphere. Made outside the tick, owned by a
+// simulation.
+struct ToolModel {
+  std::shared_ptr<const SignedDistance> distance;  // rigid implicit or tessellated tools
+  std::shared_ptr<const Surface> surface;          // rigid B-spline tools, in the tool's frame
+  std::shared_ptr<const NestedGrid> nested;        // samples of `surface`
+  double extent_m = 0.0;                           // largest distance of the tool from its frame's origin
+  std::optional<BodyState> soft;                   // soft tools, with the rest shape in the tool's frame
+  std::vector<int> gripped;                        // nodes of `soft` that the hand holds
+  std::shared_ptr<const std::vector<TriangleCorners>> triangles;  // soft meshes; shared with snapshots
+};
+
+// Returns the body from which a tool's model is made; null for a point or a sphere.
+inline std::shared_ptr<const ToolBody> find_model_body(const Tool& tool) {
+  return tool.kind == ToolKind::solid ? tool.body : nullptr;
+}
+
+// Refuses a body that cannot be simulated; the error names the field.
+Result<ToolModel> make_tool_model(const Tool& tool, InstructionSet set);
+
+// Pose of a tool in the hand, and what the hand does with it.
 struct ToolHold {
   Pose pose;
-  // The tool's frame in the world: the pose's orientation, or the mirror image of one.
+  // Axes of the tool in the world: the pose's orientation, or its mirror image.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  double reach_m = 0.0;  // how far any part of the tool may come in this tick
+  double reach_m = 0.0;  // largest movement of any part of the tool in this tick, at least 0
   bool gripping = false;
   bool hovering = false;
 };
 
-// One owner, the simulation; rebuilt with the mapping of a body or the model of the tool. prepare() allocates
-// nothing.
+// Contact of one tool with the bodies: finds where it touches their surfaces and adds constraints on their
+// lattices. One owner, the simulation, which rebuilds it with the mapping of a body or the model of the tool.
+// prepare() allocates nothing.
 class ToolContact {
  public:
   ToolContact(std::span<const BodyState> bodies, const ToolModel& model);
 
-  // Finds the contacts of the tool, and has the kernel of its action (tool_kernel.h) set the constraints of
-  // this tick.
-  // While `hovering`, and then until it is outside the bodies, the tool acts on nothing.
+  // Finds the tool's contacts and lets the kernel of its action (ToolKernel) add the constraints of this
+  // tick. From hovering on, the tool does not act until it is outside the bodies.
   void prepare(std::span<const BodyState> bodies, const Tool& tool, const ToolModel& model,
                const ToolHold& hold);
-  // The same for a soft tool, which is a body and touches the others by itself.
+  // Prepares a soft tool, which touches the bodies as a body itself.
   void prepare_soft();
-  // Whether the tool acts in this tick, of which it is known whether it is inside a body and near one.
+  // Updates and returns whether the tool acts in this tick, given whether it is inside a body and near one.
   bool acts(bool inside, bool near, const ToolHold& hold);
   void release();
 
-  // For the kernels, on what prepare() has found. The surface of the bodies stays out of the tool in this
-  // tick, and slides along it.
+  // Keeps the bodies' surfaces out of the tool in this tick; they slide along it. For kernels, after
+  // prepare() has found the contacts.
   void push(std::span<const BodyState> bodies, const ToolHold& hold);
-  // What of the surface is in the tool keeps its place in the tool's frame, in this tick and in those after
-  // it, until release().
+  // Fixes the surface inside the tool in the tool's frame until release(). For kernels, like push().
   void grip(std::span<const BodyState> bodies, const ToolHold& hold);
   bool gripped() const { return gripped_; }
 
-  // Acts on nothing from the next prepare() on until the button is free and the tool has left the bodies, by
-  // a margin or hovering.
+  // Suspends the tool from the next prepare() on, until the button is free and the tool is a margin away from
+  // the bodies or hovers outside them.
   void lift();
   bool lifted() const { return lifted_; }
   bool hovered() const { return hovered_; }
 
   ContactConstraints& constraints() { return constraints_; }
   const ContactConstraints& constraints() const { return constraints_; }
-  // With one of the bodies, and with which the tool is deepest in.
+  // Collision with one body, by index, and the index of the body in which the tool is deepest.
   const CollisionResult& collision(int body) const { return contacts_[body].collision; }
   int deepest_body() const;
   bool overflow() const { return overflow_; }
@@ -66,10 +97,10 @@ class ToolContact {
  private:
   struct BodyContact {
     SurfaceCollider collider;
-    std::unique_ptr<SurfaceProximity> proximity;  // of a B-spline tool
+    std::unique_ptr<SurfaceProximity> proximity;  // B-spline tools only
     CollisionResult collision;
   };
-  // A point of a body's surface and the plane of the tool that it must stay beyond.
+  // Point of a body's surface, and the tangent plane of the tool beyond which it must stay.
   struct Pushed {
     EmbeddedPoint point;
     Vector3 normal;  // unit, away from the tool
@@ -78,17 +109,17 @@ class ToolContact {
 
   void find(BodyContact& contact, const BodyState& body, const Tool& tool, const ToolModel& model,
             const ToolHold& hold);
-  void find_near(BodyContact& contact, const BodyState& body, double margin, const ToolHold& hold);
-  // Of a shell: which of its faces the tool is nearest to, and how deep in it.
-  void take_face(BodyContact& contact, const BodyState& body, double margin) const;
-  // A sphere that fits between samples.
+  void find_near_points(BodyContact& contact, const BodyState& body, double margin, const ToolHold& hold);
+  // Replaces the contact with a shell's surface by that with the face that the tool is nearest to.
+  void select_shell_face(BodyContact& contact, const BodyState& body, double margin) const;
+  // Returns whether the tool is a sphere that fits between samples.
   bool is_small(const BodyState& body) const;
-  // Whether the tool is a B-spline: the model is of the last solid, and what is held may be none.
+  // Returns whether the tool in the hand is a B-spline. The model may be of an earlier solid.
   bool is_surface() const { return is_solid_ && placed_ != nullptr; }
   void add_pushes(int body, const BodyState& state, const ToolHold& hold);
   void add_sphere_pushes(int body, const BodyState& state);
-  // Of a sample of a body that is near the tool: to its surface, or to the far face of a shell.
-  double gap_of(const BodyState& state, const NearSample& sample) const;
+  // Returns the gap of a sample near the tool to the body's surface, or to the far face of a shell.
+  double find_gap(const BodyState& state, const NearSample& sample) const;
   void add_shell_pushes(int body, const BodyState& state, const ToolHold& hold);
   void add_plane_push(int body, const BodyState& state, const Pushed& pushed, const ToolHold& hold);
   void add_grips(int body, const BodyState& state, const Pose& pose);
@@ -96,9 +127,9 @@ class ToolContact {
   template <class Visit>
   void visit_near(BodyContact& contact, const BodyState& state, const Visit& visit);
 
-  std::vector<BodyContact> contacts_;  // one a body
-  std::unique_ptr<Surface> placed_;    // of a B-spline tool, in the world
-  ToolShape shape_;                    // of any other
+  std::vector<BodyContact> contacts_;  // by body
+  std::unique_ptr<Surface> placed_;    // B-spline tools, in world coordinates
+  ToolShape shape_;                    // all other tools
   ContactConstraints constraints_;
   bool is_solid_ = false;
   bool gripped_ = false;

@@ -22,7 +22,7 @@ PanelModel full_model() {
   model.can_undo = model.can_redo = true;
   model.material = {"modelling-clay", "test", 2e5, 0.45, 1700.0, 0.1, true, 0.01, 50.0};
   model.presets = {model.material};
-  model.felt_youngs_modulus_pa = 163.0;
+  model.effective_youngs_modulus_pa = 163.0;
   model.mass_kg = 1.2345;
   model.fixed_node_count = 39999;
   model.node_count = 40000;

@@ -65,7 +65,7 @@ TEST(Rest, SavesTheBentShapeWithoutItsLoads) {
   Document document = elastic_document(place);
   Body& body = document.scene.bodies[0];
   SupportMotion motion;
-  motion.way_m = Vector3(0, 0.003, 0);
+  motion.displacement_m = Vector3(0, 0.003, 0);
   body.supports = {{{{0.0, 0.1}}, {}}, {{{0.9, 1.0}}, motion}};
   body.loads = {PressureLoad{{}, 10.0}};
   const Outcome outcome = rest_of(place, document, {"--out", place.text("bent.json")});
@@ -90,7 +90,7 @@ TEST(Rest, RefusesBodiesThatNothingHolds) {
   Document document = elastic_document(place);
   const Outcome loose = rest_of(place, document);
   EXPECT_TRUE(is_clean_failure(loose)) << loose.err;
-  EXPECT_NE(loose.err.find("nothing holds it; give it a support"), std::string::npos) << loose.err;
+  EXPECT_NE(loose.err.find("nothing fixes the body; give it a support"), std::string::npos) << loose.err;
   document.scene.bodies[0].loads = {ForceLoad{{{0.5, 0.5001}}, Vector3(1, 0, 0)}};
   const Outcome nowhere = rest_of(place, document);
   EXPECT_TRUE(is_clean_failure(nowhere));

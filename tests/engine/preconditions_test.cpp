@@ -17,8 +17,7 @@
 #include "engine/fitting/nearest_points.h"
 #include "engine/fitting/quantiles.h"
 #include "engine/fitting/voxels.h"
-#include "engine/inspection/piece_quadrature.h"
-#include "engine/inspection/shell_mass.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/material/cells/cell_springs.h"
 #include "engine/material/contact/ground_contacts.h"
 #include "engine/material/lattice/lattice_mesh.h"
@@ -28,7 +27,7 @@
 #include "engine/shapes/fit_shape.h"
 #include "engine/shapes/smooth_curve.h"
 #include "engine/simulation/rest_shape.h"
-#include "engine/simulation/tool_model.h"
+#include "engine/simulation/tool_contact.h"
 #include "tests/engine/throwing_asserts.h"
 
 namespace spoonbill {
@@ -75,15 +74,15 @@ TEST_F(Preconditions, OfMaterials) {
 }
 
 TEST_F(Preconditions, OfSimulation) {
-  EXPECT_THROW(rest_shape(Scene{}, 0), FailedAssertion);
+  EXPECT_THROW(compute_rest_shape(Scene{}, 0), FailedAssertion);
   Tool tool;
   tool.kind = ToolKind::solid;
   EXPECT_THROW(make_tool_model(tool, best_instruction_set()), FailedAssertion);
 }
 
 TEST_F(Preconditions, OfInspection) {
-  EXPECT_THROW(piece_quadrature(line_, 0), FailedAssertion);
-  EXPECT_THROW(shell_mass(square_, 0.0), FailedAssertion);
+  EXPECT_THROW(make_piece_quadrature(line_, 0), FailedAssertion);
+  EXPECT_THROW(compute_shell_mass(square_, 0.0), FailedAssertion);
 }
 
 TEST_F(Preconditions, OfFittingAndMerging) {

@@ -119,7 +119,7 @@ TEST(MaterialPress, GelatinCreepsAsItsRelaxationTimeSays) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Press press("gelatin-press");
   const double relaxation_time_s = press.material().relaxation_time_s;
-  const double retardation_time_s = relaxation_time_s / (1.0 - press.material().relaxing_share);
+  const double retardation_time_s = relaxation_time_s / (1.0 - press.material().relaxing_fraction);
   // Means over half a second, 4.5 s apart: what goes between them falls by the same share each time.
   const double first_n = press.mean_force_n(2.0, 2.5), second_n = press.mean_force_n(6.5, 7.0),
                third_n = press.mean_force_n(11.0, 11.5);

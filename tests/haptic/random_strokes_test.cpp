@@ -67,7 +67,7 @@ Material any_material(Random& random) {
       material.hardening = random.between(hardening_range);
       break;
     case 1:
-      material.relaxing_share = random.between(relaxing_share_range);
+      material.relaxing_fraction = random.between(relaxing_fraction_range);
       material.relaxation_time_s = random.scaled(relaxation_time_range_s.low, relaxation_time_range_s.high);
       break;
     case 2:
@@ -77,7 +77,7 @@ Material any_material(Random& random) {
       break;
   }
   material.friction = random.between(0.0, 1.0);
-  const double least = is_plainly_elastic(material) ? poissons_ratio_range.low : least_spring_poissons_ratio;
+  const double least = is_linear_elastic(material) ? poissons_ratio_range.low : min_spring_poissons_ratio;
   material.poissons_ratio = random.between(least, poissons_ratio_range.high);
   return material;
 }
@@ -102,7 +102,7 @@ constexpr double fastest_m_per_s = 5.0;
 constexpr int stroke_ticks = 2000, rest_ticks = 1000;
 // The hand roams within this of the body's middle; what it draws out of the body reaches no further.
 const Vector3 roam_m(0.06, 0.03, 0.03);
-const Vector3 middle_m(0.03, 0.0, 0.0);
+const Vector3 centre_m(0.03, 0.0, 0.0);
 constexpr double bounds_m = 0.5;
 
 class Hand {
@@ -111,7 +111,7 @@ class Hand {
 
   DeviceReading next() {
     if ((target_ - place_).norm() < 1e-9 || random_.once_in(400)) {
-      target_ = middle_m + random_.in_box(roam_m);
+      target_ = centre_m + random_.in_box(roam_m);
       speed_m_per_s_ = random_.scaled(0.02, fastest_m_per_s);
       if (random_.once_in(3)) buttons_ = random_.once_in(2) ? button_main : 0u;
     }
@@ -143,7 +143,7 @@ std::string in_words(const Scene& scene) {
                                     {"flow", material.flow_rate_per_s},
                                     {"hardening", material.hardening},
                                     {"stiffening", material.stiffening},
-                                    {"relaxing", material.relaxing_share},
+                                    {"relaxing", material.relaxing_fraction},
                                     {"planes", static_cast<double>(scene.planes.size())},
                                     {"kind", static_cast<double>(scene.tool.kind)},
                                     {"action", static_cast<double>(scene.tool.action)},
@@ -160,7 +160,7 @@ std::string in_words(const Scene& scene) {
 // may fly, about its middle.
 bool is_in_bounds(const SpringLattice& lattice) {
   const std::vector<Vector3> nodes = lattice.positions();
-  Vector3 middle = middle_m;
+  Vector3 middle = centre_m;
   if (!lattice.has_held_nodes()) {
     middle.setZero();
     for (const Vector3& node : nodes) middle += node / static_cast<double>(nodes.size());

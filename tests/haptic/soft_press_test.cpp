@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/exchange/document.h"
-#include "engine/simulation/body_pair_contact.h"
+#include "engine/simulation/body_contact.h"
 #include "haptic/devices/virtual_device.h"
 #include "haptic/recording/script.h"
 #include "haptic/tick.h"

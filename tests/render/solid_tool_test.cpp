@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "engine/base/geometry.h"
-#include "engine/simulation/symmetry.h"
+#include "engine/scene/scene.h"
 #include "render/gl/osmesa_context.h"
 #include "render/overlay/force_arrow.h"
 #include "render/passes/scene_area.h"
@@ -154,10 +154,10 @@ TEST(SolidTool, TheMirroredFrameIsTheReflectionOfTheTool) {
   const Symmetry symmetry{true, {0.01, 0.02, 0.003}, Vector3(1.0, 0.4, -0.7).normalized()};
   snapshot.symmetric = true;
   snapshot.symmetry = {symmetry.point_m, symmetry.normal};
-  snapshot.mirrored_proxy = mirrored_pose(symmetry, oblique);
+  snapshot.mirrored_proxy = mirror_pose(symmetry, oblique);
   const ToolFrame own = tool_frame(snapshot), mirrored = mirrored_tool_frame(snapshot);
   for (const Vector3& vertex : wedge().mesh.mesh.vertices_m) {
-    const Vector3 expected = mirrored_point(symmetry, own.origin_m + own.axes * vertex);
+    const Vector3 expected = mirror_point(symmetry, own.origin_m + own.axes * vertex);
     EXPECT_LT((mirrored.origin_m + mirrored.axes * vertex - expected).norm(), 1e-15);
   }
   EXPECT_NEAR(mirrored.axes.determinant(), -1.0, 1e-12);
@@ -171,14 +171,14 @@ TEST_F(SolidToolPicture, TheMirrorImageLooksLikeAMirroredMesh) {
   TriangleMesh reflected = wedge().mesh.mesh;
   for (Vector3& vertex : reflected.vertices_m) vertex.x() = -vertex.x();
   const MeshSolid image{clean_mesh(std::move(reflected), "image").value()};
-  const Snapshot alone = without_bodies(scene_with(image, mirrored_pose(symmetry, pose)));
+  const Snapshot alone = without_bodies(scene_with(image, mirror_pose(symmetry, pose)));
   Snapshot both = without_bodies(scene_with(wedge(), pose));
   const Changed right = tool_pixels(both), left = tool_pixels(alone);
   ASSERT_GT(left.count, 100);
   ASSERT_LT(left.high.x() + 5.0, right.low.x()) << "one must not cover the other";
   both.symmetric = true;
   both.symmetry = {symmetry.point_m, symmetry.normal};
-  both.mirrored_proxy = mirrored_pose(symmetry, pose);
+  both.mirrored_proxy = mirror_pose(symmetry, pose);
   ViewSettings settings = plain_view();
   settings.overlays.symmetry_plane = false;
   const Changed rest = difference(picture(alone, settings), picture(both, settings));

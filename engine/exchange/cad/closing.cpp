@@ -8,7 +8,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/bspline/blending_matrix.h"
-#include "engine/inspection/closing.h"
+#include "engine/inspection/surface_check.h"
 
 namespace spoonbill {
 namespace {
@@ -158,7 +158,7 @@ void close_poles(Surface& surface, double tolerance_m) {
 
 ClosedExactly closed_exactly(const Surface& surface) {
   ClosedExactly closed{surface, 0.0};
-  const Closing closing = closing_of(surface);
+  const Closing closing = find_closing(surface);
   if (closing.closedness != Closedness::solid) return closed;
   if (is_clamped(surface.u) && closing.u.apart_m <= closing_tolerance_m) {
     closed.surface = closed_where_it_meets(closed.surface, Direction::u, closing_tolerance_m);

@@ -20,7 +20,7 @@ struct ClosedExactly {
   double moved_m = 0.0;  // the farthest of samples of it
 };
 
-// What closing_of() calls a solid with its seams periodic and its poles points; anything else, and what
+// What find_closing() calls a solid with its seams periodic and its poles points; anything else, and what
 // cannot be made so within its tolerance, as it is.
 ClosedExactly closed_exactly(const Surface& surface);
 

@@ -34,7 +34,7 @@ CadSolid measured(const std::string& name, const JoinedSolid& joined) {
   solid.volume_m3 = volume.Mass() / std::pow(millimetres_per_metre, 3);
   solid.area_m2 = area.Mass() / std::pow(millimetres_per_metre, 2);
   const gp_Pnt middle = volume.CentreOfMass();
-  solid.middle_m = Vector3(middle.X(), middle.Y(), middle.Z()) / millimetres_per_metre;
+  solid.centre_m = Vector3(middle.X(), middle.Y(), middle.Z()) / millimetres_per_metre;
   return solid;
 }
 

@@ -10,7 +10,7 @@
 #include "engine/exchange/cad/closing.h"
 #include "engine/exchange/cad/joined_faces.h"
 #include "engine/exchange/cad_names.h"
-#include "engine/inspection/closing.h"
+#include "engine/inspection/surface_check.h"
 
 namespace spoonbill {
 namespace {
@@ -42,7 +42,7 @@ void tell_of(const CadSurface& surface, const BodyShape& body, double moved_m, C
                             "; it is written closed");
   }
   if (body.solid || !surface.solid.empty()) return;
-  if (closing_of(surface.surface).closedness != Closedness::solid) return;
+  if (find_closing(surface.surface).closedness != Closedness::solid) return;
   content.notes.push_back("'" + surface.name + open_text(surface, body));
 }
 

@@ -14,7 +14,7 @@
 #include "engine/bspline/trimmed_area.h"
 #include "engine/collision/levels/surface_levels.h"
 #include "engine/exchange/mesh_export/slivers.h"
-#include "engine/inspection/closing.h"
+#include "engine/inspection/surface_check.h"
 
 namespace spoonbill {
 namespace {
@@ -132,12 +132,12 @@ void refine(const Eigen::MatrixXd& errors, double chord_m, Cells& cells) {
   }
 }
 
-// The vertices of a sheet: those of a seam or a pole are one, as closing_of() has it.
+// The vertices of a sheet: those of a seam or a pole are one, as find_closing() has it.
 class Welding {
  public:
   Welding(const Sheet& sheet, const Surface& surface)
       : sheet_(sheet), rows_(sheet.grid.u.parameters.size()), columns_(sheet.grid.v.parameters.size()) {
-    const Closing closing = closing_of(surface);
+    const Closing closing = find_closing(surface);
     u_closed_ = closing.u.apart_m <= closing_tolerance_m;
     v_closed_ = closing.v.apart_m <= closing_tolerance_m;
     first_row_ = is_pole(surface.u, closing.u.first_width_m);

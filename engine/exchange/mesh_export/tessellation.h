@@ -14,7 +14,7 @@
 namespace spoonbill {
 
 struct Tessellation {
-  // Seams and poles are welded, what closing_of() calls so. Normals are outward where every side of the
+  // Seams and poles are welded, what find_closing() calls so. Normals are outward where every side of the
   // surface is a seam or a pole.
   TriangleMesh mesh;
   bool closed = false;  // it is so, and whole

@@ -254,15 +254,15 @@ ImplicitBody::RigidMotion ImplicitBody::rigid_motion() const {
   RigidMotion motion;
   for (int n = 0; n < node_count(); ++n) {
     mass_kg += this->mass_kg(n);
-    motion.middle_m += this->mass_kg(n) * place(n);
+    motion.centre_m += this->mass_kg(n) * place(n);
     motion.velocity_m_per_s += this->mass_kg(n) * velocity(n);
   }
-  motion.middle_m /= mass_kg;
+  motion.centre_m /= mass_kg;
   motion.velocity_m_per_s /= mass_kg;
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   Vector3 moment = Vector3::Zero();
   for (int n = 0; n < node_count(); ++n) {
-    const Vector3 from_middle = place(n) - motion.middle_m;
+    const Vector3 from_middle = place(n) - motion.centre_m;
     moment += this->mass_kg(n) * from_middle.cross(velocity(n));
     inertia += this->mass_kg(n) * (from_middle.squaredNorm() * Eigen::Matrix3d::Identity() -
                                    from_middle * from_middle.transpose());
@@ -297,7 +297,7 @@ void ImplicitBody::move_and_turn(const RigidMotion& motion, double step_s) {
       Eigen::Matrix3d::Identity();
   for (int n = 0; n < node_count(); ++n) {
     if (mesh_.joined(n) != n) continue;
-    const Vector3 from_middle = place(n) - motion.middle_m, now = velocity(n);
+    const Vector3 from_middle = place(n) - motion.centre_m, now = velocity(n);
     const Vector3 own = now - motion.velocity_at(place(n));
     const Vector3 turned = turn * from_middle;
     set_displacement(n, displacement(n) + turned + step_s * (motion.velocity_m_per_s + own + turn * own));

@@ -136,10 +136,10 @@ class ImplicitBody {
   double fastest_square();
 
   struct RigidMotion {
-    Vector3 middle_m = Vector3::Zero(), velocity_m_per_s = Vector3::Zero(), spin_rad_per_s = Vector3::Zero();
+    Vector3 centre_m = Vector3::Zero(), velocity_m_per_s = Vector3::Zero(), spin_rad_per_s = Vector3::Zero();
 
     Vector3 velocity_at(const Vector3& place_m) const {
-      return velocity_m_per_s + spin_rad_per_s.cross(place_m - middle_m);
+      return velocity_m_per_s + spin_rad_per_s.cross(place_m - centre_m);
     }
   };
   Vector3 place(int node) const { return mesh_.nodes[static_cast<std::size_t>(node)] + displacement(node); }

@@ -96,10 +96,10 @@ Hull hull_of(const LatticeMesh& mesh) {
 }
 
 // Without depths but those that the mesh has.
-std::vector<BodyPlace> places_on_block(const LatticeMesh& mesh) {
-  std::vector<BodyPlace> places(mesh.nodes.size());
+std::vector<BodyCoordinates> places_on_block(const LatticeMesh& mesh) {
+  std::vector<BodyCoordinates> places(mesh.nodes.size());
   for (int n = 0; n < mesh.node_count(); ++n) {
-    BodyPlace& place = places[static_cast<std::size_t>(n)];
+    BodyCoordinates& place = places[static_cast<std::size_t>(n)];
     place.along = mesh.along.empty() ? static_cast<double>(mesh.place(n)[2]) / (mesh.count[2] - 1)
                                      : mesh.along[static_cast<std::size_t>(n)];
     if (!mesh.depth_m.empty()) place.depth_m = mesh.depth_m[static_cast<std::size_t>(n)];
@@ -108,7 +108,7 @@ std::vector<BodyPlace> places_on_block(const LatticeMesh& mesh) {
   return places;
 }
 
-const BodyPlace& at(const std::vector<BodyPlace>& nodes, int node) {
+const BodyCoordinates& at(const std::vector<BodyCoordinates>& nodes, int node) {
   return nodes[static_cast<std::size_t>(node)];
 }
 
@@ -126,8 +126,8 @@ std::array<int, 8> corners_of(const LatticeMesh& mesh, int i, int j, int k) {
 
 }  // namespace
 
-std::vector<BodyPlace> node_places(const LatticeMesh& mesh) {
-  std::vector<BodyPlace> places = places_on_block(mesh);
+std::vector<BodyCoordinates> node_places(const LatticeMesh& mesh) {
+  std::vector<BodyCoordinates> places = places_on_block(mesh);
   if (!mesh.depth_m.empty()) return places;
   Hull hull = hull_of(mesh);
   for (int n = 0; n < mesh.node_count(); ++n) {
@@ -140,9 +140,9 @@ std::vector<BodyPlace> node_places(const LatticeMesh& mesh) {
   return places;
 }
 
-BodyPlace mean_place(const LatticeMesh& mesh, const std::vector<BodyPlace>& nodes, std::span<const int> of) {
+BodyCoordinates mean_place(const LatticeMesh& mesh, const std::vector<BodyCoordinates>& nodes, std::span<const int> of) {
   SPOONBILL_ASSERT(!of.empty() && nodes.size() == static_cast<std::size_t>(mesh.node_count()));
-  BodyPlace place;
+  BodyCoordinates place;
   double weights = 0.0, heaviest = 0.0, from = 0.0;
   for (const int node : of) {
     const double weight = out_of_middle(mesh, node);
@@ -166,15 +166,15 @@ BodyPlace mean_place(const LatticeMesh& mesh, const std::vector<BodyPlace>& node
   return place;
 }
 
-std::vector<BodyPlace> cell_places(const LatticeMesh& mesh) {
+std::vector<BodyCoordinates> cell_places(const LatticeMesh& mesh) {
   if (!mesh.middles.empty()) return mesh.middles;
   Hull hull = hull_of(mesh);
-  const std::vector<BodyPlace> nodes = places_on_block(mesh);
-  std::vector<BodyPlace> places(mesh.cell_count());
+  const std::vector<BodyCoordinates> nodes = places_on_block(mesh);
+  std::vector<BodyCoordinates> places(mesh.cell_count());
   for (int k = 0; k + 1 < mesh.count[2]; ++k) {
     for (int i = 0; i + 1 < mesh.count[0]; ++i) {
       for (int j = 0; j + 1 < mesh.count[1]; ++j) {
-        BodyPlace& place = places[mesh.cell_index(i, j, k)];
+        BodyCoordinates& place = places[mesh.cell_index(i, j, k)];
         const std::array<int, 8> corners = corners_of(mesh, i, j, k);
         place = mean_place(mesh, nodes, corners);
         place.depth_m = hull.distance(trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5));

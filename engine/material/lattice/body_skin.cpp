@@ -38,17 +38,17 @@ ClosedSkin coarse_skin(const Surface& surface, double longest_m) {
   for (const double at_u : u) {
     for (const double at_v : v) samples.push_back(position(surface, at_u, at_v));
   }
-  const auto way_m = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
+  const auto displacement_m = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
     return (samples[i * v.size() + j] - samples[k * v.size() + l]).norm();
   };
   const auto over_u = [&](std::size_t from, std::size_t to) {
     double longest = 0.0;
-    for (std::size_t j = 0; j < v.size(); ++j) longest = std::max(longest, way_m(from, j, to, j));
+    for (std::size_t j = 0; j < v.size(); ++j) longest = std::max(longest, displacement_m(from, j, to, j));
     return longest;
   };
   const auto over_v = [&](std::size_t from, std::size_t to) {
     double longest = 0.0;
-    for (std::size_t i = 0; i < u.size(); ++i) longest = std::max(longest, way_m(i, from, i, to));
+    for (std::size_t i = 0; i < u.size(); ++i) longest = std::max(longest, displacement_m(i, from, i, to));
     return longest;
   };
   return sample_skin(surface, thinned(u, longest_m, over_u), thinned(v, longest_m, over_v));
@@ -57,7 +57,7 @@ ClosedSkin coarse_skin(const Surface& surface, double longest_m) {
 }  // namespace
 
 BodySkin body_skin(const Surface& surface, const LatticeMesh& box,
-                   const std::function<BodyPlace(double u, double v)>& place_at) {
+                   const std::function<BodyCoordinates(double u, double v)>& place_at) {
   SPOONBILL_ASSERT(static_cast<bool>(place_at));
   const ClosedSkin coarse = coarse_skin(surface, edge_cells * shortest_edge_m(box));
   BodySkin skin;

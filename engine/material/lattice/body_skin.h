@@ -13,6 +13,6 @@ namespace spoonbill {
 // of its volume. `place_at` tells where on the surface (u, v) is. Its points lie in filled cells where
 // those samples do.
 BodySkin body_skin(const Surface& surface, const LatticeMesh& box,
-                   const std::function<BodyPlace(double u, double v)>& place_at);
+                   const std::function<BodyCoordinates(double u, double v)>& place_at);
 
 }  // namespace spoonbill

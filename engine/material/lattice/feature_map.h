@@ -7,7 +7,7 @@
 
 #include "engine/base/progress.h"
 #include "engine/material/lattice/lattice_mesh.h"
-#include "engine/scene/lattice_request.h"
+#include "engine/scene/body.h"
 
 namespace spoonbill {
 

@@ -6,7 +6,7 @@
 
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
-#include "engine/scene/lattice_request.h"
+#include "engine/scene/body.h"
 
 namespace spoonbill {
 

@@ -7,7 +7,7 @@
 
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
-#include "engine/scene/body_region.h"
+#include "engine/scene/material.h"
 
 namespace spoonbill {
 
@@ -25,7 +25,7 @@ struct BodySkin {
   using Triangle = std::array<std::uint32_t, 3>;
   std::vector<CellPoint> points;
   std::vector<Triangle> triangles;  // counter-clockwise seen from outside
-  std::vector<BodyPlace> middles;   // of the triangles
+  std::vector<BodyCoordinates> middles;   // of the triangles
 };
 
 // i and j run across the body, k along it, slowest: neighbours in memory are near whatever the body's length,
@@ -49,7 +49,7 @@ struct LatticeMesh {
   std::vector<double> along, depth_m;
   // Of such a box: where the skin is nearest to the middle of each cell, and how deep that is, 0 outside; the
   // skin that bears its pressure; whether the body is thinner than two cells anywhere.
-  std::vector<BodyPlace> middles;
+  std::vector<BodyCoordinates> middles;
   BodySkin skin;
   bool slender = false;
 

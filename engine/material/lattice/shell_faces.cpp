@@ -36,7 +36,7 @@ std::vector<ShellFace> shell_faces(const LatticeMesh& mesh) {
 }
 
 std::vector<ShellFace> faces_in(const BodyRegion& region, const LatticeMesh& mesh,
-                                const std::vector<ShellFace>& faces, const std::vector<BodyPlace>& places) {
+                                const std::vector<ShellFace>& faces, const std::vector<BodyCoordinates>& places) {
   SPOONBILL_ASSERT(places.size() == static_cast<std::size_t>(mesh.node_count()));
   std::vector<ShellFace> within;
   for (const ShellFace& face : faces) {

@@ -18,7 +18,7 @@ std::vector<ShellFace> shell_faces(const LatticeMesh& mesh);
 
 // Those whose middle is in the region; `places` are the nodes'.
 std::vector<ShellFace> faces_in(const BodyRegion& region, const LatticeMesh& mesh,
-                                const std::vector<ShellFace>& faces, const std::vector<BodyPlace>& places);
+                                const std::vector<ShellFace>& faces, const std::vector<BodyCoordinates>& places);
 
 // Half the product of the diagonals, m^2, outward: a pressure on it is exactly that of a bilinear patch.
 inline Vector3 vector_area(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {

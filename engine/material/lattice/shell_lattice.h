@@ -5,7 +5,7 @@
 #include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/material/lattice/lattice_mesh.h"
-#include "engine/scene/lattice_request.h"
+#include "engine/scene/body.h"
 
 namespace spoonbill {
 

@@ -55,12 +55,12 @@ class Places {
         start_(surface.u.domain_start()),
         period_(surface.u.domain_end() - start_) {}
 
-  BodyPlace on_surface(double u, double v) const {
+  BodyCoordinates on_surface(double u, double v) const {
     const double turns = (u - start_) / period_;
     return {along_.at(v), turns - std::floor(turns), 0.0};
   }
 
-  BodyPlace at(const Vector3& point) const {
+  BodyCoordinates at(const Vector3& point) const {
     const TriangleCorners& corners = skin_.mesh.triangles[inside_.nearest_triangle(point)];
     const auto squared = [&](std::uint32_t corner) {
       return (skin_.mesh.vertices_m[corner] - point).squaredNorm();
@@ -68,7 +68,7 @@ class Places {
     const std::uint32_t nearest = *std::min_element(
         corners.begin(), corners.end(),
         [&](std::uint32_t one, std::uint32_t other) { return squared(one) < squared(other); });
-    BodyPlace place = on_surface(skin_.u[nearest], skin_.v[nearest]);
+    BodyCoordinates place = on_surface(skin_.u[nearest], skin_.v[nearest]);
     place.depth_m = std::max(0.0, -inside_.at(point).distance_m);
     return place;
   }
@@ -84,7 +84,7 @@ void place_nodes(const Places& places, LatticeMesh& box) {
   constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t n = 0; n < box.nodes.size(); ++n) {
     const bool beside = box.places[n] == NodePlace::beside_body;
-    const BodyPlace place = beside ? BodyPlace{nowhere, nowhere, nowhere} : places.at(box.nodes[n]);
+    const BodyCoordinates place = beside ? BodyCoordinates{nowhere, nowhere, nowhere} : places.at(box.nodes[n]);
     box.along.push_back(place.along);
     box.turns.push_back(place.around);
     box.depth_m.push_back(place.depth_m);

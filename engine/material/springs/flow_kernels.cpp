@@ -183,9 +183,9 @@ void flow(const LatticeView& view, const FlowRule& rule) {
 void creep(const LatticeView& view, int direction, const CreepRule& rule) {
   take_dilation_roots(view, view.fx);
   const SpringArrays& s = view.springs[direction];
-  if (s.relaxing_share) {
+  if (s.relaxing_fraction) {
     creep_springs(view, s, [&](int start) {
-      return OwnCreep{s.relaxing_share + start, s.relaxation_time + start, rule.time_s};
+      return OwnCreep{s.relaxing_fraction + start, s.relaxation_time + start, rule.time_s};
     });
   } else {
     creep_springs(view, s, [&](int) { return CommonCreep{rule}; });

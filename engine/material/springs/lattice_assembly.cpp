@@ -23,7 +23,7 @@ SpringLattice::Assembly::Assembly(const SpringLattice& of) {
         is_own ? of.youngs_modulus_pa()
                : material.youngs_modulus_pa * of.youngs_modulus_pa() / made_of.own().youngs_modulus_pa;
     // Below, a core moves the lattice, and its springs rest.
-    const double poisson = std::max(material.poissons_ratio, least_spring_poissons_ratio);
+    const double poisson = std::max(material.poissons_ratio, min_spring_poissons_ratio);
     materials.push_back({youngs, shear_modulus(youngs, poisson), bulk_stiffness(youngs, poisson)});
   }
   const std::vector<double> none(static_cast<std::size_t>(of.mesh().node_count()), 0.0);

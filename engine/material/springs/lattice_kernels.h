@@ -37,7 +37,7 @@ struct SpringArrays {
   const float* yield = nullptr;
   const float* hardening = nullptr;
   const float* flow_rate = nullptr;  // 1/s
-  const float* relaxing_share = nullptr;
+  const float* relaxing_fraction = nullptr;
   const float* relaxation_time = nullptr;  // s
 };
 

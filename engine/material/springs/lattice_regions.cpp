@@ -18,7 +18,7 @@ bool differ(const LatticeMaterials& materials, const Of& of) {
 
 // Of its pressure waves, squared: E (1 - nu) / ((1 + nu) (1 - 2 nu)) over the density.
 double wave_speed_square(const Material& material) {
-  const double poisson = std::max(material.poissons_ratio, least_spring_poissons_ratio);
+  const double poisson = std::max(material.poissons_ratio, min_spring_poissons_ratio);
   return material.youngs_modulus_pa * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)) /
          material.density_kg_per_m3;
 }
@@ -56,14 +56,14 @@ void SpringLattice::store_stiffening(const Assembly& sum) {
 void SpringLattice::store_flow_and_creep(const Assembly& sum) {
   for (const Material& material : materials_.materials) {
     flows_ = flows_ || material.plastic;
-    creeps_ = creeps_ || material.relaxing_share > 0.0;
+    creeps_ = creeps_ || material.relaxing_fraction > 0.0;
   }
   const bool own_flow = flows_ && differ(materials_, [](const Material& of) {
                           return std::array<double, 4>{of.plastic ? 1.0 : 0.0, of.yield_strain,
                                                        of.flow_rate_per_s, of.hardening};
                         });
   const bool own_creep = creeps_ && differ(materials_, [](const Material& of) {
-                           return std::array<double, 2>{of.relaxing_share, of.relaxation_time_s};
+                           return std::array<double, 2>{of.relaxing_fraction, of.relaxation_time_s};
                          });
   if (!own_flow && !own_creep) return;
   for (std::size_t d = 0; d < lattice_direction_count; ++d) {
@@ -84,7 +84,7 @@ void SpringLattice::store_flow_and_creep(const Assembly& sum) {
         flow_rate_[d][n] = static_cast<float>(of.flow_rate_per_s);
       }
       if (own_creep) {
-        relaxing_share_[d][n] = static_cast<float>(of.relaxing_share);
+        relaxing_share_[d][n] = static_cast<float>(of.relaxing_fraction);
         relaxation_time_[d][n] = static_cast<float>(of.relaxation_time_s);
       }
     }

@@ -15,7 +15,7 @@ CadSolid tetrahedron() {
   solid.gap_m = 2e-6;
   solid.volume_m3 = 1e-3 / 18.0;
   solid.area_m2 = 0.04;
-  solid.middle_m = {0.025, 0.025, 1.0 / 12.0};
+  solid.centre_m = {0.025, 0.025, 1.0 / 12.0};
   return solid;
 }
 
@@ -33,7 +33,7 @@ TEST(CadSolidStream, KeepsEveryBit) {
   EXPECT_EQ(back->gap_m, solid.gap_m);
   EXPECT_EQ(back->volume_m3, solid.volume_m3);
   EXPECT_EQ(back->area_m2, solid.area_m2);
-  EXPECT_EQ(back->middle_m, solid.middle_m);
+  EXPECT_EQ(back->centre_m, solid.centre_m);
 }
 
 TEST(CadSolidStream, RefusesWhatIsNoSolid) {

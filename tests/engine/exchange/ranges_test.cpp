@@ -27,7 +27,7 @@ TEST(Ranges, NameFieldValueAndRange) {
       "material modelling-clay: poissons_ratio is 0.1, must be 0.2 or more for a material that is plastic, "
       "creeps or stiffens");
   material.poissons_ratio = 0.3;
-  material.relaxing_share = 0.5;
+  material.relaxing_fraction = 0.5;
   EXPECT_EQ(
       check_material(material).error().message,
       "material modelling-clay: cannot both flow and creep; set plastic to false or relaxing_share to 0");

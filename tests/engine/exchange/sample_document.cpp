@@ -46,7 +46,7 @@ std::vector<double> numbers_of(const Document& document) {
                                  material.flow_rate_per_s,
                                  material.hardening,
                                  material.stiffening,
-                                 material.relaxing_share,
+                                 material.relaxing_fraction,
                                  material.relaxation_time_s,
                                  material.friction,
                                  scene.tool.radius_m,

@@ -135,7 +135,7 @@ TEST(ToolJson, NamesWhatIsWrongWithASoftMesh) {
             }).substr(0, 34),
             "sample.json: tool.soft.grip.normal");
   EXPECT_EQ(refused([](Json& tool) { tool["solid"]["triangles"].erase(3); }),
-            "sample.json: tool mesh: is not closed, as a soft one must be; close its holes, or leave soft "
+            "sample.json: tool mesh: is open, a soft mesh must be closed; close its holes or leave soft "
             "out");
   EXPECT_EQ(refused([](Json& tool) {
               tool["solid"] = {{"shape", "half_space"}};

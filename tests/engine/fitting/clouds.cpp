@@ -34,8 +34,8 @@ Vector3 on_cylinder(double s, double t, double radius_m, double length_m) {
   return {radius_m * std::cos(2.0 * pi * s), radius_m * std::sin(2.0 * pi * s), t * length_m};
 }
 
-Vector3 on_torus_sector(double s, double t, double way_m, double tube_m) {
-  const double reach = way_m + tube_m * std::cos(2.0 * pi * s), turn = 0.5 * pi * t;
+Vector3 on_torus_sector(double s, double t, double displacement_m, double tube_m) {
+  const double reach = displacement_m + tube_m * std::cos(2.0 * pi * s), turn = 0.5 * pi * t;
   return {reach * std::cos(turn), reach * std::sin(turn), tube_m * std::sin(2.0 * pi * s)};
 }
 

@@ -14,7 +14,7 @@ Scan ellipsoid_cloud(int count, const Vector3& semi_axes_m);
 Scan random_cloud(int count, std::uint64_t seed, const std::function<Vector3(double, double)>& place);
 
 Vector3 on_cylinder(double s, double t, double radius_m, double length_m);  // along z from 0, open
-Vector3 on_torus_sector(double s, double t, double way_m, double tube_m);   // a quarter turn about z, open
+Vector3 on_torus_sector(double s, double t, double displacement_m, double tube_m);   // a quarter turn about z, open
 Vector3 on_waves(double s, double t, double width_m, double height_m);      // over x, y
 double waves_height(double x_m, double y_m, double width_m, double height_m);
 

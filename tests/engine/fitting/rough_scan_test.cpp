@@ -8,7 +8,7 @@
 
 #include "engine/fitting/fit_points.h"
 #include "engine/fitting/fit_scan.h"
-#include "engine/inspection/curvature_range.h"
+#include "engine/inspection/curvature.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/fitting/clouds.h"
 #include "tests/engine/fitting/known_shapes.h"
@@ -171,7 +171,7 @@ TEST(RoughScan, NoiseDoesNotWrinkleTheSurface) {
     const ScanFit fitted = fit(scan, 24);
     ASSERT_EQ(fitted.bodies.size(), 1U);
     // 8 pi for a ball, little more for these.
-    EXPECT_LT(bending_measure(fitted.bodies[0].surface), 45.0);
+    EXPECT_LT(compute_bending_energy(fitted.bodies[0].surface), 45.0);
     EXPECT_LT(fitted.bodies[0].errors.surface_to_data.p95_m, 3e-4);
   }
 }

@@ -1,10 +1,9 @@
-#include "engine/inspection/curvature_range.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "engine/inspection/curvature.h"
 #include "engine/shapes/stock_shapes.h"
 #include "tests/engine/shapes/body_measures.h"
 #include "tests/engine/trims/loops.h"
@@ -14,8 +13,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// x = u, y = v, z = a u^2 + b v^2 over -1 to 1, exactly: the coefficients of t^2 over Bezier's square are
-// 1, -1, 1.
+// Exact surface x = u, y = v, z = a u^2 + b v^2 over -1 to 1. The Bezier coefficients of t^2 are 1, -1, 1.
 Surface paraboloid(double a, double b) {
   const KnotVector knots = KnotVector::open(2, {-1, -1, -1, 1, 1, 1}).value();
   ControlNet net(3, 3);
@@ -29,13 +27,13 @@ Surface paraboloid(double a, double b) {
 }
 
 TEST(PrincipalCurvatures, AreThoseOfAParaboloid) {
-  // At the vertex 2 a and 2 b, hollow seen from above where its normals point.
-  const auto vertex = principal_curvatures(evaluate(paraboloid(0.7, -0.2), 0.0, 0.0));
+  // At the vertex the curvatures are 2 a and 2 b, concave seen from above, the side of its normals.
+  const auto vertex = compute_principal_curvatures(evaluate(paraboloid(0.7, -0.2), 0.0, 0.0));
   ASSERT_TRUE(vertex);
   EXPECT_NEAR(vertex->smallest, -1.4, 1e-14);
   EXPECT_NEAR(vertex->largest, 0.4, 1e-14);
-  // Elsewhere on u: along it 2 a / (1 + 4 a^2 u^2)^(3/2), across it 2 b over the root.
-  const auto beside = principal_curvatures(evaluate(paraboloid(0.7, 0.2), 0.5, 0.0));
+  // Elsewhere on u, they are 2 a / (1 + 4 a^2 u^2)^(3/2) along it and 2 b over the root across it.
+  const auto beside = compute_principal_curvatures(evaluate(paraboloid(0.7, 0.2), 0.5, 0.0));
   const double root = std::sqrt(1.0 + 4.0 * 0.49 * 0.25);
   EXPECT_NEAR(beside->smallest, -1.4 / (root * root * root), 1e-14);
   EXPECT_NEAR(beside->largest, -0.4 / root, 1e-14);
@@ -43,44 +41,45 @@ TEST(PrincipalCurvatures, AreThoseOfAParaboloid) {
 
 TEST(PrincipalCurvatures, DoNotHangOnHowTheParametersRun) {
   const Surface straight = paraboloid(0.7, 0.2);
-  // The same points by sheared parameters: u = s + 100 t as a linear map of the second derivatives.
+  // The same points with sheared parameters: u = s + 100 t as a linear map of the second derivatives.
   const SurfacePoint point = evaluate(straight, 0.3, -0.2);
-  const auto plain = principal_curvatures(point);
+  const auto plain = compute_principal_curvatures(point);
   SurfacePoint sheared = point;
   sheared.dv = 100.0 * point.du + point.dv;
   sheared.duv = 100.0 * point.duu + point.duv;
   sheared.dvv = 1e4 * point.duu + 200.0 * point.duv + point.dvv;
-  const auto slanted = principal_curvatures(sheared);
+  const auto slanted = compute_principal_curvatures(sheared);
   ASSERT_TRUE(plain && slanted);
   EXPECT_NEAR(plain->smallest, slanted->smallest, 1e-10);
   EXPECT_NEAR(plain->largest, slanted->largest, 1e-10);
 }
 
 TEST(CurvatureRange, FindsAPeakBetweenSamples) {
-  const CurvatureRange range = curvature_range(paraboloid(0.7, -0.2));
+  const CurvatureRange range = find_curvature_range(paraboloid(0.7, -0.2));
   EXPECT_NEAR(range.smallest.curvature_per_m, -1.4, 1e-6);
   EXPECT_NEAR(range.smallest.u, 0.0, 1e-3);
   EXPECT_NEAR(range.largest.curvature_per_m, 0.4, 1e-6);
   EXPECT_NEAR(range.largest.v, 0.0, 1e-3);
 }
 
-// The vertex, which is sharpest, is trimmed away: what is left is sharpest beside the cut.
+// The vertex, the sharpest point, is trimmed away; the rest is sharpest beside the cut.
 TEST(CurvatureRange, OfWhatTrimsKeep) {
   const Surface whole = paraboloid(0.7, 0.0);
   const auto loop = polygon_loop(whole.u, whole.v, rectangle(0.5, -1.0, 1.0, 1.0));
-  const CurvatureRange range = curvature_range(whole, TrimmedArea::make(whole.u, whole.v, {loop}).value());
+  const CurvatureRange range =
+      find_curvature_range(whole, TrimmedArea::make(whole.u, whole.v, {loop}).value());
   const double root = std::sqrt(1.0 + 4.0 * 0.49 * 0.25);
   EXPECT_NEAR(range.smallest.curvature_per_m, -1.4 / (root * root * root), 1e-3);
   EXPECT_GE(range.smallest.u, 0.5);
 }
 
-// Second derivatives of a cubic spline of n spans around are short by (2 pi / n)^2 / 12 of themselves, here
-// below a thousandth.
+// Second derivatives of a cubic spline with n spans around are too small by (2 pi / n)^2 / 12 of themselves,
+// here less than a thousandth.
 TEST(CurvatureRange, OfATorus) {
   ShapeFit fit;
   fit.control_counts = {{64, 64}};
   const Surface torus = fitted(torus_shape({0.04, 0.01}), fit).surface;
-  const CurvatureRange range = curvature_range(torus);
+  const CurvatureRange range = find_curvature_range(torus);
   EXPECT_NEAR(range.largest.curvature_per_m, 100.0, 0.1);
   EXPECT_NEAR(range.smallest.curvature_per_m, -1.0 / 0.03, 0.05);
   const Vector3 inner = range.smallest.position_m;
@@ -91,10 +90,10 @@ TEST(CurvatureRange, OfASphereIsOneOverItsRadiusUpToThePoles) {
   ShapeFit fit;
   fit.control_counts = {{48, 64}};
   const Surface sphere = fitted(sphere_shape(0.04), fit).surface;
-  const CurvatureRange range = curvature_range(sphere);
+  const CurvatureRange range = find_curvature_range(sphere);
   EXPECT_NEAR(range.smallest.curvature_per_m, 25.0, 0.5);
   EXPECT_NEAR(range.largest.curvature_per_m, 25.0, 0.5);
-  EXPECT_NEAR(bending_measure(sphere), 8.0 * pi, 0.01 * 8.0 * pi);
+  EXPECT_NEAR(compute_bending_energy(sphere), 8.0 * pi, 0.01 * 8.0 * pi);
 }
 
 TEST(CurvatureRange, OfAnEllipsoid) {
@@ -110,18 +109,18 @@ TEST(CurvatureRange, OfAnEllipsoid) {
   ShapeFit fit;
   fit.control_counts = {{96, 96}};
   const Surface ellipsoid = fitted(Result<ExactShape>(shape), fit).surface;
-  const CurvatureRange range = curvature_range(ellipsoid);
-  // The ends of the longest axis are sharpest, c / b^2; the flattest are those of the shortest, b / c^2.
+  const CurvatureRange range = find_curvature_range(ellipsoid);
+  // The ends of the longest axis are sharpest, c / b^2; those of the shortest are flattest, b / c^2.
   EXPECT_NEAR(range.largest.curvature_per_m, c / (b * b), 0.01 * c / (b * b));
   EXPECT_NEAR(range.smallest.curvature_per_m, b / (c * c), 0.01 * b / (c * c));
   EXPECT_NEAR(std::abs(range.smallest.position_m.z()), b, 1e-4);
 }
 
 TEST(CurvatureRange, OfAFlatSheetIsNone) {
-  const CurvatureRange range = curvature_range(paraboloid(0.0, 0.0));
+  const CurvatureRange range = find_curvature_range(paraboloid(0.0, 0.0));
   EXPECT_EQ(range.smallest.curvature_per_m, 0.0);
   EXPECT_EQ(range.largest.curvature_per_m, 0.0);
-  EXPECT_EQ(bending_measure(paraboloid(0.0, 0.0)), 0.0);
+  EXPECT_EQ(compute_bending_energy(paraboloid(0.0, 0.0)), 0.0);
 }
 
 }  // namespace

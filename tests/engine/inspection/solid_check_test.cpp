@@ -18,7 +18,7 @@ SolidCheck checked(const TriangleMesh& mesh, double error_m = 0.0) {
   return check.value_or(SolidCheck());
 }
 
-// A bar of 100 along x over this triangle or quadrangle, counter-clockwise seen from +x.
+// Bar of 100 along x over a triangle or quadrangle, counter-clockwise seen from +x.
 TriangleMesh prism(const std::vector<Vector3>& profile) {
   TriangleMesh mesh;
   const auto n = static_cast<std::uint32_t>(profile.size());
@@ -43,14 +43,14 @@ TEST(SolidCheck, ThicknessOfABoxIsItsLeastSide) {
   EXPECT_NEAR(check.thinnest->thickness_m, 0.004, 1e-12);
   EXPECT_NEAR((check.thinnest->position_m - check.thinnest->opposite_m).norm(), 0.004, 1e-12);
   EXPECT_TRUE(check.self_intersections.empty());
-  EXPECT_TRUE(check.self_meetings_complete);
+  EXPECT_TRUE(check.self_intersections_complete);
 }
 
 TEST(SolidCheck, ThicknessOfABallIsItsDiameterWithinItsChords) {
   constexpr int rings = 24, around = 48;
   const SolidCheck check = checked(ball_mesh(rings, around, 0.05));
   ASSERT_TRUE(check.thinnest);
-  // The corners of a facet are within 5.4 degrees of its middle, half the diagonal of a cell.
+  // The corners of a facet are within 5.4 degrees of its centre, half the diagonal of a cell.
   EXPECT_NEAR(check.thinnest->thickness_m, 0.1, 0.1 * (1.0 - std::cos(5.4 * pi / 180.0)));
 }
 
@@ -64,7 +64,7 @@ TEST(SolidCheck, TheWallAboutACavityIsTheThickness) {
   EXPECT_TRUE(check.self_intersections.empty());
 }
 
-// Faces drafted by 3 degrees meet the bottom at 87, between which lines are as short as one likes.
+// Faces drafted by 3 degrees meet the bottom at 87 degrees, between which lines can be arbitrarily short.
 TEST(SolidCheck, EdgesOfADraftedBlockAreNotThin) {
   const double draft = 0.02 * std::tan(3.0 * pi / 180.0);
   const SolidCheck check =
@@ -80,7 +80,7 @@ TEST(SolidCheck, AKnifesEdgeIsThin) {
   EXPECT_LT(check.thinnest->thickness_m, 1e-4);
 }
 
-// A dent of the top, whose deepest point lies so far below the bottom.
+// Dent of the top, whose deepest point is this far below the bottom.
 TriangleMesh dented(double below_m) {
   TriangleMesh mesh = box_of_triangles({0, 0, 0}, {0.03, 0.02, 0.01});
   const auto deepest = static_cast<std::uint32_t>(mesh.vertices_m.size());
@@ -92,7 +92,7 @@ TriangleMesh dented(double below_m) {
       triangles.push_back(t);
       continue;
     }
-    // The diagonal that both triangles of the top have is left out.
+    // The diagonal shared by both triangles of the top is skipped.
     for (std::size_t k = 0; k < 3; ++k) {
       const Vector3 side = mesh.vertices_m[t[(k + 1) % 3]] - mesh.vertices_m[t[k]];
       if (std::abs(side.x()) < 1e-9 || std::abs(side.y()) < 1e-9) {

@@ -17,7 +17,7 @@ using Vector2 = Eigen::Vector2d;
 constexpr double pi = std::numbers::pi;
 
 bool is_clean(const SurfaceCheck& check) {
-  return check.bad_spots.empty() && check.self_intersections.empty() && check.self_meetings_complete;
+  return check.surface_defects.empty() && check.self_intersections.empty() && check.self_intersections_complete;
 }
 
 TEST(SurfaceCheck, StartingShapesAreSound) {
@@ -57,8 +57,8 @@ TEST(SurfaceCheck, ASheetIsOpenBothWays) {
   EXPECT_TRUE(is_clean(check));
 }
 
-// The same tube without being periodic, its edges together: closed around all the same, and by 1 mm apart no
-// more.
+// The same tube without periodicity. With its edges together it is still closed around; 1 mm apart it is
+// open.
 TEST(SurfaceCheck, EdgesThatMeetCloseATube) {
   for (const double apart : {0.0, 1e-3}) {
     ExactShape shape = open_tube(0.01, 0.05);
@@ -71,12 +71,13 @@ TEST(SurfaceCheck, EdgesThatMeetCloseATube) {
   }
 }
 
-// A tube along a loop that comes back through itself.
+// Tube along a loop that passes through itself.
 TEST(SurfaceCheck, FindsWhereATubePassesThroughItself) {
   ExactShape shape;
   shape.u.periodic = true;
   shape.at = [](double u, double v) {
-    // Once around a circle of 30 mm and on, up by half the tube's width: the ends overlap.
+    // The loop follows a circle of 30 mm for more than a turn and rises by half the tube's width: the ends
+    // overlap.
     const double turn = 2.2 * pi * v, around = 2.0 * pi * u;
     const Vector3 outward(std::cos(turn), 0.0, std::sin(turn));
     return Vector3((0.03 + 0.006 * std::cos(around)) * outward +
@@ -84,22 +85,22 @@ TEST(SurfaceCheck, FindsWhereATubePassesThroughItself) {
   };
   const SurfaceCheck check = *check_surface(fitted(Result<ExactShape>(shape)).surface);
   ASSERT_FALSE(check.self_intersections.empty());
-  const SelfMeeting& meeting = check.self_intersections[0];
-  // Near the start of the loop on one side, near its end on the other.
+  const SelfIntersection& meeting = check.self_intersections[0];
+  // One side is near the start of the loop, the other near its end.
   EXPECT_LT(std::min(meeting.v, meeting.other_v), 0.15);
   EXPECT_GT(std::max(meeting.v, meeting.other_v), 0.85);
 }
 
 TEST(SurfaceCheck, FindsAFold) {
   Surface sheet = fitted(sheet_shape(0.1, 0.06)).surface;
-  // One control point drawn past its neighbours.
+  // Moves one control point past its neighbours.
   Vector3 point = sheet.net.point(7, 7);
   point.x() += 0.05;
   sheet.net.set_point(7, 7, point);
   const SurfaceCheck check = *check_surface(sheet);
-  ASSERT_FALSE(check.bad_spots.empty());
-  EXPECT_TRUE(check.bad_spots[0].folds);
-  EXPECT_NEAR(check.bad_spots[0].u, 0.55, 0.2);
+  ASSERT_FALSE(check.surface_defects.empty());
+  EXPECT_TRUE(check.surface_defects[0].folds);
+  EXPECT_NEAR(check.surface_defects[0].u, 0.55, 0.2);
 }
 
 TEST(SurfaceCheck, FindsWhereASurfaceShrinksToALine) {
@@ -108,11 +109,11 @@ TEST(SurfaceCheck, FindsWhereASurfaceShrinksToALine) {
     for (int j = 6; j < 10; ++j) sheet.net.set_point(i, j, sheet.net.point(i, 6));
   }
   const SurfaceCheck check = *check_surface(sheet);
-  ASSERT_FALSE(check.bad_spots.empty());
-  EXPECT_FALSE(check.bad_spots[0].folds);
+  ASSERT_FALSE(check.surface_defects.empty());
+  EXPECT_FALSE(check.surface_defects[0].folds);
 }
 
-// Turned about the y axis from pole to pole through rings of these radii and heights, in even spans.
+// Surface of revolution about y from pole to pole through rings of these radii and heights, in even spans.
 Surface turned(const std::vector<Vector2>& rings) {
   const int columns = static_cast<int>(rings.size());
   ControlNet net(12, columns);
@@ -128,7 +129,7 @@ Surface turned(const std::vector<Vector2>& rings) {
       .value();
 }
 
-// The normal turns by more than a right angle within a quarter of a span, and yet turns.
+// The normal turns by more than a right angle within a quarter of a span without a fold.
 TEST(SurfaceCheck, ATightRimIsNoFold) {
   for (const double thickness : {5e-4, 1e-4}) {
     const double half = 0.5 * thickness;
@@ -142,11 +143,11 @@ TEST(SurfaceCheck, ATightRimIsNoFold) {
                                                       {0.0, half}}));
     EXPECT_EQ(check.closing.closedness, Closedness::solid);
     EXPECT_GT(check.mass.volume_m3, 0.0);
-    EXPECT_TRUE(check.bad_spots.empty()) << thickness;
+    EXPECT_TRUE(check.surface_defects.empty()) << thickness;
   }
 }
 
-// Its fold lies halfway between two of the places that are looked at, or elsewhere.
+// The fold is halfway between two sampled points, or elsewhere.
 TEST(SurfaceCheck, ASheetFoldedFlatOverIsFound) {
   for (const double shift : {0.0, 0.003}) {
     Surface sheet = fitted(sheet_shape(0.1, 0.06)).surface;
@@ -159,12 +160,12 @@ TEST(SurfaceCheck, ASheetFoldedFlatOverIsFound) {
       }
     }
     const SurfaceCheck check = *check_surface(sheet);
-    ASSERT_FALSE(check.bad_spots.empty());
-    EXPECT_TRUE(check.bad_spots[0].folds);
+    ASSERT_FALSE(check.surface_defects.empty());
+    EXPECT_TRUE(check.surface_defects[0].folds);
   }
 }
 
-// Two flat cones base to base: at their rim, a knot as often as the degree, the normal turns by 152 degrees.
+// Two flat cones base to base. At their rim, a knot of full multiplicity, the normal turns by 152 degrees.
 TEST(SurfaceCheck, ASharpEdgeIsNoFold) {
   const KnotVector around = KnotVector::periodic(3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}).value();
   const KnotVector along = KnotVector::open(1, {0, 0, 1, 2, 2}).value();
@@ -178,7 +179,7 @@ TEST(SurfaceCheck, ASharpEdgeIsNoFold) {
   const SurfaceCheck check = *check_surface(make_surface(around, along, net).value());
   EXPECT_EQ(check.closing.closedness, Closedness::solid);
   EXPECT_GT(check.mass.volume_m3, 0.0);
-  EXPECT_TRUE(check.bad_spots.empty());
+  EXPECT_TRUE(check.surface_defects.empty());
 }
 
 TEST(SurfaceCheck, WhatIsTrimmedAwayDoesNotCount) {

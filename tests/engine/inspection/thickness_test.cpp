@@ -13,7 +13,7 @@ namespace spoonbill {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-// Both walls within the fit's tolerance of 0.01 mm.
+// Both walls are accurate to the fit's tolerance of 0.01 mm.
 constexpr double tolerance_m = 2e-5;
 
 TEST(Thickness, OfASphereIsItsDiameterEverywhere) {
@@ -37,7 +37,7 @@ TEST(Thickness, OfAPlateAndADisc) {
               0.005, tolerance_m);
 }
 
-// Turned about y: a ball of clay with a waist of radius w in its middle, the thinnest place.
+// Ball of clay, a surface of revolution about y, whose thinnest point is a waist of radius w at its centre.
 TEST(Thickness, FindsAWaist) {
   ExactShape shape;
   shape.u.periodic = true;
@@ -49,7 +49,7 @@ TEST(Thickness, FindsAWaist) {
                    -0.02 * ring * waist * std::sin(2.0 * pi * u));
   };
   const Surface body = fitted(Result<ExactShape>(shape)).surface;
-  // The smallest radius by a fine search of the profile.
+  // The smallest radius is found by a fine search of the profile.
   double least = 1.0, at_height = 0.0;
   for (int k = 1000; k < 9000; ++k) {
     const double v = k / 10000.0, radius = shape.at(0.0, v).x();
@@ -68,7 +68,7 @@ TEST(Thickness, FindsAWaist) {
 TEST(Thickness, DoesNotHangOnWhichDirectionRunsAround) {
   const Surface tube = ellipsoid_tube(12, 16);
   Surface turned = transposed(tube);
-  // Exchanging the directions turns the normals about: mirrored, they point outwards again.
+  // Exchanging the directions flips the normals; a mirrored surface has them outward again.
   for (double& x : turned.net.x) x = -x;
   EXPECT_NEAR(ThicknessSearch(tube).smallest()->thickness_m, ThicknessSearch(turned).smallest()->thickness_m,
               1e-7);

@@ -13,8 +13,8 @@
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/inspection/curvature_range.h"
-#include "engine/inspection/enclosed_mass.h"
+#include "engine/inspection/curvature.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/merging/fold_search.h"
 #include "engine/merging/tube_ends.h"
 #include "tests/engine/merging/made_patches.h"
@@ -129,7 +129,7 @@ TEST_P(RodInBall, BecomesOneSurface) {
     // The ball and the rod that are given miss the exact ones by 6e-6 m; the rest is the tolerance.
     EXPECT_LT(largest_distance(merged->surface, direction, fillet), 6e-5) << fillet;
     // Normals point outwards, and what the rod adds is a cylinder, a half ball less the ball's own.
-    const double volume = enclosed_mass(merged->surface).volume_m3;
+    const double volume = compute_enclosed_mass(merged->surface).volume_m3;
     EXPECT_GT(volume, 4.0 / 3.0 * pi * std::pow(ball_radius, 3) + pi * rod_radius * rod_radius * 0.033);
     EXPECT_LT(volume, 4.0 / 3.0 * pi * std::pow(ball_radius, 3) + pi * rod_radius * rod_radius * 0.045);
   }
@@ -277,7 +277,7 @@ TEST(IntersectionMerge, AFilletBesideThePoleFillsTheCorner) {
   ASSERT_TRUE(merged.ok()) << merged.error().message;
   EXPECT_NEAR(merged->corner.blend_length_m, 0.5 * pi * 0.002, 5e-5);
   EXPECT_FALSE(place_of_fold(merged->surface).has_value());
-  EXPECT_GT(curvature_range(merged->surface).smallest.curvature_per_m, -1.2 / 0.002);
+  EXPECT_GT(find_curvature_range(merged->surface).smallest.curvature_per_m, -1.2 / 0.002);
   const double middle = 0.5 * (merged->corner.blend_start + merged->corner.blend_end);
   for (const double u : uniform_parameters(merged->surface.u, 24)) {
     const Vector3 p = position(merged->surface, u, middle) - Vector3(0.012, 0, 0);
@@ -315,8 +315,8 @@ TEST(IntersectionMerge, ARimThatLooksOutOfTheBallIsRefusedWhereItDoes) {
 
 TEST(IntersectionMerge, BodiesWhoseNormalsPointInwardsAreTurnedAroundFirst) {
   const Surface standing = rod(Vector3(0, 0, 1)), outward = ball();
-  const double union_m3 = enclosed_mass(merge_crossing(standing, outward, {})->surface).volume_m3;
-  ASSERT_GT(union_m3, enclosed_mass(outward).volume_m3);
+  const double union_m3 = compute_enclosed_mass(merge_crossing(standing, outward, {})->surface).volume_m3;
+  ASSERT_GT(union_m3, compute_enclosed_mass(outward).volume_m3);
   for (const auto& [first, second] :
        {std::pair(false, true), std::pair(true, false), std::pair(true, true)}) {
     const auto merged = merge_crossing(first ? reversed(standing, Direction::u) : standing,
@@ -325,7 +325,7 @@ TEST(IntersectionMerge, BodiesWhoseNormalsPointInwardsAreTurnedAroundFirst) {
     EXPECT_EQ(merged->first_was_inward, first);
     EXPECT_EQ(merged->second_was_inward, second);
     // The same surface, but for where its knots are added.
-    EXPECT_NEAR(enclosed_mass(merged->surface).volume_m3, union_m3, 1e-3 * union_m3);
+    EXPECT_NEAR(compute_enclosed_mass(merged->surface).volume_m3, union_m3, 1e-3 * union_m3);
   }
 }
 

@@ -10,7 +10,7 @@
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/inspection/enclosed_mass.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/merging/seam.h"
 #include "engine/merging/tube_ends.h"
 #include "tests/engine/merging/made_patches.h"
@@ -76,8 +76,8 @@ TEST(Ring, ABodyOfRevolutionCutInFourIsOneAgain) {
     EXPECT_TRUE(is_pole(surface, Side::v_end));
     EXPECT_LT(merged->deviation_m, 1e-11);
     EXPECT_TRUE(merged->left_open.empty());
-    const double volume_m3 = enclosed_mass(whole).volume_m3;
-    EXPECT_NEAR(enclosed_mass(surface).volume_m3, volume_m3, 1e-9 * volume_m3);
+    const double volume_m3 = compute_enclosed_mass(whole).volume_m3;
+    EXPECT_NEAR(compute_enclosed_mass(surface).volume_m3, volume_m3, 1e-9 * volume_m3);
     ASSERT_EQ(merged->joints.size(), 4U);
     for (int k = 0; k < 4; ++k) EXPECT_EQ(merged->joints[k].closes, k == 3);
     EXPECT_EQ(merged->joints[3].along, Direction::u);

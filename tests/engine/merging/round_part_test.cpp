@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/bspline/grid.h"
-#include "engine/inspection/enclosed_mass.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/inspection/surface_check.h"
 #include "engine/merging/merge.h"
 #include "engine/merging/trimmed_patch.h"
@@ -32,15 +32,15 @@ Surface plane(double y_m, bool up) {
   return surface;
 }
 
-// A circle about `middle_m` on the plane, as chords of a third of a degree.
+// A circle about `centre_m` on the plane, as chords of a third of a degree.
 TrimLoop circle(const Surface& surface, double radius_m, bool hole,
-                const Eigen::Vector2d& middle_m = {0, 0}) {
+                const Eigen::Vector2d& centre_m = {0, 0}) {
   std::vector<Eigen::Vector2d> corners;
   constexpr int count = 1080;
   for (int k = 0; k < count; ++k) {
     const double turn = (hole ? -2.0 : 2.0) * pi * k / count;
-    corners.emplace_back((middle_m.x() + radius_m * std::cos(turn) + 0.05) / 0.1,
-                         (middle_m.y() + radius_m * std::sin(turn) + 0.05) / 0.1);
+    corners.emplace_back((centre_m.x() + radius_m * std::cos(turn) + 0.05) / 0.1,
+                         (centre_m.y() + radius_m * std::sin(turn) + 0.05) / 0.1);
   }
   return make_polygon_loop(surface.u, surface.v, corners).value();
 }
@@ -69,7 +69,7 @@ TEST(RoundPart, ADiscEndsInAPoleAndKeepsItsArea) {
     const Surface& surface = disc->surface;
     EXPECT_TRUE(surface.u.is_periodic());
     // Chords of a third of a degree take 5e-6 of the circle's area, an edge within a micrometre 7e-5.
-    EXPECT_NEAR(enclosed_mass(surface).area_m2 / (pi * 0.03 * 0.03), 1.0, 8e-5);
+    EXPECT_NEAR(compute_enclosed_mass(surface).area_m2 / (pi * 0.03 * 0.03), 1.0, 8e-5);
     EXPECT_GT((up ? 1.0 : -1.0) * unit_normal(surface, 0.3, 0.5).y(), 0.99);
     const Vector3 pole = position(surface, 0.1, surface.v.domain_end());
     EXPECT_LT((pole - position(surface, 0.6, surface.v.domain_end())).norm(), 1e-15);
@@ -83,7 +83,7 @@ TEST(RoundPart, ARingRunsFromItsEdgeToItsHole) {
       sheet, {circle(sheet, 0.01, true, {0.008, 0.0}), circle(sheet, 0.04, false, {0.0, 0.0})}, 1e-6);
   ASSERT_TRUE(ring) << ring.error().message;
   const double area = pi * (0.04 * 0.04 - 0.01 * 0.01);
-  EXPECT_NEAR(enclosed_mass(ring->surface).area_m2 / area, 1.0, 1e-4);
+  EXPECT_NEAR(compute_enclosed_mass(ring->surface).area_m2 / area, 1.0, 1e-4);
   EXPECT_GT(unit_normal(ring->surface, 0.3, 0.5).y(), 0.99);
   for (double u = 0.0; u < 1.0; u += 0.05) {
     const Vector3 outer = position(ring->surface, u, ring->surface.v.domain_start());
@@ -105,7 +105,7 @@ TEST(RoundPart, ADrumOfThreeFacesBecomesOneClosedBody) {
   const auto drum = merge({lid->surface, side(0.02, -0.01, 0.03), base->surface}, request);
   ASSERT_TRUE(drum) << drum.error().message;
   EXPECT_LE(drum->deviation_m, 5e-5);
-  EXPECT_NEAR(enclosed_mass(drum->surface).volume_m3 / (pi * 0.02 * 0.02 * 0.04), 1.0, 1e-3);
+  EXPECT_NEAR(compute_enclosed_mass(drum->surface).volume_m3 / (pi * 0.02 * 0.02 * 0.04), 1.0, 1e-3);
 }
 
 TEST(RoundPart, CornersAndLinesThatMeetAnEdgeTwiceAreRefused) {

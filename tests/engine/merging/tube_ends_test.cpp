@@ -9,7 +9,7 @@
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/inspection/enclosed_mass.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/merging/merge.h"
 
 namespace spoonbill {
@@ -78,7 +78,7 @@ TEST(TubeEnds, KnowsRingsFromPoles) {
   EXPECT_FALSE(is_pole(open, Side::v_end));
   const TubeEnd end = tube_end(open, Side::v_end);
   EXPECT_NEAR(end.radius_m, 0.01, 1e-5);
-  EXPECT_NEAR((end.middle_m - Vector3(0, 0, 0.05)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((end.centre_m - Vector3(0, 0, 0.05)).norm(), 0.0, 1e-9);
   EXPECT_NEAR((end.outward - Vector3(0, 0, 1)).norm(), 0.0, 1e-9);
   EXPECT_NEAR((tube_end(closed, Side::v_start).outward - Vector3(0, 0, -1)).norm(), 0.0, 1e-6);
 }
@@ -90,13 +90,13 @@ TEST(TubeEnds, ARoundCapIsHalfAnEllipsoid) {
     EXPECT_LE(capped->deviation_m, 5e-5);
     EXPECT_TRUE(is_pole(capped->surface, side));
     const TubeEnd pole = tube_end(capped->surface, side);
-    EXPECT_NEAR(pole.middle_m.z(), side == Side::v_end ? 0.056 : -0.006, 1e-9);
+    EXPECT_NEAR(pole.centre_m.z(), side == Side::v_end ? 0.056 : -0.006, 1e-9);
     // The cubic quarter of an ellipse lies within 3e-4 of its size.
     const double whole = pi * 1e-4 * 0.05 + 2.0 / 3.0 * pi * 1e-4 * 0.006;
     const Side other = opposite(side);
     const auto closed = with_cap(capped->surface, other, 0.0, c2());
     ASSERT_TRUE(closed.ok()) << closed.error().message;
-    EXPECT_NEAR(std::abs(enclosed_mass(closed->surface).volume_m3), whole,
+    EXPECT_NEAR(std::abs(compute_enclosed_mass(closed->surface).volume_m3), whole,
                 4e-3 * whole);  // the ring is a cubic spline's circle
   }
 }

@@ -12,7 +12,7 @@
 namespace spoonbill {
 namespace {
 
-// 40 x 20 x 100 mm, its flat side up.
+// Pebble of 40 x 20 x 100 mm, flat side up.
 Body pebble(const Vector3& centre, int nodes) {
   return {"pebble", ellipsoid_tube(12, 12, centre), silicone(), {nodes, {}}};
 }
@@ -25,7 +25,7 @@ double depth_of(const Impact& impact) {
   return depth_between(impact.body(0).mapping().current(), impact.body(1).mapping().current());
 }
 
-// Flat on flat and off the middle, so that they also begin to turn.
+// Two pebbles flat on flat and off centre, so that they also begin to turn.
 TEST(Bodies, ThatCollideKeepTheirMomentum) {
   Impact impact(state_of(pebble({0, 0, 0}, 400)), state_of(pebble({0.012, 0.0235, 0.02}, 700)));
   impact.throw_at(1, {0.01, -0.06, 0.005});
@@ -41,7 +41,7 @@ TEST(Bodies, ThatCollideKeepTheirMomentum) {
   const Vector3 change = impact.momentum_of(0) + impact.momentum_of(1) - before;
   EXPECT_LT(change.norm(), 1e-5 * sum_of_sizes);
   EXPECT_LT(impact.momentum_of(0).y(), 0.25 * before.y()) << "the one that was hit took some of it over";
-  // What the control nets can follow of a dent that is a cell wide; see BodyPairContact.
+  // The limit is what the control nets can follow of a dent one cell wide (body_depth_limit_cells).
   const double cell = static_cast<double>(impact.body(0).lattice.cell_size_m());
   EXPECT_LT(deepest, body_depth_limit_cells * cell);
 }
@@ -55,7 +55,7 @@ TEST(Bodies, ThatBeginInEachOtherPart) {
   EXPECT_GT(impact.momentum_of(1).y(), 0.0);
 }
 
-// Two handles one above the other, the lower one held: what the tool does to the upper one reaches it.
+// Two handles one above the other, the lower one fixed. The tool's action on the upper one reaches it.
 Scene stacked_handles() {
   Scene scene = small_handle();
   Body upper = scene.bodies[0];
@@ -70,7 +70,7 @@ double lowest(const Surface& surface) {
   return *std::min_element(surface.net.y.begin(), surface.net.y.end());
 }
 
-// The frame is one of the surface, and the nodes carry the point: their weighted places are where it is.
+// The frame is that of the surface, and the weighted positions of the nodes give the point.
 void expect_is_on_its_body(const Simulation& simulation, const ContactSnapshot& contact) {
   const SpringLattice& lattice = simulation.lattice(contact.body);
   double sum = 0.0;
@@ -80,7 +80,8 @@ void expect_is_on_its_body(const Simulation& simulation, const ContactSnapshot& 
     carried += static_cast<double>(contact.nodes.weight[k]) * lattice.position(contact.nodes.node[k]);
   }
   EXPECT_NEAR(sum, 1.0, 1e-5);
-  // The tick has moved them since, and the surface follows the lattice only to its control points.
+  // The tick has moved the nodes since, and the surface follows the lattice only as far as its control points
+  // do.
   EXPECT_LT((carried - contact.point_m).norm(), 0.1 * static_cast<double>(lattice.cell_size_m()));
   const SurfacePoint at = evaluate(simulation.surface(contact.body), contact.u, contact.v);
   EXPECT_LT((at.position_m - contact.point_m).norm(), 0.1 * static_cast<double>(lattice.cell_size_m()));

@@ -26,8 +26,8 @@ Support still(const BodyRegion& region) {
   return {region, {}};
 }
 
-// The strain of a volume under uniform pressure is 3 (1 - 2 nu) p / E. 2 in a thousand of it is what is not
-// linear at this strain; springs find theirs to a thousandth.
+// The strain of a volume under uniform pressure is 3 (1 - 2 nu) p / E. The tolerance of 2 in a thousand
+// covers the nonlinearity at this strain; springs are accurate to a thousandth.
 TEST(BodyLoads, PressureAllAroundShrinksABodyAsItsBulkModulusSays) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     const double youngs = stepping == Stepping::springs ? 2e4 : 5e6, poisson = 0.35, share = 1e-3;
@@ -40,12 +40,12 @@ TEST(BodyLoads, PressureAllAroundShrinksABodyAsItsBulkModulusSays) {
     for (int n = 0; n < body.lattice.mesh().node_count(); ++n) {
       moved += body.lattice.displacement(n) / body.lattice.mesh().node_count();
     }
-    // It stays where it is: the pressure on a closed surface sums to nothing. Single precision.
+    // The pressure on a closed surface sums to zero, in single precision, so that the block stays.
     EXPECT_LT(moved.norm(), 1e-7);
   }
 }
 
-// Between the quarters, where the held end is not felt: the strain is F / (E A).
+// Between the quarters the fixed end has no influence: the strain is F / (E A).
 TEST(BodyLoads, AForceOnTheEndStretchesABar) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     const double youngs = stepping == Stepping::springs ? 2e4 : 5e6, area = 0.01 * 0.01, share = 2e-3;
@@ -59,32 +59,32 @@ TEST(BodyLoads, AForceOnTheEndStretchesABar) {
   }
 }
 
-// By volume, a force is a weight: both settle alike.
+// A force distributed by volume acts like a weight: both give the same rest shape.
 TEST(BodyLoads, AForceSharedByVolumeIsAWeight) {
   LoadedBlock loaded({0.01, 0.01, 0.04}, {4, 4, 13}, rubber(2e4, 0.3), Stepping::springs);
   LoadedBlock hanging({0.01, 0.01, 0.04}, {4, 4, 13}, rubber(2e4, 0.3), Stepping::springs);
   loaded.support({still(start)});
   hanging.support({still(start)});
   const Vector3 gravity_m_per_s2(0, 0, 3.0);
-  loaded.load({ForceLoad{{}, loaded.lattice.mass_kg() * gravity_m_per_s2, ForceShare::volume}});
+  loaded.load({ForceLoad{{}, loaded.lattice.mass_kg() * gravity_m_per_s2, ForceDistribution::volume}});
   for (int tick = 0; tick < 800; ++tick) {
     loaded.tick(60.0);
     hanging.tick(60.0, gravity_m_per_s2);
   }
   EXPECT_GT(loaded.slice_m(12).z(), 1e-5);
-  // Single precision sums of displacements.
+  // The tolerance covers sums of displacements in single precision.
   EXPECT_NEAR(loaded.slice_m(12).z() / hanging.slice_m(12).z(), 1.0, 1e-4);
 }
 
-// Of a load on all of a body, what falls on the held nodes too.
+// A load on the whole body includes its part on the fixed nodes.
 TEST(BodyLoads, ASupportBearsWhatIsPutOnItsOwnNodes) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     const double youngs = stepping == Stepping::springs ? 2e4 : 5e6, force_n = 1e-8 * youngs;
     LoadedBlock bar({0.01, 0.01, 0.04}, {4, 4, 13}, rubber(youngs, 0.3), stepping);
     bar.support({still({{0.0, 0.25}})});
-    bar.load({ForceLoad{{}, Vector3(0, 0, force_n), ForceShare::volume}});
+    bar.load({ForceLoad{{}, Vector3(0, 0, force_n), ForceDistribution::volume}});
     for (int tick = 0; tick < 800; ++tick) bar.tick(60.0);
-    // What is left of the motion.
+    // The tolerance covers the remaining motion.
     EXPECT_NEAR(bar.support_force_n(0).z() / -force_n, 1.0, 2e-3);
   }
 }
@@ -99,8 +99,8 @@ StaticResult at_rest(const LatticeMesh& mesh, const Material& material, CellKind
       .value();
 }
 
-// The dynamic solvers come to rest where the static one says, within 1 %: under weight, a pressure on one
-// side and a force on the end at once.
+// The dynamic solvers come to rest at the static solution within 1 %, under weight, a pressure on one side
+// and a force on the end at once.
 TEST(BodyLoads, ACantileverSettlesToItsStaticRest) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     const bool springs = stepping == Stepping::springs;
@@ -134,14 +134,19 @@ TEST(BodyLoads, RefuseARegionWithoutNodes) {
   const auto refused = [&](const Load& load) {
     const std::vector<Load> loads(2, load);
     const auto made = BodyLoads::make(loads, mesh, none);
-    return made.ok() ? "" : made.error().message;
+    return made.ok() ? Error(ErrorCode::internal, "") : made.error();
   };
-  EXPECT_EQ(refused(PressureLoad{{{0.50, 0.51}}, 10.0}),
-            "loads[0]: its region holds no middle of a face of the lattice's shell; make it larger");
-  EXPECT_EQ(refused(ForceLoad{{{0.51, 0.52}}, Vector3::Zero(), ForceShare::volume}),
-            "loads[0]: its region holds no node of the lattice; make it larger");
-  EXPECT_EQ(refused(PressureLoad{{{0.5, 1.0}}, std::nan("")}).substr(0, 23), "loads[0]: pressure_pa i");
-  EXPECT_EQ(refused(PressureLoad{{{0.5, 1.5}}, 1.0}).substr(0, 15), "loads[0]: along");
+  const Error no_face = refused(PressureLoad{{{0.50, 0.51}}, 10.0});
+  EXPECT_EQ(no_face.code, ErrorCode::too_few);
+  EXPECT_EQ(no_face.field, "region");
+  EXPECT_EQ(no_face.message.substr(0, 10), "loads[0]: ");
+  const Error no_node = refused(ForceLoad{{{0.51, 0.52}}, Vector3::Zero(), ForceDistribution::volume});
+  EXPECT_EQ(no_node.code, ErrorCode::too_few);
+  EXPECT_EQ(no_node.field, "region");
+  EXPECT_EQ(no_node.message.substr(0, 10), "loads[0]: ");
+  EXPECT_EQ(refused(PressureLoad{{{0.5, 1.0}}, std::nan("")}).message.substr(0, 23),
+            "loads[0]: pressure_pa i");
+  EXPECT_EQ(refused(PressureLoad{{{0.5, 1.5}}, 1.0}).message.substr(0, 15), "loads[0]: along");
 }
 
 TEST(BodyLoads, RefuseAPointBesideTheSurface) {

@@ -1,11 +1,10 @@
-// Supports of a body that hold and move it.
-#include "engine/simulation/body_supports.h"
-
+// Supports that fix or move a body.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "engine/simulation/body_loads.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/material/block.h"
 #include "tests/engine/simulation/handle.h"
@@ -17,48 +16,53 @@ namespace {
 
 const BodyRegion start{{0.0, 0.0}}, end{{1.0, 1.0}};
 
-Support ramp(const BodyRegion& region, const Vector3& way_m, double duration_s) {
-  return {region, SupportMotion{MotionKind::ramp, way_m, duration_s}};
+Support ramp(const BodyRegion& region, const Vector3& displacement_m, double duration_s) {
+  return {region, SupportMotion{MotionKind::ramp, displacement_m, duration_s}};
 }
 
-Support oscillation(const BodyRegion& region, const Vector3& way_m, double frequency_hz) {
+Support oscillation(const BodyRegion& region, const Vector3& displacement_m, double frequency_hz) {
   SupportMotion motion;
   motion.kind = MotionKind::oscillation;
-  motion.way_m = way_m;
+  motion.displacement_m = displacement_m;
   motion.frequency_hz = frequency_hz;
   return {region, motion};
 }
 
 TEST(SupportMotion, GoesItsWayWithoutAJerk) {
   const SupportMotion motion{MotionKind::ramp, Vector3(0, 0.01, 0), 2.0};
-  EXPECT_EQ(way_at(motion, 0.0), Vector3(0, 0, 0));
-  EXPECT_DOUBLE_EQ(way_at(motion, 1.0).y(), 0.005);
-  EXPECT_EQ(way_at(motion, 2.0), Vector3(0, 0.01, 0));
-  EXPECT_EQ(way_at(motion, 9.0), Vector3(0, 0.01, 0));
+  EXPECT_EQ(displacement_at(motion, 0.0), Vector3(0, 0, 0));
+  EXPECT_DOUBLE_EQ(displacement_at(motion, 1.0).y(), 0.005);
+  EXPECT_EQ(displacement_at(motion, 2.0), Vector3(0, 0.01, 0));
+  EXPECT_EQ(displacement_at(motion, 9.0), Vector3(0, 0.01, 0));
   double fastest = 0.0;
   for (int step = 0; step < 2000; ++step) {
-    fastest = std::max(fastest, (way_at(motion, 1e-3 * (step + 1)) - way_at(motion, 1e-3 * step)).y() / 1e-3);
+    fastest = std::max(
+        fastest,
+        (displacement_at(motion, 1e-3 * (step + 1)) - displacement_at(motion, 1e-3 * step)).y() / 1e-3);
   }
   EXPECT_NEAR(fastest, top_speed_m_per_s(motion), 1e-6 * fastest);
 }
 
-// Against the library's sine, once it has grown.
+// Compares with the library's sine after the first period.
 TEST(SupportMotion, SwingsAsASine) {
   const SupportMotion motion = *oscillation({}, Vector3(0.002, 0, 0), 3.0).motion;
-  EXPECT_EQ(way_at(motion, 0.0).x(), 0.0);
+  EXPECT_EQ(displacement_at(motion, 0.0).x(), 0.0);
   double fastest = 0.0;
   for (int step = 0; step < 3000; ++step) {
     const double time = 1e-3 * step;
-    fastest = std::max(fastest, std::abs(way_at(motion, time + 1e-6).x() - way_at(motion, time).x()) / 1e-6);
+    fastest = std::max(
+        fastest,
+        std::abs(displacement_at(motion, time + 1e-6).x() - displacement_at(motion, time).x()) / 1e-6);
     if (time < 1.0 / 3.0) continue;
-    EXPECT_NEAR(way_at(motion, time).x(), 0.002 * std::sin(6.0 * std::numbers::pi * time), 1e-14);
+    EXPECT_NEAR(displacement_at(motion, time).x(), 0.002 * std::sin(6.0 * std::numbers::pi * time), 1e-14);
   }
   EXPECT_LE(fastest, top_speed_m_per_s(motion) * (1.0 + 1e-6));
   EXPECT_GT(fastest, top_speed_m_per_s(motion) * 0.99);
 }
 
-// A bar of no Poisson's ratio: E A d / L, exactly but for what is not linear at a strain of 1e-3. Springs
-// have one of 0.2 at least, and their held ends, which do not narrow, make the bar a little stiffer.
+// Bar with a Poisson's ratio of 0: the force is E A d / L, up to the nonlinearity at a strain of 1e-3.
+// Springs have a ratio of at least 0.2, and their fixed ends, which do not narrow, make the bar slightly
+// stiffer.
 TEST(BodySupports, APulledEndBearsWhatABarSays) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     const double youngs = stepping == Stepping::springs ? 2e4 : 5e6, area = 1e-4, length = 0.06, way = 6e-5;
@@ -75,12 +79,12 @@ TEST(BodySupports, APulledEndBearsWhatABarSays) {
     for (int n = mesh.node_count() - 16; n < mesh.node_count(); ++n) {
       EXPECT_EQ(static_cast<float>(bar.lattice.displacement(n).z()), static_cast<float>(way));
     }
-    // Straight between the ends.
+    // The displacement is linear between the ends.
     EXPECT_NEAR(bar.slice_m(9).z() / (0.5 * way), 1.0, 5e-4);
   }
 }
 
-// Held nodes have the support's place and velocity at the end of every tick.
+// Fixed nodes have the support's position and velocity at the end of every tick.
 TEST(BodySupports, MovesItsNodesExactly) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     Material material = elastic_material(stepping == Stepping::springs ? 2e4 : 5e6, 0.3, 1000.0);
@@ -90,8 +94,8 @@ TEST(BodySupports, MovesItsNodesExactly) {
     body.support({shaken});
     for (int tick = 1; tick <= 500; ++tick) {
       body.tick(5.0);
-      const Vector3 now = way_at(*shaken.motion, body.time_s),
-                    before = way_at(*shaken.motion, body.time_s - 1e-3);
+      const Vector3 now = displacement_at(*shaken.motion, body.time_s),
+                    before = displacement_at(*shaken.motion, body.time_s - 1e-3);
       for (const int n : body.supports.supports()[0].nodes) {
         ASSERT_LT((body.lattice.displacement(n) - now).norm(), 1e-9) << tick;
         ASSERT_LT((body.lattice.velocity(n) - (now - before) / 1e-3).norm(), 1e-5) << tick;
@@ -101,8 +105,8 @@ TEST(BodySupports, MovesItsNodesExactly) {
   }
 }
 
-// One slice of the lattice, wherever it lies between those of the coarser block that steps it. Let go, it
-// would fall by 8 mm.
+// The support holds one slice of the lattice, at any position between those of the coarser implicit block.
+// Without support it would fall by 8 mm.
 TEST(BodySupports, HoldWhatTheBlockHasNoNodeFor) {
   const Vector3 size_m(0.012, 0.012, 0.08), gravity_m_per_s2(0, 0, 9.81);
   const Material material = elastic_material(5e6, 0.3, 1000.0);
@@ -118,7 +122,7 @@ TEST(BodySupports, HoldWhatTheBlockHasNoNodeFor) {
   }
 }
 
-// Faster than the lattice's waves it would leave cells inside out: it lags.
+// A motion faster than the lattice's waves would invert cells; the support lags instead.
 TEST(BodySupports, WaitsForALatticeThatItWouldOutrun) {
   LoadedBlock body({0.012, 0.012, 0.04}, {4, 4, 11}, elastic_material(2e3, 0.3, 1000.0), Stepping::springs);
   body.support({{start, {}}, ramp(end, Vector3(0, 0, 0.02), 0.01)});
@@ -133,17 +137,19 @@ TEST(BodySupports, RefuseWhatHoldsNothing) {
   const LatticeMesh mesh = box_mesh({0.01, 0.01, 0.04}, {4, 4, 13});
   const auto refused = [&](const Support& support) {
     const auto made = BodySupports::make({support}, mesh);
-    return made.ok() ? "" : made.error().message;
+    return made.ok() ? Error(ErrorCode::internal, "") : made.error();
   };
-  EXPECT_EQ(refused({{{0.51, 0.52}}, {}}),
-            "supports[0]: its region holds no node of the lattice; make it larger");
-  EXPECT_EQ(
-      refused(oscillation({}, Vector3(0.5, 0, 0), 10.0)),
-      "supports[0]: motion reaches 31.41592653589793 m/s, must stay below 5; take a shorter way or more "
-      "time");
+  const Error empty = refused({{{0.51, 0.52}}, {}});
+  EXPECT_EQ(empty.code, ErrorCode::too_few);
+  EXPECT_EQ(empty.field, "region");
+  EXPECT_EQ(empty.message.substr(0, 13), "supports[0]: ");
+  const Error fast = refused(oscillation({}, Vector3(0.5, 0, 0), 10.0));
+  EXPECT_EQ(fast.code, ErrorCode::out_of_range);
+  EXPECT_EQ(fast.field, "motion");
+  EXPECT_EQ(fast.message.substr(0, 60), "supports[0]: motion reaches 31.41592653589793 m/s, must stay");
 }
 
-// 60 mm along x: held by its first tenth, and pulled up by its last.
+// Handle of 60 mm along x, fixed over its first tenth and moved up over its last.
 Scene moved_handle() {
   Scene scene = small_handle();
   scene.bodies[0].material = silicone();
@@ -177,7 +183,8 @@ TEST(BodySupports, GoOnAfterWhatElseHappens) {
     while (simulation.tick() < tick) simulation.advance(far_away);
   };
   const auto way = [&](std::uint64_t tick) {
-    return way_at(*moved_handle().bodies[0].supports[1].motion, 1e-3 * static_cast<double>(tick)).y();
+    return displacement_at(*moved_handle().bodies[0].supports[1].motion, 1e-3 * static_cast<double>(tick))
+        .y();
   };
   run_to(600);
   const ShapeState then = simulation.shape();

@@ -1,5 +1,4 @@
-// Bodies that lie in a box of cells: they keep still untouched, give way where they are pressed, and rest on
-// the ground.
+// Bodies in a box of cells: untouched they stay at rest, pressed they yield, and they rest on the ground.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +9,7 @@
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/knot_vector.h"
 #include "engine/bspline/tube_rings.h"
-#include "engine/simulation/on_ground.h"
+#include "engine/simulation/ground_contact.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
@@ -20,7 +19,7 @@ namespace {
 
 constexpr double ring_m = 0.02, tube_m = 0.005, tool_radius_m = 0.004;
 
-// A torus about y, its tube round to 5 %: of few control points, which a tick moves quickly.
+// Torus about y, its tube round to 5 %. It has few control points, which a tick moves quickly.
 Surface ring() {
   constexpr int around = 20, along = 8;
   ControlNet net(around, along);
@@ -59,7 +58,7 @@ double farthest_moved_m(const Simulation& simulation, const Surface& before) {
   return farthest;
 }
 
-// Of the surface above the ground.
+// Returns the smallest height of the surface above the ground.
 double gap_m(const Simulation& simulation) {
   const Ground& ground = *simulation.scene().ground;
   const Surface& surface = simulation.surface();
@@ -80,7 +79,7 @@ double lowest_m(const Simulation& simulation) {
   return *std::min_element(y.begin(), y.end());
 }
 
-// The sides of a flat one lie within one cell of each other: neither is pushed out by the other.
+// The sides of a flat body are within one cell of each other, and neither is pushed out by the other.
 TEST(BoxedBody, KeepsStillUntouched) {
   for (const double flatness : {1.0, 0.2, 0.05}) {
     const Scene scene = held_ring(flatness);
@@ -90,8 +89,8 @@ TEST(BoxedBody, KeepsStillUntouched) {
   }
 }
 
-// As thick as wide, so that it can meet itself, and of four faces: beside an edge no face is near to the
-// next.
+// Square bar as thick as wide, so that it can touch itself. Beside an edge, none of its four faces is near to
+// the next.
 TEST(BoxedBody, WithSharpEdgesKeepsStillUntouched) {
   constexpr int along = 24;
   ControlNet net(4, along);
@@ -118,8 +117,9 @@ TEST(BoxedBody, IsDentedAndKeepsItsDent) {
   Simulation simulation = simulate(held_ring());
   double largest_n = 0.0;
   for (int tick = 0; tick < 900; ++tick) {
-    const double way_m = tick < 400 ? 0.004 * tick / 400.0 : tick < 500 ? 0.004 : -0.02;
-    const double force = simulation.advance(above(ring_m, tube_m + tool_radius_m - way_m)).force_n.norm();
+    const double displacement_m = tick < 400 ? 0.004 * tick / 400.0 : tick < 500 ? 0.004 : -0.02;
+    const double force =
+        simulation.advance(above(ring_m, tube_m + tool_radius_m - displacement_m)).force_n.norm();
     if (tick < 500) largest_n = std::max(largest_n, force);
   }
   EXPECT_GT(largest_n, 0.0);
@@ -137,7 +137,7 @@ TEST(BoxedBody, TickAllocatesNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// Springs and the implicit block alike.
+// Checks both springs and the implicit solver.
 TEST(BoxedBody, RestsOnTheGround) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs_modulus_pa : {2e5, 2e9}) {
@@ -154,7 +154,7 @@ TEST(BoxedBody, RestsOnTheGround) {
   }
 }
 
-// Put on its edge, from which it tips over: corners of cells that stand out of the skin do not bear it.
+// The body starts on its edge and tips over, because cell corners outside the skin do not bear it.
 TEST(BoxedBody, TouchesTheGroundWithItsSkinHoweverItLies) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   struct Case {
@@ -175,7 +175,7 @@ TEST(BoxedBody, TouchesTheGroundWithItsSkinHoweverItLies) {
     const double cell = static_cast<double>(simulation.lattice().cell_size_m());
     for (int tick = 0; tick < 1500; ++tick) {
       simulation.advance(above(0.0, 0.1));
-      // It comes to lie flat with a knock.
+      // The body hits the ground when it falls flat.
       if (tick % 10 > 0) continue;
       EXPECT_NEAR(gap_m(simulation) / cell, 0.0, 0.1) << each.nodes << ", " << tick;
     }

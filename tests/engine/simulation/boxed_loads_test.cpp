@@ -1,4 +1,4 @@
-// Loads and supports of bodies that lie in a box of cells act on the body, and not on the box.
+// Loads and supports of bodies in a box of cells act on the body, not on the box.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,6 @@
 #include "engine/material/statics/static_solver.h"
 #include "engine/simulation/body_loads.h"
 #include "engine/simulation/body_state.h"
-#include "engine/simulation/body_supports.h"
 #include "engine/simulation/rest_shape.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/collision/surfaces/sheets.h"
@@ -23,7 +22,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double ring_m = 0.03, tube_m = 0.01;
 
-// About y, `around` counts about it and `along` about its tube.
+// Ring about y: `around` runs about y and `along` about the tube.
 LatticeMesh ring_in_box() {
   return solid_lattice(round_torus(ring_m, tube_m), {3000, {}}).value();
 }
@@ -42,7 +41,7 @@ Vector3 applied_n(const SpringLattice& lattice, int node) {
 
 struct NetForce {
   Vector3 force_n = Vector3::Zero(), moment_nm = Vector3::Zero();
-  double sum_n = 0.0;  // of the sizes
+  double sum_n = 0.0;  // sum of the magnitudes
 };
 
 NetForce net_of(const SpringLattice& lattice) {
@@ -63,7 +62,7 @@ void expect_on_the_body(const SpringLattice& lattice) {
   }
 }
 
-// However the ring is bent. Single precision of the forces.
+// The forces balance for any shape of the ring, in single precision.
 TEST(BoxedLoads, PressureAllAroundNeitherMovesNorTurnsABody) {
   const LatticeMesh mesh = ring_in_box();
   SpringLattice lattice = springs(mesh);
@@ -71,9 +70,10 @@ TEST(BoxedLoads, PressureAllAroundNeitherMovesNorTurnsABody) {
   for (const double bend : {0.0, 0.2}) {
     for (int n = 0; n < mesh.node_count(); ++n) {
       const Vector3& at = mesh.nodes[static_cast<std::size_t>(n)];
-      const double way_m = bend * ring_m;
-      lattice.set_displacement(n, {way_m * std::sin(60.0 * at.y()), way_m * std::cos(70.0 * at.x()),
-                                   way_m * std::sin(50.0 * (at.x() + at.z()))});
+      const double displacement_m = bend * ring_m;
+      lattice.set_displacement(
+          n, {displacement_m * std::sin(60.0 * at.y()), displacement_m * std::cos(70.0 * at.x()),
+              displacement_m * std::sin(50.0 * (at.x() + at.z()))});
     }
     const std::size_t allocations = allocation_count();
     loads.apply(1.0, lattice, nullptr);
@@ -86,8 +86,8 @@ TEST(BoxedLoads, PressureAllAroundNeitherMovesNorTurnsABody) {
   }
 }
 
-// That on half a ring is what a pressure on the discs where it is cut would be. The skin's polygons about the
-// tube are a few percent smaller than its circle.
+// The pressure on half a ring equals a pressure on the two discs where it is cut. The skin's polygons about
+// the tube are a few percent smaller than its circle.
 TEST(BoxedLoads, PressureOnAHalfPushesAsOnItsCuts) {
   const LatticeMesh mesh = ring_in_box();
   SpringLattice lattice = springs(mesh);
@@ -120,8 +120,8 @@ double skin_volume_m3(const LatticeMesh& mesh, const std::vector<Vector3>& moved
   return volume;
 }
 
-// Six coordinates of three nodes of the body, as many as keep it from moving as a whole: what is left of them
-// bears nothing where the loads balance.
+// Fixes six coordinates of three nodes, which prevents rigid motion only. They bear nothing if the loads
+// balance.
 std::vector<HeldAxis> held_loosely(const LatticeMesh& mesh) {
   const auto nearest = [&](const Vector3& place) {
     int best = 0;
@@ -137,8 +137,8 @@ std::vector<HeldAxis> held_loosely(const LatticeMesh& mesh) {
   return {{a, 0, 0.0}, {a, 1, 0.0}, {a, 2, 0.0}, {b, 1, 0.0}, {b, 2, 0.0}, {c, 1, 0.0}};
 }
 
-// The strain of a volume under uniform pressure is 3 (1 - 2 nu) p / E. Cells that hold a part of the body are
-// as stiff as if it were spread in them, and less than a tenth of one counts as that.
+// The strain of a volume under uniform pressure is 3 (1 - 2 nu) p / E. A partly filled cell is as stiff as if
+// its part were spread in it; a part of less than a tenth counts as a tenth.
 TEST(BoxedLoads, PressureAllAroundShrinksARing) {
   const LatticeMesh mesh = ring_in_box();
   const double youngs = 1e5, poisson = 0.3, share = 1e-3;
@@ -165,7 +165,7 @@ TEST(BoxedLoads, AForceOnAPartIsAllOnThatPart) {
   BodyRegion quarter;
   quarter.around = {0.25, 0.5};
   const Vector3 middle = position(round_torus(ring_m, tube_m), 0.375, 0.0);
-  for (const ForceShare shared_by : {ForceShare::surface, ForceShare::volume}) {
+  for (const ForceDistribution shared_by : {ForceDistribution::surface, ForceDistribution::volume}) {
     SpringLattice lattice = springs(mesh);
     loads_on(mesh, {ForceLoad{quarter, force_n, shared_by}}).apply(1.0, lattice, nullptr);
     EXPECT_LT((net_of(lattice).force_n - force_n).norm(), 1e-6);
@@ -174,8 +174,8 @@ TEST(BoxedLoads, AForceOnAPartIsAllOnThatPart) {
     for (int n = 0; n < mesh.node_count(); ++n) {
       centre += applied_n(lattice, n).norm() / force_n.norm() * mesh.nodes[static_cast<std::size_t>(n)];
     }
-    // Over a quarter turn the mean is at 2 sqrt(2) / pi of the radius, and further out by the tube's square,
-    // for the outer side is longer. A cell is 3 mm long.
+    // Over a quarter turn the mean is at 2 sqrt(2) / pi of the radius, and further out by the square of the
+    // tube, because the outer side is longer. A cell is 3 mm long.
     EXPECT_NEAR(centre.norm(), 2.0 * std::numbers::sqrt2 / pi * ring_m, 0.1 * ring_m);
     EXPECT_GT(Vector3(middle.x(), 0.0, middle.z()).normalized().dot(centre.normalized()), 0.999);
   }
@@ -187,7 +187,7 @@ TEST(BoxedLoads, ASupportHoldsNothingBesideTheBody) {
     const SpringLattice lattice = springs(mesh);
     BodySupports supports = BodySupports::make({Support{region, {}}}, mesh).value();
     std::vector<std::uint8_t> held(mesh.nodes.size(), 0);
-    supports.take_nodes(lattice, held);
+    supports.claim_nodes(lattice, held);
     EXPECT_GT(std::accumulate(held.begin(), held.end(), 0), 20);
     for (std::size_t n = 0; n < held.size(); ++n) {
       EXPECT_FALSE(held[n] != 0 && mesh.places[n] == NodePlace::beside_body) << n;
@@ -195,17 +195,17 @@ TEST(BoxedLoads, ASupportHoldsNothingBesideTheBody) {
   }
 }
 
-// Springs and the implicit block alike weigh what the ring does, and not what fills the box. The triangles of
-// its skin, over a hundred a turn, leave out less than a thousandth.
+// Both springs and the implicit solver weigh as much as the ring, not as much as the box. The skin's
+// triangles, over a hundred per turn, omit less than a thousandth.
 TEST(BoxedLoads, ABodyWeighsWhatItIs) {
   Body body = small_handle().bodies[0];
   body.surface = round_torus(ring_m, tube_m);
   body.material = elastic_material(2e9, 0.3, 1000.0);
   const BodyState state = make_body_state(body, {}, InstructionSet::baseline).value();
-  ASSERT_TRUE(state.core.has_value());
+  ASSERT_TRUE(state.implicit_solver.has_value());
   const double mass_kg = 1000.0 * 2.0 * pi * pi * ring_m * tube_m * tube_m;
   EXPECT_NEAR(state.lattice.mass_kg() / mass_kg, 1.0, 2e-3);
-  const LatticeMesh& block = state.core->mesh();
+  const LatticeMesh& block = state.implicit_solver->mesh();
   double of_block_kg = 0.0;
   for (int k = 0; k + 1 < block.count[2]; ++k) {
     for (int i = 0; i + 1 < block.count[0]; ++i) {
@@ -214,7 +214,7 @@ TEST(BoxedLoads, ABodyWeighsWhatItIs) {
       }
     }
   }
-  // Its cells take samples of the lattice's.
+  // The block's cells sample those of the lattice.
   EXPECT_NEAR(of_block_kg / mass_kg, 1.0, 0.05);
 }
 
@@ -223,13 +223,14 @@ TEST(BoxedLoads, RemarksTellOfTheBoxAndOfItsCells) {
   body.surface = round_torus(ring_m, tube_m);
   for (const bool slender : {false, true}) {
     if (slender) body.lattice.counts = {5, 4, 40};
-    const std::string remark = remark_on(make_body_state(body, {}, InstructionSet::baseline).value());
-    EXPECT_NE(remark.find("nodes count along x, y and z"), std::string::npos) << remark;
-    EXPECT_EQ(remark.find("cells too slender") != std::string::npos, slender) << remark;
+    const std::string warning =
+        describe_lattice_warning(make_body_state(body, {}, InstructionSet::baseline).value());
+    EXPECT_NE(warning.find("nodes count along x, y and z"), std::string::npos) << warning;
+    EXPECT_EQ(warning.find("cells too slender") != std::string::npos, slender) << warning;
   }
 }
 
-// Held at one side, it swings down furthest at the other; the corners of the box beyond move further.
+// A ring fixed on one side moves furthest on the other; the corners of the box beyond it move further.
 TEST(BoxedLoads, RestTellsWhatTheBodyDoes) {
   Scene scene = small_handle();
   Body& body = scene.bodies[0];
@@ -239,7 +240,7 @@ TEST(BoxedLoads, RestTellsWhatTheBodyDoes) {
   body.loads = {PressureLoad{{}, 100.0}};
   scene.planes = {{Vector3(-ring_m, 0.0, 0.0), Vector3::UnitX()}};
   scene.sculpting.gravity_m_per_s2 = {0.0, 0.0, -9.81};
-  const Result<RestShape> rest = rest_shape(scene, 0);
+  const Result<RestShape> rest = compute_rest_shape(scene, 0);
   ASSERT_TRUE(rest.ok()) << rest.error().message;
   const LatticeMesh& mesh = rest->mesh;
   const std::vector<Vector3>& moved = rest->result.displacement_m;
@@ -247,12 +248,13 @@ TEST(BoxedLoads, RestTellsWhatTheBodyDoes) {
       moved.begin(), moved.end(), [](const Vector3& a, const Vector3& b) { return a.norm() < b.norm(); });
   ASSERT_EQ(mesh.places[static_cast<std::size_t>(furthest - moved.begin())], NodePlace::beside_body);
   EXPECT_NE(mesh.places[static_cast<std::size_t>(rest->furthest_node)], NodePlace::beside_body);
-  const double from_tube =
-      std::hypot(std::hypot(rest->strained_m.x(), rest->strained_m.z()) - ring_m, rest->strained_m.y());
-  // A cell that holds some of the ring reaches out of it by its diagonal at most.
+  const double from_tube = std::hypot(
+      std::hypot(rest->largest_strain_position_m.x(), rest->largest_strain_position_m.z()) - ring_m,
+      rest->largest_strain_position_m.y());
+  // A cell that contains some of the ring extends beyond it by at most its diagonal.
   EXPECT_LT(from_tube, tube_m + std::numbers::sqrt3 * mesh.mean_edge());
   const double weight_n = 2.0 * pi * pi * ring_m * tube_m * tube_m * 1000.0 * 9.81;
-  // The void cells weigh a thousandth; the pressure sums to nothing.
+  // Void cells weigh a thousandth, and the pressure sums to zero.
   EXPECT_NEAR(rest->load_n.z() / -weight_n, 1.0, 0.01);
   EXPECT_LT((rest->load_n + rest->reaction_n).norm(), 1e-4 * weight_n);
 }

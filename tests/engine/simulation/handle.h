@@ -1,5 +1,4 @@
-// A small clay handle for the simulation's tests: 60 x 10 x 5 mm along x, wide along z, coarse enough to be
-// quick.
+// Small clay handle for simulation tests: 60 x 10 x 5 mm along x, wide along z, coarse for speed.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -11,7 +10,7 @@ Scene small_handle();
 
 Simulation simulate(const Scene& scene, InstructionSet set = InstructionSet::baseline);
 
-// A rigid hand at that place over the handle's middle line.
+// Returns the input of a rigid hand at a position over the handle's centre line.
 ToolInput above(double x_m, double y_m, bool gripping = false);
 
 }  // namespace spoonbill

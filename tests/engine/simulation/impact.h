@@ -1,4 +1,4 @@
-// Two bodies on each other for tests.
+// Two colliding bodies for tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,11 +8,11 @@
 
 #include "engine/base/processor.h"
 #include "engine/material/lattice_solver.h"
-#include "engine/simulation/body_pair_contact.h"
+#include "engine/simulation/body_contact.h"
 
 namespace spoonbill {
 
-// Two bodies on each other and nothing else.
+// Collision of two bodies without any other influence.
 class Impact {
  public:
   Impact(BodyState first, BodyState second)

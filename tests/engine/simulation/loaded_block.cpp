@@ -30,17 +30,17 @@ void LoadedBlock::support(const std::vector<Support>& list) {
   ASSERT_TRUE(made.ok()) << made.error().message;
   supports = std::move(made).value();
   std::vector<std::uint8_t> held(lattice.mesh().nodes.size(), 0);
-  supports.take_nodes(lattice, held);
+  supports.claim_nodes(lattice, held);
   lattice.hold(held);
   if (core) core->hold(held);
 }
 
 void LoadedBlock::tick(double damping_per_s, const Vector3& gravity_m_per_s2, GroundContacts* ground) {
   const DenormalsFlushed flushed;
-  ImplicitCore* const mover = core ? &*core : nullptr;
-  loads.apply(load_share, lattice, mover);
+  ImplicitCore* const active_solver = core ? &*core : nullptr;
+  loads.apply(load_share, lattice, active_solver);
   time_s += tick_s;
-  const RelaxedLattice relaxed{&lattice, gravity_m_per_s2, mover,
+  const RelaxedLattice relaxed{&lattice, gravity_m_per_s2, active_solver,
                                supports.begin_tick(lattice, time_s, tick_s)};
   RelaxSettings settings;
   settings.tick = static_cast<std::uint64_t>(std::lround(time_s / tick_s));

@@ -1,4 +1,4 @@
-// A block of material that loads and supports act on, for their tests.
+// Block of material for tests of loads and supports.
 #pragma once
 
 #include <optional>
@@ -7,16 +7,15 @@
 #include "engine/material/implicit/implicit_core.h"
 #include "engine/material/lattice_solver.h"
 #include "engine/simulation/body_loads.h"
-#include "engine/simulation/body_supports.h"
 
 namespace spoonbill {
 
-// Stepped by its springs, or by the implicit block inside it.
+// Selects the solver: springs, or the implicit solver.
 enum class Stepping { springs, implicitly };
 
 class LoadedBlock {
  public:
-  // Its corner at the origin; `along` a region counts along z. It is damped, so that it settles.
+  // Puts a corner at the origin; a region's `along` runs along z. Damping lets the block come to rest.
   LoadedBlock(const Vector3& size_m, std::array<int, 3> counts, const Material& material, Stepping stepping);
 
   void load(const std::vector<Load>& loads);
@@ -33,7 +32,7 @@ class LoadedBlock {
   bool settles = false;
   double time_s = 0.0;
 
-  // The mean displacement of the nodes of a slice.
+  // Returns the mean displacement of the nodes of a slice.
   Vector3 slice_m(int k) const;
   Vector3 support_force_n(int support) const;
   double kinetic_energy_j() const;

@@ -1,4 +1,4 @@
-// Bodies whose regions are of other materials, or rougher.
+// Bodies with regions of other materials or friction.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ MaterialRegion far_half_of(const Material& material) {
   return region;
 }
 
-// Held at both ends.
+// Handle that is fixed at both ends.
 Scene held_handle(const Material& own, const std::vector<MaterialRegion>& regions) {
   Scene scene = small_handle();
   scene.bodies[0].material = own;
@@ -55,7 +55,7 @@ TEST(MaterialRegions, WhatStepsABodyIsChosenByAllOfThem) {
   EXPECT_EQ(implicit_nodes(clay, elastic("wood", 1e9)), 0);
 }
 
-// Of springs all materials are softened by one ratio, so that the stiffest holds the tick.
+// All materials of a spring lattice are softened by one factor, so that the stiffest one is stable in a tick.
 TEST(MaterialRegions, AreSoftenedAlike) {
   const Material clay = small_handle().bodies[0].material;
   Simulation simulation =
@@ -66,8 +66,8 @@ TEST(MaterialRegions, AreSoftenedAlike) {
   simulation.write_snapshot(snapshot);
   EXPECT_EQ(snapshot.substeps, 1);
   EXPECT_EQ(snapshot.flags & tick_flag_nodes_slowed, 0u);
-  // Wood has what a tick holds of it alone, but for the cells at the join, where it hangs on what is lighter
-  // and softer; clay has a hundredth of that.
+  // Wood gets the stiffness that it can have alone, except for the cells at the join to the lighter and
+  // softer clay. Clay gets a hundredth of that.
   const double felt_wood = 100.0 * simulation.lattice().youngs_modulus_pa();
   EXPECT_NEAR(felt_wood / alone.lattice().youngs_modulus_pa(), 1.0, 0.35);
 }
@@ -89,7 +89,7 @@ TEST(MaterialRegions, TheSofterHalfIsDentedDeeper) {
   EXPECT_GT(dent_m(0.042, hard, soft), 1.3 * dent_m(0.018, hard, soft));
 }
 
-// Where along the handle's top, in v, its surface is at x now.
+// Returns the v on the handle's top at which the surface currently is at x.
 double top_at(const Simulation& simulation, double x_m) {
   double low = 0.0, high = 0.06;
   for (int halving = 0; halving < 40; ++halving) {
@@ -99,7 +99,7 @@ double top_at(const Simulation& simulation, double x_m) {
   return low;
 }
 
-// How far the tool has slipped over the place below it when the hand has moved half a millimetre along.
+// Returns the slip of the tool over the point below it after the hand has moved half a millimetre along.
 double slip_m(Simulation& simulation, double x_m) {
   const auto press = [&](double moved_m, int ticks) {
     Reaction reaction;
@@ -130,18 +130,18 @@ TEST(MaterialRegions, AToolSticksToOneHalfAndSlidesOnTheOther) {
   Simulation smooth_side = simulate(scene), rough_side = simulate(scene);
   const double slid = slip_m(smooth_side, 0.02), stuck = slip_m(rough_side, 0.04);
   EXPECT_GT(slid, 0.4e-3);
-  // A tenth: the skin between the nodes that it holds gives way.
+  // The tolerance is a tenth, because the skin yields between the fixed nodes.
   EXPECT_LT(stuck, 0.05e-3);
 }
 
-// Coulomb: dragged along, the tool feels the friction of the region times the push.
+// Coulomb friction: a dragged tool feels the friction of the region times the push.
 TEST(MaterialRegions, ADraggedToolFeelsTheFrictionOfTheRegion) {
   MaterialRegion rough;
   rough.region.along = {0.5, 1.0};
   rough.friction = 0.5;
   Simulation simulation = simulate(held_handle(elastic("rubber", 1e5, 0.1), {rough}));
   for (int tick = 0; tick < 200; ++tick) simulation.advance(above(0.015, 0.0095 - 1e-5 * tick));
-  // There and back over the same places: what the bent surface leans by counts once each way.
+  // Moving back and forth over the same points cancels the inclination of the bent surface.
   double drag[2] = {}, push[2] = {};
   constexpr int way = 1500;
   for (int tick = 0; tick < 2 * way; ++tick) {
@@ -180,7 +180,7 @@ TEST(MaterialRegions, ANewMaterialIsOfTheRestOfTheBody) {
   EXPECT_EQ(clay.lattice().materials().own().name, "clay");
 }
 
-// They belong to the cells: a bent body that keeps its shape keeps them.
+// Materials belong to the cells: a bent body that keeps its shape keeps them.
 TEST(MaterialRegions, StayWhereTheyAreWhenAShapeIsKept) {
   const Material clay = small_handle().bodies[0].material;
   Simulation simulation = simulate(held_handle(clay, {far_half_of(elastic("rubber", 1e5))}));
@@ -202,7 +202,7 @@ TEST(MaterialRegions, WrongOnesAreRefused) {
             "body \"other\": regions[0].along is [0.9, 0.1], must run from the lower to the higher");
 }
 
-// What hexahedra achieve is what is wanted: they pass the patch test in any shape.
+// Hexahedra achieve the requested elasticity, because they pass the patch test in any shape.
 TEST(MaterialRegions, WhatABodyAchievesIsReportedOfWhatStepsIt) {
   Simulation wood = simulate(held_handle(elastic("gel", 1e4), {far_half_of(elastic("wood", 1e9))}));
   Simulation gel = simulate(held_handle(elastic("gel", 1e4), {}));
@@ -226,11 +226,11 @@ Material random_material(Random& random, bool plainly_elastic) {
   material.flow_rate_per_s = random.uniform(0.0, 500.0);
   material.hardening = random.uniform(0.0, 1.0);
   material.stiffening = random.uniform(-50.0, 50.0);
-  material.relaxing_share = material.plastic ? 0.0 : random.uniform(0.0, 1.0);
+  material.relaxing_fraction = material.plastic ? 0.0 : random.uniform(0.0, 1.0);
   return material;
 }
 
-// Random materials in random regions, and strokes at up to 5 m/s: everything stays finite and near.
+// Random materials in random regions and strokes at up to 5 m/s keep everything finite and near.
 TEST(MaterialRegions, NoStrokeBlowsThemUp) {
   const int trials = random_cases(12, 100);
   Random random(31);
@@ -238,7 +238,7 @@ TEST(MaterialRegions, NoStrokeBlowsThemUp) {
     const bool plainly_elastic = random.integer(0, 2) == 0;
     MaterialRegion half = far_half_of(random_material(random, plainly_elastic)), skin;
     skin.region.depth_m = {0.0, 0.0012};
-    // Wide enough to hold nodes of the surface, and now and then across the seam.
+    // The region is wide enough to contain nodes of the surface, and sometimes crosses the seam.
     const double from = random.uniform(0.0, 1.0), to_share = from + random.uniform(0.3, 0.9);
     skin.region.around = {from, to_share - std::floor(to_share)};
     skin.friction = random.uniform(0.0, 2.0);

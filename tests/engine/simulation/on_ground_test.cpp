@@ -1,6 +1,4 @@
 // Bodies on the rigid ground.
-#include "engine/simulation/on_ground.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/simulation/ground_contact.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/material/block.h"
@@ -21,7 +20,7 @@ namespace {
 constexpr double g_m_per_s2 = 9.81;
 constexpr double degree = std::numbers::pi / 180.0;
 
-// A block on its flat side y = 0, and a ground of which gravity leans away.
+// Block with its flat side at y = 0, on a ground from whose normal gravity deviates.
 class Incline {
  public:
   Incline(double angle_rad, double friction, Stepping stepping)
@@ -39,10 +38,10 @@ class Incline {
     block_.tick(0.0, gravity_, &contacts_);
   }
 
-  // Shared by all of its nodes.
-  void push(const Vector3& force_n) { block_.load({ForceLoad{{}, force_n, ForceShare::volume}}); }
+  // The force is distributed over all nodes.
+  void push(const Vector3& force_n) { block_.load({ForceLoad{{}, force_n, ForceDistribution::volume}}); }
 
-  // Of the whole block.
+  // Returns the mean over the whole block.
   Vector3 mean(bool velocity) const {
     Vector3 sum = Vector3::Zero();
     const SpringLattice& lattice = block_.lattice;
@@ -74,7 +73,7 @@ class Incline {
   GroundContacts contacts_{1000};
 };
 
-// Of the mean along the slope, over half a second once the block has begun: many of its periods.
+// Returns the mean acceleration along the slope over half a second of sliding, which is many periods.
 double acceleration(Incline& incline) {
   for (int tick = 0; tick < 200; ++tick) incline.tick();
   const double before = incline.mean(true).x();
@@ -86,7 +85,7 @@ double coulomb(double angle_rad, double friction) {
   return g_m_per_s2 * (std::sin(angle_rad) - friction * std::cos(angle_rad));
 }
 
-// a = g (sin t - mu cos t). The springs still swing a little.
+// The acceleration is a = g (sin t - mu cos t). The springs still oscillate slightly.
 TEST(OnGround, ABlockSlidesDownAnInclineAsCoulombSays) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     for (const double friction : {0.0, 0.2, 0.4}) {
@@ -100,7 +99,7 @@ TEST(OnGround, ABlockSlidesDownAnInclineAsCoulombSays) {
 
 constexpr double friction_angle = 32.0 * degree;
 
-// The sudden weight sets the block swinging, and it slips a little at first. Then it holds: what is left is
+// The sudden weight makes the block oscillate and slip slightly at first. Afterwards it sticks, except for
 // the rounding of its velocities.
 TEST(OnGround, ABlockSticksBelowTheAngleOfFriction) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
@@ -130,7 +129,7 @@ TEST(OnGround, ABlockSlidesBeyondTheAngleOfFriction) {
   }
 }
 
-// On level ground, by a force on all of it.
+// Pushes on level ground with a force on the whole block.
 TEST(OnGround, ABlockPushedSidewaysStaysUntilThePushIsMoreThanItsFriction) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     for (const double share : {0.8, 1.2}) {
@@ -187,7 +186,7 @@ double depth_cells(const Simulation& simulation) {
   return (ground_m - lowest_of_skin(simulation)) / static_cast<double>(simulation.lattice().cell_size_m());
 }
 
-// Of any cell, beside what it was at rest.
+// Returns the smallest ratio of a cell's volume to its volume at rest.
 double least_volume_share(const SpringLattice& lattice) {
   const LatticeMesh& rest = lattice.mesh();
   LatticeMesh now = rest;
@@ -203,7 +202,7 @@ double least_volume_share(const SpringLattice& lattice) {
   return least;
 }
 
-// Soft, softened by sculpting, and stiff.
+// Tests soft, softened and stiff materials.
 TEST(OnGround, AHandleThatFallsComesToRestOnItsSkin) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs : {1e4, 2e5, 2e9}) {
@@ -221,7 +220,7 @@ TEST(OnGround, AHandleThatFallsComesToRestOnItsSkin) {
       simulation.advance(far_away);
       force += simulation.ground_force_n() / 500.0;
     }
-    // It still swings a little.
+    // The handle still oscillates slightly.
     EXPECT_NEAR(force.y() / weight, 1.0, 0.05) << youngs;
     const Vector3 before = simulation.lattice().position(0);
     for (int tick = 0; tick < 500; ++tick) simulation.advance(far_away);
@@ -233,7 +232,7 @@ TEST(OnGround, AHandleThatFallsComesToRestOnItsSkin) {
   }
 }
 
-// Round bodies do not set themselves rolling.
+// Round bodies do not start to roll by themselves.
 TEST(OnGround, ASoftHandleAtRestStaysThere) {
   Simulation simulation = simulate(falling_handle(1e4));
   for (int tick = 0; tick < 4000; ++tick) simulation.advance(far_away);
@@ -242,8 +241,8 @@ TEST(OnGround, ASoftHandleAtRestStaysThere) {
   EXPECT_LT((simulation.lattice().position(0) - before).norm(), 5e-6);
 }
 
-// Of 50 cm, through no air, of silicones as soft as gels and of one as hard as a plastic: the softest comes
-// at its true speed of 3 m/s, what sculpting softens is as much lighter.
+// Drops from 50 cm without air drag, of silicones as soft as gels and of one as hard as a plastic. The
+// softest arrives at its true speed of 3 m/s; softened ones are lighter by the same factor.
 TEST(OnGround, AFallOfHalfAMetreLeavesNoCellInsideOut) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs : {4e2, 1e3, 1e9}) {
@@ -260,8 +259,8 @@ TEST(OnGround, AFallOfHalfAMetreLeavesNoCellInsideOut) {
   }
 }
 
-// From 27 mm and faster than a cell a tick. The speed cap keeps nodes beside the body while it is squashed,
-// so that the skin comes in by up to half a cell, and out again.
+// Drops from 27 mm and faster than a cell per tick. The speed limit keeps nodes together while the body is
+// squashed, so that the skin penetrates by up to half a cell and leaves again.
 TEST(OnGround, NoFallIsTooFast) {
   Scene scene = falling_handle(1e4);
   scene.ground->point_m.y() = -0.03;
@@ -274,15 +273,15 @@ TEST(OnGround, NoFallIsTooFast) {
   EXPECT_LT(depth_cells(simulation), ground_depth_limit_cells);
 }
 
-// A hand that presses a body on the ground feels what the ground bears beyond its weight. The tool's spring
-// is far softer than the body: it gives almost all of the way.
+// A hand that presses a body on the ground feels what the ground bears beyond the weight. The tool's spring
+// is far softer than the body and yields almost the whole distance.
 TEST(OnGround, AStiffHandlePassesOnWhatTheToolPresses) {
   Simulation simulation = simulate(falling_handle(2e9));
   for (int tick = 0; tick < 400; ++tick) simulation.advance(far_away);
   const double weight = g_m_per_s2 * simulation.lattice().mass_kg();
   const double tool_radius = simulation.scene().tool.radius_m, top = highest_of_skin(simulation);
-  const auto press = [&](double way_m) {
-    ToolInput input = above(0.03, top + tool_radius - way_m);
+  const auto press = [&](double displacement_m) {
+    ToolInput input = above(0.03, top + tool_radius - displacement_m);
     input.coupling_n_per_m = 200.0;
     return simulation.advance(input);
   };
@@ -298,7 +297,7 @@ TEST(OnGround, AStiffHandlePassesOnWhatTheToolPresses) {
   EXPECT_NEAR((borne - weight) / felt, 1.0, 0.02);
 }
 
-// What the contacts remember belongs to the state.
+// The memory of the contacts is part of the state.
 TEST(OnGround, IsTheSameOnEveryInstructionSetAndAllocatesNothing) {
   for (const double youngs : {1e4, 2e9}) {
     Simulation first = simulate(falling_handle(youngs), InstructionSet::baseline);

@@ -1,4 +1,4 @@
-// What the control net cannot follow of the lattice, and knots where it matters.
+// Mapping residual of the control net, and knots inserted where it is largest.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,11 +42,11 @@ TEST(MappingResidual, IsNothingForAffineMotions) {
   for (int n = 0; n < body.lattice.mesh().node_count(); ++n) {
     body.lattice.set_displacement(n, linear * body.lattice.mesh().nodes[n] + Vector3(0.01, 0, 0));
   }
-  // Single precision of moves of up to 1 cm.
+  // The tolerance covers movements of up to 1 cm in single precision.
   EXPECT_LT(residual_of(body).largest_m, 1e-7);
 }
 
-// Of a single node the net follows some, and the rest is where the node is.
+// The net follows the motion of a single node in part; the residual is at the node.
 TEST(MappingResidual, IsWhereOneNodeMoves) {
   Mapped body = mapped_handle();
   const LatticeMesh& mesh = body.lattice.mesh();
@@ -115,12 +115,11 @@ TEST(RefineKnots, IsRefusedWhereNothingMoved) {
   Simulation simulation = simulate(small_handle());
   const Status refused = simulation.apply(RefineKnots{});
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().message,
-            "refine_knots: nothing moved since the knots were last changed; shape the body first");
+  EXPECT_EQ(refused.error().code, ErrorCode::inconsistent) << refused.error().message;
   EXPECT_FALSE(simulation.apply(RefineKnots{1}).ok());
 }
 
-// As a body of revolution that CAD hands over: one span from pole to pole.
+// Body of revolution as CAD delivers it, with one span from pole to pole.
 Scene single_span_scene() {
   constexpr int around = 12;
   ControlNet net(around, 4);
@@ -148,7 +147,7 @@ TEST(BodyMapping, FollowsOneSpanFromPoleToPole) {
             1e-4);
 }
 
-// Elements between knots that stand as often as the degree have that many control points each.
+// Elements between knots of full multiplicity have as many control points as the degree.
 TEST(BodyMapping, FollowsKnotsOfEveryMultiplicity) {
   Scene scene = small_handle();
   Surface& surface = scene.bodies[0].surface;
@@ -165,7 +164,8 @@ TEST(BodyMapping, FollowsKnotsOfEveryMultiplicity) {
   EXPECT_LT(shown_residual_m(simulation), 1e-3);
 }
 
-// A plane asks for knots at its edge. A document holds 200 columns: beyond, columns are held without them.
+// A plane needs knots at its edge. A document holds 200 columns; beyond that, columns are fixed without
+// knots.
 TEST(BodyMapping, HoldsWithoutMoreColumnsThanADocumentTakes) {
   for (const int columns : {190, 198, 199, 200}) {
     SCOPED_TRACE(columns);

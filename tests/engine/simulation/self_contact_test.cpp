@@ -9,7 +9,7 @@
 #include "engine/base/processor.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 #include "engine/material/lattice_solver.h"
-#include "engine/simulation/body_self_contact.h"
+#include "engine/simulation/body_contact.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/simulation/handle.h"
 #include "tests/engine/simulation/soft_bodies.h"
@@ -18,15 +18,15 @@ namespace spoonbill {
 namespace {
 
 constexpr double arm_m = 0.04, bend_radius_m = 0.005, thick_m = 0.006;
-// Between the arms.
+// distance between the arms
 constexpr double gap_m = 2.0 * bend_radius_m - thick_m;
 
 struct Station {
   Vector3 centre, along;
 };
 
-// Of the middle line of a hairpin in the plane of x and y: an arm at y = -bend_radius_m towards x = 0, half a
-// circle about the origin, and an arm back at y = bend_radius_m.
+// Centre line of a hairpin in the x-y plane: an arm at y = -bend_radius_m towards x = 0, half a circle about
+// the origin, and an arm back at y = bend_radius_m.
 Station hairpin_station(double way) {
   const double turn = std::clamp((way - arm_m) / bend_radius_m, 0.0, std::numbers::pi);
   const double beyond = std::max(arm_m - way, way - arm_m - std::numbers::pi * bend_radius_m);
@@ -35,7 +35,7 @@ Station hairpin_station(double way) {
           {std::sin(angle), -std::cos(angle), 0.0}};
 }
 
-// A round bar along it; its ends are poles.
+// Round bar along the centre line, with poles at its ends.
 Body hairpin() {
   constexpr int around = 12, along = 33;
   constexpr double length = 2.0 * arm_m + std::numbers::pi * bend_radius_m;
@@ -68,7 +68,7 @@ double depth_in_itself(const Surface& surface, bool* touching = nullptr) {
   return deepest;
 }
 
-// A free body, pulled at where one likes; with or without contact with itself.
+// Free body that can be pulled anywhere, with or without self-contact.
 class Folding {
  public:
   Folding(const Body& body, bool is_self_intersecting)
@@ -76,7 +76,7 @@ class Folding {
         self_(body_),
         meets_itself_(is_self_intersecting) {}
 
-  // Opposite forces along y on both ends, and so much damping that they come slowly.
+  // Opposite forces along y pull both ends slowly, because of strong damping.
   void pull_ends_together(double force_n) {
     damping_per_s_ = 300.0;
     visit_ends([&](int node, double side, int nodes) {
@@ -122,7 +122,7 @@ class Folding {
   }
 
  private:
-  // A fifth of the body each: the first is to go along y, the last against it.
+  // The first fifth of the body moves along y, the last against it.
   template <class Visit>
   void visit_ends(const Visit& visit) {
     const LatticeMesh& mesh = body_.lattice.mesh();
@@ -169,7 +169,7 @@ TEST(SelfContact, HoldsTheArmsOfAHairpinApart) {
   EXPECT_LT(deepest, self_depth_limit_cells * bar.cell_m());
 }
 
-// Nothing but the contact acts on the ends, which are thrown at each other and part again.
+// Only the contact acts on the ends, which collide and separate again.
 TEST(SelfContact, KeepsTheMomentum) {
   Folding bar(hairpin(), true);
   bar.throw_ends({0.0, 0.05, 0.01});
@@ -178,12 +178,12 @@ TEST(SelfContact, KeepsTheMomentum) {
   for (int tick = 0; tick < 200; ++tick) touching += bar.tick() ? 1 : 0;
   EXPECT_GT(touching, 10);
   const Folding::Momentum after = bar.momentum();
-  // Velocities in single precision.
+  // The tolerance covers velocities in single precision.
   EXPECT_LT((after.linear - before.linear).norm(), 1e-5 * before.linear_sizes);
   EXPECT_LT((after.angular - before.angular).norm(), 1e-2 * before.angular_sizes);
 }
 
-// The lower arm is held by its lower half; a sphere pushes the upper one onto it.
+// The lower arm is fixed at its lower half; a sphere pushes the upper arm onto it.
 Simulation pushed_hairpin() {
   Scene scene = small_handle();
   scene.bodies[0] = hairpin();

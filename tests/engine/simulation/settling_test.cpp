@@ -15,7 +15,7 @@
 namespace spoonbill {
 namespace {
 
-// A bar held by its lower end, and pushed sideways at the other.
+// Bar fixed at its lower end and pushed sideways at the other.
 LoadedBlock pushed_bar(Stepping stepping) {
   const bool springs = stepping == Stepping::springs;
   Material material = elastic_material(springs ? 2e4 : 2e6, 0.3, 1000.0);
@@ -32,7 +32,8 @@ double tip_m(const LoadedBlock& bar) {
 
 TEST(Settling, IsCriticalForTheMotionThatABodyIsIn) {
   LoadedBlock bar = pushed_bar(Stepping::springs);
-  // Its first swing, once the fast modes have died: the quotient is the square of 2 pi over its period.
+  // The first mode remains after the fast modes have decayed. The quotient is the square of 2 pi over its
+  // period.
   for (int tick = 0; tick < 400; ++tick) bar.tick(0.0);
   double longest = 0.0, last_turn = 0.0, before = tip_m(bar), way = 0.0;
   for (int tick = 0; tick < 3000; ++tick) {
@@ -55,13 +56,13 @@ TEST(Settling, IsCriticalForTheMotionThatABodyIsIn) {
   }
   ASSERT_GT(longest, 0.0);
   const double omega = std::acos(-1.0) / longest;
-  // Other modes, as far as they are left, only add to it.
+  // Other remaining modes only add to the energy.
   EXPECT_GT(std::sqrt(quotient), 0.9 * omega);
   EXPECT_LT(std::sqrt(quotient), 3.0 * omega);
 }
 
-// An oscillator at 1.1 of its critical damping has at most 0.11 of its energy in motion; 0.15 leaves a little
-// for the modes beside the first.
+// An oscillator at 1.1 times critical damping has at most 0.11 of its energy in motion. The limit of 0.15
+// allows for the higher modes.
 TEST(Settling, AReleasedBodyComesBackWithoutSwinging) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
@@ -95,7 +96,7 @@ TEST(Settling, AReleasedBodyComesBackWithoutSwinging) {
   }
 }
 
-// Pressed by the tool and let go.
+// The tool presses the body and lets go.
 TEST(Settling, AStrokeAllocatesNothingAndEndsAtRest) {
   Scene scene = small_handle();
   scene.bodies[0].material = silicone();

@@ -1,4 +1,4 @@
-// Thin shells in a simulation: a tool dents them from either side and is felt once.
+// Thin shells in a simulation: a tool dents them from either side and touches them only once.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double radius_m = 0.03, thickness_m = 0.002, tool_radius_m = 0.008;
 constexpr double opening_rad = std::numbers::pi / 3.0;
-constexpr double rim_m = -0.5 * radius_m;  // the height of the rim, y upwards
+constexpr double rim_m = -0.5 * radius_m;  // height of the rim, y upwards
 
 Material elastic(double youngs_modulus_pa) {
   Material material;
@@ -28,7 +28,7 @@ Material elastic(double youngs_modulus_pa) {
   return material;
 }
 
-// A bowl of clay about the origin, open upwards, its surface outside, held at its rim.
+// Clay bowl about the origin, open upwards, with its surface outside, fixed at the rim.
 Scene clay_bowl() {
   Scene scene = small_handle();
   Body& body = scene.bodies[0];
@@ -55,8 +55,8 @@ double bottom_m(const Simulation& simulation) {
   return position(simulation.surface(), 0.0, simulation.surface().v.domain_start()).y();
 }
 
-// Comes down (or up) by a hundredth of a millimetre a tick; the place of the tool's middle when it first
-// touches.
+// Moves the tool down (or up) by a hundredth of a millimetre per tick. Returns the position of its centre
+// when it first touches.
 double first_touch_m(const Scene& scene, double from_m, double to_m) {
   Simulation simulation = simulate(scene);
   const double step = to_m > from_m ? 1e-5 : -1e-5;
@@ -69,7 +69,7 @@ double first_touch_m(const Scene& scene, double from_m, double to_m) {
 
 TEST(Shell, IsTouchedOnTheFaceThatIsMet) {
   const Scene scene = clay_bowl();
-  // From below, the surface itself; from above, the far face, a thickness higher.
+  // From below the tool touches the surface, from above the far face, one thickness higher.
   EXPECT_NEAR(first_touch_m(scene, -radius_m - tool_radius_m - 0.003, -0.03), -radius_m - tool_radius_m,
               5e-5);
   EXPECT_NEAR(first_touch_m(scene, -radius_m + thickness_m + tool_radius_m + 0.003, -0.03),
@@ -136,7 +136,7 @@ TEST(Shell, RestsWhereNothingTouchesIt) {
   }
 }
 
-// Random strokes as fast as 5 m/s, with a point that would slip through, a sphere and a box.
+// Random strokes of up to 5 m/s with a sphere, a box, and a point that could slip through.
 TEST(Shell, OutlastsFastStrokes) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Scene scene = clay_bowl();
@@ -161,7 +161,7 @@ TEST(Shell, OutlastsFastStrokes) {
   }
 }
 
-// Pressed at its seam or half a turn from it.
+// Presses at the seam or half a turn from it.
 TEST(Shell, RingGivesWayAtItsSeamAsElsewhere) {
   const auto pressed = [](double seam_turn) {
     Scene scene = clay_bowl();
@@ -185,7 +185,7 @@ TEST(Shell, RingGivesWayAtItsSeamAsElsewhere) {
   EXPECT_NEAR(at_seam, elsewhere, 2e-4);
 }
 
-// A pillow of jelly falls into the bowl, or, where down is up, onto its outside, and lies on it.
+// A pillow of jelly falls into the bowl, or onto its outside with inverted gravity, and stays on it.
 TEST(Shell, BearsAnotherBody) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const bool upside_down : {false, true}) {
@@ -193,7 +193,7 @@ TEST(Shell, BearsAnotherBody) {
     scene.bodies[0].material = elastic(2e9);
     const double sign = upside_down ? -1.0 : 1.0;
     const double floor_m = upside_down ? -radius_m : -radius_m + thickness_m;
-    // Half axes of 20, 10 and 50 mm, scaled down; flat over y.
+    // Half axes of 20, 10 and 50 mm, scaled down; flat along y.
     Surface pillow = ellipsoid_tube(12, 12, {0, 0, 0});
     for (auto* axis : {&pillow.net.x, &pillow.net.y, &pillow.net.z}) {
       for (double& value : *axis) value *= 0.25;
@@ -213,7 +213,7 @@ TEST(Shell, BearsAnotherBody) {
   }
 }
 
-// Where it closes, too: what holds a ring bears its weight.
+// The seam of a closed shell bears weight too.
 TEST(Shell, RingWeighsOnItsSupportOnce) {
   Scene scene = small_handle();
   Body& body = scene.bodies[0];
@@ -228,7 +228,7 @@ TEST(Shell, RingWeighsOnItsSupportOnce) {
     Simulation simulation = simulate(scene);
     for (int tick = 0; tick < 800; ++tick) simulation.advance(at_height(0.1));
     const double weight_n = 9.81 * simulation.lattice().mass_kg();
-    // What is left of the motion.
+    // The tolerance covers the remaining motion.
     EXPECT_NEAR(simulation.support_force_n(0).y() / weight_n, 1.0, 0.005) << youngs_modulus_pa;
   }
 }

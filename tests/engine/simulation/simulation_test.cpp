@@ -78,7 +78,7 @@ TEST(Simulation, ThePolesStayClosed) {
   }
 }
 
-// Few iterations act locally: the far end hardly moves; many let the whole body follow.
+// Few iterations act locally and hardly move the far end; many let the whole body follow.
 TEST(Simulation, IterationsReachFromLocalToGlobal) {
   double share[2];
   for (const int which : {0, 1}) {
@@ -214,7 +214,7 @@ TEST(Simulation, StepRewindStepAgainGivesTheSameHash) {
   EXPECT_NE(a.state_hash(), b.state_hash());
 }
 
-// To and fro about the handle at up to 5 m/s.
+// Moves randomly about the handle at up to 5 m/s.
 struct RandomStroke {
   Random& random;
   Vector3 at{0.05, 0.02, 0.0}, to{0.05, 0.02, 0.0};
@@ -227,7 +227,7 @@ struct RandomStroke {
   }
 };
 
-// Random materials, tools and strokes at up to 5 m/s: everything stays finite and near.
+// Random materials, tools and strokes at up to 5 m/s keep everything finite and near.
 TEST(Simulation, NoSettingBlowsItUp) {
   const int trials = random_cases(12, 100);
   Random random(77);
@@ -243,11 +243,12 @@ TEST(Simulation, NoSettingBlowsItUp) {
     material.flow_rate_per_s = random.uniform(0.0, 1000.0);
     material.hardening = random.uniform(0.0, 1.0);
     material.stiffening = random.integer(0, 1) == 0 ? 0.0 : random.uniform(-1000.0, 1000.0);
-    material.relaxing_share = material.plastic ? 0.0 : random.uniform(0.0, 1.0);
+    material.relaxing_fraction = material.plastic ? 0.0 : random.uniform(0.0, 1.0);
     material.relaxation_time_s = std::pow(10.0, random.uniform(-1.0, 3.0));
-    material.poissons_ratio = random.uniform(is_plainly_elastic(material) ? 0.0 : 0.2, 0.49);
+    material.poissons_ratio = random.uniform(is_linear_elastic(material) ? 0.0 : 0.2, 0.49);
     scene.sculpting.damping_per_s = random.integer(0, 1) == 0 ? 0.0 : random.uniform(0.0, 1000.0);
-    // At most what the material can carry: a body of a few Pa hung in full gravity stretches without end.
+    // Gravity is limited to what the material can bear: a body of a few Pa stretches without end under full
+    // gravity.
     const double carried = 0.1 * material.youngs_modulus_pa / (material.density_kg_per_m3 * 0.06);
     scene.sculpting.gravity_m_per_s2 = {0.0, -std::min(20.0, random.uniform(0.0, 1.0) * carried), 0.0};
     scene.tool.kind = random.integer(0, 3) == 0 ? ToolKind::point : ToolKind::sphere;
@@ -272,7 +273,7 @@ TEST(Simulation, NoSettingBlowsItUp) {
   }
 }
 
-// The worst that random settings rarely meet: nothing damps, a rigid oversized sphere at 5 m/s hits a gel.
+// Worst case that random settings rarely reach: no damping, and a rigid oversized sphere hits a gel at 5 m/s.
 TEST(Simulation, AnUndampedGelStaysNearWhateverHitsIt) {
   const int trials = random_cases(8, 40);
   Random random(9);

@@ -1,6 +1,4 @@
-// Heights of a surface above a plane, against a dense sampling.
-#include "engine/simulation/skin_heights.h"
-
+// Heights of a surface above a plane, against dense sampling.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <limits>
 
 #include "engine/bspline/evaluate.h"
+#include "engine/simulation/ground_contact.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/simulation/handle.h"
 
@@ -28,8 +27,8 @@ double densely_lowest(const Surface& surface, const Vector3& normal) {
   return lowest;
 }
 
-// On its side, on its edges and leaning towards an end, where elements are long beside how they bend: within
-// a hundredth of a cell, which is what the ground allows.
+// The plane is at a side, at the edges, and inclined towards an end, where elements are long compared with
+// their bend. The tolerance is that of the ground, a hundredth of a cell.
 TEST(SkinHeights, FindTheLowestPlaceBetweenTheSamples) {
   const Surface handle = small_handle().bodies[0].surface;
   const double allowed_m = 0.01 * 2.1e-3;
@@ -38,7 +37,7 @@ TEST(SkinHeights, FindTheLowestPlaceBetweenTheSamples) {
                              Vector3(0.02, -1, 0.5)}) {
     const Vector3 normal = way.normalized();
     const std::size_t before = allocation_count();
-    ASSERT_TRUE(heights.take(handle, Vector3::Zero(), normal, 1.0));
+    ASSERT_TRUE(heights.compute(handle, Vector3::Zero(), normal, 1.0));
     double lowest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < heights.rows(); ++i) {
       for (int j = 0; j < heights.columns(); ++j) lowest = std::min(lowest, heights.lowest_m(i, j));
@@ -51,8 +50,8 @@ TEST(SkinHeights, FindTheLowestPlaceBetweenTheSamples) {
 TEST(SkinHeights, LeaveOutWhatIsOutOfReach) {
   const Surface handle = small_handle().bodies[0].surface;
   SkinHeights heights = SkinHeights::make(handle.u, handle.v).value();
-  EXPECT_FALSE(heights.take(handle, Vector3(0, -0.01, 0), Vector3::UnitY(), 0.005));
-  EXPECT_TRUE(heights.take(handle, Vector3(0, -0.01, 0), Vector3::UnitY(), 0.008));
+  EXPECT_FALSE(heights.compute(handle, Vector3(0, -0.01, 0), Vector3::UnitY(), 0.005));
+  EXPECT_TRUE(heights.compute(handle, Vector3(0, -0.01, 0), Vector3::UnitY(), 0.008));
   const double lowest = densely_lowest(handle, Vector3::UnitY()) + 0.01;
   double found = std::numeric_limits<double>::infinity();
   int left_out = 0;

@@ -1,4 +1,4 @@
-// Evening out: bumps and dents go, the form stays, no force arises.
+// Smoothing removes bumps and dents, keeps the form, and causes no force.
 #include "engine/simulation/smoothing.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Scene smoothed_by(Scene scene, double radius_m) {
   return scene;
 }
 
-// Where the plane z = 0 cuts the handle, above or below.
+// Returns the point between u = low and u = high at which the surface crosses the plane z = 0.
 Vector3 middle_line(const Surface& surface, double v, double low, double high) {
   const bool rises = evaluate(surface, low, v).position_m.z() < evaluate(surface, high, v).position_m.z();
   for (int step = 0; step < 40; ++step) {
@@ -36,7 +36,7 @@ double thickness_m(const Surface& surface, double v) {
   return (top(surface, v) - middle_line(surface, v, 0.1, 0.4)).norm();
 }
 
-// By how much the handle is thinner within 7 mm than it is there at rest; a bend counts nothing.
+// Returns by how much the handle is thinner within 7 mm than at rest; a bend has no effect.
 double dent_m(const Simulation& simulation, double v) {
   double deepest = 0.0;
   for (int i = -14; i <= 14; ++i) {
@@ -47,7 +47,7 @@ double dent_m(const Simulation& simulation, double v) {
   return deepest;
 }
 
-// A point has pressed a dent while both ends were held; now only the left one is.
+// A point has pressed a dent while both ends were fixed; then only the left end stays fixed.
 Simulation dented(double v) {
   Scene scene = small_handle();
   scene.tool.kind = ToolKind::point;
@@ -71,7 +71,7 @@ void choose(Simulation& simulation, ToolAction action, double radius_m) {
   ASSERT_TRUE(simulation.apply(SetTool{tool}).ok());
 }
 
-// The hand of a device, which holds the tool by a spring, a little inside the body.
+// Hand of a device that holds the tool by a spring, slightly inside the body.
 ToolInput resting(double x_m, double y_m) {
   ToolInput input = above(x_m, y_m);
   input.coupling_n_per_m = 400.0;
@@ -94,7 +94,7 @@ TEST(Smoothing, TakesADentOutAndLeavesTheRestInPlace) {
   EXPECT_LT(dent_m(simulation, v), 0.35 * before);
   for (int tick = 0; tick < 1000; ++tick) simulation.advance(resting(v, 0.03));
   EXPECT_LT(dent_m(simulation, v), 0.35 * before) << "it springs back";
-  // A tenth of the dent: the handle bends no further.
+  // The handle bends by no more than a tenth of the dent.
   EXPECT_LT((top(simulation.surface(), 0.058) - tip).norm(), 0.1 * before);
   EXPECT_EQ((top(simulation.surface(), 0.010) - top(dent, 0.010)).norm(), 0.0);
 }
@@ -116,7 +116,8 @@ TEST(Smoothing, TheBodyIsAWallToTheToolAndARodStaysARod) {
   Reaction reaction;
   for (int tick = 0; tick < 2000; ++tick) reaction = simulation.advance(resting(0.03, surface_y + 0.005));
   EXPECT_TRUE(reaction.touching);
-  // A spring of 400 N/m, stretched by 1 mm, and what keeps the tool off the curved wall.
+  // The force is that of a spring of 400 N/m stretched by 1 mm, plus the part that keeps the tool off the
+  // curved wall.
   EXPECT_NEAR(reaction.force_n.y(), 0.4, 0.03);
   double largest = 0.0;
   for (int a = 0; a < 24; ++a) {
@@ -127,7 +128,7 @@ TEST(Smoothing, TheBodyIsAWallToTheToolAndARodStaysARod) {
           (evaluate(simulation.surface(), u, v).position_m - evaluate(before, u, v).position_m).norm());
     }
   }
-  // Twelve control points make a circle to a hundredth of its radius: that much may still be evened.
+  // Twelve control points make a circle to a hundredth of its radius, and smoothing may remove that much.
   EXPECT_LT(largest, 0.01 * 0.004);
 }
 
@@ -154,7 +155,7 @@ TEST_F(Reform, StrainsNothing) {
   for (int n = 0; n < lattice_.mesh().node_count(); ++n) {
     largest = std::max(largest, (lattice_.position(n) - before[static_cast<std::size_t>(n)]).norm());
   }
-  // Rounding alone: strains of 1e-6, over 3 cm.
+  // The tolerance covers rounding alone: strains of 1e-6 over 3 cm.
   EXPECT_LT(largest, 1e-6);
 }
 

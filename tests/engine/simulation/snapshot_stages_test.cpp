@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-// The handle's upper side is at 2.7 mm, the tool a sphere of 6 mm.
+// The handle's upper side is at 2.7 mm; the tool is a sphere of 6 mm.
 Snapshot pressed(Scene scene = small_handle()) {
   scene.planes.push_back({Vector3(0.015, 0, 0), Vector3::UnitX()});
   Simulation simulation = simulate(scene);
@@ -43,13 +43,13 @@ TEST(SnapshotStages, ShowTheContactOfTheTool) {
     EXPECT_LE(gap, stage_margin_m);
     apart = std::min(apart, (contact.at.point_m - snapshot.contacts[0].point_m).norm());
   }
-  // The snapshot's was found before the tick moved the surface and the tool.
+  // The snapshot's contact was found before the tick moved the surface and the tool.
   EXPECT_LT(apart, 1e-3);
   const auto& y = snapshot.bodies[0].surface.y;
   EXPECT_NEAR(hull_height(stages), *std::max_element(y.begin(), y.end()), 1e-9);
 }
 
-// It has no control points to take a hull of.
+// A mesh has no control points and no hull.
 TEST(SnapshotStages, LeaveOutAMeshThatGivesWay) {
   Snapshot snapshot = pressed();
   SnapshotStages finder;
@@ -95,7 +95,7 @@ TEST(SnapshotStages, FollowTheToolAndItsImage) {
   }
   snapshot.tool.kind = ToolKind::solid;
   snapshot.tool.body = std::make_shared<ToolBody>(ToolBody{SurfaceSolid{finger}, std::nullopt});
-  // Its short half axis is 2.5 mm: half a millimetre deep.
+  // The short half axis is 2.5 mm, so that the tool is half a millimetre deep.
   snapshot.tool.proxy.position_m.y() -= 0.006 - 0.002;
   const ContactStages of_surface = finder.find(snapshot);
   EXPECT_EQ(of_surface.surfaces, 2);

@@ -1,4 +1,4 @@
-// Soft bodies for tests, and how deep two of them are in each other.
+// Soft bodies for tests, and the penetration of two bodies.
 #pragma once
 
 #include "engine/bspline/surface.h"
@@ -6,10 +6,11 @@
 
 namespace spoonbill {
 
-// Elastic, of the test clay's stiffness.
+// Elastic material with the stiffness of the test clay.
 Material silicone();
 
-// By the collider that knows nothing of constraints. Bodies that enclose each other fail the test.
+// Measures with the collider, which is independent of the constraints. Bodies that enclose each other fail
+// the test.
 double depth_between(const Surface& first, const Surface& second);
 
 }  // namespace spoonbill

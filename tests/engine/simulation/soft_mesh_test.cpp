@@ -1,12 +1,11 @@
-// Tessellated tools that give way.
-#include "engine/simulation/soft_mesh.h"
-
+// Soft tessellated tools.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 
 #include "engine/collision/meshes/mesh_distance.h"
+#include "engine/simulation/tool_contact.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
@@ -17,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-// How deep surface and mesh come to be in each other at most, in lattice cells of the coarser one.
+// Largest penetration of surface and mesh, in lattice cells of the coarser one.
 constexpr double mesh_depth_limit_cells = 0.02;
 
 SoftTool flesh(int nodes, double grip_m = 0.001) {
@@ -47,7 +46,7 @@ struct SampledSurface {
   std::vector<Vector3> points_m, normals;
 };
 
-// Where it is near the box.
+// Samples the surface near the box.
 SampledSurface sampled(const Surface& surface, const Box& box) {
   constexpr int around = 120, along = 240;
   const auto at = [](const KnotVector& knots, int index, int count) {
@@ -66,8 +65,8 @@ SampledSurface sampled(const Surface& surface, const Box& box) {
   return samples;
 }
 
-// How deep a point is behind the plane of the nearest sample: off by some micrometres where samples lie so
-// densely. Below zero before it; a point that no sample is near does not count.
+// Returns the depth of a point behind the plane of the nearest sample, negative in front of it. Dense samples
+// make it accurate to some micrometres; a point far from all samples does not count.
 double depth_behind(const SampledSurface& samples, const Vector3& point) {
   std::size_t nearest = 0;
   double least = 1e30;
@@ -80,8 +79,8 @@ double depth_behind(const SampledSurface& samples, const Vector3& point) {
   return least < 1e-6 ? samples.normals[nearest].dot(samples.points_m[nearest] - point) : 0.0;
 }
 
-// The deepest that any point of either is in the other: samples of the surface, and of each triangle its
-// corners, the middles of its sides and its own.
+// Returns the largest depth of either in the other, from samples of the surface and from the corners, side
+// midpoints and centres of the triangles.
 double depth_between(const Surface& surface, const std::vector<Vector3>& vertices,
                      const std::vector<TriangleCorners>& triangles) {
   const MeshDistance mesh(cleaned({vertices, triangles}));
@@ -117,7 +116,7 @@ double coarser_cell(const SpringLattice& first, const SpringLattice& second) {
   return static_cast<double>(std::max(first.cell_size_m(), second.cell_size_m()));
 }
 
-// On a pebble of 40 x 20 x 100 mm, off its middle.
+// The tool touches a pebble of 40 x 20 x 100 mm off centre.
 Impact ball_on_pebble(const TriangleMesh& mesh) {
   const Body pebble{"pebble", ellipsoid_tube(12, 12), silicone(), {700, {}}};
   return {make_body_state(pebble, {}, InstructionSet::baseline).value(),
@@ -143,7 +142,7 @@ TEST(SoftMesh, ThatCollidesKeepsTheMomentum) {
   EXPECT_LT(deepest, mesh_depth_limit_cells * cell) << deepest / cell;
 }
 
-// A cube with an edge of its own, turned so that it comes edge first.
+// Cube turned so that it arrives edge first.
 TEST(SoftMesh, ComesToRestOnItsEdge) {
   TriangleMesh cube = box_of_triangles(Vector3::Constant(-0.008), Vector3::Constant(0.008));
   const Quaternion turn(Eigen::AngleAxisd(0.78, Vector3::UnitX()));
@@ -177,7 +176,7 @@ TEST(SoftMesh, GivesWayAndReturns) {
   ASSERT_TRUE(rest.is_mesh());
   EXPECT_EQ(rest.lattice.x.size(), static_cast<std::size_t>(simulation.lattice(1).mesh().node_count()));
   EXPECT_EQ(rest.material.name, "silicone");
-  // How far a vertex is from where the hand would carry a rigid tool.
+  // Distance of a vertex from its position on a rigid tool.
   const auto bent = [&](double hand_m) {
     simulation.write_snapshot(snapshot);
     const MeshSnapshot& now = snapshot.bodies[1].mesh;
@@ -216,7 +215,7 @@ TEST(SoftMesh, FollowsATurnOfTheHandAsARigidOneDoes) {
   simulation.write_snapshot(snapshot);
   const MeshSnapshot& mesh = snapshot.bodies.back().mesh;
   const CleanMesh made = cleaned(ball());
-  // Vertices of its own come first, those of halved edges after them.
+  // The mesh's own vertices precede those of halved edges.
   for (std::size_t v = 0; v < made.mesh.vertices_m.size(); ++v) {
     const Vector3 wanted = place + turn * made.mesh.vertices_m[v];
     EXPECT_LT((Vector3(mesh.x[v], mesh.y[v], mesh.z[v]) - wanted).norm(), 1e-7);
@@ -245,7 +244,7 @@ TEST(SoftMesh, IsExchangedHashedAndLeftOutOfUndo) {
   EXPECT_EQ(snapshot.bodies.size(), 1u);
 }
 
-// The same bits whatever the processor offers.
+// All instruction sets give the same bits.
 TEST(SoftMesh, IsTheSameOnEveryInstructionSet) {
   const Scene scene = held_handle(soft_tool(ball(), flesh(300)));
   Simulation plain = simulate(scene), best = simulate(scene, best_instruction_set());
@@ -270,27 +269,29 @@ TEST(SoftMesh, AllocatesNothingInATick) {
 TEST(SoftMesh, IsRefusedWhereItCannotBe) {
   const auto refusal = [](const Tool& tool) {
     const auto made = Simulation::make(held_handle(tool), InstructionSet::baseline);
-    return made.ok() ? "" : made.error().message;
+    return made.ok() ? Error(ErrorCode::internal, "") : made.error();
   };
-  EXPECT_EQ(refusal(soft_tool(without(ball(), 0, 120), flesh(300))),
-            "tool: mesh: is not closed, as a soft one must be; close its holes, or leave soft out");
-  EXPECT_EQ(refusal(soft_tool(ball_mesh(100, 110, 0.006), flesh(300))),
-            "tool: mesh: has 21780 triangles, a soft one at most 20000; reduce it, or leave soft out");
-  EXPECT_EQ(refusal(soft_tool(joined(ball(), ball_mesh(10, 16, 0.006, {0.004, 0.001, 0.002})), flesh(300))),
-            "tool: mesh: passes through itself or has edges of more than two triangles; mend it, or leave "
-            "soft out");
-  EXPECT_EQ(refusal(soft_tool(ball(), flesh(300, 0.02))),
-            "tool: its grip plane holds none of its nodes, move it");
+  const auto expect = [&](const Tool& tool, ErrorCode code, const char* field) {
+    const Error error = refusal(tool);
+    EXPECT_EQ(error.code, code) << error.message;
+    EXPECT_EQ(error.field, field) << error.message;
+    EXPECT_EQ(error.message.substr(0, 6), "tool: ");
+  };
+  expect(soft_tool(without(ball(), 0, 120), flesh(300)), ErrorCode::inconsistent, "mesh");
+  expect(soft_tool(ball_mesh(100, 110, 0.006), flesh(300)), ErrorCode::too_many, "mesh");
+  expect(soft_tool(joined(ball(), ball_mesh(10, 16, 0.006, {0.004, 0.001, 0.002})), flesh(300)),
+         ErrorCode::self_intersecting, "mesh");
+  expect(soft_tool(ball(), flesh(300, 0.02)), ErrorCode::too_few, "grip");
   // The corner of the box about a ball, where there is nothing of it.
   SoftTool corner = flesh(1000);
   corner.grip = {Vector3::Constant(0.0055), -Vector3::Ones().normalized()};
-  EXPECT_EQ(refusal(soft_tool(ball(), corner)), "tool: its grip plane holds none of its nodes, move it");
-  const std::string fine = refusal(soft_tool(ball(), flesh(40000)));
+  expect(soft_tool(ball(), corner), ErrorCode::too_few, "grip");
+  const std::string fine = refusal(soft_tool(ball(), flesh(40000))).message;
   EXPECT_EQ(fine.substr(0, 39), "tool: mesh: has more than 20000 triangl") << fine;
   EXPECT_NE(fine.find("use fewer lattice nodes"), std::string::npos) << fine;
   Tool pulling = soft_tool(ball(), flesh(300));
   pulling.action = ToolAction::pull;
-  EXPECT_NE(refusal(pulling).find("push"), std::string::npos);
+  expect(pulling, ErrorCode::unsupported, "action");
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ Tool solid(ToolSolid of, std::optional<SoftTool> soft = std::nullopt) {
   return tool;
 }
 
-// 40 x 20 x 100 mm scaled to a fingertip of 10 x 5 x 25 mm, held by its upper half.
+// Pebble of 40 x 20 x 100 mm scaled to a fingertip of 10 x 5 x 25 mm, fixed at its upper half.
 Surface finger() {
   Surface surface = ellipsoid_tube(12, 12);
   for (std::vector<double>* values : {&surface.net.x, &surface.net.y, &surface.net.z}) {
@@ -45,8 +45,8 @@ double lowest(const Surface& surface) {
   return *std::min_element(surface.net.y.begin(), surface.net.y.end());
 }
 
-// Comes down on the handle. What it felt in the last hundred ticks: the free end is light and quivers under
-// the tool.
+// Lowers the tool onto the handle. Returns the mean force over the last hundred ticks, because the light free
+// end vibrates under the tool.
 Reaction press(Simulation& simulation, double from_m, double to_m, int ticks = 300, double x_m = 0.05) {
   Reaction felt;
   for (int tick = 0; tick < ticks; ++tick) {
@@ -73,12 +73,12 @@ MeshSolid cube(double half_m) {
   return {clean_mesh(std::move(mesh), "cube").value()};
 }
 
-// Every rigid shape rests on the handle, 2.5 mm half as thick, with its lowest point 1 mm deep.
+// Every rigid shape rests on the handle, which is 2.5 mm half as thick, with its lowest point 1 mm deep.
 TEST(SolidTool, OfEveryRigidShapePushes) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   struct Case {
     ToolSolid solid;
-    double below_m;  // from its frame's origin to its lowest point
+    double below_m;  // from the frame's origin to the lowest point
   };
   const Case cases[] = {
       {ImplicitShape(SphereShape{0.006}), 0.006},
@@ -102,7 +102,7 @@ TEST(SolidTool, OfEveryRigidShapePushes) {
   }
 }
 
-// A sphere as a solid does what a sphere does.
+// A sphere as a solid behaves like a sphere tool.
 TEST(SolidTool, ASolidSphereActsAsTheSphereDoes) {
   Tool sphere;
   sphere.radius_m = 0.006;
@@ -110,7 +110,7 @@ TEST(SolidTool, ASolidSphereActsAsTheSphereDoes) {
   Simulation general = simulate(held_handle(solid(ImplicitShape(SphereShape{0.006}))));
   const Reaction one = press(plain, 0.0095, 0.0075), other = press(general, 0.0095, 0.0075);
   EXPECT_NEAR(lowest(plain.surface()), lowest(general.surface()), 2e-5);
-  // The sphere holds off points of the lattice, the solid the surface itself, which lie a little apart.
+  // The sphere pushes points of the lattice, the solid pushes the surface, and these differ slightly.
   EXPECT_NEAR(other.force_n.y() / one.force_n.y(), 1.0, 0.35);
 }
 
@@ -136,7 +136,7 @@ TEST(SolidTool, WorksOnBothSidesOfAMirror) {
       const Quaternion turned(Eigen::AngleAxisd(0.2, Vector3::UnitX()));
       simulation.advance({{Vector3(0.04, 0.0045 + above_it - 1e-5 * tick, 0), turned}, false, 0.0});
     }
-    // Pressed from both sides the handle stays in its middle.
+    // Pressed from both sides the handle stays centred.
     double middle = 0.0, most = 0.0;
     for (const double y : simulation.surface().net.y) {
       middle += y;
@@ -157,7 +157,7 @@ TEST(SolidTool, ASoftToolGivesWayAndReturns) {
   simulation.write_snapshot(snapshot);
   ASSERT_EQ(snapshot.bodies.size(), 2u);
   const LatticeSnapshot rest = snapshot.bodies[1].lattice;
-  // How far a node is from where the hand would carry a rigid tool.
+  // Distance of a node from its position on a rigid tool.
   const auto bent = [&](double hand_m) {
     simulation.write_snapshot(snapshot);
     const LatticeSnapshot& now = snapshot.bodies[1].lattice;
@@ -193,7 +193,7 @@ TEST(SolidTool, IsExchangedWhileTheSimulationRuns) {
   ASSERT_TRUE(simulation.restore(shape).ok());
 }
 
-// Whoever drags a slider sends a command for each step of it.
+// Dragging a slider sends a command for each step.
 TEST(SolidTool, ABodyThatIsHeldIsNotMeshedAgainForAnotherSetting) {
   Tool tool = solid(SurfaceSolid{finger()});
   Simulation simulation = simulate(held_handle(tool));
@@ -211,7 +211,7 @@ TEST(SolidTool, ABodyThatIsHeldIsNotMeshedAgainForAnotherSetting) {
   EXPECT_FALSE(simulation.apply(SetTool{empty}).ok());
 }
 
-// What a sphere does is the same whatever was held before it.
+// A sphere behaves the same, whatever tool was held before.
 TEST(SolidTool, LeavesNothingOfItselfToASphere) {
   const Tool solids[] = {solid(ImplicitShape(BoxShape{{0.02, 0.02, 0.02}})), solid(SurfaceSolid{finger()})};
   for (const Tool& before : solids) {
@@ -224,7 +224,7 @@ TEST(SolidTool, LeavesNothingOfItselfToASphere) {
   }
 }
 
-// From above the handle to below it in one tick: it is met on the way.
+// The tool moves from above the handle to below it in one tick and is stopped on its path.
 TEST(SolidTool, AFastToolIsMetOnItsWay) {
   struct Case {
     Tool tool;
@@ -251,19 +251,24 @@ TEST(SolidTool, IsRefusedWhereItCannotBe) {
     Scene scene = held_handle(tool);
     scene.symmetry = symmetry;
     const auto made = Simulation::make(scene, InstructionSet::baseline);
-    return made.ok() ? "" : made.error().message;
+    return made.ok() ? Error(ErrorCode::internal, "") : made.error();
   };
   Tool without;
   without.kind = ToolKind::solid;
-  EXPECT_EQ(refusal(without), "tool: a solid must have a body");
-  EXPECT_NE(refusal(solid(ImplicitShape(BoxShape{{0.004, -1.0, 0.004}}))).find("tool: "), std::string::npos);
+  EXPECT_EQ(refusal(without).code, ErrorCode::missing);
+  EXPECT_EQ(refusal(without).field, "solid");
+  EXPECT_NE(refusal(solid(ImplicitShape(BoxShape{{0.004, -1.0, 0.004}}))).message.find("tool: "),
+            std::string::npos);
   Surface open = finger();
   open.net.y[0] += 0.001;
-  EXPECT_NE(refusal(solid(SurfaceSolid{open})).find("tool: "), std::string::npos);
+  EXPECT_NE(refusal(solid(SurfaceSolid{open})).message.find("tool: "), std::string::npos);
   Tool soft = solid(SurfaceSolid{finger()}, soft_flesh());
-  EXPECT_NE(refusal(soft, {true, Vector3::Zero(), Vector3::UnitZ()}).find("mirror"), std::string::npos);
+  const Error mirrored = refusal(soft, {true, Vector3::Zero(), Vector3::UnitZ()});
+  EXPECT_EQ(mirrored.code, ErrorCode::unsupported);
+  EXPECT_EQ(mirrored.field, "symmetry");
   soft.action = ToolAction::pull;
-  EXPECT_NE(refusal(soft).find("push"), std::string::npos);
+  EXPECT_EQ(refusal(soft).code, ErrorCode::unsupported);
+  EXPECT_EQ(refusal(soft).field, "action");
 }
 
 TEST(SolidTool, AllocatesNothingInATick) {

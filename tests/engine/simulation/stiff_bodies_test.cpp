@@ -1,4 +1,4 @@
-// Bodies of stiff elastic materials: stepped with their true stiffness.
+// Bodies of stiff elastic materials, stepped with their true stiffness.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ Material stiff_material(double youngs_modulus_pa) {
   return material;
 }
 
-// Held behind x = 10 mm.
+// Handle that is fixed behind x = 10 mm.
 Scene held_handle(double youngs_modulus_pa) {
   Scene scene = small_handle();
   scene.bodies[0].material = stiff_material(youngs_modulus_pa);
@@ -40,7 +40,7 @@ ToolInput hand_at(double y_m) {
   return input;
 }
 
-// The mean of the slices on both sides, by how near they are.
+// Interpolates between the slices on both sides.
 template <class Of>
 double mean_at_press(const LatticeMesh& mesh, const Of& of) {
   const double pitch_m = 0.06 / (mesh.count[2] - 1);
@@ -59,10 +59,10 @@ double sunk_m(const Simulation& simulation) {
   return mean_at_press(lattice.mesh(), [&](int n, double) { return -lattice.displacement(n).y(); });
 }
 
-// Where a force at the pressed place rests the body, by the static solver on the same block of cells.
+// Returns the static displacement under a force at the pressed point, by the static solver on the same cells.
 double sinking_at_rest_m(const Scene& scene, double force_n) {
   const BodyState body = make_body_state(scene.bodies[0], scene.planes, InstructionSet::baseline).value();
-  const LatticeMesh& mesh = body.core->mesh();
+  const LatticeMesh& mesh = body.implicit_solver->mesh();
   std::vector<HeldAxis> held;
   for (int n = 0; n < mesh.node_count(); ++n) {
     if (mesh.nodes[static_cast<std::size_t>(n)].x() <= plane_x_m) hold_node(n, Vector3::Zero(), held);
@@ -86,23 +86,23 @@ TEST(StiffBodies, BendUnderTheHandAsTheStaticSolverSays) {
     const Scene scene = held_handle(youngs);
     Simulation simulation = simulate(scene);
     Reaction reaction;
-    // Down into the handle by 2 mm beyond the touch, and wait.
+    // The hand moves 2 mm beyond the touch into the handle and waits.
     for (int tick = 0; tick < 600; ++tick) {
       reaction = simulation.advance(hand_at(0.0085 - 2e-3 * std::min(1.0, tick / 300.0)));
     }
     EXPECT_TRUE(reaction.touching);
     EXPECT_GT(reaction.force_n.y(), 0.1);
-    // The coupling spring is as long as what the body left of the way.
+    // The coupling spring takes the part of the distance that the body does not yield.
     EXPECT_NEAR(reaction.force_n.y() / (coupling_n_per_m * (reaction.proxy.position_m.y() - 0.0065)), 1.0,
                 0.01);
-    // A sphere presses on a few nodes of one slice, and not on all: 3 %.
+    // A sphere presses on a few nodes of one slice only, which accounts for 3 %.
     EXPECT_NEAR(sunk_m(simulation) / sinking_at_rest_m(scene, reaction.force_n.y()), 1.0, 0.03) << youngs;
     for (int tick = 0; tick < 600; ++tick) reaction = simulation.advance(hand_at(0.02));
     EXPECT_NEAR(sunk_m(simulation), 0.0, 1e-6) << youngs;
   }
 }
 
-// Clay that was bent and is cast in steel stays bent.
+// Bent clay whose material is changed to steel stays bent.
 TEST(StiffBodies, KeepTheShapeInWhichTheyAreCast) {
   Scene scene = small_handle();
   scene.planes.push_back({Vector3(plane_x_m, 0, 0), Vector3::UnitX()});
@@ -115,14 +115,14 @@ TEST(StiffBodies, KeepTheShapeInWhichTheyAreCast) {
   for (int tick = 0; tick < 300; ++tick) simulation.advance(above(press_x_m, 0.03));
   EXPECT_NEAR(sunk_m(simulation), bent, 1e-7);
   const ShapeState cast = simulation.shape();
-  // Pressed, and the press undone.
+  // Undoes the press.
   for (int tick = 0; tick < 200; ++tick) simulation.advance(hand_at(0.0085 - 1e-5 * tick));
   ASSERT_TRUE(simulation.restore(cast).ok());
   for (int tick = 0; tick < 100; ++tick) simulation.advance(hand_at(0.03));
   EXPECT_NEAR(sunk_m(simulation), bent, 1e-7);
 }
 
-// Even a hand that is said to be rigid, and 5 m/s fast.
+// Includes a hand without coupling that moves at 5 m/s.
 TEST(StiffBodies, NoHandBlowsThemUp) {
   for (const double youngs : {2e6, 2e9, 193e9}) {
     if (sanitized && youngs != 2e9) continue;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/simulation/symmetry.h"
+#include "engine/scene/scene.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
@@ -30,7 +30,7 @@ TEST(Tool, SymmetryMirrorsTheStroke) {
     };
     const double left = dent(0.66), right = dent(0.84);
     ASSERT_GT(std::max(left, right), 2e-4);
-    // The two tools take turns within a substep, so that the sides agree nearly, not to the bit.
+    // The two tools alternate within a substep, so that the sides agree closely but not bit for bit.
     if (symmetric) {
       EXPECT_NEAR(left, right, 0.03 * std::max(left, right));
     } else {
@@ -42,14 +42,14 @@ TEST(Tool, SymmetryMirrorsTheStroke) {
 TEST(Symmetry, MirrorsPosesAsAMirrorDoes) {
   const Symmetry plane{true, Vector3(0.01, 0, 0), Vector3(1, 2, -2) / 3.0};
   const Pose pose{Vector3(0.02, -0.01, 0.03), Quaternion(0.5, -0.1, 0.7, 0.5).normalized()};
-  const Pose mirror = mirrored_pose(plane, pose);
+  const Pose mirror = mirror_pose(plane, pose);
   const Vector3 offset(0.001, 0.002, -0.003);
-  // A mirrored tool carries the mirrored offset to where the mirror shows it: R' (M d) = M (R d).
+  // A mirrored tool carries the mirrored offset to its mirror image: R' (M d) = M (R d).
   const auto reflect = [&](const Vector3& d) {
     return Vector3(d - 2.0 * plane.normal.dot(d) * plane.normal);
   };
   EXPECT_LT((mirror.orientation * reflect(offset) - reflect(pose.orientation * offset)).norm(), 1e-15);
-  EXPECT_LT((mirrored_point(plane, mirror.position_m) - pose.position_m).norm(), 1e-15);
+  EXPECT_LT((mirror_point(plane, mirror.position_m) - pose.position_m).norm(), 1e-15);
 }
 
 TEST(Tool, ALiftedToolActsOnlyAfterItHasLeft) {
@@ -108,7 +108,7 @@ TEST(Tool, AResetProxyDoesNotSweepTheWayBetween) {
   Simulation simulation = simulate(small_handle());
   simulation.advance(above(0.03, 0.03));
   ASSERT_TRUE(simulation.apply(ResetProxy{}));
-  // Straight through the handle to the other side in one tick.
+  // The tool moves straight through the handle to the other side in one tick.
   const Reaction reaction = simulation.advance(above(0.03, -0.03));
   EXPECT_FALSE(reaction.touching);
   EXPECT_NEAR(reaction.proxy.position_m.y(), -0.03, 1e-9);

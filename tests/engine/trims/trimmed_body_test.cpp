@@ -34,7 +34,7 @@ Eigen::Vector2d parameters_at(const Surface& surface, double x_m, double z_m) {
 }
 
 // A flat sheet of clay, held at one end, with a round hole in its middle.
-Scene sheet(bool with_hole, Vector3* middle_m = nullptr) {
+Scene sheet(bool with_hole, Vector3* centre_m = nullptr) {
   Scene scene = small_handle();
   Body& body = scene.bodies[0];
   body.surface = flat_sheet(side_m, side_m);
@@ -44,7 +44,7 @@ Scene sheet(bool with_hole, Vector3* middle_m = nullptr) {
       evaluate(body.surface, 0.5 * (body.surface.u.domain_start() + body.surface.u.domain_end()),
                0.5 * (body.surface.v.domain_start() + body.surface.v.domain_end()));
   const Vector3 middle = centre.position_m;
-  if (middle_m != nullptr) *middle_m = middle;
+  if (centre_m != nullptr) *centre_m = middle;
   scene.planes = {{middle - Vector3(0.4 * side_m, 0.0, 0.0), Vector3::UnitX()}};
   scene.tool.radius_m = tool_radius_m;
   if (!with_hole) return scene;
@@ -161,7 +161,7 @@ TEST(TrimmedBody, KeptAreaShareIsThatOfTheMetres) {
   const Body& body = pierced.bodies[0];
   const double hole_m2 = 0.5 * 200 * hole_radius_m * hole_radius_m * std::sin(2.0 * std::numbers::pi / 200);
   // Triangles of a flat sheet are exact where their corners are.
-  EXPECT_NEAR(remaining_area_fraction(body.surface, *trim_of(body).value()),
+  EXPECT_NEAR(remaining_area_fraction(body.surface, *make_trimmed_area(body).value()),
               1.0 - hole_m2 / (side_m * side_m), 1e-5);
 }
 

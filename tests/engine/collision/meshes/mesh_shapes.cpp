@@ -67,13 +67,13 @@ TriangleMesh ball_mesh(int rings, int around, double radius_m, const Vector3& ce
   return mesh;
 }
 
-TriangleMesh torus_mesh(int along, int around, double way_m, double tube_m) {
+TriangleMesh torus_mesh(int along, int around, double displacement_m, double tube_m) {
   TriangleMesh mesh;
   for (int i = 0; i < along; ++i) {
     const double turn = 2.0 * pi * i / along;
     for (int j = 0; j < around; ++j) {
       const double roll = 2.0 * pi * j / around;
-      const double out = way_m + tube_m * std::cos(roll);
+      const double out = displacement_m + tube_m * std::cos(roll);
       mesh.vertices_m.emplace_back(out * std::cos(turn), tube_m * std::sin(roll), -out * std::sin(turn));
     }
   }

@@ -10,7 +10,7 @@ TriangleMesh box_of_triangles(const Vector3& low, const Vector3& high);
 // Rings of latitude and poles on the y axis, corners on the sphere.
 TriangleMesh ball_mesh(int rings, int around, double radius_m, const Vector3& centre_m = Vector3::Zero());
 // About the y axis. A tube thicker than its way round goes through itself.
-TriangleMesh torus_mesh(int along, int around, double way_m, double tube_m);
+TriangleMesh torus_mesh(int along, int around, double displacement_m, double tube_m);
 // Of side x side squares over the unit square in x and y, z = height x y.
 TriangleMesh sheet_mesh(int side, double height_m);
 TriangleMesh moebius_strip(int along);

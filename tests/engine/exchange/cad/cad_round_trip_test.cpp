@@ -23,7 +23,7 @@
 #include "engine/exchange/cad/session.h"
 #include "engine/exchange/cad_names.h"
 #include "engine/exchange/cad_stream.h"
-#include "engine/inspection/closing.h"
+#include "engine/inspection/surface_check.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"
 #include "tests/engine/exchange/sample_document.h"
@@ -306,7 +306,7 @@ TEST(CadNames, AreCleaned) {
 TEST_F(CadRoundTrip, WhatACheckCallsClosedIsASolidAndSaysWhatItMisses) {
   Surface pole = ellipsoid_tube(10, 10);
   pole.net.set_point(3, 0, pole.net.point(3, 0) + Vector3(2e-8, 0, 0));
-  ASSERT_EQ(closing_of(pole).closedness, Closedness::solid);
+  ASSERT_EQ(find_closing(pole).closedness, Closedness::solid);
   CadModel model;
   model.surfaces.push_back({"tube", pole, 0.0, {}, ""});
   for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
@@ -328,7 +328,7 @@ TEST_F(CadRoundTrip, ASeamThatIsALittleApartIsClosed) {
   for (int j = 0; j < open.net.columns; ++j) {
     open.net.set_point(0, j, open.net.point(0, j) + Vector3(2e-8, 0, 0));
   }
-  ASSERT_EQ(closing_of(open).closedness, Closedness::solid);
+  ASSERT_EQ(find_closing(open).closedness, Closedness::solid);
   CadModel model;
   model.surfaces.push_back({"ring", open, 0.0, {}, ""});
   const auto content = write_cad(model, {FileFormat::step, StepSchema::ap214, "mm"});

@@ -135,7 +135,7 @@ TEST_F(SolidMeshes, TwoSolidsStayTwo) {
   ASSERT_EQ(solids.solids.size(), 2u);
   EXPECT_NE(solids.solids[0].name, solids.solids[1].name);
   EXPECT_NEAR(enclosed_volume_m3(solids.solids[1].mesh), 1000.0 * cubic_mm, 1e-3 * cubic_mm);
-  EXPECT_NEAR((solids.solids[1].middle_m - Vector3(0.055, 0.005, 0.005)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((solids.solids[1].centre_m - Vector3(0.055, 0.005, 0.005)).norm(), 0.0, 1e-9);
 }
 
 TEST_F(SolidMeshes, WhatDoesNotCloseIsLoose) {

@@ -12,8 +12,8 @@
 
 #include "engine/exchange/cad/cad_reader.h"
 #include "engine/exchange/cad/session.h"
-#include "engine/inspection/closing.h"
-#include "engine/inspection/enclosed_mass.h"
+#include "engine/inspection/surface_check.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/merging/merge.h"
 #include "engine/merging/trimmed_patch.h"
 #include "tests/engine/exchange/sample_document.h"
@@ -53,9 +53,9 @@ void expect_one_closed_body(const TopoDS_Shape& shape, std::size_t face_count) {
   const auto merged = merge(faces, request);
   ASSERT_TRUE(merged) << merged.error().message;
   EXPECT_LE(merged->deviation_m, request.join.tolerance_m);
-  EXPECT_EQ(closing_of(merged->surface).closedness, Closedness::solid);
+  EXPECT_EQ(find_closing(merged->surface).closedness, Closedness::solid);
   // Some 0.01 mm on sides some 10 mm from the axis, both ways.
-  EXPECT_NEAR(std::abs(enclosed_mass(merged->surface).volume_m3) / volume_m3(shape), 1.0, 2e-3);
+  EXPECT_NEAR(std::abs(compute_enclosed_mass(merged->surface).volume_m3) / volume_m3(shape), 1.0, 2e-3);
 }
 
 TEST(TurnedPart, ACylinderAndAConeAreOneBodyEach) {

@@ -10,7 +10,7 @@
 
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/inspection/closing.h"
+#include "engine/inspection/surface_check.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"
@@ -106,13 +106,13 @@ TEST(Tessellation, BodiesThatCloseAreWatertightWithNormalsOutward) {
   }
 }
 
-// A pole whose points are apart by less than closing_of() minds is one point in the mesh.
+// A pole whose points are apart by less than find_closing() minds is one point in the mesh.
 TEST(Tessellation, WhatACheckCallsClosedIsWatertight) {
   for (const double apart_m : {1e-8, 0.9 * closing_tolerance_m}) {
     SCOPED_TRACE(apart_m);
     Surface tube = ellipsoid_tube(10, 10);
     tube.net.set_point(3, 0, tube.net.point(3, 0) + Vector3(apart_m, 0, 0));
-    ASSERT_EQ(closing_of(tube).closedness, Closedness::solid);
+    ASSERT_EQ(find_closing(tube).closedness, Closedness::solid);
     const auto made = tessellate(tube, {}, 1e-4);
     ASSERT_TRUE(made) << made.error().message;
     EXPECT_TRUE(made->closed);

@@ -55,7 +55,7 @@ double apart(double turn, double other) {
 
 // Visits what lies in the middle half of the bar, away from its caps, with its distance from the axis.
 template <class Visit>
-void visit_middle(const std::vector<Vector3>& points, const std::vector<BodyPlace>& places,
+void visit_middle(const std::vector<Vector3>& points, const std::vector<BodyCoordinates>& places,
                   const Visit& visit) {
   ASSERT_EQ(points.size(), places.size());
   for (std::size_t n = 0; n < points.size(); ++n) {
@@ -77,10 +77,10 @@ std::vector<Vector3> cell_middles(const LatticeMesh& mesh) {
   return middles;
 }
 
-void expect_places_of_a_bar(const std::vector<Vector3>& points, const std::vector<BodyPlace>& places,
+void expect_places_of_a_bar(const std::vector<Vector3>& points, const std::vector<BodyCoordinates>& places,
                             bool of_cells) {
   int seen = 0;
-  visit_middle(points, places, [&](const Vector3& point, const BodyPlace& place, double from_axis) {
+  visit_middle(points, places, [&](const Vector3& point, const BodyCoordinates& place, double from_axis) {
     ++seen;
     // Slices are even along the bar.
     EXPECT_NEAR(place.along, point.x() / length_m, 0.01);
@@ -112,7 +112,7 @@ TEST(BodyRegion, CellsOfARoundBarAreWhereTheCylinderHasThem) {
 TEST(BodyRegion, DepthInABoxIsTheDistanceToItsNearestFace) {
   const Vector3 size_m(0.012, 0.007, 0.03);
   const LatticeMesh mesh = box_mesh(size_m, {6, 5, 11});
-  const std::vector<BodyPlace> places = node_places(mesh);
+  const std::vector<BodyCoordinates> places = node_places(mesh);
   for (std::size_t n = 0; n < places.size(); ++n) {
     const Vector3& point = mesh.nodes[n];
     const double depth = std::min(point.minCoeff(), (size_m - point).minCoeff());
@@ -128,13 +128,13 @@ TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
   request.counts = {25, 2, 3};
   const Result<LatticeMesh> ring = shell_lattice(open_ring(0.02, 0.006), 0.002, request);
   ASSERT_TRUE(ring.ok()) << ring.error().message;
-  const std::vector<BodyPlace> places = cell_places(ring.value());
+  const std::vector<BodyCoordinates> places = cell_places(ring.value());
   BodyRegion across_seam;
   across_seam.around = {0.9, 0.1};
   int held = 0;
   for (int i = 0; i < 24; ++i) {
     for (int k = 0; k < 2; ++k) {
-      const BodyPlace& place = places[ring->cell_index(i, 0, k)];
+      const BodyCoordinates& place = places[ring->cell_index(i, 0, k)];
       EXPECT_NEAR(place.around, (i + 0.5) / 24.0, 1e-3);
       EXPECT_NEAR(place.along, 0.25 + 0.5 * k, 1e-12);
       // Chords of 15 degrees are less than 1 % of the thickness nearer than arcs.
@@ -148,7 +148,7 @@ TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
 // Also those of the caps that meet on the axis, which lies in no direction.
 TEST(BodyRegion, FacesOfARoundBarAreWhereTheCylinderHasThem) {
   const LatticeMesh mesh = bar_lattice({7, 7, 41});
-  const std::vector<BodyPlace> places = node_places(mesh);
+  const std::vector<BodyCoordinates> places = node_places(mesh);
   int seen = 0;
   for (const ShellFace& face : shell_faces(mesh)) {
     Vector3 middle = Vector3::Zero();
@@ -191,7 +191,7 @@ TEST(BodyRegion, CellsOfAQuarterTurnHoldAQuarterOfTheBar) {
   const LatticeMesh mesh = bar_lattice({9, 9, 21});
   BodyRegion region;
   region.around = {0.875, 0.125};
-  const std::vector<BodyPlace> places = cell_places(mesh);
+  const std::vector<BodyCoordinates> places = cell_places(mesh);
   double inside = 0.0, all = 0.0;
   for (int i = 0; i + 1 < mesh.count[0]; ++i) {
     for (int j = 0; j + 1 < mesh.count[1]; ++j) {

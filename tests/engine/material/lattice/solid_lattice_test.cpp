@@ -49,7 +49,7 @@ TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
   const LatticeMesh mesh = solid_lattice(ring, {4000, {}}).value();
   // Chords of 80 and more a turn, in both directions.
   EXPECT_NEAR(filled_m3(mesh) / (2.0 * pi * pi * ring_m * tube_m * tube_m), 1.0, 0.005);
-  const std::vector<BodyPlace> places = node_places(mesh);
+  const std::vector<BodyCoordinates> places = node_places(mesh);
   int inside = 0;
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     const Vector3& at = mesh.nodes[n];
@@ -74,13 +74,13 @@ TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
 TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
   const Surface ring = round_torus(ring_m, tube_m);
   const LatticeMesh mesh = solid_lattice(ring, {4000, {}}).value();
-  const std::vector<BodyPlace> places = cell_places(mesh);
+  const std::vector<BodyCoordinates> places = cell_places(mesh);
   int filled = 0;
   for (int k = 0; k + 1 < mesh.count[2]; ++k) {
     for (int i = 0; i + 1 < mesh.count[0]; ++i) {
       for (int j = 0; j + 1 < mesh.count[1]; ++j) {
         const Vector3 at = trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5), middle = middle_of_ring(at);
-        const BodyPlace& place = places[mesh.cell_index(i, j, k)];
+        const BodyCoordinates& place = places[mesh.cell_index(i, j, k)];
         const double depth = tube_m - (at - middle).norm();
         EXPECT_NEAR(place.depth_m, std::max(0.0, depth), 0.02 * tube_m);
         if (!mesh.is_filled(i, j, k) || depth > 0.8 * tube_m) continue;

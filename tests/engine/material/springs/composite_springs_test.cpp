@@ -125,7 +125,7 @@ LatticeMaterials all_different(const LatticeMesh& mesh) {
   clay.damping_ratio = 0.05;
   clay.stiffening = 2.0;
   gel.damping_ratio = 0.4;
-  gel.relaxing_share = 0.5;
+  gel.relaxing_fraction = 0.5;
   gel.relaxation_time_s = 0.2;
   gel.stiffening = -3.0;
   return composite(mesh, clay, gel, [&](const Vector3& at) { return at.z() > 0.5 * mesh.nodes.back().z(); });
@@ -247,7 +247,7 @@ TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
 // none of its pressure: with K = E / 1.2 and G = E / 5.2 its modulus is 9 K G / (3 K + G) = 0.536 E.
 TEST(CompositeSprings, OnlyTheGelCreeps) {
   Material gel = elastic_material(4e3, 0.3, 1000.0), rubber = elastic_material(4e3, 0.3, 1000.0);
-  gel.relaxing_share = 0.5;
+  gel.relaxing_fraction = 0.5;
   gel.relaxation_time_s = 0.2;
   gel.damping_ratio = rubber.damping_ratio = 0.1;
   SpringLattice lattice = lattice_of(bar(), composite(bar(), gel, rubber, in_far_half));

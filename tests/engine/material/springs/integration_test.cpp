@@ -343,7 +343,7 @@ TEST(Integration, ClayKeepsAStretchAndRubberDoesNot) {
 // Held, a gel creeps with its time constant, by its share of the strain; let go, it comes back as slowly.
 TEST(Integration, GelCreepsAsItsRelaxationTimeSays) {
   Material gel = elastic_material(500.0, 0.45, 1000.0);
-  gel.relaxing_share = 0.6;
+  gel.relaxing_fraction = 0.6;
   gel.relaxation_time_s = 0.5;
   StretchedBlock stretched(gel);
   stretched.relax_for(500);
@@ -358,7 +358,7 @@ TEST(Integration, GelCreepsAsItsRelaxationTimeSays) {
   EXPECT_NEAR(stretched.volume_ratio(), 1.0, 0.02);
   stretched.let_go();
   // A standard linear solid comes back with the relaxation time over what share of the stiffness stays.
-  const double back_s = gel.relaxation_time_s / (1.0 - gel.relaxing_share);
+  const double back_s = gel.relaxation_time_s / (1.0 - gel.relaxing_fraction);
   stretched.relax_for(500);
   EXPECT_NEAR(stretched.kept(), 0.6 * std::exp(-0.5 / back_s), 0.06);
   stretched.relax_for(5500);

@@ -98,8 +98,8 @@ struct Sandwich {
   static constexpr double core_pa = 1e8, faces_pa = 1e9, poisson = 0.0;
 
   static bool in_faces(const Vector3& at) { return at.y() < face_m || at.y() > height_m - face_m; }
-  static double youngs_modulus_pa(double from_middle_m) {
-    return std::abs(from_middle_m) > 0.5 * height_m - face_m ? faces_pa : core_pa;
+  static double youngs_modulus_pa(double mass_offset_m) {
+    return std::abs(mass_offset_m) > 0.5 * height_m - face_m ? faces_pa : core_pa;
   }
   static LatticeMaterials materials(const LatticeMesh& mesh) {
     return composite(mesh, elastic_material(core_pa, poisson, 1000.0),

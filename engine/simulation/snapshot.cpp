@@ -1,12 +1,13 @@
-#include "engine/simulation/snapshot_parts.h"
+#include "engine/simulation/snapshot.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
-#include "engine/simulation/state_hash.h"
+#include "engine/simulation/simulation_state.h"
 
 namespace spoonbill {
-
 namespace {
 
 void add_to_hash(const KnotVector& direction, StateHash& hash) {
@@ -14,8 +15,8 @@ void add_to_hash(const KnotVector& direction, StateHash& hash) {
   for (const double knot : direction.knots()) hash.add(knot);
 }
 
-// By what it is and not by counting changes: two sessions whose surfaces differ must differ in it too.
-std::uint64_t structure_of(const Surface& surface) {
+// Hashes the knots instead of counting changes, so that surfaces of different sessions differ too.
+std::uint64_t fingerprint_structure(const Surface& surface) {
   StateHash hash;
   add_to_hash(surface.u, hash);
   add_to_hash(surface.v, hash);
@@ -23,7 +24,7 @@ std::uint64_t structure_of(const Surface& surface) {
 }
 
 void write_surface(const Surface& surface, SurfaceSnapshot& out) {
-  const std::uint64_t structure = structure_of(surface);
+  const std::uint64_t structure = fingerprint_structure(surface);
   if (out.structure != structure) out = {surface.u, surface.v, structure, {}, {}, {}, {}};
   const auto copy = [](const std::vector<double>& from, std::vector<float>& to) {
     to.assign(from.begin(), from.end());
@@ -45,7 +46,7 @@ void write_mesh(const MeshMapping& mesh, MeshSnapshot& out) {
   }
 }
 
-void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>& held,
+void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>& fixed,
                    const std::vector<std::uint8_t>& touched, LatticeSnapshot& out) {
   const LatticeMesh& mesh = lattice.mesh();
   const std::size_t count = static_cast<std::size_t>(mesh.node_count());
@@ -65,7 +66,7 @@ void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>
         out.z[at] = static_cast<float>(position.z());
         const NodePlace place = mesh.place_of(i, j, k);
         out.in_body[at] = place != NodePlace::beside_body;
-        out.fixed[at] = out.in_body[at] & held[static_cast<std::size_t>(node)];
+        out.fixed[at] = out.in_body[at] & fixed[static_cast<std::size_t>(node)];
         out.touched[at] = out.in_body[at] & touched[static_cast<std::size_t>(node)];
         out.on_shell[at] = place == NodePlace::on_shell;
       }
@@ -77,8 +78,8 @@ void write_material(const Material& material, const Sculpting& sculpting, const 
                     MaterialSnapshot& out) {
   out.name = material.name;
   out.youngs_modulus_pa = material.youngs_modulus_pa;
-  out.felt_youngs_modulus_pa = body.felt_youngs_modulus_pa();
-  out.implicit_nodes = body.mover() ? body.mover()->mesh().node_count() : 0;
+  out.effective_youngs_modulus_pa = body.effective_youngs_modulus_pa();
+  out.implicit_nodes = body.active_solver() ? body.active_solver()->mesh().node_count() : 0;
   out.poissons_ratio = material.poissons_ratio;
   out.density_kg_per_m3 = material.density_kg_per_m3;
   out.damping_per_s = sculpting.damping_per_s;
@@ -103,9 +104,62 @@ void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::ve
       out[b].residual = {mapping.residual().largest_m, mapping.residual().root_mean_square_m};
     }
     out[b].shell_thickness_m = bodies[b].shell_thickness_m;
-    write_lattice(bodies[b].lattice, bodies[b].held, bodies[b].touched, out[b].lattice);
+    write_lattice(bodies[b].lattice, bodies[b].fixed, bodies[b].touched, out[b].lattice);
     write_material(b < scene.bodies.size() ? scene.bodies[b].material : scene.tool.body->soft->material,
                    scene.sculpting, bodies[b], out[b].material);
+  }
+}
+
+namespace {
+
+ContactSnapshot make_contact_snapshot(std::size_t body, const BodyState& state,
+                                      const SurfaceContact& contact) {
+  ContactSnapshot snapshot;
+  snapshot.body = static_cast<int>(body);
+  snapshot.point_m = contact.point_m;
+  snapshot.normal = contact.normal;
+  snapshot.tangent_u = contact.tangent_u;
+  snapshot.tangent_v = contact.tangent_v;
+  snapshot.depth_m = contact.depth_m;
+  snapshot.u = contact.u;
+  snapshot.v = contact.v;
+  snapshot.nodes = state.mapping().at(contact.u, contact.v);
+  return snapshot;
+}
+
+// Adds the contact of the tool with each body that it is near.
+void add_tool_contacts(const Simulation::State& s, std::vector<ContactSnapshot>& contacts) {
+  if (!s.reaction.touching) return;
+  for (std::size_t b = 0; b < s.scene.bodies.size(); ++b) {
+    const CollisionResult& collision = s.tool.contact.collision(static_cast<int>(b));
+    if (collision.found) contacts.push_back(make_contact_snapshot(b, s.bodies[b], collision.nearest));
+  }
+}
+
+// Adds the contact of two bodies that push each other, on the surface of each.
+void add_pair_contacts(const Simulation::State& s, const BodyPairContact& pair, std::size_t first,
+                       std::size_t second, std::vector<ContactSnapshot>& contacts) {
+  if (!s.between.acted(static_cast<int>(first), static_cast<int>(second))) return;
+  const auto add = [&](std::size_t body, const std::optional<SurfaceSpot>& spot) {
+    if (!spot) return;
+    const BodyState& state = s.bodies[body];
+    contacts.push_back(make_contact_snapshot(body, state, contact_at(state.mapping().current(), *spot)));
+  };
+  add(first, pair.deepest_on_first(s.bodies[first]));
+  add(second, pair.deepest_on_second());
+}
+
+}  // namespace
+
+void write_contacts(const Simulation::State& s, std::vector<ContactSnapshot>& contacts) {
+  contacts.reserve(s.scene.bodies.size() + 2 * s.pairs.size());
+  contacts.clear();
+  add_tool_contacts(s, contacts);
+  auto pair = s.pairs.begin();
+  for (std::size_t second = 1; second < s.stepped_count(); ++second) {
+    for (std::size_t first = 0; first < second; ++first, ++pair) {
+      add_pair_contacts(s, *pair, first, second, contacts);
+    }
   }
 }
 

@@ -1,0 +1,67 @@
+// Principal curvatures of a trimmed surface and their extremes, and the search for extremes over its
+// polynomial pieces. Pure functions, outside the tick; any thread.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "engine/base/progress.h"
+#include "engine/bspline/surface.h"
+#include "engine/bspline/trimmed_area.h"
+
+namespace spoonbill {
+
+// Rectangle of parameters within one polynomial piece.
+struct PieceCell {
+  double u0, u1, v0, v1;
+
+  double centre_u() const { return 0.5 * (u0 + u1); }
+  double centre_v() const { return 0.5 * (v0 + v1); }
+};
+
+// Divides every piece into parts x parts cells, parts at least 1. The cells leave out a millionth of a piece
+// at each end, because derivatives jump at knots, and a hundredth at a collapsed edge, where derivatives are
+// lost in rounding.
+std::vector<PieceCell> piece_cells(const Surface& surface, int parts);
+
+struct ParameterMinimum {
+  double u = 0.0, v = 0.0, value = 0.0;
+};
+
+// Finds the smallest `value` at the centres and corners of the cells, then refines the best cells by a
+// pattern search with shrinking steps. Ignores values that are not finite; returns an infinite value if none
+// is.
+ParameterMinimum find_minimum(const std::vector<PieceCell>& cells,
+                              const std::function<double(double u, double v)>& value,
+                              const Progress& progress = {});
+
+// Curvatures in 1/m, positive where the surface is convex seen from the side of its normals du x dv. A ball
+// of radius r with outward normals has 1 / r twice.
+struct PrincipalCurvatures {
+  double smallest = 0.0, largest = 0.0;
+};
+
+// Returns nothing where du x dv vanishes.
+std::optional<PrincipalCurvatures> compute_principal_curvatures(const SurfacePoint& point);
+
+struct CurvatureExtreme {
+  double curvature_per_m = 0.0;
+  double u = 0.0, v = 0.0;
+  Vector3 position_m = Vector3::Zero();
+};
+
+struct CurvatureRange {
+  CurvatureExtreme smallest, largest;
+};
+
+// Finds the extremes over all pieces, on both sides of each knot, up to a hundredth of a piece from a pole. A
+// smooth extreme is accurate to a millionth.
+CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& area = {},
+                                    const Progress& progress = {});
+
+// Returns the integral of the squared principal curvatures over the area, a dimensionless measure that is
+// small for fair surfaces. A ball of any size has 8 pi.
+double compute_bending_energy(const Surface& surface, const TrimmedArea& area = {});
+
+}  // namespace spoonbill

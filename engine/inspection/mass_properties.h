@@ -1,0 +1,67 @@
+// Area, volume, centre and density of a surface or a body, by quadrature. Pure functions, outside the tick;
+// any thread.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/bspline/knot_vector.h"
+#include "engine/bspline/surface.h"
+#include "engine/bspline/trimmed_area.h"
+#include "engine/scene/body.h"
+
+namespace spoonbill {
+
+// Gauss quadrature over the polynomial pieces of one direction (Gauss 1814).
+struct PieceQuadrature {
+  std::vector<double> parameters, weights;
+};
+
+// Returns a rule with `nodes` nodes in each piece, at least 1. It is exact up to degree 2 nodes - 1.
+PieceQuadrature make_piece_quadrature(const KnotVector& knots, int nodes);
+
+// Receives a surface point and the part of the parameter domain that it represents. `weight` times |du x dv|
+// is an area.
+using AreaVisitor = std::function<void(const SurfacePoint& point, double weight)>;
+
+// Visits the quadrature points of the area within the trims. For a whole surface the rule is exact up to
+// degree 4 p + 1 in a direction of degree p. For a trimmed one it is exact up to degree 5 on triangles, eight
+// for each whole polynomial piece (Radon 1948); the trim loops are approximated by the triangles' edges.
+void visit_area(const Surface& surface, const TrimmedArea& area, const AreaVisitor& visit);
+
+// Area and its centre; for a closed surface without trims also the enclosed volume and its centre, by the
+// divergence theorem.
+struct EnclosedMass {
+  double area_m2 = 0.0;
+  Vector3 area_centre_m = Vector3::Zero();
+  // Positive if the normals point outwards. Exact up to rounding, because the integrand is a polynomial.
+  double volume_m3 = 0.0;
+  Vector3 centre_m = Vector3::Zero();  // of the volume
+};
+
+EnclosedMass compute_enclosed_mass(const Surface& surface, const TrimmedArea& area = {});
+
+// Volume between the untrimmed part of a surface and its offset against the normals.
+struct ShellMass {
+  double volume_m3 = 0.0;
+  Vector3 centre_m = Vector3::Zero();  // of the volume
+};
+
+// Integrates the area of parallel surfaces, dA (1 - 2 H s + K s^2) at depth s (Steiner 1840), with mean and
+// Gaussian curvature H and K. Valid while the thickness, above 0, is less than the surface's convex radii.
+ShellMass compute_shell_mass(const Surface& surface, double thickness_m, const TrimmedArea& area = {});
+
+// Mass of a body made of several materials.
+struct MaterialMix {
+  double density_kg_per_m3 = 0.0;           // mean over the body
+  Vector3 mass_offset_m = Vector3::Zero();  // from the centre of the volume to the centre of mass
+  std::vector<std::string> materials;       // names of the materials in use, the body's own first
+};
+
+// Sums over the lattice cells, each with the material of its region. Refuses a body without a lattice or with
+// regions that lattice_materials() refuses.
+Result<MaterialMix> compute_material_mix(const Body& body);
+
+}  // namespace spoonbill

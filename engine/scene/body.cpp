@@ -1,0 +1,69 @@
+#include "engine/scene/body.h"
+
+#include <utility>
+#include <variant>
+
+namespace spoonbill {
+namespace {
+
+Status check_in_domain(const std::string& field, double parameter, const KnotVector& knots) {
+  return check_range(field, parameter, Range<double>{knots.domain_start(), knots.domain_end()});
+}
+
+// Checks a point load's parameters. Everything else about a load is checked where the lattice receives it.
+Status check_point(const Load& load, std::size_t index, const Surface& surface) {
+  const auto* point = std::get_if<PointLoad>(&load);
+  if (point == nullptr) return {};
+  const std::string name = "loads[" + std::to_string(index) + "]: ";
+  if (Status status = check_in_domain(name + "u", point->u, surface.u); !status.ok()) return status;
+  return check_in_domain(name + "v", point->v, surface.v);
+}
+
+}  // namespace
+
+Status check_feature_map(const FeatureMapSettings& settings) {
+  return check_fields("feature_map: ", settings);
+}
+
+Status check_lattice_request(const LatticeRequest& lattice) {
+  if (lattice.feature_map) {
+    if (Status status = check_feature_map(*lattice.feature_map); !status.ok()) {
+      return status.error().in("lattice");
+    }
+  }
+  if (!lattice.counts) return check_range("lattice: node_budget", lattice.node_budget, node_budget_range);
+  int product = 1;
+  for (std::size_t direction = 0; direction < 3; ++direction) {
+    const int count = (*lattice.counts)[direction];
+    const std::string name = "lattice: nodes[" + std::to_string(direction) + "]";
+    if (Status status = check_range(name, count, node_count_range); !status.ok()) return status;
+    product *= count;
+  }
+  if (product <= node_budget_range.high) return {};
+  return Error{ErrorCode::too_many,
+               "lattice: nodes make " + std::to_string(product) + " nodes, must be at most " +
+                   std::to_string(node_budget_range.high),
+               "nodes"};
+}
+
+Status check_loads(const Body& body) {
+  if (Status status = check_range("loads", static_cast<int>(body.loads.size()), load_count_range);
+      !status.ok()) {
+    return status;
+  }
+  for (std::size_t l = 0; l < body.loads.size(); ++l) {
+    if (Status status = check_point(body.loads[l], l, body.surface); !status.ok()) return status;
+  }
+  return check_range("supports", static_cast<int>(body.supports.size()), support_count_range);
+}
+
+Result<std::shared_ptr<const TrimmedArea>> make_trimmed_area(const Body& body) {
+  std::shared_ptr<const TrimmedArea> trim;
+  if (body.trims.empty()) return trim;
+  Result<TrimmedArea> area = TrimmedArea::make(body.surface.u, body.surface.v, body.trims);
+  if (!area.ok()) return area.error();
+  trim = std::make_shared<const TrimmedArea>(std::move(area).value());
+  return trim;
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,96 @@
+// A body of a scene: surface, material, lattice, loads and supports. Plain data; lengths in metres.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/field.h"
+#include "engine/base/geometry.h"
+#include "engine/base/result.h"
+#include "engine/bspline/surface.h"
+#include "engine/bspline/trim_loop.h"
+#include "engine/bspline/trimmed_area.h"
+#include "engine/scene/loads.h"
+#include "engine/scene/material.h"
+
+namespace spoonbill {
+
+// Parameters of the self-organising map that spreads a lattice's inner nodes (Kohonen 1990). Points of the
+// body are drawn at random. The node nearest to a point x and its neighbours at grid distance d move towards
+// it: w += rate * exp(-d^2 / 2 s^2) (x - w). Rate and neighbourhood s shrink geometrically from their first
+// to their last value. Below about one grid step neighbours no longer follow, and the map can stay folded
+// (Erwin et al. 1992).
+struct FeatureMapSettings {
+  int draws_per_node = 500;  // per inner node
+  double first_rate = 0.1, last_rate = 0.01;
+  double first_neighbourhood = 2.0, last_neighbourhood = 1.0;  // s, in grid steps
+  std::uint32_t seed = 1;
+  friend bool operator==(const FeatureMapSettings&, const FeatureMapSettings&) = default;
+};
+
+inline constexpr Range<int> draws_per_node_range{1, 10000};
+inline constexpr Range<int> map_seed_range{0, 1000000000};
+inline constexpr Range<double> map_rate_range{1e-6, 1.0};
+inline constexpr Range<double> map_neighbourhood_range{0.5, 64.0};
+
+template <>
+inline constexpr auto fields_of<FeatureMapSettings> = std::to_array<Field<FeatureMapSettings>>({
+    whole_number_field("draws_per_node", &FeatureMapSettings::draws_per_node, draws_per_node_range),
+    number_field("first_rate", &FeatureMapSettings::first_rate, map_rate_range),
+    number_field("last_rate", &FeatureMapSettings::last_rate, map_rate_range),
+    number_field("first_neighbourhood", &FeatureMapSettings::first_neighbourhood, map_neighbourhood_range),
+    number_field("last_neighbourhood", &FeatureMapSettings::last_neighbourhood, map_neighbourhood_range),
+    whole_number_field("seed", &FeatureMapSettings::seed, map_seed_range),
+});
+
+// Size of a body's lattice: either the node counts, or a budget from which near-cubic cells are derived.
+struct LatticeRequest {
+  int node_budget = 2000;  // most nodes that may be used; ignored if `counts` is given
+  // Nodes in each direction, at least 2. The directions are:
+  // - tubes and rings: across (first, second) and along (third) the body;
+  // - triangle meshes and bodies in a box of cells (solid_lattice.h): x, y and z;
+  // - shells: along u, through the thickness, along v;
+  // - closed shells: around, through, along, with the first node around counted twice.
+  std::optional<std::array<int, 3>> counts;
+  // Spreads the inner nodes of a tube after transfinite interpolation has placed them. Empty: they stay
+  // there.
+  std::optional<FeatureMapSettings> feature_map = {};
+};
+
+inline constexpr Range<int> node_budget_range{50, 40000};
+inline constexpr Range<int> node_count_range{2, 64};  // in each direction
+
+// A solid bounded by one tube (periodic in u, closed by a pole at both ends of v) or one ring (periodic in u
+// and v). With a thickness, a thin shell behind one surface instead (shell_lattice.h).
+struct Body {
+  std::string name;
+  Surface surface;
+  Material material;  // applies outside the regions
+  LatticeRequest lattice;
+  std::vector<MaterialRegion> regions = {};  // later ones override earlier ones
+  std::vector<Load> loads = {};
+  std::vector<Support> supports = {};
+  std::optional<double> shell_thickness_m = {};
+  std::vector<TrimLoop> trims =
+      {};  // bound the part of the surface that is drawn and touched (trimmed_area.h)
+  // Name of the CAD solid that has this body as a face. Empty for a body that is no face of one.
+  std::string solid = {};
+};
+
+inline constexpr Range<int> control_point_count_range{2, 200};  // in each direction
+inline constexpr Range<double> shell_thickness_range_m{1e-5, 0.1};
+
+// Each check's error names the first field that is out of range, with its value and range.
+Status check_feature_map(const FeatureMapSettings& settings);
+Status check_lattice_request(const LatticeRequest& lattice);
+// Checks the number of loads and supports, and that point loads are within the surface's domain.
+Status check_loads(const Body& body);
+
+// Returns the area within the body's trim loops; null without trims.
+Result<std::shared_ptr<const TrimmedArea>> make_trimmed_area(const Body& body);
+
+}  // namespace spoonbill

@@ -1,0 +1,107 @@
+// Contact between two bodies of a simulation, and of a body with itself, as constraints between lattices. The
+// surface of a thin shell is one of its faces; the far face is a thickness behind it, and each is touched
+// from its own side.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "engine/bspline/surface.h"
+#include "engine/collision/proximity/mesh_proximity.h"
+#include "engine/collision/proximity/surface_proximity.h"
+#include "engine/collision/proximity/self_proximity.h"
+#include "engine/collision/solids/surface_contact.h"
+#include "engine/material/contact/body_contacts.h"
+#include "engine/simulation/body_state.h"
+
+namespace spoonbill {
+
+// Returns by how much the face of a shell that is pushed along the unit vector `push` is nearer than its
+// surface. `normal` is the surface's unit normal. Exact for flat shells.
+double far_face_offset_m(double thickness_m, const Vector3& normal, const Vector3& push);
+
+// Finds the gap from a point near the surface point (u, v) to the face on its side, and that face's outward
+// normal. The far face counts beyond half the thickness. Returns false if the gap exceeds the margin, or if
+// the point is beside the rim and touches neither face.
+bool find_shell_gap(const Surface& shell, double thickness_m, double u, double v, const Vector3& point_m,
+                    double margin_m, Vector3& normal, double& gap_m);
+
+// Surface of a shell; of a solid if the thickness is 0.
+struct ShellOrSolid {
+  const Surface* surface;
+  double thickness_m;
+};
+// Corrects a near point of `of` to `other` for their thicknesses. Returns false if the gap exceeds the
+// margin. Allocates nothing.
+bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double margin_m, NearPoint& near);
+
+// Largest penetration of pressed bodies up to a speed of 60 mm/s, in lattice cells of the coarser body.
+// Control nets follow a dent one cell wide only in part; the rest is undone as soon as the bodies rest.
+inline constexpr double body_depth_limit_cells = 0.03;
+
+// Largest penetration of a body pressed onto itself, in lattice cells. Twice that of two bodies, because both
+// sides follow a dent only in part.
+inline constexpr double self_depth_limit_cells = 2.0 * body_depth_limit_cells;
+
+// Gap below which a point becomes a constraint, in lattice cells of the coarser body: about one tick's
+// movement.
+inline constexpr double contact_margin_cells = 0.25;
+
+// State of a body and its index in the simulation.
+struct IndexedBody {
+  int index;
+  const BodyState* state;
+};
+
+// Embeds a near point of a body's surface in the body's lattice.
+EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near);
+
+// Adds a constraint for each point of `from` that is near `to`, which may be the same body. Returns false if
+// a capacity was exceeded.
+bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
+                     BodyContacts& contacts);
+
+// Contact of two bodies. One owner, the simulation, which rebuilds it with the mapping of either body. find()
+// and add_contacts() allocate nothing.
+class BodyPairContact {
+ public:
+  // The first body must have a surface, the second a surface or a mesh.
+  BodyPairContact(const BodyState& first, const BodyState& second);
+
+  // Finds the points of either skin that are near the other. Returns false if a capacity was exceeded.
+  bool find(const IndexedBody& first, const IndexedBody& second);
+  // Smallest gap of the last find(), negative where the bodies overlap; infinite if they are not near.
+  double least_gap_m() const {
+    return std::visit([](const auto& proximity) { return proximity->least_gap_m(); }, proximity_);
+  }
+  // Returns the point of a body's surface that is deepest in the other or nearest to it, by the last find().
+  // Empty if nothing is near, or on a mesh.
+  std::optional<SurfaceSpot> deepest_on_first(const BodyState& first) const;
+  std::optional<SurfaceSpot> deepest_on_second() const;
+  // Adds a constraint for each point of the last find(). Returns false if a capacity was exceeded.
+  bool add_contacts(const IndexedBody& first, const IndexedBody& second, BodyContacts& contacts) const;
+
+ private:
+  // Pointers, because the proximities cannot move.
+  std::variant<std::unique_ptr<SurfaceProximity>, std::unique_ptr<MeshProximity>> proximity_;
+};
+
+// Contact of a body with itself, where its surface comes near another part of it from outside. A body in a
+// box of cells (solid_lattice.h) has no self-contact if it is thinner than two cells somewhere. Its far side
+// would look like its near side pressed through. One owner, the simulation, which rebuilds it with the body's
+// mapping.
+class BodySelfContact {
+ public:
+  explicit BodySelfContact(const BodyState& body);
+
+  // Adds a constraint for each point near another part of the body. Returns false if a capacity was exceeded.
+  // Allocates nothing.
+  bool add_contacts(const IndexedBody& body, BodyContacts& contacts) const;
+
+ private:
+  std::unique_ptr<SelfProximity> proximity_;  // cannot move; null for a mesh or a slender boxed body
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,116 @@
+// Contact of bodies with the ground, as constraints on their lattices.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/bspline/surface.h"
+#include "engine/collision/levels/surface_levels.h"
+#include "engine/material/contact/ground_contacts.h"
+#include "engine/scene/loads.h"
+#include "engine/simulation/body_state.h"
+
+namespace spoonbill {
+
+// Heights of a surface above a plane. The height is itself a spline with the control points' heights as
+// coefficients. It is sampled four times an element in each direction; between samples, parabolas through
+// neighbouring samples bound it. One owner, one thread; allocates only in make().
+class SkinHeights {
+ public:
+  // Serves all surfaces with these knots.
+  static Result<SkinHeights> make(const KnotVector& u, const KnotVector& v);
+
+  int rows() const { return nested_.grid.rows(); }
+  int columns() const { return nested_.grid.columns(); }
+  double u(int row) const { return nested_.grid.u.parameters[static_cast<std::size_t>(row)]; }
+  double v(int column) const { return nested_.grid.v.parameters[static_cast<std::size_t>(column)]; }
+
+  // Samples the heights above the plane. Parts higher than `reach_m` may be skipped; returns false if all
+  // are.
+  bool compute(const Surface& surface, const Vector3& point_m, const Vector3& normal, double reach_m);
+  // Returns the lowest height between a sample and its neighbours; infinite if the sample was skipped.
+  double lowest_m(int row, int column) const;
+
+ private:
+  explicit SkinHeights(NestedGrid nested);
+  bool compute_row(int row, double reach_m);
+  double height(int row, int column) const {
+    return height_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns()) +
+                   static_cast<std::size_t>(column)];
+  }
+  double dip_along_u(int row, int column) const;
+  double dip_along_v(int row, int column) const;
+
+  NestedGrid nested_;
+  std::vector<double> control_;  // heights of the control points
+  std::vector<double> blended_;  // one row of samples, by column of control points
+  std::vector<double> height_;   // heights of the samples
+};
+
+// Largest penetration of a resting body's skin into the ground, in lattice cells.
+inline constexpr double ground_depth_limit_cells = 0.01;
+
+// Ground contact of all bodies. One owner, the simulation, which rebuilds it with the mapping of a body.
+// find() allocates nothing.
+class BodyGroundContact {
+ public:
+  explicit BodyGroundContact(std::span<const BodyState> bodies);
+
+  // Adds a constraint for each footing that can reach the ground in the coming tick of `time_s` of material
+  // time.
+  void find(std::span<const BodyState> bodies, const Ground& ground, const Vector3& gravity_m_per_s2,
+            double time_s);
+
+  // Visits everything that the next tick depends on.
+  template <class Visitor>
+  void visit_state(Visitor&& visit) const {
+    contacts_.visit_state(visit);
+    for (const BodyFootings& body : bodies_) {
+      for (const Footing& footing : body.footings) {
+        if (footing.is_near) visit(&footing.skin_m, 1);
+      }
+    }
+  }
+
+  GroundContacts& contacts() { return contacts_; }
+  const GroundContacts& contacts() const { return contacts_; }
+
+ private:
+  // Node with the samples attached to it: samples of the mapping, which follow the lattice, and samples of
+  // the skin, which the control net places slightly elsewhere. The node is on the surface; in a box of cells
+  // it is any node with attached skin samples, and without samples of the mapping it gets those nearest to
+  // its skin samples.
+  struct Footing {
+    int node = 0;
+    int first_followed = 0, followed_count = 0;  // range in BodyFootings::followed
+    int first = 0, count = 0;                    // range in BodyFootings::samples
+    double skin_m = 0.0;                         // filtered height of the skin above the followed samples
+    bool is_near = false;                        // near the ground in the last tick
+  };
+  struct Sample {
+    int row = 0, column = 0;
+  };
+  // Samples attached to one node.
+  struct AttachedSamples {
+    std::vector<int> followed;
+    std::vector<Sample> skin;
+  };
+  struct BodyFootings {
+    SkinHeights heights;
+    double max_sample_distance_m;  // largest distance of a sample from its node at rest; at least one cell
+    std::vector<Footing> footings;
+    std::vector<int> followed;  // samples of the mapping
+    std::vector<Sample> samples;
+  };
+
+  static std::vector<AttachedSamples> attach_samples(const BodyState& body, const SkinHeights& heights);
+  static BodyFootings make_footings(const BodyState& body);
+  void find(int index, const BodyState& body, const Ground& ground, double reach_m, double time_s);
+  void update_skin_offset(const BodyFootings& body, double followed_m, double time_s, Footing& footing) const;
+
+  std::vector<BodyFootings> bodies_;
+  GroundContacts contacts_;
+};
+
+}  // namespace spoonbill

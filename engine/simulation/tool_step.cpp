@@ -1,0 +1,206 @@
+// The tool in one tick: the motion of the hand, the kernel of its action, and the force that the hand feels.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "engine/simulation/simulation_state.h"
+
+namespace spoonbill {
+
+namespace {
+
+// Push: keeps the surfaces of the bodies out of the tool, and lets go as the tool leaves.
+void push(ToolContact& contact, const ToolTouch& touch) {
+  contact.push(touch.bodies, touch.hold);
+}
+
+// Pull: fixes what is in the tool when the button goes down in the tool's frame, until the button is
+// released.
+void pull(ToolContact& contact, const ToolTouch& touch) {
+  if (!touch.hold.gripping) return contact.release();
+  if (touch.inside && !contact.gripped()) contact.grip(touch.bodies, touch.hold);
+}
+
+// Smooth: the tool slides on a surface that does not yield. This smooths the surface under it (smoothing.h),
+// within the tool's radius or a few cells for a small tool.
+void smooth(Simulation::State& s, const HeldTool& held) {
+  constexpr double least_reach_cells = 2.5;
+  const int number = held.contact.deepest_body();
+  BodyState& body = s.bodies[static_cast<std::size_t>(number)];
+  const CollisionResult& collision = held.contact.collision(number);
+  const ContactConstraints& constraints = held.contact.constraints();
+  const bool rests_on_it = constraints.acted() || (collision.found && collision.nearest.depth_m >= 0.0);
+  if (constraints.count() == 0 || !rests_on_it) return;
+  const Tool& tool = s.scene.tool;
+  const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
+  const double least = least_reach_cells * static_cast<double>(body.lattice.cell_size_m());
+  body.smoothing.apply(body.lattice, {collision.nearest.point_m, std::max(radius, least)}, s.tick);
+  if (body.active_solver()) body.active_solver()->take_moved_nodes(body.lattice);
+}
+
+// Kernels in the order of the actions. A kernel without constrain() does not compile.
+constexpr ToolKernel kernels[] = {
+    {.constrain = push},
+    {.constrain = pull},
+    {.constrain = push, .reform = smooth, .body_yields = false},
+};
+static_assert(std::size(kernels) == tool_actions.size(), "each tool action must have a kernel");
+static_assert(std::all_of(std::begin(kernels), std::end(kernels),
+                          [](const ToolKernel& kernel) { return kernel.constrain != nullptr; }));
+
+}  // namespace
+
+const ToolKernel& find_kernel(ToolAction action) {
+  return kernels[static_cast<std::size_t>(action)];
+}
+
+double stiffness_ratio(const Simulation::State& s, std::size_t body) {
+  return s.material(body).youngs_modulus_pa / s.bodies[body].effective_youngs_modulus_pa();
+}
+
+namespace {
+
+// Returns the ratio of the body that is softened most, against which the coupling is scaled.
+double find_largest_stiffness_ratio(const Simulation::State& s) {
+  double ratio = stiffness_ratio(s, 0);
+  for (std::size_t body = 1; body < s.stepped_count(); ++body)
+    ratio = std::max(ratio, stiffness_ratio(s, body));
+  return ratio;
+}
+
+// Returns the coupling stiffness. With an implicitly solved body, a hand without coupling gets one all the
+// same, because a stiff body does not yield to a rigidly held tool.
+double choose_coupling(const Simulation::State& s, double wanted_n_per_m) {
+  constexpr double hold_n_per_m = 1000.0;
+  const auto is_stiff = [](const BodyState& body) { return body.active_solver() != nullptr; };
+  if (wanted_n_per_m > 0.0) return wanted_n_per_m;
+  return std::any_of(s.bodies.begin(), s.bodies.end(), is_stiff) ? hold_n_per_m : 0.0;
+}
+
+ToolMotion make_motion(const Simulation::State& s, const Pose& from, const Pose& to,
+                       double coupling_n_per_m) {
+  const Tool& tool = s.scene.tool;
+  ToolMotion motion;
+  motion.start_m = from.position_m;
+  motion.end_m = to.position_m;
+  motion.orientation = to.orientation;
+  motion.radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
+  motion.coupling_n_per_m = choose_coupling(s, coupling_n_per_m) / find_largest_stiffness_ratio(s);
+  motion.body_yields = find_kernel(tool.action).body_yields;
+  return motion;
+}
+
+// Moves a soft tool to the hand, undeformed and at rest.
+void place_soft_tool(BodyState& tool, const Pose& pose) {
+  for (int n = 0; n < tool.lattice.mesh().node_count(); ++n) {
+    const Vector3& rest = tool.lattice.mesh().nodes[n];
+    tool.lattice.set_displacement(n, pose.position_m + pose.orientation * rest - rest);
+    tool.lattice.set_velocity(n, Vector3::Zero());
+  }
+  tool.update_skin();
+}
+
+// Returns the largest movement of any part of the tool in this tick, in metres.
+double measure_reach(const Simulation::State& s, const HeldTool& held, const Pose& hand) {
+  const double time_s = s.scene.tool.iterations * tick_s;
+  const double distance_m =
+      std::max((hand.position_m - held.hand.position_m).norm(), time_s * held.state.velocity_m_per_s.norm());
+  if (s.scene.tool.kind != ToolKind::solid) return distance_m;
+  return distance_m + held.hand.orientation.angularDistance(hand.orientation) * s.model.extent_m;
+}
+
+}  // namespace
+
+TouchingTool touch(Simulation::State& s, HeldTool& held, ToolHold hold, double coupling_n_per_m) {
+  const Pose hand = hold.pose;
+  const bool appears = !held.placed;
+  if (appears) held.place(hand);
+  hold.pose.position_m = held.state.position_m;
+  hold.reach_m = measure_reach(s, held, hand);
+  if (s.tool_is_soft()) {
+    if (appears) place_soft_tool(s.bodies.back(), hand);
+    held.contact.prepare_soft();
+  } else {
+    held.contact.prepare(s.scene_bodies(), s.scene.tool, s.model, hold);
+  }
+  ToolMotion motion = make_motion(s, held.hand, hand, coupling_n_per_m);
+  if (s.tool_is_soft()) {
+    motion.coupling_n_per_m = 0.0;
+    motion.carried = {static_cast<int>(s.bodies.size()) - 1, s.model.gripped};
+  }
+  held.hand = hand;
+  return {motion, &held.state, &held.contact.constraints()};
+}
+
+ToolHold make_hold(const ToolInput& input) {
+  return {input.pose, input.pose.orientation.toRotationMatrix(), 0.0, input.gripping, input.hovering};
+}
+
+ToolHold make_mirrored_hold(const Symmetry& symmetry, const ToolInput& input) {
+  ToolHold hold = make_hold(input);
+  hold.pose = mirror_pose(symmetry, input.pose);
+  hold.turn -= 2.0 * symmetry.normal * (symmetry.normal.transpose() * hold.turn);
+  return hold;
+}
+
+namespace {
+
+// Returns the force on the hand at the real stiffnesses.
+Vector3 compute_force(const Simulation::State& s) {
+  Vector3 force = Vector3::Zero();
+  for (std::size_t b = 0; b < s.stepped_count(); ++b) {
+    force += s.tool.contact.constraints().tool_impulse(static_cast<int>(b)) *
+             (stiffness_ratio(s, b) / s.relaxed.material_time_s);
+  }
+  return force;
+}
+
+// Returns the force on the hand through a soft tool. Tool and bodies are softened by different factors; of
+// two in series the softer one determines the real force.
+Vector3 compute_soft_tool_force(const Simulation::State& s) {
+  const std::size_t tool = s.bodies.size() - 1;
+  double ratio = stiffness_ratio(s, tool);
+  for (std::size_t b = 0; b < tool; ++b) ratio = std::min(ratio, stiffness_ratio(s, b));
+  return s.tool.contact.constraints().tool_impulse(static_cast<int>(tool)) *
+         (ratio / s.relaxed.material_time_s);
+}
+
+// Updates and returns whether the soft tool touches: from the first acting contact until it is no longer
+// near.
+bool update_soft_touch(Simulation::State& s) {
+  HeldTool& held = s.tool;
+  const int tool = static_cast<int>(s.bodies.size()) - 1;
+  bool acted = false;
+  for (int body = 0; body < tool; ++body) acted |= s.between.acted(tool, body);
+  if (acted && !held.touched) held.touch_m = held.hand.position_m;
+  held.touched = std::isfinite(s.tool_gap_m) && (acted || held.touched);
+  return held.touched;
+}
+
+// Computes the reaction of a soft tool, whose own softness replaces the coupling spring. The force on the
+// hand rises no faster than with the spring, and the proxy is where the spring would hold the tool.
+void react_with_soft_tool(Simulation::State& s, double coupling_n_per_m) {
+  s.reaction.touching = update_soft_touch(s);
+  Vector3 force = s.reaction.touching ? compute_soft_tool_force(s) : Vector3::Zero();
+  const double size = force.norm();
+  if (coupling_n_per_m > 0.0 && size > 0.0) {
+    const double travel = std::max(0.0, force.dot(s.tool.touch_m - s.tool.hand.position_m) / size);
+    force *= std::min(1.0, coupling_n_per_m * travel / size);
+    s.reaction.proxy.position_m += force / coupling_n_per_m;
+  }
+  s.reaction.force_n = force;
+}
+
+}  // namespace
+
+void react(Simulation::State& s, const ToolInput& input) {
+  s.reaction.proxy = {s.tool.state.position_m, input.pose.orientation};
+  if (s.tool_is_soft()) {
+    react_with_soft_tool(s, input.coupling_n_per_m);
+  } else {
+    s.reaction.touching = s.tool.contact.constraints().acted();
+    s.reaction.force_n = compute_force(s);
+  }
+}
+
+}  // namespace spoonbill
