@@ -18,7 +18,7 @@
 #include "app/session/session.h"
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
-#include "engine/material/lattice/lattice_of.h"
+#include "engine/material/lattice/body_lattice.h"
 #include "haptic/devices/virtual_device.h"
 #include "haptic/recording/recording.h"
 #include "haptic/recording/script.h"
@@ -43,7 +43,7 @@ void add_duration(FactSheet& facts, std::uint64_t ticks) {
 bool holds_lattices(const Scene& scene) {
   if (!check_body_count(scene)) return false;
   return std::all_of(scene.bodies.begin(), scene.bodies.end(),
-                     [](const Body& body) { return lattice_of(body).ok(); });
+                     [](const Body& body) { return make_body_lattice(body).ok(); });
 }
 
 // As a session would make it, without the memory that undo takes beforehand.

@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "app/start/starting_document.h"
-#include "engine/material/lattice/lattice_of.h"
-#include "engine/material/lattice/tube_lattice.h"
+#include "engine/material/lattice/body_lattice.h"
 
 namespace spoonbill {
 namespace {
@@ -23,13 +22,13 @@ double thickness_for(Body body, double size_m) {
     thickness = std::max(shell_thickness_range_m.low,
                          std::min(thickest_m, thickness_share * size_m) / static_cast<double>(1 << thinning));
     body.shell_thickness_m = thickness;
-    if (lattice_of(body)) break;
+    if (make_body_lattice(body)) break;
   }
   return thickness;
 }
 
 bool has_lattice_along(const Body& body) {
-  return body.shell_thickness_m ? lattice_of(body).ok() : tube_lattice(body.surface, body.lattice).ok();
+  return body.shell_thickness_m ? make_body_lattice(body).ok() : tube_lattice(body.surface, body.lattice).ok();
 }
 
 // The largest number of nodes with which a lattice runs along the body: scans have places where cells of the
@@ -46,7 +45,7 @@ void choose_node_budget(Body& body) {
 }
 
 std::optional<std::string> remark_on_lattice(const Body& body) {
-  const auto lattice = lattice_of(body);
+  const auto lattice = make_body_lattice(body);
   const std::string name = "body \"" + body.name + "\" ";
   if (!lattice) return name + "cannot be simulated yet: " + lattice.error().message;
   if (lattice->along.empty()) return std::nullopt;

@@ -154,11 +154,11 @@ Json add_simulated_body(FactSheet& facts, const std::string& of, const BodySnaps
 
 Json add_cells_of(FactSheet& facts, const std::string& of, const LatticeMesh& mesh,
                   const FeatureMapReport* map) {
-  const CellQuality quality = quality_of(mesh);
+  const CellQuality quality = measure_cell_quality(mesh);
   Json json = quality_facts(quality);
   if (map) {
     json["before_feature_map"] = quality_facts(map->before);
-    json["feature_map_share"] = map->share;
+    json["feature_map_share"] = map->applied_fraction;
     facts.add("Cells before" + of, quality_text(map->before), "", nullptr);
   }
   facts.add((map ? "Cells mapped" : "Cells") + of, quality_text(quality), "", nullptr);

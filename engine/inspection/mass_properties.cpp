@@ -11,7 +11,7 @@
 #include "engine/bspline/grid.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/inspection/curvature.h"
-#include "engine/material/lattice/lattice_of.h"
+#include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice_materials.h"
 
 namespace spoonbill {
@@ -169,7 +169,7 @@ Vector3 find_centroid(const CellCorners& corners) {
 }  // namespace
 
 Result<MaterialMix> compute_material_mix(const Body& body) {
-  const auto mesh = lattice_of(body);
+  const auto mesh = make_body_lattice(body);
   if (!mesh) return mesh.error();
   const auto materials = lattice_materials(mesh.value(), body.material, body.regions);
   if (!materials) return materials.error();
@@ -179,7 +179,7 @@ Result<MaterialMix> compute_material_mix(const Body& body) {
     for (int i = 0; i + 1 < mesh->count[0]; ++i) {
       for (int j = 0; j + 1 < mesh->count[1]; ++j) {
         const CellCorners corners = mesh->cell(i, j, k);
-        const double volume = mesh->share(i, j, k) * cell_volume(corners);
+        const double volume = mesh->cell_fraction(i, j, k) * cell_volume(corners);
         if (!(volume > 0.0)) continue;
         const std::size_t material = materials->index_of(mesh->cell_index(i, j, k));
         const double mass = volume * materials->materials[material].density_kg_per_m3;

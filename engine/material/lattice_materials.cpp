@@ -9,40 +9,45 @@
 namespace spoonbill {
 namespace {
 
-Error about(std::size_t region, const std::string& message) {
-  return Error{"regions[" + std::to_string(region) + "]" + message};
+// Prefixes the region and keeps code and field. `separator` is "." before a field of the region, ": "
+// otherwise.
+Error in_region(std::size_t region, const std::string& separator, const Error& error) {
+  return {error.code, "regions[" + std::to_string(region) + "]" + separator + error.message, error.field};
 }
 
-// Which of the lattice's cells the region holds become of its material.
-Status take_material(const MaterialRegion& region, const LatticeMesh& mesh,
-                     const std::vector<BodyCoordinates>& cells, LatticeMaterials& materials) {
+// Assigns the region's material to the cells whose centres it contains.
+Status assign_material(const MaterialRegion& region, const LatticeMesh& mesh,
+                       const std::vector<BodyCoordinates>& cells, LatticeMaterials& materials) {
   const auto number = static_cast<std::uint8_t>(materials.materials.size());
   materials.materials.push_back(*region.material);
-  materials.of_cell.resize(cells.size(), 0);
-  bool holds_any = false;
+  materials.material_index.resize(cells.size(), 0);
+  bool contains_any = false;
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (!contains(region.region, cells[c])) continue;
-    materials.of_cell[c] = number;
-    holds_any |= mesh.filled.empty() || mesh.filled[c];
+    materials.material_index[c] = number;
+    contains_any |= mesh.filled.empty() || mesh.filled[c];
   }
-  if (holds_any) return {};
-  return Error{": holds the middle of no cell of the lattice; make it larger or give the lattice more nodes"};
+  if (contains_any) return {};
+  return Error{ErrorCode::too_few,
+               "contains no cell centre of the lattice; make it larger or give the lattice more nodes"};
 }
 
-Status take_friction(const MaterialRegion& region, const std::vector<BodyCoordinates>& nodes,
-                     LatticeMaterials& materials) {
+Status assign_friction(const MaterialRegion& region, const std::vector<BodyCoordinates>& nodes,
+                       LatticeMaterials& materials) {
   const auto number = static_cast<std::uint8_t>(materials.frictions.size());
   materials.frictions.push_back(region.friction ? *region.friction : region.material->friction);
-  materials.friction_of_node.resize(nodes.size(), 0);
-  bool holds_any = false;
+  materials.friction_index.resize(nodes.size(), 0);
+  bool contains_any = false;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     if (!contains(region.region, nodes[n])) continue;
-    materials.friction_of_node[n] = number;
-    holds_any |= nodes[n].depth_m == 0.0;
+    materials.friction_index[n] = number;
+    contains_any |= nodes[n].depth_m == 0.0;
   }
-  if (holds_any || !region.friction) return {};
+  if (contains_any || !region.friction) return {};
   return Error{
-      ".friction: the region holds no node of the surface; make it larger or let its depth begin at 0"};
+      ErrorCode::too_few,
+      "friction: the region contains no node of the surface; make it larger or let its depth begin at 0",
+      "friction"};
 }
 
 }  // namespace
@@ -57,18 +62,18 @@ Result<LatticeMaterials> lattice_materials(const LatticeMesh& mesh, const Materi
     return status.error();
   }
   if (regions.empty()) return materials;
-  const std::vector<BodyCoordinates> nodes = node_places(mesh), cells = cell_places(mesh);
+  const std::vector<BodyCoordinates> nodes = find_node_coordinates(mesh), cells = find_cell_coordinates(mesh);
   for (std::size_t r = 0; r < regions.size(); ++r) {
     if (const Status status = check_material_region(regions[r]); !status.ok()) {
-      return about(r, "." + status.error().message);
+      return in_region(r, ".", status.error());
     }
     if (regions[r].material) {
-      if (const Status status = take_material(regions[r], mesh, cells, materials); !status.ok()) {
-        return about(r, status.error().message);
+      if (const Status status = assign_material(regions[r], mesh, cells, materials); !status.ok()) {
+        return in_region(r, ": ", status.error());
       }
     }
-    if (const Status status = take_friction(regions[r], nodes, materials); !status.ok()) {
-      return about(r, status.error().message);
+    if (const Status status = assign_friction(regions[r], nodes, materials); !status.ok()) {
+      return in_region(r, ".", status.error());
     }
   }
   return materials;
@@ -79,21 +84,23 @@ Status check_materials(const LatticeMaterials& materials) {
   for (const Material& material : materials.materials) {
     if (Status status = check_material(material); !status.ok()) return status;
   }
-  if (are_plainly_elastic(materials)) return {};
+  if (are_linear_elastic(materials)) return {};
   for (const Material& material : materials.materials) {
     if (material.poissons_ratio >= min_spring_poissons_ratio) continue;
-    return Error{"material " + material.name + ": poissons_ratio is " + number_text(material.poissons_ratio) +
-                 ", must be " + number_text(min_spring_poissons_ratio) +
-                 " or more beside a material that is plastic, creeps or stiffens"};
+    return Error{ErrorCode::inconsistent,
+                 "material " + material.name + ": poissons_ratio is " + number_text(material.poissons_ratio) +
+                     ", must be " + number_text(min_spring_poissons_ratio) +
+                     " or more beside a material that is plastic, creeps or stiffens",
+                 "poissons_ratio"};
   }
   return {};
 }
 
-bool are_plainly_elastic(const LatticeMaterials& materials) {
+bool are_linear_elastic(const LatticeMaterials& materials) {
   return std::all_of(materials.materials.begin(), materials.materials.end(), is_linear_elastic);
 }
 
-double largest_youngs_modulus_pa(const LatticeMaterials& materials) {
+double max_youngs_modulus_pa(const LatticeMaterials& materials) {
   SPOONBILL_ASSERT(!materials.materials.empty());
   double largest = 0.0;
   for (const Material& material : materials.materials) {
@@ -102,7 +109,7 @@ double largest_youngs_modulus_pa(const LatticeMaterials& materials) {
   return largest;
 }
 
-double least_poissons_ratio(const LatticeMaterials& materials) {
+double min_poissons_ratio(const LatticeMaterials& materials) {
   SPOONBILL_ASSERT(!materials.materials.empty());
   double least = poissons_ratio_range.high;
   for (const Material& material : materials.materials) least = std::min(least, material.poissons_ratio);

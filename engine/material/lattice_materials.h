@@ -1,4 +1,4 @@
-// What a lattice is made of: one material, or several by region, with a friction of their own.
+// Materials of a lattice: one for the whole body, or several by region, each with its own friction.
 #pragma once
 
 #include <cstdint>
@@ -8,32 +8,35 @@
 
 #include "engine/base/assert.h"
 #include "engine/base/result.h"
-#include "engine/material/lattice/body_place.h"
+#include "engine/material/lattice/body_coordinates.h"
 #include "engine/scene/material.h"
 
 namespace spoonbill {
 
-// By cell and by node, so that a body keeps it while its shape changes. Plain data; a value.
+// Materials by cell and friction by node, so that a body keeps them while its shape changes. Plain data, a
+// value.
 struct LatticeMaterials {
-  // Of one material: not explicit, since that is what most bodies are.
+  // Creates the materials of a uniform body. Implicit, because most bodies are uniform.
   LatticeMaterials(const Material& own) : materials{own}, frictions{own.friction} {}
 
-  std::vector<Material> materials;    // the body's own, then those of its regions
-  std::vector<std::uint8_t> of_cell;  // which of them, by LatticeMesh::cell_index(); empty: all the first
-  std::vector<double> frictions;      // the body's own, then those of its regions
-  std::vector<std::uint8_t> friction_of_node;  // which of them; empty: all the first
+  std::vector<Material> materials;           // the body's own material, then those of its regions
+  std::vector<std::uint8_t> material_index;  // index into `materials` by LatticeMesh::cell_index(); empty if
+                                             // every cell has the first
+  std::vector<double> frictions;             // the body's own coefficient, then those of its regions
+  std::vector<std::uint8_t>
+      friction_index;  // index into `frictions` by node; empty if every node has the first
 
   const Material& own() const {
     SPOONBILL_ASSERT(!materials.empty());
     return materials.front();
   }
-  std::size_t index_of(std::size_t cell) const { return of_cell.empty() ? 0 : of_cell[cell]; }
+  std::size_t index_of(std::size_t cell) const { return material_index.empty() ? 0 : material_index[cell]; }
   const Material& of(std::size_t cell) const { return materials[index_of(cell)]; }
   double friction(int node) const {
-    return frictions[friction_of_node.empty() ? 0 : friction_of_node[static_cast<std::size_t>(node)]];
+    return frictions[friction_index.empty() ? 0 : friction_index[static_cast<std::size_t>(node)]];
   }
-  bool are_several() const { return !of_cell.empty(); }
-  // Makes the rest of the body, beside its regions, of another material.
+  bool has_several_materials() const { return !material_index.empty(); }
+  // Replaces the material of the body outside its regions.
   void set_own(const Material& material) {
     SPOONBILL_ASSERT(!materials.empty() && !frictions.empty());
     materials.front() = material;
@@ -41,20 +44,20 @@ struct LatticeMaterials {
   }
 };
 
-// A cell is made of what the last region with a material that holds its middle says (see cell_places()), a
-// node of the surface is as rough as the last region that holds it says. Refused: what
-// check_material_region() refuses, and a region that holds no cell, or whose friction no node of the surface
-// has.
+// Assigns regions to cells and nodes. A cell gets the material of the last region that has one and contains
+// the cell's centre (see find_cell_coordinates()). A surface node gets the friction of the last region that
+// contains it. Fails where check_material_region() does, and on a region that contains no cell centre or
+// whose friction applies to no surface node.
 Result<LatticeMaterials> lattice_materials(const LatticeMesh& mesh, const Material& own,
                                            std::span<const MaterialRegion> regions);
 
-// Each material within its ranges, and what goes with what: beside one that springs must step, as is_plainly_
-// elastic() says, each has a Poisson's ratio that springs can have.
+// Checks that each material is within its ranges. If any material needs springs, that is fails
+// is_linear_elastic(), every material must have a Poisson's ratio that springs can represent.
 Status check_materials(const LatticeMaterials& materials);
 
-// All of them.
-bool are_plainly_elastic(const LatticeMaterials& materials);
-double largest_youngs_modulus_pa(const LatticeMaterials& materials);
-double least_poissons_ratio(const LatticeMaterials& materials);
+// Returns whether every material is plainly elastic.
+bool are_linear_elastic(const LatticeMaterials& materials);
+double max_youngs_modulus_pa(const LatticeMaterials& materials);
+double min_poissons_ratio(const LatticeMaterials& materials);
 
 }  // namespace spoonbill

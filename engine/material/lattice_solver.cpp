@@ -5,14 +5,99 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
-#include "engine/material/settling.h"
-#include "engine/material/springs/node_motion.h"
-#include "engine/material/supports/support_motion.h"
+#include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
 namespace {
 
-// Ticks from one creep to the next. What creeps in a tick would be lost in the rounding of a rest length.
+// Returns the moving support that fixes all fixed nodes of the lattice, or null.
+const SupportedNodes* find_common_support(std::span<const SupportedNodes> supports,
+                                          const SpringLattice& lattice) {
+  const SupportedNodes* only = nullptr;
+  for (const SupportedNodes& support : supports) {
+    if (support.nodes.empty()) continue;
+    if (only != nullptr || !support.moves) return nullptr;
+    only = &support;
+  }
+  const bool has_all = only != nullptr && static_cast<int>(only->nodes.size()) == lattice.fixed_count();
+  return has_all ? only : nullptr;
+}
+
+Vector3 support_velocity(const SupportedNodes& support, double time_s) {
+  return (support.end_m - support.start_m) / time_s;
+}
+
+// Shortens the displacements of supports that would outrun the lattice. `reach_m` is the distance that a
+// node may move relative to another in the tick. If one support fixes all fixed nodes, the whole lattice
+// moves with it. It may then move twice as far as its motion ever does, so that it can return from its
+// position after an undone stroke. Returns whether any displacement was shortened.
+bool limit_support_motion(std::span<SupportedNodes> supports, const SpringLattice& lattice, double reach_m) {
+  SPOONBILL_ASSERT(reach_m >= 0.0);
+  const SupportedNodes* const common = find_common_support(supports, lattice);
+  bool limited = false;
+  for (SupportedNodes& support : supports) {
+    if (!support.moves) continue;
+    const double most = &support == common ? std::max(reach_m, 2.0 * support.largest_step_m) : reach_m;
+    const Vector3 displacement = support.end_m - support.start_m;
+    const double length = displacement.norm();
+    if (!(length > most)) continue;
+    support.end_m = support.start_m + most / length * displacement;
+    limited = true;
+  }
+  return limited;
+}
+
+// Returns the velocity of the support that moves the whole lattice, m/s; zero if there is none.
+Vector3 common_support_velocity(std::span<const SupportedNodes> supports, const SpringLattice& lattice,
+                                double time_s) {
+  SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
+  const SupportedNodes* const common = find_common_support(supports, lattice);
+  return common ? support_velocity(*common, time_s) : Vector3::Zero();
+}
+
+// Sets the velocities of supported nodes. Call after the kick, which sets those of fixed nodes to zero.
+void set_support_velocities(std::span<const SupportedNodes> supports, const LatticeView& view,
+                            double time_s) {
+  SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
+  for (const SupportedNodes& support : supports) {
+    if (!support.moves) continue;
+    const Vector3 velocity = support_velocity(support, time_s);
+    for (const int n : support.nodes) set_velocity(view, n, velocity);
+  }
+}
+
+// Adds the reaction of the supports over a substep of h_s to their impulses. Call after the forces are
+// computed.
+void add_support_impulses(std::span<SupportedNodes> supports, const SpringLattice& lattice,
+                          const LatticeView& view, const Vector3& gravity_m_per_s2, double h_s) {
+  for (SupportedNodes& support : supports) {
+    Vector3 force = Vector3::Zero();
+    for (const int n : support.nodes) {
+      force -= Vector3(view.fx[n], view.fy[n], view.fz[n]);
+      force -= static_cast<double>(lattice.mass(n)) * gravity_m_per_s2;
+    }
+    support.impulse_ns += h_s * force;
+  }
+}
+
+// Moves supported nodes to this fraction of their displacement in the tick. Call after the drift. Returns
+// the largest squared distance of a node from the linearisation, m^2.
+float move_supported_nodes(std::span<const SupportedNodes> supports, const LatticeView& view, double fraction,
+                           float damping_time_s) {
+  float moved_square = 0.0f;
+  for (const SupportedNodes& support : supports) {
+    if (!support.moves) continue;
+    const Vector3 displacement = support.start_m + fraction * (support.end_m - support.start_m);
+    for (std::size_t i = 0; i < support.nodes.size(); ++i) {
+      const float square =
+          set_node_displacement(view, support.nodes[i], support.base_m[i] + displacement, damping_time_s);
+      moved_square = std::max(moved_square, square);
+    }
+  }
+  return moved_square;
+}
+
+// Ticks between two creep steps. The creep of a single tick would be lost in the rounding of a rest length.
 constexpr std::uint64_t creep_pause = 8;
 
 struct Substeps {
@@ -23,10 +108,10 @@ struct Substeps {
 
 Substeps choose_substeps(const SpringLattice& lattice, double step_s) {
   const double omega = lattice.fastest_frequency();
-  const double limit = stability_share * stable_step_s(omega, lattice.damping_ratio());
-  const double wanted = std::ceil(step_s / limit);
-  if (!(wanted <= substep_ceiling)) return {substep_ceiling, step_s / substep_ceiling, true};
-  const int count = std::max(1, static_cast<int>(wanted));
+  const double limit = stability_fraction * stable_step_s(omega, lattice.damping_ratio());
+  const double required = std::ceil(step_s / limit);
+  if (!(required <= substep_ceiling)) return {substep_ceiling, step_s / substep_ceiling, true};
+  const int count = std::max(1, static_cast<int>(required));
   return {count, step_s / count, false};
 }
 
@@ -39,25 +124,26 @@ void apply_node_forces(const SpringLattice& lattice, const LatticeView& view) {
   }
 }
 
-void linearise(const SpringLattice& lattice, const LatticeView& view, Linearised kept) {
+void linearise(const SpringLattice& lattice, const LatticeView& view, Linearised stored) {
   lattice.kernels().look_ahead(view, lattice.damping_time_s());
-  lattice.kernels().linearise_springs(view, kept);
+  lattice.kernels().linearise_springs(view, stored);
 }
 
-// One step of the power iteration every other tick follows the fastest frequency as the lattice deforms.
-void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linearised kept) {
+// Linearises the springs and performs one step of the power iteration that tracks the fastest frequency as
+// the lattice deforms.
+void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linearised stored) {
   lattice.kernels().look_ahead(view, lattice.damping_time_s());
-  const float square = lattice.kernels().linearise_with_power_step(view, kept, lattice.free_mass());
+  const float square = lattice.kernels().linearise_with_power_step(view, stored, lattice.free_mass());
   if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_frequency(std::sqrt(square));
 }
 
-// See speed_cap_cells.
+// Returns the speed cap of speed_cap_cells, m/s.
 float speed_cap(const SpringLattice& lattice, float h) {
   const auto longest = static_cast<float>(2.0 / lattice.fastest_frequency());
   return static_cast<float>(speed_cap_cells) * lattice.cell_size_m() / std::max(h, longest);
 }
 
-// Caps speeds relative to that of the frame and moves the nodes.
+// Caps speeds relative to the frame velocity and moves the nodes.
 Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, float cap,
               const Vector3& frame) {
   Drift drift;
@@ -70,8 +156,8 @@ Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, fl
   return lattice.kernels().drift(view, drift);
 }
 
-// `moved_square` is of the node that moved furthest since the springs were linearised.
-void take_forces(const SpringLattice& lattice, const LatticeView& view, float moved_square) {
+// Computes all forces. `moved_square` is the largest squared distance of a node from the linearisation.
+void compute_forces(const SpringLattice& lattice, const LatticeView& view, float moved_square) {
   const LatticeKernels& kernels = lattice.kernels();
   const float limit = static_cast<float>(linear_cells) * lattice.cell_size_m();
   const bool linear = moved_square <= limit * limit;
@@ -83,17 +169,17 @@ void take_forces(const SpringLattice& lattice, const LatticeView& view, float mo
   apply_node_forces(lattice, view);
 }
 
-// The lattices of one tick, as far as they differ.
+// Lattices of one tick and their differing settings.
 struct Relaxation {
   std::span<const RelaxedLattice> lattices;
   std::array<LatticeView, lattice_capacity> view;
   std::array<float, lattice_capacity> cap{};  // m/s
   std::array<Drifted, lattice_capacity> drifted{};
   std::array<double, lattice_capacity> damping_per_s{};
-  double time_s = 0.0;  // of the material, in the tick
+  double time_s = 0.0;  // material time of the tick
 
   std::size_t count() const { return lattices.size(); }
-  bool has_springs(std::size_t at) const { return lattices[at].core == nullptr; }
+  bool has_springs(std::size_t at) const { return lattices[at].implicit_solver == nullptr; }
   SpringLattice& lattice(std::size_t at) const { return *lattices[at].lattice; }
 };
 
@@ -104,11 +190,11 @@ void kick(Relaxation& relaxation, float h) {
     const LatticeView& view = relaxation.view[at];
     const Vector3& g = relaxation.lattices[at].gravity_m_per_s2;
     const float decay = 1.0f / (1.0f + h * static_cast<float>(relaxation.damping_per_s[at]));
-    take_forces(lattice, view, relaxation.drifted[at].moved_square);
-    bear(relaxation.lattices[at].supports, lattice, view, g, static_cast<double>(h));
+    compute_forces(lattice, view, relaxation.drifted[at].moved_square);
+    add_support_impulses(relaxation.lattices[at].supports, lattice, view, g, static_cast<double>(h));
     lattice.kernels().kick(view, h, decay, static_cast<float>(g.x()), static_cast<float>(g.y()),
                            static_cast<float>(g.z()));
-    hand_to_supports(relaxation.lattices[at].supports, view, relaxation.time_s);
+    set_support_velocities(relaxation.lattices[at].supports, view, relaxation.time_s);
   }
 }
 
@@ -127,8 +213,9 @@ void solve_contacts(const Relaxation& relaxation, float h, double fraction,
   }
 }
 
-// What carried nodes pull at the tool with, and their velocity, which the kick has taken.
-void hand_over(const Relaxation& relaxation, std::span<const TouchingTool> tools) {
+// Passes the pull of carried nodes to the tool and restores the nodes' velocity, which the kick has set to
+// zero.
+void collect_carried_forces(const Relaxation& relaxation, std::span<const TouchingTool> tools) {
   for (const TouchingTool& tool : tools) {
     const CarriedNodes& carried = tool.motion.carried;
     if (carried.body < 0) continue;
@@ -138,12 +225,12 @@ void hand_over(const Relaxation& relaxation, std::span<const TouchingTool> tools
       force += Vector3(view.fx[n], view.fy[n], view.fz[n]);
       set_velocity(view, n, tool.state->velocity_m_per_s);
     }
-    tool.contacts->pull_tool(force);
+    tool.contacts->set_carried_force(force);
   }
 }
 
-// Places carried nodes where the tool now is.
-void carry(Relaxation& relaxation, std::span<const TouchingTool> tools) {
+// Moves carried nodes to the tool's present pose.
+void move_carried_nodes(Relaxation& relaxation, std::span<const TouchingTool> tools) {
   for (const TouchingTool& tool : tools) {
     const CarriedNodes& carried = tool.motion.carried;
     if (carried.body < 0) continue;
@@ -154,42 +241,42 @@ void carry(Relaxation& relaxation, std::span<const TouchingTool> tools) {
       const Vector3& rest = lattice.mesh().nodes[static_cast<std::size_t>(n)];
       const Vector3 moved = tool.state->position_m + tool.motion.orientation * rest - rest;
       set_velocity(view, n, tool.state->velocity_m_per_s);
-      const float square = place_node(view, n, moved, lattice.damping_time_s());
+      const float square = set_node_displacement(view, n, moved, lattice.damping_time_s());
       relaxation.drifted[at].moved_square = std::max(relaxation.drifted[at].moved_square, square);
     }
   }
 }
 
-// Places supported nodes at this share of their way.
-void place_supported(Relaxation& relaxation, double share) {
+// Moves supported nodes to this fraction of their displacement in the tick.
+void move_supported_nodes(Relaxation& relaxation, double fraction) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
-    const float square = place_supported(relaxation.lattices[at].supports, relaxation.view[at], share,
-                                         relaxation.lattice(at).damping_time_s());
+    const float square = move_supported_nodes(relaxation.lattices[at].supports, relaxation.view[at], fraction,
+                                              relaxation.lattice(at).damping_time_s());
     relaxation.drifted[at].moved_square = std::max(relaxation.drifted[at].moved_square, square);
   }
 }
 
-// Returns whether a support had to be held back.
+// Returns whether the motion of a support was limited.
 bool begin_supports(Relaxation& relaxation) {
   bool limited = false;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const RelaxedLattice& relaxed = relaxation.lattices[at];
     if (relaxed.supports.empty()) continue;
     const double reach_m = static_cast<double>(relaxation.cap[at]) * relaxation.time_s;
-    limited |= limit_ways(relaxed.supports, *relaxed.lattice, reach_m);
-    hand_to_supports(relaxed.supports, relaxation.view[at], relaxation.time_s);
+    limited |= limit_support_motion(relaxed.supports, *relaxed.lattice, reach_m);
+    set_support_velocities(relaxed.supports, relaxation.view[at], relaxation.time_s);
   }
   return limited;
 }
 
-// What the speeds of a lattice's nodes are relative to.
+// Returns the velocity that the speed cap of a lattice is relative to.
 Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at, std::span<const TouchingTool> tools) {
   for (const TouchingTool& tool : tools) {
     if (tool.motion.carried.body == static_cast<int>(at)) return tool.state->velocity_m_per_s;
   }
   const SpringLattice& lattice = relaxation.lattice(at);
-  if (lattice.has_held_nodes()) {
-    return riding_velocity(relaxation.lattices[at].supports, lattice, relaxation.time_s);
+  if (lattice.has_fixed_nodes()) {
+    return common_support_velocity(relaxation.lattices[at].supports, lattice, relaxation.time_s);
   }
   float sum[4];
   lattice.kernels().momentum(relaxation.view[at], lattice.free_mass(), sum);
@@ -197,7 +284,7 @@ Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at, std::span<c
   return Vector3(sum[0] * inverse, sum[1] * inverse, sum[2] * inverse);
 }
 
-// Returns whether a node met the speed cap.
+// Returns whether a node reached the speed cap.
 bool drift(Relaxation& relaxation, float h, std::span<const TouchingTool> tools) {
   bool capped = false;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
@@ -213,43 +300,45 @@ Substeps choose_substeps(const Relaxation& relaxation, double step_s) {
   Substeps most{1, step_s, false};
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
-    const Substeps wanted = choose_substeps(relaxation.lattice(at), step_s);
-    most.slowed |= wanted.slowed;
-    if (wanted.count > most.count) most = {wanted.count, wanted.h, most.slowed};
+    const Substeps required = choose_substeps(relaxation.lattice(at), step_s);
+    most.slowed |= required.slowed;
+    if (required.count > most.count) most = {required.count, required.h, most.slowed};
   }
   return most;
 }
 
-void steady_strained_nodes(Relaxation& relaxation, float h) {
+void stabilise_strained_nodes(Relaxation& relaxation, float h) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
     SpringLattice& lattice = relaxation.lattice(at);
-    relaxation.view[at].inverse_mass = lattice.steady_strained_nodes(h, static_cast<float>(stability_share));
-    linearise(lattice, relaxation.view[at], Linearised::tangents);  // velocities changed
+    relaxation.view[at].inverse_mass =
+        lattice.stabilise_strained_nodes(h, static_cast<float>(stability_fraction));
+    linearise(lattice, relaxation.view[at], Linearised::tangents);  // the velocities have changed
   }
 }
 
-// What the tick asks of a lattice's linearisation, as far as can be told before the frequency is followed.
-Linearised kept_of(const SpringLattice& lattice, const RelaxSettings& settings, int substeps) {
+// Returns the result that the tick needs of a lattice's linearisation, as far as it is known before the
+// frequency is tracked.
+Linearised choose_linearisation(const SpringLattice& lattice, const RelaxSettings& settings, int substeps) {
   const bool one = settings.iterations * substeps == 1;
   return one && !settings.settles && !lattice.is_damped_further() ? Linearised::forces : Linearised::tangents;
 }
 
-// Linearises all springs at the start of a tick, and chooses its substeps.
+// Linearises all springs at the start of a tick and chooses its substeps.
 Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bool follows) {
-  const int foreseen = choose_substeps(relaxation, settings.step_s).count;
+  const int expected = choose_substeps(relaxation, settings.step_s).count;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
     SpringLattice& lattice = relaxation.lattice(at);
-    const Linearised kept = kept_of(lattice, settings, foreseen);
+    const Linearised stored = choose_linearisation(lattice, settings, expected);
     if (follows) {
-      linearise_and_follow(lattice, relaxation.view[at], kept);
+      linearise_and_follow(lattice, relaxation.view[at], stored);
     } else {
-      linearise(lattice, relaxation.view[at], kept);
+      linearise(lattice, relaxation.view[at], stored);
     }
   }
   const Substeps substeps = choose_substeps(relaxation, settings.step_s);
-  for (std::size_t at = 0; at < relaxation.count() && substeps.count > foreseen; ++at) {
+  for (std::size_t at = 0; at < relaxation.count() && substeps.count > expected; ++at) {
     if (!relaxation.has_springs(at)) continue;
     linearise(relaxation.lattice(at), relaxation.view[at], Linearised::tangents);
   }
@@ -269,8 +358,9 @@ void flow(Relaxation& relaxation, double material_time_s) {
   }
 }
 
-// Springs of one direction after the other, each for the time until its next turn. By the hand's time: a
-// material creeps while somebody waits, however many relaxation steps the tool takes in a tick.
+// Creeps the springs of one direction per call, for the time until that direction's next turn. The time is
+// that of ticks, not of relaxation steps: a material creeps while the user waits, however many relaxation
+// steps a tick takes.
 void creep(Relaxation& relaxation, std::uint64_t turn, double tick_time_s) {
   const int direction = static_cast<int>(turn % lattice_direction_count);
   const double time_s = tick_time_s * static_cast<double>(creep_pause * lattice_direction_count);
@@ -285,7 +375,7 @@ void creep(Relaxation& relaxation, std::uint64_t turn, double tick_time_s) {
   }
 }
 
-// With the springs linearised.
+// Sets the mass damping of each lattice. The springs must be linearised.
 void choose_damping(Relaxation& relaxation, const RelaxSettings& settings) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     double& damping = relaxation.damping_per_s[at];
@@ -293,38 +383,39 @@ void choose_damping(Relaxation& relaxation, const RelaxSettings& settings) {
     if (!settings.settles) continue;
     const double quotient = relaxation.has_springs(at)
                                 ? rayleigh_quotient(relaxation.lattice(at), relaxation.view[at])
-                                : relaxation.lattices[at].core->rayleigh_quotient();
-    damping = std::max(damping, settling_damping_per_s(quotient));
+                                : relaxation.lattices[at].implicit_solver->rayleigh_quotient();
+    damping = std::max(damping, critical_damping_per_s(quotient));
   }
 }
 
-std::span<GroundContact> on_ground(GroundContacts* ground, std::size_t at) {
+std::span<GroundContact> ground_contacts(GroundContacts* ground, std::size_t at) {
   return ground ? ground->of_body(static_cast<int>(at)) : std::span<GroundContact>();
 }
 
-void begin_core_steps(const Relaxation& relaxation, GroundContacts* ground) {
+void begin_implicit_steps(const Relaxation& relaxation, GroundContacts* ground) {
   const double time_s = relaxation.time_s;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const RelaxedLattice& relaxed = relaxation.lattices[at];
-    if (!relaxed.core) continue;
+    if (!relaxed.implicit_solver) continue;
     const ImplicitStep step{time_s, relaxation.damping_per_s[at], relaxed.gravity_m_per_s2};
     for (const SupportedNodes& support : relaxed.supports) {
-      if (support.moves) relaxed.core->move_held(support.nodes, (support.end_m - support.start_m) / time_s);
+      if (support.moves)
+        relaxed.implicit_solver->move_fixed(support.nodes, (support.end_m - support.start_m) / time_s);
     }
-    relaxed.core->begin_step(step, *relaxed.lattice, on_ground(ground, at));
+    relaxed.implicit_solver->begin_step(step, *relaxed.lattice, ground_contacts(ground, at));
     for (SupportedNodes& support : relaxed.supports) {
-      support.impulse_ns -=
-          time_s * relaxed.core->force_on_held(*relaxed.lattice, support.nodes, relaxed.gravity_m_per_s2);
+      support.impulse_ns -= time_s * relaxed.implicit_solver->force_on_fixed(*relaxed.lattice, support.nodes,
+                                                                             relaxed.gravity_m_per_s2);
     }
   }
 }
 
-void end_core_steps(const Relaxation& relaxation, GroundContacts* ground) {
+void end_implicit_steps(const Relaxation& relaxation, GroundContacts* ground) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const RelaxedLattice& relaxed = relaxation.lattices[at];
-    if (!relaxed.core) continue;
+    if (!relaxed.implicit_solver) continue;
     const double cap = 0.5 * static_cast<double>(relaxation.cap[at]);
-    relaxed.core->end_step(*relaxed.lattice, {ground, on_ground(ground, at), cap});
+    relaxed.implicit_solver->end_step(*relaxed.lattice, {ground, ground_contacts(ground, at), cap});
   }
 }
 
@@ -335,9 +426,10 @@ double stable_step_s(double angular_frequency, double damping_ratio) {
   return 2.0 / angular_frequency * (std::sqrt(1.0 + damping_ratio * damping_ratio) - damping_ratio);
 }
 
-double felt_modulus_limit_pa(double unit_frequency, double damping_ratio) {
+double effective_modulus_limit_pa(double unit_frequency, double damping_ratio) {
   SPOONBILL_ASSERT(unit_frequency > 0.0 && damping_ratio >= 0.0);
-  const double root = felt_stability_share * stable_step_s(unit_frequency, damping_ratio) / relaxation_step_s;
+  const double root =
+      effective_modulus_stability_fraction * stable_step_s(unit_frequency, damping_ratio) / relaxation_step_s;
   return root * root;
 }
 
@@ -361,24 +453,53 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     relaxation.cap[at] = speed_cap(relaxation.lattice(at), h);
   }
   report.speed_capped = begin_supports(relaxation);
-  begin_core_steps(relaxation, ground);
+  begin_implicit_steps(relaxation, ground);
   for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, report.material_time_s);
-  if (substeps.slowed) steady_strained_nodes(relaxation, h);
+  if (substeps.slowed) stabilise_strained_nodes(relaxation, h);
   const int total = settings.iterations * substeps.count;
   for (int s = 0; s < total; ++s) {
     kick(relaxation, h);
-    hand_over(relaxation, tools);
+    collect_carried_forces(relaxation, tools);
     solve_contacts(relaxation, h, static_cast<double>(s) / total, tools, between, ground);
     report.speed_capped |= drift(relaxation, h, tools);
-    carry(relaxation, tools);
-    place_supported(relaxation, static_cast<double>(s + 1) / total);
+    move_carried_nodes(relaxation, tools);
+    move_supported_nodes(relaxation, static_cast<double>(s + 1) / total);
   }
-  end_core_steps(relaxation, ground);
+  end_implicit_steps(relaxation, ground);
   if (flows) flow(relaxation, report.material_time_s);
   if (settings.tick % creep_pause == 0) {
     creep(relaxation, settings.tick / creep_pause, settings.step_s);
   }
   return report;
+}
+
+double critical_damping_per_s(double quotient) {
+  return std::isfinite(quotient) ? 2.0 * critical_damping_fraction * std::sqrt(std::max(0.0, quotient)) : 0.0;
+}
+
+double rayleigh_quotient(const SpringLattice& lattice, const LatticeView& view) {
+  LatticeView along = view;
+  along.power_x = view.moved_x;
+  along.power_y = view.moved_y;
+  along.power_z = view.moved_z;
+  for (int n = 0; n < view.padded_count; ++n) {
+    along.power_x[n] = view.vx[n] * view.free_node[n];
+    along.power_y[n] = view.vy[n] * view.free_node[n];
+    along.power_z[n] = view.vz[n] * view.free_node[n];
+  }
+  // The power step sets w = M^-1 K v / |M^-1 K v| and returns |M^-1 K v| / |v|.
+  const double growth = static_cast<double>(lattice.kernels().power_step(along, lattice.free_mass()));
+  double with_image = 0.0, motion_square = 0.0, image_square = 0.0;
+  for (int n = 0; n < view.padded_count; ++n) {
+    const double mass = static_cast<double>(lattice.free_mass()[n]);
+    const Vector3 v(view.vx[n], view.vy[n], view.vz[n]);
+    const Vector3 w(along.power_x[n], along.power_y[n], along.power_z[n]);
+    with_image += mass * v.dot(w);
+    motion_square += mass * v.squaredNorm();
+    image_square += mass * w.squaredNorm();
+  }
+  const double sizes = std::sqrt(motion_square * image_square);
+  return sizes > 0.0 ? growth * with_image / sizes : 0.0;
 }
 
 }  // namespace spoonbill

@@ -1,93 +1,124 @@
-// Steps lattices through one tick together: relaxation steps of fixed material time, cut into symplectic
-// Euler substeps by the stability limit, with the constraints of tools and between bodies inside. Allocates
-// nothing.
+// Steps lattices through one tick together. Relaxation steps of fixed material time are divided into
+// symplectic Euler substeps by the stability limit; the constraints of tools and between bodies act in each
+// substep. Allocates nothing.
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
+#include "engine/base/geometry.h"
 #include "engine/material/contact/body_contacts.h"
 #include "engine/material/contact/contact_constraints.h"
-#include "engine/material/contact/ground_contacts.h"
-#include "engine/material/implicit/implicit_core.h"
+#include "engine/material/implicit/implicit_solver.h"
 #include "engine/material/springs/spring_lattice.h"
-#include "engine/material/supports/supported_nodes.h"
 
 namespace spoonbill {
 
-// The material time of a relaxation step: a haptic tick's.
-inline constexpr double relaxation_step_s = 1e-3;
-
-// Substeps a relaxation step may take. Where strain would ask for more, the strained nodes count as heavier,
-// just as much as keeps them stable: the stated fallback. They answer more slowly, which a damped,
-// quasi-static body hardly shows; the rest is as before.
-inline constexpr int substep_ceiling = 4;
-
-// The share of the measured stability limit that a substep takes. The running estimate of the fastest
-// frequency lags a sudden contact by some tens of ticks.
-inline constexpr double stability_share = 0.85;
-
-// The share of it that a felt stiffness may take with one substep. Strain and flow raise the fastest
-// frequency by 1.2 to 1.6 times; where they do, a relaxation step takes a second substep.
-inline constexpr double felt_stability_share = 0.75;
-
-// No node moves further than this share of a cell in a substep, relative to the body's mean velocity, or to
-// what holds the body where a node is held; nor in 2 / w, the longest step that the lattice alone could take.
-// Waves pass a cell in about that time, so that nodes stay below a ninth of their speed and a blow strains
-// even a soft, undamped body by no more than its springs can bring back. Without the latter two, a
-// sphere of 16 mm that gripped a held gel of 4 Pa at up to 5 m/s drew it out to 28 m.
-inline constexpr double speed_cap_cells = 0.1;
-
-// Springs are linearised once a tick, and again where a node has moved further than this share of a cell
-// since. What first order misses of a spring's strain is then below half its square; a tick of a sculpting
-// hand moves nodes by a hundredth of a cell.
-inline constexpr double linear_cells = 0.1;
-
-// The largest stable symplectic Euler step for the angular frequency and damping ratio: h < (2 / w)
-// (sqrt(1 + z^2) - z), from |trace| <= 1 + determinant of the update matrix of x'' + 2 z w x' + w^2 x = 0.
-double stable_step_s(double angular_frequency, double damping_ratio);
-
-// The largest Young's modulus at which one relaxation step takes one substep, for a lattice whose
-// fastest frequency is `unit_frequency` at 1 Pa: frequencies grow with the root of the modulus.
-double felt_modulus_limit_pa(double unit_frequency, double damping_ratio);
-
-// Following the fastest frequency and plastic flow each cost about as much as a substep. They take turns: the
-// first in even ticks, the second in odd ones, for the material time of both.
-struct RelaxSettings {
-  std::uint64_t tick = 0;             // its number
-  int iterations = 1;                 // relaxation steps
-  double step_s = relaxation_step_s;  // material time of each
-  double damping_per_s = 0.0;         // mass-proportional; where they settle, the least
-  bool settles = false;               // each body as settling.h damps it
+// Nodes of a lattice that one support fixes, and their motion through a tick. Plain data that the owner of
+// the body stores from tick to tick. Nodes are in ascending order and must be fixed in the lattice. The
+// displacement of each is its base plus the support's.
+struct SupportedNodes {
+  std::vector<int> nodes;
+  std::vector<Vector3> base_m;
+  bool moves = false;
+  Vector3 start_m = Vector3::Zero();  // displacement of the support at the start of the tick
+  Vector3 end_m = Vector3::Zero();
+  double largest_step_m = 0.0;           // largest displacement in a tick by the support's own motion
+  Vector3 impulse_ns = Vector3::Zero();  // impulse on the body in the tick, N s
 };
 
+// Material time of a relaxation step: one haptic tick.
+inline constexpr double relaxation_step_s = 1e-3;
+
+// Largest number of substeps in a relaxation step. If strain requires more, the masses of the strained
+// nodes are raised just enough for stability. These nodes respond more slowly, which hardly shows in a
+// damped, quasi-static body.
+inline constexpr int substep_ceiling = 4;
+
+// Fraction of the measured stability limit that a substep uses. The running estimate of the fastest
+// frequency lags a sudden contact by tens of ticks.
+inline constexpr double stability_fraction = 0.85;
+
+// Fraction of the stability limit that an effective Young's modulus may use with one substep. Strain and
+// flow raise the fastest frequency by 1.2 to 1.6 times; a relaxation step then takes a second substep.
+inline constexpr double effective_modulus_stability_fraction = 0.75;
+
+// Largest distance that a node moves in a substep, in cells. It is measured relative to the body's mean
+// velocity, or to the support where a node is fixed. The time is at least 2 / w, the longest step that the
+// lattice alone could take.
+//
+// Waves cross a cell in about that time. Nodes stay below a ninth of the wave speed, and an impact strains
+// even a soft, undamped body by no more than its springs can restore.
+inline constexpr double speed_cap_cells = 0.1;
+
+// Distance in cells after which the springs are linearised once more within a tick. The error of the first
+// order in a spring's strain is then below half its square. A sculpting hand moves nodes by about a
+// hundredth of a cell per tick.
+inline constexpr double linear_cells = 0.1;
+
+// Returns the largest stable symplectic Euler step, s, for an angular frequency and a damping ratio: h < (2
+// / w) (sqrt(1 + z^2) - z), from |trace| <= 1 + determinant of the update matrix of x'' + 2 z w x' + w^2 x
+// = 0.
+double stable_step_s(double angular_frequency, double damping_ratio);
+
+// Returns the largest effective Young's modulus, Pa, at which a relaxation step takes one substep.
+// `unit_frequency` is the lattice's fastest frequency at 1 Pa; frequencies grow with the square root of the
+// modulus.
+double effective_modulus_limit_pa(double unit_frequency, double damping_ratio);
+
+// Settings of relax(). Tracking the fastest frequency and plastic flow each cost about as much as a
+// substep. They alternate: tracking in even ticks, flow in odd ticks for the material time of two.
+struct RelaxSettings {
+  std::uint64_t tick = 0;             // tick number
+  int iterations = 1;                 // relaxation steps
+  double step_s = relaxation_step_s;  // material time of each step
+  double damping_per_s = 0.0;         // mass-proportional; the minimum if `settles`
+  bool settles = false;               // true: each body is critically damped, see critical_damping_per_s()
+};
+
+// One lattice that relax() advances, with what moves and loads it. Borrowed for the call.
 struct RelaxedLattice {
   SpringLattice* lattice;
   Vector3 gravity_m_per_s2 = Vector3::Zero();
-  ImplicitCore* core = nullptr;  // where one moves the lattice, its springs rest
+  // Moves the lattice instead of its springs; null if the springs step.
+  ImplicitSolver* implicit_solver = nullptr;
   std::span<SupportedNodes> supports = {};
 };
 
+// Results of relax() for one tick.
 struct RelaxReport {
-  int substeps = 0;              // of each relaxation step
-  double material_time_s = 0.0;  // that passed
-  bool nodes_slowed = false;     // the ceiling was met
+  int substeps = 0;              // in each relaxation step
+  double material_time_s = 0.0;  // elapsed in the tick
+  bool nodes_slowed = false;     // true if the substep ceiling was reached
   bool speed_capped = false;
 };
 
-// A tool that acts on the lattice: how the hand moves it, where it is, and its contacts of this tick.
+// A tool that acts on the lattices: its motion by the hand, its state and its contacts of the tick.
 struct TouchingTool {
   ToolMotion motion;
   ToolState* state;
   ContactConstraints* contacts;
 };
 
-// Advances at most lattice_capacity lattices, by as many substeps as the one that needs most; those with a
-// core by one implicit step, around the contacts. The tools act in their order, then the bodies on each
-// other, then the ground. Denormals must be flushed by the caller for the speed's sake (see
-// DenormalsFlushed).
+// Advances at most lattice_capacity lattices by as many substeps as the stiffest one needs. Lattices with
+// an implicit solver advance by one implicit step around the contacts. Tools act in their order, then
+// bodies on each other, then the ground. The caller must flush denormals for speed (see DenormalsFlushed).
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
                   std::span<const TouchingTool> tools, BodyContacts* between = nullptr,
                   GroundContacts* ground = nullptr);
+
+// Fraction of the critical damping of a body's present motion. Slightly above 1, so that other modes do not
+// carry the body past its rest shape.
+inline constexpr double critical_damping_fraction = 1.1;
+
+// Returns the mass-proportional damping, 1/s, that brings a motion v to rest soonest. `rayleigh_quotient`
+// is (v.Kv) / (v.Mv), the square of a frequency. Damping adapts as in dynamic relaxation (Underwood 1983):
+// fast modes decay first, then the slow ones get their small critical damping.
+double critical_damping_per_s(double rayleigh_quotient);
+
+// Returns the Rayleigh quotient of a lattice's velocities; 0 at rest. The springs must be linearised.
+// Overwrites the view's `moved` arrays.
+double rayleigh_quotient(const SpringLattice& lattice, const LatticeView& view);
 
 }  // namespace spoonbill

@@ -5,7 +5,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/collision/meshes/mesh_parts.h"
-#include "engine/material/lattice/shell_faces.h"
+#include "engine/material/lattice/body_coordinates.h"
 
 namespace spoonbill {
 namespace {
@@ -16,7 +16,7 @@ std::vector<double> compute_node_volumes(const LatticeMesh& mesh) {
   for (int i = 0; i + 1 < mesh.count[0]; ++i) {
     for (int j = 0; j + 1 < mesh.count[1]; ++j) {
       for (int k = 0; k + 1 < mesh.count[2]; ++k) {
-        const double node_volume_m3 = mesh.share(i, j, k) * cell_volume(mesh.cell(i, j, k)) / 8.0;
+        const double node_volume_m3 = mesh.cell_fraction(i, j, k) * cell_volume(mesh.cell(i, j, k)) / 8.0;
         for (int c = 0; c < 8; ++c) {
           volumes[static_cast<std::size_t>(mesh.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1)))] +=
               node_volume_m3;
@@ -31,7 +31,7 @@ std::vector<double> compute_node_volumes(const LatticeMesh& mesh) {
 std::vector<std::size_t> find_triangles(const BodyRegion& region, const BodySkin& skin) {
   std::vector<std::size_t> within;
   for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
-    if (contains(region, skin.middles[t])) within.push_back(t);
+    if (contains(region, skin.triangle_centres[t])) within.push_back(t);
   }
   return within;
 }
@@ -58,7 +58,7 @@ struct BodyLoads::Builder {
 
   Status operator()(const PressureLoad& load) {
     if (is_boxed()) return press_skin(load);
-    const std::vector<ShellFace> within = faces_in(load.region, mesh, faces, coordinates);
+    const std::vector<ShellFace> within = find_faces_in(load.region, mesh, faces, coordinates);
     if (within.empty()) return no_face();
     for (const ShellFace& face : within) result.pressures_.push_back({face, load.pressure_pa});
     return {};
@@ -98,7 +98,7 @@ struct BodyLoads::Builder {
   }
 
   void weigh_by_faces(const BodyRegion& region, std::vector<double>& weights) const {
-    for (const ShellFace& face : faces_in(region, mesh, faces, coordinates)) {
+    for (const ShellFace& face : find_faces_in(region, mesh, faces, coordinates)) {
       const auto at = [&](std::size_t c) { return mesh.nodes[static_cast<std::size_t>(face[c])]; };
       const double area = vector_area(at(0), at(1), at(2), at(3)).norm();
       for (const int node : face) weights[static_cast<std::size_t>(node)] += 0.25 * area;
@@ -141,7 +141,7 @@ Result<BodyLoads> BodyLoads::make(const std::vector<Load>& loads, const LatticeM
                                   const std::function<EmbeddedPoint(double u, double v)>& point_at) {
   SPOONBILL_ASSERT(static_cast<bool>(point_at));
   if (loads.empty()) return BodyLoads();
-  Builder builder{mesh, point_at, node_places(mesh), shell_faces(mesh)};
+  Builder builder{mesh, point_at, find_node_coordinates(mesh), shell_faces(mesh)};
   for (std::size_t l = 0; l < loads.size(); ++l) {
     Status status = check_load(loads[l]);
     if (status.ok()) status = std::visit(builder, loads[l]);
@@ -160,7 +160,7 @@ Result<BodyLoads> BodyLoads::make(const std::vector<Load>& loads, const LatticeM
   return result;
 }
 
-void BodyLoads::apply(double fraction, SpringLattice& lattice, ImplicitCore* solver) {
+void BodyLoads::apply(double fraction, SpringLattice& lattice, ImplicitSolver* solver) {
   SPOONBILL_ASSERT(fraction >= 0.0);
   if (empty()) return;
   for (const int n : nodes_) force_n_[static_cast<std::size_t>(n)].setZero();
@@ -177,7 +177,7 @@ void BodyLoads::apply(double fraction, SpringLattice& lattice, ImplicitCore* sol
                               force_n_[static_cast<std::size_t>(node)] += fraction * force_n;
                             });
   for (const int n : nodes_) lattice.set_node_force(n, force_n_[static_cast<std::size_t>(n)]);
-  if (solver) solver->take_node_forces(lattice, nodes_);
+  if (solver) solver->set_node_forces(lattice, nodes_);
 }
 
 namespace {
@@ -200,7 +200,7 @@ void record_base(const SpringLattice& lattice, SupportedNodes& support) {
 Result<BodySupports> BodySupports::make(const std::vector<Support>& supports, const LatticeMesh& mesh) {
   BodySupports result;
   if (supports.empty()) return result;
-  const std::vector<BodyCoordinates> coordinates = node_places(mesh);
+  const std::vector<BodyCoordinates> coordinates = find_node_coordinates(mesh);
   for (std::size_t s = 0; s < supports.size(); ++s) {
     const std::string name = "supports[" + std::to_string(s) + "]";
     if (Status status = check_support(supports[s]); !status.ok()) return status.error().in(name);
@@ -251,7 +251,7 @@ std::span<SupportedNodes> BodySupports::begin_tick(const SpringLattice& lattice,
     measure_displacement(lattice, support);
     support.start_m = support.end_m;
     support.end_m = displacement_at(*definitions_[s].motion, end_s);
-    support.fastest_m = tick_s * top_speed_m_per_s(*definitions_[s].motion);
+    support.largest_step_m = tick_s * top_speed_m_per_s(*definitions_[s].motion);
   }
   return supported_;
 }

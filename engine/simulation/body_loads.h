@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/material/implicit/implicit_core.h"
+#include "engine/material/implicit/implicit_solver.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "engine/material/statics/static_body.h"
-#include "engine/material/supports/supported_nodes.h"
+#include "engine/material/lattice_solver.h"
 #include "engine/scene/loads.h"
 
 namespace spoonbill {
@@ -32,7 +32,7 @@ class BodyLoads {
 
   // Sets the node forces of the lattice, and of the implicit solver if not null, to a fraction (at least 0)
   // of the loads on the current shape.
-  void apply(double fraction, SpringLattice& lattice, ImplicitCore* solver);
+  void apply(double fraction, SpringLattice& lattice, ImplicitSolver* solver);
 
  private:
   struct Builder;

@@ -135,7 +135,7 @@ bool is_pole(const Surface& surface, bool at_end) {
 
 void search_cells_around(const LatticeMesh& mesh, int node, const Vector3& point, CellLocation& best,
                          std::array<int, 3>& cell) {
-  const auto [ni, nj, nk] = mesh.place(node);
+  const auto [ni, nj, nk] = mesh.grid_index(node);
   for (int i = std::max(0, ni - 1); i <= std::min(ni, mesh.count[0] - 2); ++i) {
     for (int j = std::max(0, nj - 1); j <= std::min(nj, mesh.count[1] - 2); ++j) {
       for (int k = std::max(0, nk - 1); k <= std::min(nk, mesh.count[2] - 2); ++k) {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/base/text.h"
-#include "engine/material/lattice/lattice_of.h"
+#include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice_solver.h"
 
 namespace spoonbill {
@@ -37,22 +37,22 @@ Result<SpringLattice> make_sculpting_lattice(const LatticeMesh& mesh, const Latt
   Result<SpringLattice> unit = SpringLattice::make(mesh, materials, 1.0, set);
   if (!unit.ok()) return unit;
   const Material& own = materials.own();
-  const double damping_ratio = materials.are_several() ? unit->damping_ratio() : own.damping_ratio;
-  const double unit_limit = felt_modulus_limit_pa(unit->fastest_frequency(), damping_ratio);
+  const double damping_ratio = materials.has_several_materials() ? unit->damping_ratio() : own.damping_ratio;
+  const double unit_limit = effective_modulus_limit_pa(unit->fastest_frequency(), damping_ratio);
   return SpringLattice::make(mesh, materials, std::min(own.youngs_modulus_pa, unit_limit), set);
 }
 
-Result<std::optional<ImplicitCore>> make_implicit_solver(const SpringLattice& lattice,
+Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& lattice,
                                                          const std::vector<Vector3>& rest_m,
                                                          InstructionSet set) {
   const LatticeMaterials& materials = lattice.materials();
-  const bool for_springs = largest_youngs_modulus_pa(materials) < stiff_youngs_modulus_pa &&
+  const bool for_springs = max_youngs_modulus_pa(materials) < stiff_youngs_modulus_pa &&
                            !lattice.mesh().thin &&
-                           least_poissons_ratio(materials) >= min_spring_poissons_ratio;
-  if (!are_plainly_elastic(materials) || for_springs) return std::optional<ImplicitCore>();
-  Result<ImplicitCore> solver = ImplicitCore::make(lattice.mesh(), rest_m, materials, set);
+                           min_poissons_ratio(materials) >= min_spring_poissons_ratio;
+  if (!are_linear_elastic(materials) || for_springs) return std::optional<ImplicitSolver>();
+  Result<ImplicitSolver> solver = ImplicitSolver::make(lattice.mesh(), rest_m, materials, set);
   if (!solver.ok()) return solver.error();
-  return std::optional<ImplicitCore>(std::move(solver).value());
+  return std::optional<ImplicitSolver>(std::move(solver).value());
 }
 
 std::string describe_lattice_warning(const BodyState& body) {
@@ -86,13 +86,13 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
                                   InstructionSet set, const FeatureMapWatch& watch) {
   Result<std::shared_ptr<const TrimmedArea>> trim = make_trimmed_area(body);
   if (!trim.ok()) return trim.error();
-  Result<LatticeMesh> mesh = lattice_of(body, watch);
+  Result<LatticeMesh> mesh = make_body_lattice(body, watch);
   if (!mesh.ok()) return mesh.error();
   const Result<LatticeMaterials> materials = lattice_materials(mesh.value(), body.material, body.regions);
   if (!materials.ok()) return materials.error();
   Result<SpringLattice> lattice = make_sculpting_lattice(mesh.value(), materials.value(), set);
   if (!lattice.ok()) return lattice.error();
-  Result<std::optional<ImplicitCore>> solver = make_implicit_solver(lattice.value(), mesh->nodes, set);
+  Result<std::optional<ImplicitSolver>> solver = make_implicit_solver(lattice.value(), mesh->nodes, set);
   if (!solver.ok()) return solver.error();
   Result<BodyMapping> mapping = BodyMapping::make(body.surface, body.surface, lattice.value(), planes, set);
   if (!mapping.ok()) return mapping.error();

@@ -13,7 +13,7 @@
 #include "engine/base/processor.h"
 #include "engine/base/result.h"
 #include "engine/bspline/trimmed_area.h"
-#include "engine/material/implicit/implicit_core.h"
+#include "engine/material/implicit/implicit_solver.h"
 #include "engine/material/lattice/feature_map.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "engine/scene/scene.h"
@@ -29,7 +29,7 @@ struct BodyState {
   std::variant<BodyMapping, MeshMapping> skin;
   Smoothing smoothing;
   std::vector<std::uint8_t> fixed, touched;          // one byte a node
-  std::optional<ImplicitCore> implicit_solver = {};  // for materials too stiff for the lattice's springs
+  std::optional<ImplicitSolver> implicit_solver = {};  // for materials too stiff for the lattice's springs
   bool implicit_suspended = false;
   BodyLoads loads = {};
   BodySupports supports = {};
@@ -42,12 +42,12 @@ struct BodyState {
   void fix(std::vector<std::uint8_t> nodes) {
     SPOONBILL_ASSERT(nodes.size() == static_cast<std::size_t>(lattice.mesh().node_count()));
     fixed = std::move(nodes);
-    lattice.hold(fixed);
-    if (implicit_solver) implicit_solver->hold(fixed);
+    lattice.fix_nodes(fixed);
+    if (implicit_solver) implicit_solver->fix_nodes(fixed);
   }
-  void set_implicit_solver(std::optional<ImplicitCore> solver) {
+  void set_implicit_solver(std::optional<ImplicitSolver> solver) {
     implicit_solver = std::move(solver);
-    if (implicit_solver) implicit_solver->hold(fixed);
+    if (implicit_solver) implicit_solver->fix_nodes(fixed);
     suspend_implicit(implicit_suspended);
   }
   // Lets the springs step the body while a tool grips. Grips act in both directions, and those of a tool much
@@ -55,14 +55,14 @@ struct BodyState {
   void suspend_implicit(bool suspended) {
     implicit_suspended = suspended;
     lattice.set_contact_inverse_mass(active_solver() ? implicit_solver->contact_inverse_mass() : 0.0);
-    lattice.hold(fixed);
-    if (active_solver()) implicit_solver->take_shape(lattice);
+    lattice.fix_nodes(fixed);
+    if (active_solver()) implicit_solver->adopt_shape(lattice);
   }
   // Returns the implicit solver if it steps the body; null if the springs do.
-  ImplicitCore* active_solver() {
+  ImplicitSolver* active_solver() {
     return implicit_solver && !implicit_suspended ? &*implicit_solver : nullptr;
   }
-  const ImplicitCore* active_solver() const {
+  const ImplicitSolver* active_solver() const {
     return implicit_solver && !implicit_suspended ? &*implicit_solver : nullptr;
   }
   // Young's modulus with which the body is stepped.
@@ -109,7 +109,7 @@ inline constexpr double stiff_youngs_modulus_pa = 1e6;
 // Makes the implicit solver of a lattice, unstrained at `rest_m`. It steps bodies whose materials are all
 // linear elastic and whose stiffest reaches stiff_youngs_modulus_pa. It also steps elastic shells, which a
 // single layer of springs would make twice too stiff in bending. Empty for bodies that their springs step.
-Result<std::optional<ImplicitCore>> make_implicit_solver(const SpringLattice& lattice,
+Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& lattice,
                                                          const std::vector<Vector3>& rest_m,
                                                          InstructionSet set);
 

@@ -109,7 +109,7 @@ Status CommandApplier::operator()(const SetMaterial& command) {
   lattice->set_shape(body.lattice.shape());
   // A body that becomes stiff keeps its current shape as the rest shape. A body that was stiff keeps its rest
   // shape.
-  Result<std::optional<ImplicitCore>> solver = make_implicit_solver(
+  Result<std::optional<ImplicitSolver>> solver = make_implicit_solver(
       lattice.value(), body.implicit_solver ? body.implicit_solver->rest_m() : body.lattice.positions(),
       state.set);
   if (!solver.ok()) return solver.error();
@@ -122,7 +122,7 @@ Status CommandApplier::operator()(const SetMaterial& command) {
 
 Status CommandApplier::operator()(const KeepShape&) {
   std::vector<SpringLattice> lattices;
-  std::vector<std::optional<ImplicitCore>> solvers;
+  std::vector<std::optional<ImplicitSolver>> solvers;
   std::vector<BodyMapping> mappings;
   for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
     const BodyState& body = state.bodies[b];
@@ -130,12 +130,12 @@ Status CommandApplier::operator()(const KeepShape&) {
     mesh.nodes = body.lattice.positions();
     Result<SpringLattice> lattice = make_sculpting_lattice(mesh, body.lattice.materials(), state.set);
     if (!lattice.ok()) return lattice.error();
-    lattice->hold(body.fixed);
+    lattice->fix_nodes(body.fixed);
     const Surface& surface = body.mapping().current();
     Result<BodyMapping> mapping =
         BodyMapping::make(surface, surface, lattice.value(), state.scene.planes, state.set);
     if (!mapping.ok()) return mapping.error();
-    Result<std::optional<ImplicitCore>> solver = make_implicit_solver(lattice.value(), mesh.nodes, state.set);
+    Result<std::optional<ImplicitSolver>> solver = make_implicit_solver(lattice.value(), mesh.nodes, state.set);
     if (!solver.ok()) return solver.error();
     solvers.push_back(std::move(solver).value());
     lattices.push_back(std::move(lattice).value());

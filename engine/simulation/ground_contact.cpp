@@ -125,8 +125,8 @@ constexpr double margin_cells = 0.25;
 constexpr double skin_time_constant_s = 0.3;
 
 bool on_shell(const LatticeMesh& mesh, int node) {
-  const std::array<int, 3> at = mesh.place(node);
-  return mesh.place_of(at[0], at[1], at[2]) == NodePlace::on_shell;
+  const std::array<int, 3> at = mesh.grid_index(node);
+  return mesh.node_location(at[0], at[1], at[2]) == NodeLocation::on_shell;
 }
 
 // Returns whether the body is in a box of cells, whose nodes are not on the skin.

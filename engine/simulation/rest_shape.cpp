@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
-#include "engine/material/lattice/shell_faces.h"
+#include "engine/material/lattice/body_coordinates.h"
 #include "engine/simulation/body_state.h"
 
 namespace spoonbill {
@@ -17,16 +17,16 @@ Vector3 final_displacement(const Support& support) {
   return support.motion->displacement_m;
 }
 
-std::vector<HeldAxis> find_fixed_axes(const BodyState& state, const Body& body) {
+std::vector<FixedAxis> find_fixed_axes(const BodyState& state, const Body& body) {
   std::vector<Vector3> displacement_m(state.fixed.size(), Vector3::Zero());
   for (std::size_t s = 0; s < body.supports.size(); ++s) {
     for (const int node : state.supports.supports()[s].nodes) {
       displacement_m[static_cast<std::size_t>(node)] = final_displacement(body.supports[s]);
     }
   }
-  std::vector<HeldAxis> fixed;
+  std::vector<FixedAxis> fixed;
   for (std::size_t n = 0; n < displacement_m.size(); ++n) {
-    if (state.fixed[n] != 0) hold_node(static_cast<int>(n), displacement_m[n], fixed);
+    if (state.fixed[n] != 0) fix_node(static_cast<int>(n), displacement_m[n], fixed);
   }
   return fixed;
 }
@@ -67,7 +67,7 @@ void measure(const StaticBody& body, const StaticLoads& loads, RestShape& shape)
     bent.nodes[n] += moved[n];
     shape.reaction_n += shape.result.reaction_n[n];
     shape.load_n += body.mass_kg(static_cast<int>(n)) * loads.gravity_m_per_s2;
-    const bool beside = !bent.places.empty() && bent.places[n] == NodePlace::beside_body;
+    const bool beside = !bent.node_locations.empty() && bent.node_locations[n] == NodeLocation::outside_body;
     if (beside || moved[n].norm() <= furthest_m) continue;
     furthest_m = moved[n].norm();
     shape.furthest_node = static_cast<int>(n);
@@ -90,7 +90,7 @@ Result<RestShape> compute_rest_shape(const Scene& scene, int body, const Progres
   const Body& definition = scene.bodies[static_cast<std::size_t>(body)];
   Result<BodyState> state = make_body_state(definition, scene.planes, InstructionSet::baseline);
   if (!state.ok()) return state.error();
-  const std::vector<HeldAxis> fixed = find_fixed_axes(state.value(), definition);
+  const std::vector<FixedAxis> fixed = find_fixed_axes(state.value(), definition);
   if (fixed.empty())
     return Error{ErrorCode::missing,
                  "nothing fixes the body; give it a support or the document a fixing plane"};

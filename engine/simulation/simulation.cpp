@@ -323,7 +323,7 @@ Status Simulation::restore(const ShapeState& shape) {
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
     BodyState& body = state_->bodies[b];
     body.lattice.set_shape(shape.lattices[b]);
-    if (body.active_solver()) body.active_solver()->take_shape(body.lattice);
+    if (body.active_solver()) body.active_solver()->adopt_shape(body.lattice);
     body.update_skin();
   }
   state_->ground_contact.contacts().forget();

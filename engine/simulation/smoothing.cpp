@@ -58,7 +58,7 @@ std::array<int, 2> Smoothing::beside(int node, int axis) const {
 }
 
 void Smoothing::connect(const LatticeMesh& mesh, int node) {
-  const std::array<int, 3> at = mesh.place(node);
+  const std::array<int, 3> at = mesh.grid_index(node);
   ShellNode& shell = shell_[static_cast<std::size_t>(node)];
   std::array<int, 3> inward{};  // neighbours inside the body, those along i and j first
   std::size_t ends = 0;
@@ -170,7 +170,7 @@ void Smoothing::apply(SpringLattice& lattice, const SmoothingBrush& brush, std::
   const double reach_square = brush.reach_m * brush.reach_m;
   near_.clear();
   for (int n = 0; n < static_cast<int>(shell_.size()); ++n) {
-    if (lattice.is_held(n) || lattice.mesh().joined(n) != n) continue;
+    if (lattice.is_fixed(n) || lattice.mesh().joined(n) != n) continue;
     if ((lattice.position(n) - brush.centre_m).squaredNorm() < reach_square) near_.push_back(n);
   }
   const std::size_t rounds = (near_.size() + nodes_per_tick - 1) / nodes_per_tick;

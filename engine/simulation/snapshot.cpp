@@ -64,11 +64,11 @@ void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>
         out.x[at] = static_cast<float>(position.x());
         out.y[at] = static_cast<float>(position.y());
         out.z[at] = static_cast<float>(position.z());
-        const NodePlace place = mesh.place_of(i, j, k);
-        out.in_body[at] = place != NodePlace::beside_body;
+        const NodeLocation place = mesh.node_location(i, j, k);
+        out.in_body[at] = place != NodeLocation::outside_body;
         out.fixed[at] = out.in_body[at] & fixed[static_cast<std::size_t>(node)];
         out.touched[at] = out.in_body[at] & touched[static_cast<std::size_t>(node)];
-        out.on_shell[at] = place == NodePlace::on_shell;
+        out.on_shell[at] = place == NodeLocation::on_shell;
       }
     }
   }

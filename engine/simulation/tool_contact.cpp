@@ -8,7 +8,7 @@
 #include "engine/collision/meshes/mesh_parts.h"
 #include "engine/collision/meshes/mesh_edges.h"
 #include "engine/material/lattice/box_lattice.h"
-#include "engine/material/lattice/lattice_counts.h"
+#include "engine/material/lattice/lattice_mesh.h"
 #include "engine/simulation/body_contact.h"
 #include "engine/simulation/simulation_state.h"
 
@@ -114,8 +114,8 @@ struct ModelBuilder {
     bool holds_any = false;
     for (int n = 0; n < mesh.node_count(); ++n) {
       if (soft->fixed[static_cast<std::size_t>(n)] == 0) continue;
-      const auto [i, j, k] = mesh.place(n);
-      holds_any |= mesh.place_of(i, j, k) != NodePlace::beside_body;
+      const auto [i, j, k] = mesh.grid_index(n);
+      holds_any |= mesh.node_location(i, j, k) != NodeLocation::outside_body;
       model.gripped.push_back(n);
     }
     if (!holds_any) {
@@ -123,7 +123,7 @@ struct ModelBuilder {
                    "tool: no lattice node of the tool is behind the grip plane; move the plane", "grip"};
     }
     if (soft->mesh()) model.triangles = soft->mesh()->triangles();
-    soft->lattice.hold(soft->fixed);
+    soft->lattice.fix_nodes(soft->fixed);
     model.soft = std::move(soft).value();
     return model;
   }

@@ -35,7 +35,7 @@ void smooth(Simulation::State& s, const HeldTool& held) {
   const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
   const double least = least_reach_cells * static_cast<double>(body.lattice.cell_size_m());
   body.smoothing.apply(body.lattice, {collision.nearest.point_m, std::max(radius, least)}, s.tick);
-  if (body.active_solver()) body.active_solver()->take_moved_nodes(body.lattice);
+  if (body.active_solver()) body.active_solver()->adopt_moved_nodes(body.lattice);
 }
 
 // Kernels in the order of the actions. A kernel without constrain() does not compile.

@@ -38,7 +38,7 @@ SpringLattice block(int count, const Material& material) {
       SpringLattice::make(mesh, material, material.youngs_modulus_pa, best_instruction_set()).value();
   std::vector<std::uint8_t> held(static_cast<std::size_t>(mesh.node_count()));
   for (int node = 0; node < count * count; ++node) held[static_cast<std::size_t>(node)] = 1;
-  lattice.hold(held);
+  lattice.fix_nodes(held);
   return lattice;
 }
 

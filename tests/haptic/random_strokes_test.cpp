@@ -161,7 +161,7 @@ std::string in_words(const Scene& scene) {
 bool is_in_bounds(const SpringLattice& lattice) {
   const std::vector<Vector3> nodes = lattice.positions();
   Vector3 middle = centre_m;
-  if (!lattice.has_held_nodes()) {
+  if (!lattice.has_fixed_nodes()) {
     middle.setZero();
     for (const Vector3& node : nodes) middle += node / static_cast<double>(nodes.size());
   }

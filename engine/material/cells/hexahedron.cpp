@@ -16,12 +16,12 @@ using MixedMatrix = Eigen::Matrix<double, 24, inner_count>;
 using Elasticity = Eigen::Matrix<double, 6, 6>;
 using StrainRows = Eigen::Matrix<double, 6, 3>;
 
-// Natural coordinates of a corner, each -1 or 1 along i, j, k.
+// Returns the natural coordinates of a corner, each -1 or 1, along i, j, k.
 Vector3 natural(int corner) {
   return {corner >> 2 & 1 ? 1.0 : -1.0, corner >> 1 & 1 ? 1.0 : -1.0, corner & 1 ? 1.0 : -1.0};
 }
 
-// Of the shape functions by the natural coordinates.
+// Gradients of the shape functions by the natural coordinates.
 CellGradients natural_gradients(const Vector3& at) {
   CellGradients gradients;
   for (int c = 0; c < 8; ++c) {
@@ -41,7 +41,8 @@ Eigen::Matrix3d jacobian(const CellCorners& corners, const CellGradients& gradie
   return sum;
 }
 
-// Engineering strains xx, yy, zz, xy, yz, zx of a displacement whose shape has this gradient.
+// Returns the engineering strains xx, yy, zz, xy, yz, zx of a displacement whose shape function has this
+// gradient.
 StrainRows strain_rows(const Vector3& g) {
   StrainRows rows;
   rows << g.x(), 0, 0, 0, g.y(), 0, 0, 0, g.z(), g.y(), g.x(), 0, 0, g.z(), g.y(), g.z(), 0, g.x();
@@ -58,26 +59,26 @@ Elasticity isotropic(double youngs_modulus_pa, double poissons_ratio) {
   return d;
 }
 
-struct MiddleJacobian {
+struct CentreJacobian {
   Eigen::Matrix3d inverse;
   double determinant;
 };
 
-// The gradients of 1 - r^2, 1 - s^2 and 1 - t^2, of mean zero over the cell.
-std::array<Vector3, 3> inner_gradients(const Vector3& at, const MiddleJacobian& middle, double determinant) {
+// Gradients of the inner modes 1 - r^2, 1 - s^2 and 1 - t^2, with zero mean over the cell.
+std::array<Vector3, 3> inner_gradients(const Vector3& at, const CentreJacobian& centre, double determinant) {
   std::array<Vector3, 3> gradients;
   for (int mode = 0; mode < 3; ++mode) {
     Vector3 natural_gradient = Vector3::Zero();
     natural_gradient[mode] = -2.0 * at[mode];
     gradients[static_cast<std::size_t>(mode)] =
-        middle.determinant / determinant * (middle.inverse * natural_gradient);
+        centre.determinant / determinant * (centre.inverse * natural_gradient);
   }
   return gradients;
 }
 
 }  // namespace
 
-CellGradients middle_gradients(const CellCorners& corners) {
+CellGradients centre_gradients(const CellCorners& corners) {
   const CellGradients natural = natural_gradients(Vector3::Zero());
   return natural * jacobian(corners, natural).inverse().transpose();
 }
@@ -98,27 +99,27 @@ struct Sums {
   InnerMatrix inner = InnerMatrix::Zero();
 };
 
-// Visits the Gauss points of a part, with what each counts of the natural volume.
+// Visits the Gauss points of a part with their weights in natural volume.
 template <class Visit>
 void visit_points(const Vector3& low, const Vector3& high, const Visit& visit) {
-  const Vector3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
+  const Vector3 centre = 0.5 * (low + high), half = 0.5 * (high - low);
   for (int point = 0; point < 8; ++point) {
-    visit(Vector3(middle + half.cwiseProduct(natural(point) / std::sqrt(3.0))), half.prod());
+    visit(Vector3(centre + half.cwiseProduct(natural(point) / std::sqrt(3.0))), half.prod());
   }
 }
 
-void add_point(const CellCorners& corners, const MiddleJacobian& at_middle, const Vector3& at, double weight,
+void add_point(const CellCorners& corners, const CentreJacobian& at_centre, const Vector3& at, double weight,
                const Elasticity& elasticity, Sums& sums) {
   const CellGradients natural = natural_gradients(at);
   const Eigen::Matrix3d here = jacobian(corners, natural);
   const double determinant = here.determinant(), volume = weight * determinant;
   const CellGradients gradients = natural * here.inverse().transpose();
-  const std::array<Vector3, 3> of_inner = inner_gradients(at, at_middle, determinant);
+  const std::array<Vector3, 3> inner_gradient = inner_gradients(at, at_centre, determinant);
   Eigen::Matrix<double, 6, 24> strain;
   for (int c = 0; c < 8; ++c) strain.middleCols<3>(3 * c) = strain_rows(gradients.row(c).transpose());
   Eigen::Matrix<double, 6, inner_count> inner_strain;
   for (int m = 0; m < 3; ++m) {
-    inner_strain.middleCols<3>(3 * m) = strain_rows(of_inner[static_cast<std::size_t>(m)]);
+    inner_strain.middleCols<3>(3 * m) = strain_rows(inner_gradient[static_cast<std::size_t>(m)]);
   }
   const Eigen::Matrix<double, 6, inner_count> inner_stress = volume * elasticity * inner_strain;
   sums.outer += volume * strain.transpose() * elasticity * strain;
@@ -131,13 +132,13 @@ void add_point(const CellCorners& corners, const MiddleJacobian& at_middle, cons
 CellMatrix hexahedron_stiffness(const CellCorners& corners, std::span<const HexahedronPart> parts) {
   SPOONBILL_ASSERT(!parts.empty());
   SPOONBILL_ASSERT_DEBUG(smallest_jacobian_ratio(corners) > 0.0);
-  const Eigen::Matrix3d middle = jacobian(corners, natural_gradients(Vector3::Zero()));
-  const MiddleJacobian at_middle{middle.inverse(), middle.determinant()};
+  const Eigen::Matrix3d centre = jacobian(corners, natural_gradients(Vector3::Zero()));
+  const CentreJacobian at_centre{centre.inverse(), centre.determinant()};
   Sums sums;
   for (const HexahedronPart& part : parts) {
     const Elasticity elasticity = isotropic(part.youngs_modulus_pa, part.poissons_ratio);
     visit_points(part.low, part.high, [&](const Vector3& at, double weight) {
-      add_point(corners, at_middle, at, weight, elasticity, sums);
+      add_point(corners, at_centre, at, weight, elasticity, sums);
     });
   }
   const CellMatrix stiffness = sums.outer - sums.mixed * sums.inner.ldlt().solve(sums.mixed.transpose());
@@ -164,7 +165,7 @@ AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellMat
       stretches(3 * c + axis, axis) = corners[static_cast<std::size_t>(c)][axis];
     }
   }
-  return elasticity_of(stretches.transpose() * stiffness * stretches / cell_volume(corners));
+  return compute_elasticity(stretches.transpose() * stiffness * stretches / cell_volume(corners));
 }
 
 }  // namespace spoonbill

@@ -1,31 +1,70 @@
-// A cell of springs and one volume force: the same elasticity as the lattice that sculpting steps
-// (lattice_kernels.h), in double, with its tangent.
+// Lattice cells of springs and one volume force, with the elasticity of the lattice that sculpting steps
+// (lattice_kernels.h), in double precision and with a tangent.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 
-#include "engine/material/cells/cell_response.h"
-#include "engine/material/cells/cell_springs.h"
+#include "engine/material/cells/cell_elasticity.h"
+#include "engine/material/lattice/lattice_mesh.h"
 
 namespace spoonbill {
 
-// Plain data; a value.
+inline constexpr int cell_spring_count = 28;
+
+// Corners of each spring, the lower number first: edges 0-11, face diagonals 12-23, body diagonals 24-27.
+extern const std::array<std::array<int, 2>, cell_spring_count> cell_spring_corners;
+
+struct CellSprings {
+  std::array<double, cell_spring_count> stiffness_n_per_m{};  // all positive
+  double volume_m3 = 0.0;
+  // |achieved - target| / |target| over the 15 components of the springs' elasticity tensor. 0 for a cube
+  // and for bricks up to an aspect of about 1.5. Above 0 where springs of at least a tenth of a cube's
+  // stiffness cannot reach the tensor.
+  double misfit = 0.0;
+};
+
+// Computes the springs of a cell: 12 edges, 12 face diagonals and 4 body diagonals.
+//
+// Central forces alone have lambda = mu, Poisson's ratio 1/4 exactly (Golec et al. 2019). The springs get
+// the target shear modulus mu = E / (2 (1 + nu)); a volume force adds bulk_stiffness().
+//
+// The stiffnesses solve 15 equations: the sum over springs of k L^2 n n n n = V mu (delta delta + 2
+// permutations). The solution is the one closest to a cube of the same volume with two fifths of the
+// largest possible body diagonals. Without body diagonals, or with the largest, zero-energy modes appear.
+//
+// Eq. 6 of Pungotra et al. 2013, K = A E / L with A = a^2, is the formula of a bar; for all springs of a
+// lattice it gives 2.09 to 2.25 times the target E.
+CellSprings cell_springs(const CellCorners& corners, double shear_modulus_pa);
+
+// Returns K_v = mu (4 nu - 1) / (1 - 2 nu), Pa: the stiffness that a cell's volume force adds to the
+// springs' nu = 1/4. Negative below nu = 1/4.
+double bulk_stiffness(double youngs_modulus_pa, double poissons_ratio);
+double shear_modulus(double youngs_modulus_pa, double poissons_ratio);
+
+// Elasticity of a cell with these springs and a volume force.
+AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellSprings& springs,
+                                       double bulk_stiffness_pa);
+
+// A cell of springs with a volume force. Plain data, a value.
 class SpringCell {
  public:
   SpringCell() = default;
-  // At rest in `rest`; `share` is how much of the cell there is.
-  SpringCell(const CellCorners& rest, const CellSprings& springs, double bulk_stiffness_pa, double share);
+  // Creates a cell with the rest shape `rest`. `fraction` is the fraction of the cell that belongs to the
+  // body.
+  SpringCell(const CellCorners& rest, const CellSprings& springs, double bulk_stiffness_pa, double fraction);
 
-  // 1/2 k (L - L0)^2 of each spring and 1/2 K_v (J - 1)^2 V0, J = V / V0.
+  // Computes energy, forces and tangent: 1/2 k (L - L0)^2 for each spring and 1/2 K_v (J - 1)^2 V0 with J =
+  // V / V0.
   CellResponse respond(const CellMoves& moves, Tangent tangent) const;
   double energy_j(const CellMoves& moves) const;
 
  private:
-  CellCorners corners_of(const CellMoves& moves) const;
-  // By how much a spring is longer than at rest.
+  CellCorners deformed_corners(const CellMoves& moves) const;
+  // Returns the length of a spring minus its rest length, m.
   double extension_m(std::size_t spring, const CellMoves& moves) const;
 
-  CellCorners rest_{};  // from the middle
+  CellCorners rest_{};  // relative to the centre
   std::array<double, cell_spring_count> stiffness_{}, rest_length_{};
   double bulk_ = 0.0, rest_volume_ = 0.0;  // K_v V0, V0
 };

@@ -2,18 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "engine/base/assert.h"
-#include "engine/material/contact/contact_push.h"
+#include "engine/material/contact/contact_constraints.h"
+#include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
 namespace {
 
-// The surfaces follow their nodes through the refit, a little more or less than the points do that the
-// constraints know: a gap that closes by half at most leaves room for that.
+// The surfaces follow their nodes through the refit and may move slightly more or less than the constrained
+// points. Closing at most half of a gap leaves a margin for that.
 constexpr ContactPace pace{0.5, 0.7};
 
-Vector3 displacement_now(const BodyPoint& side) {
+Vector3 current_displacement(const BodyPoint& side) {
   Vector3 sum = Vector3::Zero();
   for (int i = 0; i < side.point.count; ++i) {
     sum += static_cast<double>(side.point.weight[i]) * side.lattice->displacement(side.point.node[i]);
@@ -21,8 +23,9 @@ Vector3 displacement_now(const BodyPoint& side) {
   return sum;
 }
 
-// Of one body the impulses meet in the nodes that both points share.
-double compliance_between(const BodyPoint& first, const BodyPoint& second) {
+// Returns the velocity change of an impulse between two points, 1/kg. Within one body the impulses overlap
+// in the nodes that both points use.
+double mutual_compliance(const BodyPoint& first, const BodyPoint& second) {
   if (first.body != second.body) {
     return first.point.compliance(*first.lattice) + second.point.compliance(*second.lattice);
   }
@@ -30,19 +33,19 @@ double compliance_between(const BodyPoint& first, const BodyPoint& second) {
   double sum = 0.0;
   for (int i = 0; i < first.point.count; ++i) {
     const int node = first.point.node[i];
-    const double share = first.point.weight[i] - second.point.share_of(node);
-    sum += share * share * static_cast<double>(lattice.inverse_mass(node));
+    const double fraction = first.point.weight[i] - second.point.weight_of_node(node);
+    sum += fraction * fraction * static_cast<double>(lattice.inverse_mass(node));
   }
   for (int i = 0; i < second.point.count; ++i) {
     const int node = second.point.node[i];
-    if (first.point.share_of(node) != 0.0) continue;
-    const double share = second.point.weight[i];
-    sum += share * share * static_cast<double>(lattice.inverse_mass(node));
+    if (first.point.weight_of_node(node) != 0.0) continue;
+    const double fraction = second.point.weight[i];
+    sum += fraction * fraction * static_cast<double>(lattice.inverse_mass(node));
   }
   return sum;
 }
 
-double friction_between(const BodyPoint& first, const BodyPoint& second) {
+double mutual_friction(const BodyPoint& first, const BodyPoint& second) {
   return std::min(first.point.friction(*first.lattice), second.point.friction(*second.lattice));
 }
 
@@ -60,11 +63,11 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   SPOONBILL_ASSERT_DEBUG(first.lattice != nullptr && second.lattice != nullptr);
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
   if (count_ == static_cast<int>(constraints_.size())) return false;
-  const double moved = normal.dot(displacement_now(first) - displacement_now(second));
+  const double moved = normal.dot(current_displacement(first) - current_displacement(second));
   constraints_[count_++] = {first.body,    second.body,
                             first.point,   second.point,
-                            normal,        compliance_between(first, second),
-                            gap_m - moved, friction_between(first, second),
+                            normal,        mutual_compliance(first, second),
+                            gap_m - moved, mutual_friction(first, second),
                             false};
   return true;
 }
@@ -117,6 +120,98 @@ void BodyContacts::mark_touched(int body, std::uint8_t* touched) const {
     if (!constraint.acted) continue;
     if (constraint.first_body == body) constraint.first.mark(touched);
     if (constraint.second_body == body) constraint.second.mark(touched);
+  }
+}
+
+namespace {
+
+auto contact_key(const GroundContact& contact) {
+  return std::make_tuple(contact.body, contact.node);
+}
+
+// Updates the mean push: the plain mean since the node touched down, exponentially weighted after
+// friction_memory_s.
+void remember(GroundContact& contact, double push_n, double h_s) {
+  contact.time_s = std::min(contact.time_s + h_s, friction_memory_s + h_s);
+  contact.mean_push_n += h_s / contact.time_s * (push_n - contact.mean_push_n);
+}
+
+}  // namespace
+
+GroundContacts::GroundContacts(int capacity) : capacity_(static_cast<std::size_t>(capacity)) {
+  SPOONBILL_ASSERT(capacity >= 0);
+  contacts_.reserve(capacity_);
+  last_.reserve(capacity_);
+}
+
+void GroundContacts::begin(const Vector3& normal, double material_time_s) {
+  SPOONBILL_ASSERT(material_time_s > 0.0);
+  SPOONBILL_ASSERT(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
+  std::swap(contacts_, last_);
+  contacts_.clear();
+  search_position_ = 0;
+  last_time_s_ = time_s_;
+  time_s_ = material_time_s;
+  normal_ = normal;
+}
+
+void GroundContacts::forget() {
+  contacts_.clear();
+}
+
+bool GroundContacts::add(int body, const SpringLattice& lattice, int node, double gap_m, double friction) {
+  SPOONBILL_ASSERT_DEBUG(contacts_.empty() || contacts_.back().body < body ||
+                         (contacts_.back().body == body && contacts_.back().node <= node));
+  if (lattice.is_fixed(node)) return true;
+  if (contacts_.size() == capacity_) return false;
+  GroundContact contact{body, node, gap_m, lattice.displacement(node), friction};
+  while (search_position_ < last_.size() && contact_key(last_[search_position_]) < contact_key(contact))
+    ++search_position_;
+  if (search_position_ < last_.size() && contact_key(last_[search_position_]) == contact_key(contact)) {
+    const GroundContact& before = last_[search_position_];
+    contact.force_n = before.impulse_ns / last_time_s_;
+    contact.mean_push_n = before.mean_push_n;
+    contact.time_s = before.time_s;
+  }
+  contacts_.push_back(contact);
+  return true;
+}
+
+std::span<GroundContact> GroundContacts::of_body(int body) {
+  const auto [first, last] =
+      std::equal_range(contacts_.begin(), contacts_.end(), GroundContact{body},
+                       [](const GroundContact& a, const GroundContact& b) { return a.body < b.body; });
+  return {first, last};
+}
+
+void GroundContacts::solve(int body, const LatticeView& view, double h_s, double cap_m_per_s) {
+  for (GroundContact& contact : of_body(body)) {
+    const int n = contact.node;
+    const double inverse_mass = static_cast<double>(view.inverse_mass[n]);
+    const Vector3 displacement(view.dx[n], view.dy[n], view.dz[n]);
+    const Vector3 velocity(view.vx[n], view.vy[n], view.vz[n]);
+    const ContactPush push{contact.gap_m + normal_.dot(displacement - contact.at_m), normal_, velocity,
+                           1.0 / inverse_mass};
+    const double pushed_ns = push.normal_impulse(h_s, ground_pace, cap_m_per_s);
+    remember(contact, pushed_ns / h_s, h_s);
+    if (pushed_ns == 0.0) continue;
+    const Vector3 impulse = pushed_ns * normal_ - push.drag(contact.friction * contact.mean_push_n * h_s);
+    set_velocity(view, n, velocity + inverse_mass * impulse);
+    contact.impulse_ns += impulse;
+  }
+}
+
+Vector3 GroundContacts::impulse_ns(int body) const {
+  Vector3 sum = Vector3::Zero();
+  for (const GroundContact& contact : contacts_) {
+    if (contact.body == body) sum += contact.impulse_ns;
+  }
+  return sum;
+}
+
+void GroundContacts::mark_touched(int body, std::uint8_t* touched) const {
+  for (const GroundContact& contact : contacts_) {
+    if (contact.body == body && !contact.impulse_ns.isZero(0.0)) touched[contact.node] = 1;
   }
 }
 

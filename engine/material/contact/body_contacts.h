@@ -1,45 +1,48 @@
-// Contact between bodies that both give way, or of one with itself: velocity constraints between points of
-// their surfaces, solved within each substep beside those of the tools. What one point gets the other loses,
-// so that momentum stays.
+// Contacts of bodies with each other, with themselves and with the ground.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "engine/material/lattice/embedded_point.h"
+#include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
 
-// A point of a body: `body` is the lattice's place in the views that solve() gets.
+// A point of a body. `body` is the index of its lattice in the views that solve() gets.
 struct BodyPoint {
   int body = 0;
   const SpringLattice* lattice = nullptr;
   EmbeddedPoint point;
 };
 
+// Contacts between two deformable bodies, or of one with itself: velocity constraints between points of
+// their surfaces, solved in each substep next to those of tools. Impulses are equal and opposite, so
+// momentum is conserved.
+//
 // Working memory for the contacts of one tick. One owner, one thread; allocates only in its constructor.
 class BodyContacts {
  public:
   explicit BodyContacts(int capacity);
 
   void clear();
-  // Both may be of the same body, and share nodes. The first point must stay on that side of the second to
-  // which `normal`, a unit vector, points; now it is `gap_m` beyond it, below zero where it is behind. False
-  // when full.
+  // Adds a constraint that keeps the first point on the side of the second to which the unit vector
+  // `normal` points. `gap_m` is its present distance beyond it, negative if it has passed. Both points may
+  // be of the same body and share nodes. Returns false when full.
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m);
 
-  // Begins a tick.
+  // Starts a tick: no constraint has acted.
   void begin();
 
-  // After the kick and before the drift of a substep of h_s.
+  // Solves the constraints. Call after the kick and before the drift of a substep of h_s.
   void solve(std::span<const LatticeView> lattices, float h_s,
              std::span<const float> push_speed_caps_m_per_s);
 
   int count() const { return count_; }
-  // Whether any of a body's, or of two bodies with each other, has acted since begin().
+  // Returns whether any constraint of a body, or between two bodies, has acted since begin().
   bool acted(int body) const;
   bool acted(int body, int other) const;
-  // Marks the nodes of a body's constraints that acted.
+  // Sets the bytes of the nodes of a body's constraints that have acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
  private:
@@ -47,15 +50,89 @@ class BodyContacts {
     int first_body = 0, second_body = 0;
     EmbeddedPoint first, second;
     Vector3 normal = Vector3::UnitY();
-    double compliance = 0.0;  // what an impulse between them gives them of velocity, 1/kg
-    double base_m = 0.0;      // the gap less the part that the displacements have in it
-    double friction = 0.0;    // of the smoother one
+    double compliance = 0.0;  // velocity change per impulse between the points, 1/kg
+    double base_m = 0.0;      // gap minus the part due to displacements
+    double friction = 0.0;    // the smaller coefficient of the two surfaces
     bool acted = false;
   };
   void solve(std::span<const LatticeView> lattices, Constraint& constraint, double h, double cap);
 
   std::vector<Constraint> constraints_;
   int count_ = 0;
+};
+
+// Contact of one node with the ground. Plain data.
+//
+// Friction is limited by the coefficient times the mean push of the last `friction_memory_s`, not by the
+// present push. Friction that followed every oscillation of the push would amplify it, and a body would hop
+// down a slope on which it should stick.
+//
+// Measured friction follows a change of pressure gradually (Prakash 1998), which makes sliding well posed
+// (Ranjith and Rice 2001). Over that time the impulses sum to Coulomb's law.
+struct GroundContact {
+  int body = 0, node = 0;
+  double gap_m = 0.0;
+  Vector3 at_m = Vector3::Zero();  // displacement of the node at which gap_m was measured
+  double friction = 0.0;
+  Vector3 impulse_ns = Vector3::Zero();  // in the present tick
+  // Carried from tick to tick: the mean force in the last tick, the mean push and the contact time.
+  Vector3 force_n = Vector3::Zero();
+  double mean_push_n = 0.0;
+  double time_s = 0.0;
+};
+
+// Averaging time of the push, in material time. A soft body of a centimetre oscillates a few times in it
+// and slides imperceptibly.
+inline constexpr double friction_memory_s = 0.01;
+
+// Rigid ground under bodies: velocity constraints on their nodes. Lattices with springs solve them in each
+// substep, after all other contacts; the implicit solver once a tick.
+//
+// Stores the contacts of one tick and their memory for the next. Each constrains a single node, so one pass
+// solves those of springs exactly, and sticking contacts do not creep. One owner, one thread; allocates
+// only in its constructor.
+class GroundContacts {
+ public:
+  explicit GroundContacts(int capacity);
+
+  // Starts a tick of `material_time_s`; the unit vector `normal` points out of the ground.
+  void begin(const Vector3& normal, double material_time_s);
+  // Adds a node whose attached surface is `gap_m` above the ground, negative if below it. `body` is the
+  // index of the lattice in the views that solve() gets. Call in ascending order of bodies and nodes; a
+  // contact of the last tick keeps its friction state. Fixed nodes are ignored. Returns false when full.
+  bool add(int body, const SpringLattice& lattice, int node, double gap_m, double friction);
+  // Discards all contacts and their friction state.
+  void forget();
+
+  const Vector3& normal() const { return normal_; }
+  std::span<GroundContact> of_body(int body);
+
+  // Solves the contacts of a lattice that its springs step. Call after the kick and before the drift of a
+  // substep of h_s.
+  void solve(int body, const LatticeView& view, double h_s, double push_speed_cap_m_per_s);
+
+  int count() const { return static_cast<int>(contacts_.size()); }
+  // Impulse of the ground on a body since begin(), N s.
+  Vector3 impulse_ns(int body) const;
+  // Sets the bytes of the nodes of a body that the ground has pushed.
+  void mark_touched(int body, std::uint8_t* touched) const;
+
+  // Visits everything that the next tick depends on.
+  template <class Visitor>
+  void visit_state(Visitor&& visit) const {
+    for (const GroundContact& contact : contacts_) {
+      visit(contact.impulse_ns.data(), 3);
+      visit(&contact.mean_push_n, 1);
+      visit(&contact.time_s, 1);
+    }
+  }
+
+ private:
+  std::size_t capacity_;
+  std::vector<GroundContact> contacts_, last_;  // of this tick and of the last one
+  std::size_t search_position_ = 0;             // search position in last_
+  double last_time_s_ = 0.0, time_s_ = 0.0;     // material time of the last tick and of this one
+  Vector3 normal_ = Vector3::UnitY();
 };
 
 }  // namespace spoonbill

@@ -3,16 +3,15 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
-#include "engine/material/contact/contact_push.h"
 
 namespace spoonbill {
 namespace {
 
-// A correction below 1, so that neighbouring points that push the same node do not overshoot together.
+// The correction is below 1, so that neighbouring points that push the same node do not overshoot together.
 constexpr ContactPace pace{1.0, 0.3};
 
-// How fast a tool on its coupling spring follows the hand, rad/s of material time: its mass follows from
-// that, a few nodes' worth in clay, so that neither drags the other about.
+// Frequency at which a coupled tool follows the hand, rad/s of material time. It determines the tool's
+// mass: that of a few nodes of clay, so that neither dominates the other.
 constexpr double coupling_frequency = 60.0;
 
 }  // namespace
@@ -73,14 +72,14 @@ void ContactConstraints::solve(std::span<const LatticeView> lattices, ToolState&
                                double fraction, std::span<const float> caps) {
   SPOONBILL_ASSERT_DEBUG(h > 0.0f && fraction >= 0.0 && fraction < 1.0);
   const double damped = 1.0 + static_cast<double>(h) * coupling_frequency;
-  answered_compliance_ = tool_compliance_ / (damped * damped);
+  response_compliance_ = tool_compliance_ / (damped * damped);
   follow_hand(tool, h, fraction);
   if (motion_.carried.body >= 0) {
     tool_impulse_[motion_.carried.body] += static_cast<double>(h) * carried_force_;
   }
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
-    if (compliance_of(constraint) + answered_compliance_ == 0.0) continue;
+    if (effective_compliance(constraint) + response_compliance_ == 0.0) continue;
     const LatticeView& lattice = lattices[constraint.body];
     const double cap = caps[constraint.body];
     if (constraint.kind == Kind::grip) {
@@ -92,12 +91,12 @@ void ContactConstraints::solve(std::span<const LatticeView> lattices, ToolState&
   tool.position_m += static_cast<double>(h) * tool.velocity_m_per_s;
 }
 
-double ContactConstraints::compliance_of(const Constraint& constraint) const {
+double ContactConstraints::effective_compliance(const Constraint& constraint) const {
   return motion_.body_yields ? constraint.compliance : 0.0;
 }
 
-// The coupling spring and its critical damper, implicit in the tool's velocity: x'' = w^2 (hand - x) + 2 w
-// (hand' - x').
+// Moves the tool by its coupling spring and critical damper, implicit in the tool's velocity: x'' = w^2
+// (hand - x) + 2 w (hand' - x').
 void ContactConstraints::follow_hand(ToolState& tool, double h, double fraction) const {
   const Vector3 hand = motion_.start_m + fraction * (motion_.end_m - motion_.start_m);
   if (tool_compliance_ == 0.0) {
@@ -114,7 +113,7 @@ void ContactConstraints::follow_hand(ToolState& tool, double h, double fraction)
 void ContactConstraints::exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                   const Vector3& impulse) {
   if (motion_.body_yields) constraint.point.push(lattice, impulse);
-  tool.velocity_m_per_s -= answered_compliance_ * impulse;
+  tool.velocity_m_per_s -= response_compliance_ * impulse;
   tool_impulse_[constraint.body] -= impulse;
   constraint.acted = true;
   acted_ = true;
@@ -135,7 +134,7 @@ void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& cons
     gap = distance - motion_.radius_m;
   }
   const ContactPush push{gap, normal, constraint.point.velocity_m_per_s(lattice) - tool.velocity_m_per_s,
-                         1.0 / (compliance_of(constraint) + answered_compliance_)};
+                         1.0 / (effective_compliance(constraint) + response_compliance_)};
   if (const auto impulse = push.impulse(h, pace, cap, constraint.friction)) {
     exchange(lattice, constraint, tool, *impulse);
   }
@@ -145,12 +144,13 @@ void ContactConstraints::solve_grip(const LatticeView& lattice, Constraint& cons
                                     double h, double cap) {
   const Vector3 position = constraint.rest_m + constraint.point.displacement_m(lattice);
   const Vector3 miss = tool.position_m + motion_.orientation * constraint.direction - position;
-  Vector3 wanted = miss * (pace.correction / h);
-  const double speed = wanted.norm();
-  if (speed > cap) wanted *= cap / speed;
+  Vector3 target = miss * (pace.correction / h);
+  const double speed = target.norm();
+  if (speed > cap) target *= cap / speed;
   const Vector3 velocity = constraint.point.velocity_m_per_s(lattice);
   exchange(lattice, constraint, tool,
-           (tool.velocity_m_per_s + wanted - velocity) / (compliance_of(constraint) + answered_compliance_));
+           (tool.velocity_m_per_s + target - velocity) /
+               (effective_compliance(constraint) + response_compliance_));
 }
 
 void ContactConstraints::mark_touched(int body, std::uint8_t* touched) const {

@@ -1,42 +1,89 @@
-// What a tool does to the lattices it touches: velocity constraints on points of their surfaces, solved
-// within each substep. Stable for every stiffness, where a penalty force would need its own step limit.
+// Contacts of a tool with the lattices that it touches: velocity constraints on points of their surfaces,
+// solved in each substep. Stable at any stiffness, where a penalty force would have its own step limit.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "engine/base/geometry.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
 
-// How many lattices are stepped together.
-inline constexpr int lattice_capacity = 9;
-
-// Where the tool is and moves: the proxy, which the material holds off the hand. Plain data, kept from tick
-// to tick.
-struct ToolState {
-  Vector3 position_m = Vector3::Zero();
-  Vector3 velocity_m_per_s = Vector3::Zero();  // of material time
+// Limits on the change of a gap in one substep, as fractions of it.
+struct ContactPace {
+  double closing;     // largest fraction of a gap that may close
+  double correction;  // fraction of a penetration that is corrected
 };
 
-// The held nodes of a lattice that the tool carries about, as if they were part of it: their rest positions
-// are in the tool's frame. For a tool that the hand holds rigidly.
+// Pace of ground contacts. Each node on the ground has its own contact and closes its gap within a substep.
+inline constexpr ContactPace ground_pace{1.0, 0.7};
+
+// Impulse of one contact in one substep: two points that may not pass each other, before the drift of the
+// substep.
+struct ContactPush {
+  double gap_m;      // negative: penetration depth
+  Vector3 normal;    // unit vector along which the points separate
+  Vector3 relative;  // separation velocity, m/s
+  double mass_kg;    // effective mass: 1 / the sum of the compliances
+
+  // Returns the smallest admissible separation speed, m/s: no passing if there is a gap, a partial
+  // correction if there is penetration. `cap_m_per_s` limits the speed of the correction.
+  double target_m_per_s(double h_s, const ContactPace& pace, double cap_m_per_s) const {
+    return gap_m > 0.0 ? -gap_m * pace.closing / h_s : std::min(-gap_m * pace.correction / h_s, cap_m_per_s);
+  }
+  // Returns the impulse along the normal that reaches the admissible speed, N s; never negative.
+  double normal_impulse(double h_s, const ContactPace& pace, double cap_m_per_s) const {
+    return std::max(0.0, (target_m_per_s(h_s, pace, cap_m_per_s) - relative.dot(normal)) * mass_kg);
+  }
+  // Returns the friction impulse that stops the sliding, of at most `max_ns`, to be subtracted.
+  Vector3 drag(double max_ns) const {
+    const Vector3 sliding = relative - relative.dot(normal) * normal;
+    const double slide = sliding.norm() * mass_kg;
+    return (slide > 0.0 ? std::min(slide, max_ns) / slide : 0.0) * mass_kg * sliding;
+  }
+
+  // Returns the normal and friction impulse, or nothing if the points separate fast enough. Coulomb
+  // friction: it stops the sliding up to the coefficient times the normal impulse.
+  std::optional<Vector3> impulse(double h_s, const ContactPace& pace, double cap_m_per_s,
+                                 double friction) const {
+    const double separating = relative.dot(normal);
+    const double target = target_m_per_s(h_s, pace, cap_m_per_s);
+    if (separating >= target) return std::nullopt;
+    const double push = (target - separating) * mass_kg;
+    return push * normal - drag(friction * push);
+  }
+};
+
+// Largest number of lattices that are stepped together.
+inline constexpr int lattice_capacity = 9;
+
+// State of the tool's proxy, which contacts keep apart from the hand. Plain data, stored from tick to tick.
+struct ToolState {
+  Vector3 position_m = Vector3::Zero();
+  Vector3 velocity_m_per_s = Vector3::Zero();  // per material time
+};
+
+// Fixed nodes of a lattice that moves rigidly with the tool. Their rest positions are in the tool's frame.
+// For tools without a coupling spring only.
 struct CarriedNodes {
-  int body = -1;  // the lattice's place in the views; -1 for none
+  int body = -1;  // index of the lattice in the views; -1 for none
   std::span<const int> nodes;
 };
 
-// What the hand does with the tool through one tick, in the world frame.
+// Motion that the hand prescribes for the tool in one tick, in the world frame.
 struct ToolMotion {
   Vector3 start_m = Vector3::Zero();
   Vector3 end_m = Vector3::Zero();
   Quaternion orientation = Quaternion::Identity();
   double radius_m = 0.0;
-  // The spring by which the hand holds the tool, critically damped; 0 = held rigidly.
+  // Stiffness of the critically damped spring between hand and tool; 0 couples them rigidly.
   double coupling_n_per_m = 0.0;
-  bool body_yields = true;  // false: the tool meets the body as it would a wall
+  bool body_yields = true;  // false: the tool meets the body as a rigid wall
   CarriedNodes carried;
 };
 
@@ -46,36 +93,36 @@ class ContactConstraints {
   explicit ContactConstraints(int capacity);
 
   void clear();
-  // Each is false when full. `body` is the lattice's place in the views that solve() gets.
+  // Each add function returns false when full. `body` is the index of the lattice in the views that solve()
+  // gets.
   //
-  // A point that the tool's sphere may push outward but never pulls.
+  // Adds a point that the tool's sphere may push outward but never pulls.
   bool add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point);
-  // A point that must stay beyond a plane that moves with the tool: on that side to which the unit `normal`
-  // points, `offset_m` along it from the tool's centre. Serves tools smaller than a cell and those whose
-  // surface is a plane as far as a tick moves them.
+  // Adds a point that must stay beyond a plane that moves with the tool: on the side to which the unit
+  // vector `normal` points, `offset_m` along it from the tool's centre. For tools smaller than a cell and
+  // for those whose surface is flat over the motion of a tick.
   bool add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
                       const Vector3& normal, double offset_m);
-  // A point gripped by the tool at `offset_m` from its centre, in the tool's frame.
+  // Adds a point gripped by the tool, at `offset_m` from its centre in the tool's frame.
   bool add_grip(int body, const SpringLattice& lattice, const EmbeddedPoint& point, const Vector3& offset_m);
 
-  // Begins a tick of `material_time_s`.
+  // Starts a tick of `material_time_s`.
   void begin(const ToolMotion& motion, double material_time_s);
 
   const ToolMotion& motion() const { return motion_; }
-  // A force on the tool through the coming substep, N, from the nodes that it carries.
-  void pull_tool(const Vector3& force_n) { carried_force_ = force_n; }
+  // Sets the force of the carried nodes on the tool in the coming substep, N.
+  void set_carried_force(const Vector3& force_n) { carried_force_ = force_n; }
 
-  // After the kick and before the drift of a substep of h_s that begins at `fraction` [0 to 1) of the tick.
-  // Pushes on nodes and tool are equal and opposite; then the tool moves.
+  // Solves the constraints and moves the tool. Call after the kick and before the drift of a substep of h_s
+  // that starts at `fraction` [0, 1) of the tick. Impulses on nodes and tool are equal and opposite.
   void solve(std::span<const LatticeView> lattices, ToolState& tool, float h_s, double fraction,
              std::span<const float> push_speed_caps_m_per_s);
 
   int count() const { return count_; }
-  // Over the ticks since begin(): the sum of the impulses that a body gave the tool, N s, and whether any
-  // acted.
+  // Sum of the impulses of a body on the tool since begin(), N s.
   const Vector3& tool_impulse(int body) const { return tool_impulse_[body]; }
   bool acted() const { return acted_; }
-  // Marks the nodes of a body's constraints that acted.
+  // Sets the bytes of the nodes of a body's constraints that have acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
  private:
@@ -84,16 +131,16 @@ class ContactConstraints {
     Kind kind = Kind::sphere_push;
     int body = 0;
     EmbeddedPoint point;
-    Vector3 rest_m = Vector3::Zero();     // of the undeformed embedding
-    Vector3 direction = Vector3::Zero();  // plane push: the normal; grip: the offset in the tool's frame
-    double offset_m = 0.0;                // plane push
-    double compliance = 0.0;              // 1/kg of the point; 0 when every node is held
-    double friction = 0.0;                // of the body's surface; the tool is as rough
+    Vector3 rest_m = Vector3::Zero();     // position in the rest shape
+    Vector3 direction = Vector3::Zero();  // plane push: normal; grip: offset in the tool's frame
+    double offset_m = 0.0;                // plane push only
+    double compliance = 0.0;              // of the point, 1/kg; 0 if all of its nodes are fixed
+    double friction = 0.0;                // of the body's surface; the tool's is the same
     bool acted = false;
   };
   bool add(Kind kind, int body, const SpringLattice& lattice, const EmbeddedPoint& point,
            const Vector3& direction, double offset_m);
-  double compliance_of(const Constraint& constraint) const;
+  double effective_compliance(const Constraint& constraint) const;
   void follow_hand(ToolState& tool, double h, double fraction) const;
   void solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
   void solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
@@ -102,11 +149,12 @@ class ContactConstraints {
   std::vector<Constraint> constraints_;
   int count_ = 0;
   ToolMotion motion_;
-  Vector3 hand_velocity_ = Vector3::Zero();  // m/s of material time
+  Vector3 hand_velocity_ = Vector3::Zero();  // per material time, m/s
   Vector3 carried_force_ = Vector3::Zero();
-  double tool_compliance_ = 0.0;  // 1/kg; 0 where the hand holds it rigidly
-  // What an impulse gives the tool by the end of the substep, when its spring and damper have answered too.
-  double answered_compliance_ = 0.0;
+  double tool_compliance_ = 0.0;  // 1/kg; 0 if the hand holds the tool rigidly
+  // Velocity change of the tool per impulse by the end of a substep, including the response of its spring
+  // and damper, 1/kg.
+  double response_compliance_ = 0.0;
   std::array<Vector3, lattice_capacity> tool_impulse_;
   bool acted_ = false;
 };

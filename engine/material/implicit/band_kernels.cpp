@@ -5,13 +5,13 @@ namespace {
 
 constexpr int block = band_block;
 
-inline void take_off(double* __restrict c, const double* a, double by, int count) {
+inline void subtract_scaled(double* __restrict c, const double* a, double by, int count) {
   for (int i = 0; i < count; ++i) c[i] -= by * a[i];
 }
 
-// Four columns at once: what is read and written of c is then a quarter.
-inline void take_off(double* __restrict c, const double* a0, const double* a1, const double* a2,
-                     const double* a3, int count) {
+// Four columns at once need a quarter of the reads and writes of c.
+inline void subtract_scaled(double* __restrict c, const double* a0, const double* a1, const double* a2,
+                            const double* a3, int count) {
   const double b0 = a0[0], b1 = a1[0], b2 = a2[0], b3 = a3[0];
   for (int i = 0; i < count; ++i) c[i] -= (b0 * a0[i] + b1 * a1[i]) + (b2 * a2[i] + b3 * a3[i]);
 }
@@ -22,11 +22,11 @@ void factor(const BandView& band, int from, int to, double least) {
     double* const c = band.columns + static_cast<long>(j) * band.stride;
     const auto row_j = [&](int k) { return band.columns + static_cast<long>(k) * band.stride + (j - k); };
     int k = j < half ? 0 : j - half;
-    // Of the four, the last reaches furthest down; the others are zero there.
+    // The last of the four columns reaches furthest down; the others are zero there.
     for (; k + 3 < j; k += 4) {
-      take_off(c, row_j(k), row_j(k + 1), row_j(k + 2), row_j(k + 3), half - (j - k) + 4);
+      subtract_scaled(c, row_j(k), row_j(k + 1), row_j(k + 2), row_j(k + 3), half - (j - k) + 4);
     }
-    for (; k < j; ++k) take_off(c, row_j(k), row_j(k)[0], half - (j - k) + 1);
+    for (; k < j; ++k) subtract_scaled(c, row_j(k), row_j(k)[0], half - (j - k) + 1);
     const double pivot = c[0] > least ? c[0] : least;
     const double inverse = 1.0 / __builtin_sqrt(pivot);
     for (int i = 1; i <= half; ++i) c[i] *= inverse;
@@ -39,11 +39,11 @@ void forward(const BandView& band, int from, double* x) {
     const double* const c = band.columns + static_cast<long>(j) * band.stride;
     const double here = x[j] * c[0];
     x[j] = here;
-    take_off(x + j + 1, c + 1, here, band.stride - block);
+    subtract_scaled(x + j + 1, c + 1, here, band.stride - block);
   }
 }
 
-inline double sum_of(const double* lanes) {
+inline double sum_lanes(const double* lanes) {
   return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
 }
 
@@ -54,7 +54,7 @@ void backward(const BandView& band, double* x) {
     for (int start = 1; start <= band.half_band; start += block) {
       for (int l = 0; l < block; ++l) lanes[l] += c[start + l] * x[j + start + l];
     }
-    x[j] = (x[j] - sum_of(lanes)) * c[0];
+    x[j] = (x[j] - sum_lanes(lanes)) * c[0];
   }
 }
 
@@ -63,7 +63,7 @@ double dot(const double* a, const double* b, int size) {
   for (int start = 0; start < size; start += block) {
     for (int l = 0; l < block; ++l) lanes[l] += a[start + l] * b[start + l];
   }
-  return sum_of(lanes);
+  return sum_lanes(lanes);
 }
 
 }  // namespace

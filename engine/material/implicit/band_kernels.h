@@ -1,29 +1,31 @@
-// Cholesky factors of a band matrix, in double, compiled once for each instruction set: the same bits with
-// every one. Uses no standard library, as engine/bspline/evaluate_kernels.h explains.
+// Cholesky factorisation of a band matrix in double precision, compiled once for each instruction set with
+// the same bits. Uses no standard library; engine/bspline/evaluate_kernels.h explains why.
 #pragma once
 
 namespace spoonbill {
 
-// Column j holds rows j to j + half_band from columns + j * stride on, then zeros. Factored, its first entry
-// is one over the pivot. Vectors have `stride` zeros after their last entry.
+// A symmetric band matrix or its factor. Column j holds rows j to j + half_band from columns + j * stride
+// on, then zeros. In a factor, the first entry of a column is the inverse of the pivot. Vectors have
+// `stride` zeros after their last entry.
 struct BandView {
   int size = 0;
   int half_band = 0;
-  int stride = 0;  // a multiple of band_block, at least band_block beyond half_band
+  int stride = 0;  // a multiple of band_block, at least band_block more than half_band
   double* columns = nullptr;
 };
 
 inline constexpr int band_block = 8;
 
 struct BandKernels {
-  // Columns [from, to) of the lower factor in place, those before being factored: L L^T = A. A pivot below
-  // `least` counts as that, so that what rounding made indefinite still has factors.
+  // Factorises columns [from, to) in place: L L^T = A. The columns before `from` must be factorised. A
+  // pivot below `least` is set to it, so that a matrix that rounding made indefinite still has a factor.
   void (*factor)(const BandView&, int from, int to, double least);
-  // x <- L^-1 x, where x is zero before `from`.
+  // Sets x to L^-1 x, where x is zero before `from`.
   void (*forward)(const BandView&, int from, double* x);
-  // x <- L^-T x.
+  // Sets x to L^-T x.
   void (*backward)(const BandView&, double* x);
-  // In lanes, so that the order of the sum is the same on every processor. Whole blocks.
+  // Sums in lanes, so that the order is the same on every processor. `size` must be a multiple of
+  // band_block.
   double (*dot)(const double* a, const double* b, int size);
 };
 

@@ -4,7 +4,7 @@ namespace spoonbill::SPOONBILL_KERNELS {
 namespace {
 
 constexpr int lanes = cell_lanes;
-constexpr int turn_steps = 3;
+constexpr int rotation_steps = 3;
 
 using Lanes = double[lanes];
 using Field = double[cell_axes][lanes];
@@ -13,7 +13,7 @@ inline double magnitude(double a) {
   return a < 0.0 ? -a : a;
 }
 
-// Relative to the mean of the corners.
+// Gathers a nodal field relative to the mean of the corners.
 inline void gather(const CellBatch& b, const double* from, Field& to) {
   for (int c = 0; c < 8; ++c) {
     for (int l = 0; l < lanes; ++l) {
@@ -35,7 +35,7 @@ inline void gather(const CellBatch& b, const double* from, Field& to) {
   }
 }
 
-// Turned by R = 1 + turn.
+// Adds the field, rotated by R = 1 + turn and scaled, to the nodes.
 inline void scatter(const CellBatch& b, const Field& from, double scale, double* to) {
   for (int c = 0; c < 8; ++c) {
     Lanes x, y, z;
@@ -55,8 +55,8 @@ inline void scatter(const CellBatch& b, const Field& from, double scale, double*
   }
 }
 
-// R^T of each corner's vector.
-inline void turn_back(const CellBatch& b, Field& field) {
+// Rotates each corner's vector by R^T.
+inline void rotate_back(const CellBatch& b, Field& field) {
   for (int c = 0; c < 8; ++c) {
     for (int l = 0; l < lanes; ++l) {
       const double x = field[3 * c][l], y = field[3 * c + 1][l], z = field[3 * c + 2][l];
@@ -71,8 +71,8 @@ struct Matrix {
   double at[9][lanes];
 };
 
-// The change of the deformation: sum d_i g_i^T.
-inline void change_of(const CellBatch& b, const Field& moved, Matrix& change) {
+// Computes the displacement gradient sum d_i g_i^T.
+inline void compute_gradient(const CellBatch& b, const Field& moved, Matrix& change) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
       double* const to = change.at[3 * row + column];
@@ -84,8 +84,8 @@ inline void change_of(const CellBatch& b, const Field& moved, Matrix& change) {
   }
 }
 
-// R - 1 = 2 w [v] + 2 [v]^2.
-inline void take_turn(CellBatch& b) {
+// Computes R - 1 = 2 w [v] + 2 [v]^2.
+inline void compute_turn(CellBatch& b) {
   for (int l = 0; l < lanes; ++l) {
     const double w = b.quaternion[0][l], x = b.quaternion[1][l], y = b.quaternion[2][l],
                  z = b.quaternion[3][l];
@@ -101,8 +101,9 @@ inline void take_turn(CellBatch& b) {
   }
 }
 
-// S - 1 = T^T + H + T^T H for the turn T and the change H, in which small numbers keep their digits.
-inline void stretch_of(const CellBatch& b, const Matrix& h, Matrix& stretch) {
+// Computes S - 1 = T^T + H + T^T H for the turn T and the displacement gradient H, in a form that keeps the
+// digits of small values.
+inline void compute_stretch(const CellBatch& b, const Matrix& h, Matrix& stretch) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
       for (int l = 0; l < lanes; ++l) {
@@ -114,26 +115,27 @@ inline void stretch_of(const CellBatch& b, const Matrix& h, Matrix& stretch) {
   }
 }
 
-// (tr S - S)^-1, S made symmetric; where a crushed cell has none, as of a cell that is not strained.
-inline void take_turning(CellBatch& b, const Matrix& s) {
+// Computes (tr S - S)^-1 for the symmetric part of S. A crushed cell without an inverse gets that of an
+// unstrained one.
+inline void compute_spin_map(CellBatch& b, const Matrix& s) {
   for (int l = 0; l < lanes; ++l) {
     const double xx = 1.0 + s.at[0][l], yy = 1.0 + s.at[4][l], zz = 1.0 + s.at[8][l];
     const double xy = 0.5 * (s.at[1][l] + s.at[3][l]), xz = 0.5 * (s.at[2][l] + s.at[6][l]),
                  yz = 0.5 * (s.at[5][l] + s.at[7][l]);
     const double a = yy + zz, d = xx + zz, f = xx + yy;
-    const double of_a = d * f - yz * yz, of_b = xy * f + yz * xz, of_c = xy * yz + d * xz;
-    const double determinant = a * of_a - xy * of_b - xz * of_c;
+    const double minor_a = d * f - yz * yz, minor_b = xy * f + yz * xz, minor_c = xy * yz + d * xz;
+    const double determinant = a * minor_a - xy * minor_b - xz * minor_c;
     const bool regular = a > 0.1 && d > 0.1 && f > 0.1 && determinant > 0.1;
     const double inverse = regular ? 1.0 / determinant : 0.0, plain = regular ? 0.0 : 0.5;
-    b.turning[0][l] = plain + inverse * of_a;
-    b.turning[1][l] = inverse * of_b;
-    b.turning[2][l] = inverse * of_c;
-    b.turning[3][l] = inverse * of_b;
-    b.turning[4][l] = plain + inverse * (a * f - xz * xz);
-    b.turning[5][l] = inverse * (a * yz + xy * xz);
-    b.turning[6][l] = inverse * of_c;
-    b.turning[7][l] = inverse * (a * yz + xy * xz);
-    b.turning[8][l] = plain + inverse * (a * d - xy * xy);
+    b.spin_map[0][l] = plain + inverse * minor_a;
+    b.spin_map[1][l] = inverse * minor_b;
+    b.spin_map[2][l] = inverse * minor_c;
+    b.spin_map[3][l] = inverse * minor_b;
+    b.spin_map[4][l] = plain + inverse * (a * f - xz * xz);
+    b.spin_map[5][l] = inverse * (a * yz + xy * xz);
+    b.spin_map[6][l] = inverse * minor_c;
+    b.spin_map[7][l] = inverse * (a * yz + xy * xz);
+    b.spin_map[8][l] = plain + inverse * (a * d - xy * xy);
   }
 }
 
@@ -141,23 +143,23 @@ struct Rotation {
   double x[lanes], y[lanes], z[lanes];
 };
 
-inline void turning_times(const CellBatch& b, const Rotation& a, Rotation& result) {
+inline void spin_map_times(const CellBatch& b, const Rotation& a, Rotation& result) {
   for (int l = 0; l < lanes; ++l) {
-    result.x[l] = b.turning[0][l] * a.x[l] + b.turning[1][l] * a.y[l] + b.turning[2][l] * a.z[l];
-    result.y[l] = b.turning[3][l] * a.x[l] + b.turning[4][l] * a.y[l] + b.turning[5][l] * a.z[l];
-    result.z[l] = b.turning[6][l] * a.x[l] + b.turning[7][l] * a.y[l] + b.turning[8][l] * a.z[l];
+    result.x[l] = b.spin_map[0][l] * a.x[l] + b.spin_map[1][l] * a.y[l] + b.spin_map[2][l] * a.z[l];
+    result.y[l] = b.spin_map[3][l] * a.x[l] + b.spin_map[4][l] * a.y[l] + b.spin_map[5][l] * a.z[l];
+    result.z[l] = b.spin_map[6][l] * a.x[l] + b.spin_map[7][l] * a.y[l] + b.spin_map[8][l] * a.z[l];
   }
 }
 
-// At most half a radian a step: beyond, the step is no better than its direction.
-inline void turn_further(CellBatch& b, const Matrix& s) {
+// Rotates by at most half a radian per step; beyond that, only the direction of a step is useful.
+inline void rotate_further(CellBatch& b, const Matrix& s) {
   Rotation skew, w;
   for (int l = 0; l < lanes; ++l) {
     skew.x[l] = s.at[7][l] - s.at[5][l];
     skew.y[l] = s.at[2][l] - s.at[6][l];
     skew.z[l] = s.at[3][l] - s.at[1][l];
   }
-  turning_times(b, skew, w);
+  spin_map_times(b, skew, w);
   for (int l = 0; l < lanes; ++l) {
     const double size = magnitude(w.x[l]) + magnitude(w.y[l]) + magnitude(w.z[l]);
     const double half = 0.5 * (size > 0.5 ? 0.5 / size : 1.0);
@@ -176,21 +178,21 @@ inline void turn_further(CellBatch& b, const Matrix& s) {
   }
 }
 
-inline void follow_turn(CellBatch& b, const Field& moved) {
+inline void update_turn(CellBatch& b, const Field& moved) {
   Matrix change, stretch;
-  change_of(b, moved, change);
-  for (int step = 0; step < turn_steps; ++step) {
-    take_turn(b);
-    stretch_of(b, change, stretch);
-    take_turning(b, stretch);
-    turn_further(b, stretch);
+  compute_gradient(b, moved, change);
+  for (int step = 0; step < rotation_steps; ++step) {
+    compute_turn(b);
+    compute_stretch(b, change, stretch);
+    compute_spin_map(b, stretch);
+    rotate_further(b, stretch);
   }
-  take_turn(b);
-  stretch_of(b, change, stretch);
-  take_turning(b, stretch);
+  compute_turn(b);
+  compute_stretch(b, change, stretch);
+  compute_spin_map(b, stretch);
 }
 
-// K times a field, from its lower half.
+// Computes K times a field, from the lower half of K.
 inline void stiffness_times(const CellBatch& b, const Field& field, Field& result) {
   for (int a = 0; a < cell_axes; ++a) {
     for (int l = 0; l < lanes; ++l) result[a][l] = 0.0;
@@ -211,18 +213,18 @@ inline void stiffness_times(const CellBatch& b, const Field& field, Field& resul
   }
 }
 
-// f <- P^T f = f + G^T [x~]^T f: with m = sum x~_i x f_i, f_i + g_i x (T m).
-inline void follow_transposed(const CellBatch& b, Field& f) {
+// Sets f to P^T f = f + G^T [x~]^T f: with m = sum x~_i x f_i, f_i + g_i x (T m).
+inline void project_transposed(const CellBatch& b, Field& f) {
   Rotation moment, m;
   for (int l = 0; l < lanes; ++l) moment.x[l] = moment.y[l] = moment.z[l] = 0.0;
   for (int c = 0; c < 24; c += 3) {
     for (int l = 0; l < lanes; ++l) {
-      moment.x[l] += b.back[c + 1][l] * f[c + 2][l] - b.back[c + 2][l] * f[c + 1][l];
-      moment.y[l] += b.back[c + 2][l] * f[c][l] - b.back[c][l] * f[c + 2][l];
-      moment.z[l] += b.back[c][l] * f[c + 1][l] - b.back[c + 1][l] * f[c][l];
+      moment.x[l] += b.rotated_back[c + 1][l] * f[c + 2][l] - b.rotated_back[c + 2][l] * f[c + 1][l];
+      moment.y[l] += b.rotated_back[c + 2][l] * f[c][l] - b.rotated_back[c][l] * f[c + 2][l];
+      moment.z[l] += b.rotated_back[c][l] * f[c + 1][l] - b.rotated_back[c + 1][l] * f[c][l];
     }
   }
-  turning_times(b, moment, m);
+  spin_map_times(b, moment, m);
   for (int c = 0; c < 24; c += 3) {
     for (int l = 0; l < lanes; ++l) {
       const double x = b.gradient[c][l], y = b.gradient[c + 1][l], z = b.gradient[c + 2][l];
@@ -233,8 +235,8 @@ inline void follow_transposed(const CellBatch& b, Field& f) {
   }
 }
 
-// d <- P d = d - w x x~, w = T sum g_i x d_i.
-inline void follow(const CellBatch& b, Field& d) {
+// Sets d to P d = d - w x x~, with w = T sum g_i x d_i.
+inline void project(const CellBatch& b, Field& d) {
   Rotation spin, w;
   for (int l = 0; l < lanes; ++l) spin.x[l] = spin.y[l] = spin.z[l] = 0.0;
   for (int c = 0; c < 24; c += 3) {
@@ -245,10 +247,10 @@ inline void follow(const CellBatch& b, Field& d) {
       spin.z[l] += x * d[c + 1][l] - y * d[c][l];
     }
   }
-  turning_times(b, spin, w);
+  spin_map_times(b, spin, w);
   for (int c = 0; c < 24; c += 3) {
     for (int l = 0; l < lanes; ++l) {
-      const double x = b.back[c][l], y = b.back[c + 1][l], z = b.back[c + 2][l];
+      const double x = b.rotated_back[c][l], y = b.rotated_back[c + 1][l], z = b.rotated_back[c + 2][l];
       d[c][l] -= w.y[l] * z - w.z[l] * y;
       d[c + 1][l] -= w.z[l] * x - w.x[l] * z;
       d[c + 2][l] -= w.x[l] * y - w.y[l] * x;
@@ -256,8 +258,8 @@ inline void follow(const CellBatch& b, Field& d) {
   }
 }
 
-// R^T (X + d) - X = d + T^T (X + d), and x~.
-inline void strain_of(CellBatch& b, const Field& moved, Field& strain) {
+// Computes R^T (X + d) - X = d + T^T (X + d), and x~.
+inline void compute_strain(CellBatch& b, const Field& moved, Field& strain) {
   for (int c = 0; c < 24; c += 3) {
     for (int l = 0; l < lanes; ++l) {
       const double x = b.rest[c][l] + moved[c][l], y = b.rest[c + 1][l] + moved[c + 1][l],
@@ -268,19 +270,19 @@ inline void strain_of(CellBatch& b, const Field& moved, Field& strain) {
     }
   }
   for (int a = 0; a < cell_axes; ++a) {
-    for (int l = 0; l < lanes; ++l) b.back[a][l] = b.rest[a][l] + strain[a][l];
+    for (int l = 0; l < lanes; ++l) b.rotated_back[a][l] = b.rest[a][l] + strain[a][l];
   }
 }
 
-void take_forces(CellBatch* batches, int count, const double* moved, double* force) {
+void compute_forces(CellBatch* batches, int count, const double* moved, double* force) {
   for (int k = 0; k < count; ++k) {
     CellBatch& b = batches[k];
     Field at, strain, plain;
     gather(b, moved, at);
-    follow_turn(b, at);
-    strain_of(b, at, strain);
+    update_turn(b, at);
+    compute_strain(b, at, strain);
     stiffness_times(b, strain, plain);
-    follow_transposed(b, plain);
+    project_transposed(b, plain);
     scatter(b, plain, -1.0, force);
   }
 }
@@ -290,16 +292,16 @@ void apply(const CellBatch* batches, int count, double scale, const double* fiel
     const CellBatch& b = batches[k];
     Field at, plain;
     gather(b, field, at);
-    turn_back(b, at);
-    follow(b, at);
+    rotate_back(b, at);
+    project(b, at);
     stiffness_times(b, at, plain);
-    follow_transposed(b, plain);
+    project_transposed(b, plain);
     scatter(b, plain, scale, out);
   }
 }
 
 }  // namespace
 
-const CellKernels cell_kernels = {take_forces, apply};
+const CellKernels cell_kernels = {compute_forces, apply};
 
 }  // namespace spoonbill::SPOONBILL_KERNELS

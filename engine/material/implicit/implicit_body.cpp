@@ -4,23 +4,143 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/material/implicit/block_cell.h"
 
 namespace spoonbill {
+
+std::vector<Overlap> find_overlaps(int block_cell, int block_count, int lattice_count) {
+  SPOONBILL_ASSERT(block_count >= 2 && lattice_count >= 2);
+  SPOONBILL_ASSERT(block_cell >= 0 && block_cell < block_count - 1);
+  // Overlaps below this length are due to rounding.
+  constexpr double least = 1e-9;
+  std::vector<Overlap> result;
+  const double scale = static_cast<double>(block_count - 1) / (lattice_count - 1);
+  for (int cell = 0; cell + 1 < lattice_count; ++cell) {
+    const double low = std::max(2.0 * (cell * scale - block_cell) - 1.0, -1.0);
+    const double high = std::min(2.0 * ((cell + 1) * scale - block_cell) - 1.0, 1.0);
+    if (high - low > least) result.push_back({cell, low, high});
+  }
+  return result;
+}
+
+namespace {
+
+using Part = BlockMaterials::Part;
+
+// Appends a part, or merges it with the last one if it follows that along j and has the same material.
+void add_part(const Part& part, std::vector<Part>& parts) {
+  if (!parts.empty()) {
+    Part& last = parts.back();
+    const bool follows = last.material == part.material && last.high.y() == part.low.y() &&
+                         last.low.x() == part.low.x() && last.low.z() == part.low.z();
+    if (follows) {
+      last.high.y() = part.high.y();
+      return;
+    }
+  }
+  parts.push_back(part);
+}
+
+// Merges the parts of a cell of one material.
+std::vector<Part> merge_parts(std::vector<Part> parts) {
+  const bool alike = std::all_of(parts.begin(), parts.end(),
+                                 [&](const Part& part) { return part.material == parts[0].material; });
+  if (!alike) return parts;
+  return {Part{-Vector3::Ones(), Vector3::Ones(), parts[0].material}};
+}
+
+}  // namespace
+
+BlockMaterials make_block_materials(const LatticeMaterials& of, const std::array<int, 3>& lattice_count,
+                                    const std::array<int, 3>& block_count) {
+  BlockMaterials result(of.own());
+  if (!of.has_several_materials()) return result;
+  result.materials = of.materials;
+  LatticeMesh lattice, block;  // used only to index cells
+  lattice.count = lattice_count;
+  block.count = block_count;
+  result.parts_by_cell.resize(block.cell_count());
+  for (int i = 0; i + 1 < block_count[0]; ++i) {
+    const std::vector<Overlap> along_i = find_overlaps(i, block_count[0], lattice_count[0]);
+    for (int j = 0; j + 1 < block_count[1]; ++j) {
+      const std::vector<Overlap> along_j = find_overlaps(j, block_count[1], lattice_count[1]);
+      for (int k = 0; k + 1 < block_count[2]; ++k) {
+        std::vector<Part> parts;
+        for (const Overlap& ck : find_overlaps(k, block_count[2], lattice_count[2])) {
+          for (const Overlap& ci : along_i) {
+            for (const Overlap& cj : along_j) {
+              add_part({{ci.low, cj.low, ck.low},
+                        {ci.high, cj.high, ck.high},
+                        of.index_of(lattice.cell_index(ci.cell, cj.cell, ck.cell))},
+                       parts);
+            }
+          }
+        }
+        result.parts_by_cell[block.cell_index(i, j, k)] = merge_parts(std::move(parts));
+      }
+    }
+  }
+  return result;
+}
+
+std::vector<BlockMaterials::Part> cell_parts(const BlockMaterials& materials, std::size_t cell) {
+  if (materials.parts_by_cell.empty()) return {BlockMaterials::Part{}};
+  return materials.parts_by_cell[cell];
+}
+
+CellMatrix BlockCell::stiffness() const {
+  SPOONBILL_ASSERT(!parts.empty() && materials != nullptr);
+  std::vector<HexahedronPart> elastic;
+  for (const BlockMaterials::Part& part : parts) {
+    const Material& material = (*materials)[part.material];
+    elastic.push_back({part.low, part.high, material.youngs_modulus_pa, material.poissons_ratio});
+  }
+  return hexahedron_stiffness(corners, elastic);
+}
+
+std::array<double, 8> BlockCell::masses() const {
+  std::array<double, 8> result{};
+  if (parts.size() == 1) {
+    result.fill((*materials)[parts[0].material].density_kg_per_m3 * fraction * cell_volume(corners) / 8.0);
+    return result;
+  }
+  for (const BlockMaterials::Part& part : parts) {
+    const std::array<double, 8> volumes = part_volumes(corners, part.low, part.high);
+    for (std::size_t c = 0; c < 8; ++c) {
+      result[c] += (*materials)[part.material].density_kg_per_m3 * fraction * volumes[c];
+    }
+  }
+  return result;
+}
+
+void BlockCell::report(const CellMatrix& stiffness, LatticeReport& report) const {
+  report.worst_jacobian = std::min(report.worst_jacobian, smallest_jacobian_ratio(corners));
+  std::vector<double> filled(materials->size(), 0.0);
+  for (const BlockMaterials::Part& part : parts) {
+    filled[part.material] += (part.high - part.low).prod() / 8.0;
+  }
+  for (std::size_t m = 0; m < filled.size(); ++m) {
+    if (filled[m] == 0.0) continue;
+    const double youngs = (*materials)[m].youngs_modulus_pa, poisson = (*materials)[m].poissons_ratio;
+    const CellMatrix alone = parts.size() == 1 ? stiffness : hexahedron_stiffness(corners, youngs, poisson);
+    report.add(filled[m] * volume_m3(), achieved_elasticity(corners, alone), youngs, poisson);
+  }
+}
+
 namespace {
 
 constexpr int iteration_limit = 4;
-// Of the residual that a step begins with, in the norm of the preconditioner.
-constexpr double enough = 1e-4;
+// Residual at which a solution is accepted, relative to the initial one, in the norm of the preconditioner.
+constexpr double accepted_residual = 1e-4;
 constexpr int power_steps = 200;
-// Of a cell, in a step.
+// Largest displacement of a node in a step, in cells.
 constexpr double speed_cap_cells = 0.5;
 
 template <class Kernels>
-const Kernels& chosen(InstructionSet set, const Kernels& baseline, const Kernels& avx2,
-                      const Kernels& avx512) {
+const Kernels& choose_kernels(InstructionSet set, const Kernels& baseline, const Kernels& avx2,
+                              const Kernels& avx512) {
   switch (set) {
     case InstructionSet::avx512:
       return avx512;
@@ -37,12 +157,12 @@ int rounded_up(int count, int block) {
 }
 
 void take_cell(CellBatch& batch, int lane, const CellCorners& corners, const CellMatrix& stiffness) {
-  Vector3 middle = Vector3::Zero();
-  for (const Vector3& corner : corners) middle += corner / 8.0;
-  const CellGradients gradients = middle_gradients(corners);
+  Vector3 centre = Vector3::Zero();
+  for (const Vector3& corner : corners) centre += corner / 8.0;
+  const CellGradients gradients = centre_gradients(corners);
   for (int c = 0; c < 8; ++c) {
     for (int axis = 0; axis < 3; ++axis) {
-      batch.rest[3 * c + axis][lane] = corners[static_cast<std::size_t>(c)][axis] - middle[axis];
+      batch.rest[3 * c + axis][lane] = corners[static_cast<std::size_t>(c)][axis] - centre[axis];
       batch.gradient[3 * c + axis][lane] = gradients(c, axis);
     }
   }
@@ -62,16 +182,19 @@ Result<ImplicitBody> ImplicitBody::make(const LatticeMesh& mesh, const BlockMate
     if (const Status status = check_material(material); !status.ok()) return status.error();
   }
   for (const int count : mesh.count) {
-    if (count < 2) return Error{"lattice: node counts must be at least 2 in each direction"};
+    if (count < 2)
+      return Error{ErrorCode::out_of_range, "lattice: node counts must be at least 2 in each direction",
+                   "nodes"};
   }
   if (const Status status = check_cells(mesh); !status.ok()) return status.error();
-  ImplicitBody body(
-      mesh,
-      chosen(set, kernels_baseline::band_kernels, kernels_avx2::band_kernels, kernels_avx512::band_kernels),
-      chosen(set, kernels_baseline::cell_kernels, kernels_avx2::cell_kernels, kernels_avx512::cell_kernels));
-  body.take_cells(materials);
-  body.take_damping(materials);
-  body.hold(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
+  ImplicitBody body(mesh,
+                    choose_kernels(set, kernels_baseline::band_kernels, kernels_avx2::band_kernels,
+                                   kernels_avx512::band_kernels),
+                    choose_kernels(set, kernels_baseline::cell_kernels, kernels_avx2::cell_kernels,
+                                   kernels_avx512::cell_kernels));
+  body.add_cells(materials);
+  body.set_damping(materials);
+  body.fix_nodes(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
   return body;
 }
 
@@ -82,14 +205,14 @@ ImplicitBody::ImplicitBody(const LatticeMesh& mesh, const BandKernels& band, con
       cell_size_(mesh.mean_edge()),
       size_(3 * mesh.node_count()),
       factor_(mesh, band) {
-  for (Doubles* a : {&mass3_, &free_, &moved_, &velocity_, &applied_, &held_velocity_, &force_, &residual_,
+  for (Doubles* a : {&mass3_, &free_, &moved_, &velocity_, &applied_, &fixed_velocity_, &force_, &residual_,
                      &direction_, &image_, &conditioned_}) {
     a->assign(static_cast<std::size_t>(factor_.padded_size()), 0.0);
   }
   mass_.assign(static_cast<std::size_t>(mesh.node_count()), 0.0);
 }
 
-void ImplicitBody::take_cells(const BlockMaterials& materials) {
+void ImplicitBody::add_cells(const BlockMaterials& materials) {
   block_.layer_cells = (mesh_.count[0] - 1) * (mesh_.count[1] - 1);
   double volume_m3 = 0.0;
   for (int k = 0; k + 1 < mesh_.count[2]; ++k) {
@@ -102,11 +225,11 @@ void ImplicitBody::take_cells(const BlockMaterials& materials) {
           block_.batches.back() = {};
           lane = 0;
         }
-        const BlockCell cell{mesh_.cell(i, j, k), mesh_.share(i, j, k),
-                             parts_of(materials, mesh_.cell_index(i, j, k)), &materials.materials};
+        const BlockCell cell{mesh_.cell(i, j, k), mesh_.cell_fraction(i, j, k),
+                             cell_parts(materials, mesh_.cell_index(i, j, k)), &materials.materials};
         CellBatch& batch = block_.batches.back();
         const CellMatrix stiffness = cell.stiffness();
-        take_cell(batch, lane, cell.corners, cell.share * stiffness);
+        take_cell(batch, lane, cell.corners, cell.fraction * stiffness);
         cell.report(stiffness, report_);
         volume_m3 += cell.volume_m3();
         const std::array<double, 8> masses = cell.masses();
@@ -117,7 +240,7 @@ void ImplicitBody::take_cells(const BlockMaterials& materials) {
         }
         for (int rest = lane; rest < cell_lanes; ++rest) {
           batch.quaternion[0][rest] = 1.0;
-          for (const int diagonal : {0, 4, 8}) batch.turning[diagonal][rest] = 0.5;
+          for (const int diagonal : {0, 4, 8}) batch.spin_map[diagonal][rest] = 0.5;
         }
         ++lane;
       }
@@ -127,12 +250,12 @@ void ImplicitBody::take_cells(const BlockMaterials& materials) {
   report_.divide_by(volume_m3);
 }
 
-// The largest eigenvalue of M^-1 K, by power iteration.
+// Returns the largest eigenvalue of M^-1 K by power iteration, rad^2/s^2.
 double ImplicitBody::fastest_square() {
-  std::uint32_t mixed = 1;
+  std::uint32_t random = 1;
   for (int n = 0; n < size_; ++n) {
-    mixed = mixed * 1664525u + 1013904223u;
-    direction_[static_cast<std::size_t>(n)] = static_cast<double>(mixed >> 16) / 32768.0 - 1.0;
+    random = random * 1664525u + 1013904223u;
+    direction_[static_cast<std::size_t>(n)] = static_cast<double>(random >> 16) / 32768.0 - 1.0;
   }
   double square = 0.0;
   for (int step = 0; step < power_steps; ++step) {
@@ -153,23 +276,25 @@ double ImplicitBody::fastest_square() {
   return square;
 }
 
-// As springs are damped: the ratio is of the fastest mode.
-void ImplicitBody::take_damping(const BlockMaterials& materials) {
+// Sets the damping time from the stiffest material's damping ratio, which applies at the fastest mode, as
+// for springs.
+void ImplicitBody::set_damping(const BlockMaterials& materials) {
   const Material& stiffest = *std::max_element(
       materials.materials.begin(), materials.materials.end(),
       [](const Material& a, const Material& b) { return a.youngs_modulus_pa < b.youngs_modulus_pa; });
   std::fill(force_.begin(), force_.end(), 0.0);
-  cells_->take_forces(block_.batches.data(), static_cast<int>(block_.batches.size()), moved_.data(),
-                      force_.data());
+  cells_->compute_forces(block_.batches.data(), static_cast<int>(block_.batches.size()), moved_.data(),
+                         force_.data());
   damping_time_ = 2.0 * stiffest.damping_ratio / std::sqrt(fastest_square());
 }
 
-void ImplicitBody::hold(std::span<const std::uint8_t> held) {
-  SPOONBILL_ASSERT(held.size() == static_cast<std::size_t>(node_count()));
-  has_held_nodes_ = std::find(held.begin(), held.end(), std::uint8_t{1}) != held.end();
+void ImplicitBody::fix_nodes(std::span<const std::uint8_t> fixed) {
+  SPOONBILL_ASSERT(fixed.size() == static_cast<std::size_t>(node_count()));
+  has_fixed_nodes_ = std::find(fixed.begin(), fixed.end(), std::uint8_t{1}) != fixed.end();
   for (int n = 0; n < node_count(); ++n) {
-    const bool is_first = mesh_.joined(n) == n;  // the second of a place has no coordinates of its own
-    const bool is_free = held[static_cast<std::size_t>(n)] == 0 && is_first;
+    const bool is_first =
+        mesh_.joined(n) == n;  // the second of two joined nodes has no coordinates of its own
+    const bool is_free = fixed[static_cast<std::size_t>(n)] == 0 && is_first;
     for (int axis = 0; axis < 3; ++axis) {
       const auto at = static_cast<std::size_t>(3 * n + axis);
       free_[at] = is_free ? 1.0 : 0.0;
@@ -177,8 +302,8 @@ void ImplicitBody::hold(std::span<const std::uint8_t> held) {
     }
     if (!is_free && is_first) set_velocity(n, Vector3::Zero());
   }
-  std::fill(held_velocity_.begin(), held_velocity_.end(), 0.0);
-  held_moves_ = false;
+  std::fill(fixed_velocity_.begin(), fixed_velocity_.end(), 0.0);
+  fixed_moves_ = false;
   factor_.forget();
 }
 
@@ -193,33 +318,33 @@ void ImplicitBody::apply_matrix(double inertia, double stiffness, const Doubles&
   free_only(out);
 }
 
-// Leaves the free nodes their velocities, and takes what the held ones will pull at them.
-void ImplicitBody::take_held_motion(double stiffness, double h) {
+// Removes the velocities of fixed nodes and adds the forces that their motion exerts on free nodes.
+void ImplicitBody::apply_fixed_motion(double stiffness, double h) {
   free_only(velocity_);
-  apply_matrix(0.0, stiffness, held_velocity_, image_);
+  apply_matrix(0.0, stiffness, fixed_velocity_, image_);
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) force_[n] -= image_[n] / h;
 }
 
-// Takes the residual of the best multiple of the present velocities, from none to all of them: what is left
-// of them where the gradients stop early is then no more than they can bear.
+// Scales the present velocities by the best factor between 0 and 1 and computes the residual. If the
+// conjugate gradients stop early, the remaining velocities are then no larger than the forces allow.
 void ImplicitBody::begin_solve(double inertia, double stiffness, double h) {
   apply_matrix(inertia, stiffness, velocity_, image_);
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {
     residual_[n] = free_[n] * (mass3_[n] * velocity_[n] + h * force_[n]);
   }
-  // Forces within the body add up to nothing.
+  // Internal forces sum to zero.
   momentum_ = sum_over_nodes(residual_) / inertia;
   const int blocks = rounded_up(size_, band_block);
-  const double kept = band_->dot(residual_.data(), velocity_.data(), blocks),
+  const double along_velocity = band_->dot(residual_.data(), velocity_.data(), blocks),
                all = band_->dot(image_.data(), velocity_.data(), blocks);
-  const double share = all > 0.0 ? std::clamp(kept / all, 0.0, 1.0) : 1.0;
+  const double fraction = all > 0.0 ? std::clamp(along_velocity / all, 0.0, 1.0) : 1.0;
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {
-    velocity_[n] *= share;
-    residual_[n] -= share * image_[n];
+    velocity_[n] *= fraction;
+    residual_[n] -= fraction * image_[n];
   }
 }
 
-// With the residual taken.
+// Solves for the velocities by conjugate gradients. The residual must be set.
 ImplicitReport ImplicitBody::solve(double inertia, double stiffness) {
   const int blocks = rounded_up(size_, band_block);
   const auto dot = [&](const Doubles& a, const Doubles& b) { return band_->dot(a.data(), b.data(), blocks); };
@@ -228,7 +353,8 @@ ImplicitReport ImplicitBody::solve(double inertia, double stiffness) {
   const double first = dot(residual_, conditioned_);
   double square = first;
   ImplicitReport report;
-  while (report.iterations < iteration_limit && square > enough * enough * first && first > 0.0) {
+  while (report.iterations < iteration_limit && square > accepted_residual * accepted_residual * first &&
+         first > 0.0) {
     apply_matrix(inertia, stiffness, direction_, image_);
     const double step = square / dot(direction_, image_);
     if (!std::isfinite(step)) break;
@@ -248,13 +374,13 @@ ImplicitReport ImplicitBody::solve(double inertia, double stiffness) {
   return report;
 }
 
-// With the momentum and the moment of momentum that the body has.
+// Returns the rigid motion with the momentum and angular momentum of the body.
 ImplicitBody::RigidMotion ImplicitBody::rigid_motion() const {
   double mass_kg = 0.0;
   RigidMotion motion;
   for (int n = 0; n < node_count(); ++n) {
     mass_kg += this->mass_kg(n);
-    motion.centre_m += this->mass_kg(n) * place(n);
+    motion.centre_m += this->mass_kg(n) * deformed_position(n);
     motion.velocity_m_per_s += this->mass_kg(n) * velocity(n);
   }
   motion.centre_m /= mass_kg;
@@ -262,23 +388,23 @@ ImplicitBody::RigidMotion ImplicitBody::rigid_motion() const {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   Vector3 moment = Vector3::Zero();
   for (int n = 0; n < node_count(); ++n) {
-    const Vector3 from_middle = place(n) - motion.centre_m;
-    moment += this->mass_kg(n) * from_middle.cross(velocity(n));
-    inertia += this->mass_kg(n) * (from_middle.squaredNorm() * Eigen::Matrix3d::Identity() -
-                                   from_middle * from_middle.transpose());
+    const Vector3 from_centre = deformed_position(n) - motion.centre_m;
+    moment += this->mass_kg(n) * from_centre.cross(velocity(n));
+    inertia += this->mass_kg(n) * (from_centre.squaredNorm() * Eigen::Matrix3d::Identity() -
+                                   from_centre * from_centre.transpose());
   }
-  // A body drawn out to a line has no inertia about it.
+  // A body stretched to a line has no inertia about it.
   inertia.diagonal().array() += 1e-9 * inertia.trace();
   motion.spin_rad_per_s = inertia.ldlt().solve(moment);
   return motion;
 }
 
-// Beside the rigid motion. Returns whether any was.
+// Caps the speeds relative to the rigid motion. Returns whether any was capped.
 bool ImplicitBody::cap_speeds(const RigidMotion& motion, double cap_m_per_s) {
   bool capped = false;
   for (int n = 0; n < node_count(); ++n) {
     if (free_[3 * static_cast<std::size_t>(n)] == 0.0) continue;
-    const Vector3 whole = motion.velocity_at(place(n));
+    const Vector3 whole = motion.velocity_at(deformed_position(n));
     const Vector3 own = velocity(n) - whole;
     const double speed = own.norm();
     if (speed <= cap_m_per_s) continue;
@@ -288,8 +414,8 @@ bool ImplicitBody::cap_speeds(const RigidMotion& motion, double cap_m_per_s) {
   return capped;
 }
 
-// A free body turns as a whole, and what its nodes do beside that turns with it: along straight lines a fast
-// spin would draw it out, by half the square of the angle of a step.
+// Moves a free body: it rotates as a whole, and the relative motion of its nodes rotates with it. Along
+// straight lines a fast spin would stretch the body by half the square of the angle per step.
 void ImplicitBody::move_and_turn(const RigidMotion& motion, double step_s) {
   const Vector3 half_turn = 0.5 * step_s * motion.spin_rad_per_s;
   const Eigen::Matrix3d turn =
@@ -297,11 +423,11 @@ void ImplicitBody::move_and_turn(const RigidMotion& motion, double step_s) {
       Eigen::Matrix3d::Identity();
   for (int n = 0; n < node_count(); ++n) {
     if (mesh_.joined(n) != n) continue;
-    const Vector3 from_middle = place(n) - motion.centre_m, now = velocity(n);
-    const Vector3 own = now - motion.velocity_at(place(n));
-    const Vector3 turned = turn * from_middle;
-    set_displacement(n, displacement(n) + turned + step_s * (motion.velocity_m_per_s + own + turn * own));
-    set_velocity(n, now + motion.spin_rad_per_s.cross(turned) + turn * own);
+    const Vector3 from_centre = deformed_position(n) - motion.centre_m, now = velocity(n);
+    const Vector3 own = now - motion.velocity_at(deformed_position(n));
+    const Vector3 rotated = turn * from_centre;
+    set_displacement(n, displacement(n) + rotated + step_s * (motion.velocity_m_per_s + own + turn * own));
+    set_velocity(n, now + motion.spin_rad_per_s.cross(rotated) + turn * own);
   }
 }
 
@@ -311,7 +437,8 @@ Vector3 ImplicitBody::sum_over_nodes(const Doubles& of) const {
   return sum;
 }
 
-// Of a free body; gradients that stop early, and the cap, leave a little of it elsewhere.
+// Restores the momentum of a free body, which truncated conjugate gradients and the speed cap change
+// slightly.
 void ImplicitBody::restore_momentum() {
   Vector3 momentum = Vector3::Zero();
   double mass = 0.0;
@@ -343,20 +470,20 @@ ImplicitReport ImplicitBody::solve_velocities(const ImplicitStep& step, std::spa
     force_[n] = applied_[n] + mass3_[n] * step.gravity_m_per_s2[static_cast<Eigen::Index>(n % 3)];
   }
   for (std::size_t n = 0; n < known_ns.size(); ++n) force_[n] += known_ns[n] / h;
-  cells_->take_forces(block_.batches.data(), static_cast<int>(block_.batches.size()), moved_.data(),
-                      force_.data());
-  factor_.take_piece({&block_, mass_.data(), free_.data(), inertia, stiffness});
-  if (held_moves_) take_held_motion(stiffness, h);
+  cells_->compute_forces(block_.batches.data(), static_cast<int>(block_.batches.size()), moved_.data(),
+                         force_.data());
+  factor_.advance({&block_, mass_.data(), free_.data(), inertia, stiffness});
+  if (fixed_moves_) apply_fixed_motion(stiffness, h);
   begin_solve(inertia, stiffness, h);
   ImplicitReport report = solve(inertia, stiffness);
-  if (held_moves_) {
-    for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) velocity_[n] += held_velocity_[n];
+  if (fixed_moves_) {
+    for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) velocity_[n] += fixed_velocity_[n];
   }
-  if (!has_held_nodes_) restore_momentum();
+  if (!has_fixed_nodes_) restore_momentum();
   return report;
 }
 
-double ImplicitBody::answer(const std::vector<double>& impulses) {
+double ImplicitBody::respond_to(const std::vector<double>& impulses) {
   SPOONBILL_ASSERT(impulses.size() >= 3 * static_cast<std::size_t>(node_count()));
   std::copy(impulses.begin(), impulses.end(), image_.begin());
   free_only(image_);
@@ -364,14 +491,15 @@ double ImplicitBody::answer(const std::vector<double>& impulses) {
   return band_->dot(image_.data(), conditioned_.data(), rounded_up(size_, band_block));
 }
 
-void ImplicitBody::take_answer(double share) {
-  for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) velocity_[n] += share * conditioned_[n];
+void ImplicitBody::apply_response(double fraction) {
+  for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n)
+    velocity_[n] += fraction * conditioned_[n];
 }
 
 bool ImplicitBody::move(double step_s) {
-  const RigidMotion motion = has_held_nodes_ ? RigidMotion{} : rigid_motion();
+  const RigidMotion motion = has_fixed_nodes_ ? RigidMotion{} : rigid_motion();
   const bool capped = cap_speeds(motion, speed_cap_cells * cell_size_ / step_s);
-  if (has_held_nodes_) {
+  if (has_fixed_nodes_) {
     for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) moved_[n] += step_s * velocity_[n];
   } else {
     move_and_turn(motion, step_s);

@@ -1,8 +1,9 @@
-// A body whose material is too stiff for springs to be stepped in a tick: corotated hexahedra under an
-// implicit Euler method, stable at any step.
+// Body whose material is too stiff for springs at a tick's step: corotated hexahedra under an implicit
+// Euler method, stable at any step.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,13 +11,68 @@
 #include "engine/base/containers.h"
 #include "engine/base/processor.h"
 #include "engine/base/result.h"
-#include "engine/material/implicit/block_materials.h"
+#include "engine/material/cells/cell_elasticity.h"
+#include "engine/material/cells/hexahedron.h"
 #include "engine/material/implicit/rolling_factor.h"
 #include "engine/material/lattice/lattice_mesh.h"
-#include "engine/material/lattice_report.h"
+#include "engine/material/lattice_materials.h"
 #include "engine/scene/material.h"
 
 namespace spoonbill {
+
+// Overlap of a cell of the coarse grid with a cell of the lattice, along one axis.
+struct Overlap {
+  int cell;          // index in the lattice
+  double low, high;  // in the coarse cell, -1 to 1
+
+  // Fraction of the coarse cell, 0 to 1.
+  double fraction() const { return 0.5 * (high - low); }
+};
+
+// Returns the overlaps of a coarse cell with the lattice's cells, in order and without gaps. Counts are of
+// nodes along the axis, at least 2 each.
+std::vector<Overlap> find_overlaps(int block_cell, int block_count, int lattice_count);
+
+// Materials in the cells of an implicit body. Plain data, a value.
+struct BlockMaterials {
+  // A box in a cell's natural coordinates (see HexahedronPart) and the index of the material that fills it.
+  struct Part {
+    Vector3 low = -Vector3::Ones(), high = Vector3::Ones();
+    std::size_t material = 0;
+  };
+
+  // Creates the materials of a uniform body. Implicit, because most bodies are uniform.
+  BlockMaterials(const Material& material) : materials{material} {}
+
+  std::vector<Material> materials;
+  std::vector<std::vector<Part>> parts_by_cell;  // by LatticeMesh::cell_index(); the parts of a cell fill
+                                                 // it; empty if all cells have the first material
+};
+
+// Returns the materials of a coarser grid over the same body. Each of its cells consists of the parts of
+// the lattice's cells that are inside it, in the grid's coordinates.
+BlockMaterials make_block_materials(const LatticeMaterials& of, const std::array<int, 3>& lattice_count,
+                                    const std::array<int, 3>& block_count);
+
+// One cell of an implicit body: its part of stiffness, masses and report. Plain data.
+struct BlockCell {
+  CellCorners corners;
+  double fraction;  // fraction of the cell that belongs to the body
+  std::vector<BlockMaterials::Part> parts;
+  const std::vector<Material>* materials;
+
+  double volume_m3() const { return fraction * cell_volume(corners); }
+  // Stiffness of the whole cell, N/m, not scaled by `fraction`.
+  CellMatrix stiffness() const;
+  // Masses by corner, kg; equal if the cell is of one material.
+  std::array<double, 8> masses() const;
+  // Adds the elasticity that a cell of this shape achieves for each of its materials. `stiffness` is the
+  // result of stiffness().
+  void report(const CellMatrix& stiffness, LatticeReport& report) const;
+};
+
+// Returns the parts of a cell, at least one.
+std::vector<BlockMaterials::Part> cell_parts(const BlockMaterials& materials, std::size_t cell);
 
 struct ImplicitStep {
   double step_s = 1e-3;
@@ -26,29 +82,31 @@ struct ImplicitStep {
 
 struct ImplicitReport {
   int iterations = 0;     // of the conjugate gradients
-  double residual = 0.0;  // what they left, of what they began with, in the norm of the factors
+  double residual = 0.0;  // final residual over the initial one, in the norm of the preconditioner
 };
 
-// The velocities w at the end of a step h solve
+// Implicit Euler method for a block of hexahedra. The velocities w at the end of a step h solve
 //
 //   (M (1 + h a) + (h^2 + h t) K) w = M v + h (f - f_el(x)),  x <- x + h w,
 //
-// with the damping a by mass and t by stiffness: one step of Newton's method. K is the plain tangent at x,
-// which is never indefinite, so the matrix is positive definite and conjugate gradients may stop early: what
-// they have by then never stores more energy than standing still would. Their preconditioner is the Cholesky
-// factor of the same matrix as it was a few ticks ago, taken a piece each tick: bodies are long, and their
-// nodes counted along them, so that it is a narrow band.
-// Nodes that are held and moved have w given: what they pull at the free ones goes to the right.
+// with the damping a by mass and t by stiffness. This is one step of Newton's method. K is the plain
+// tangent at x, which is never indefinite, so the matrix is positive definite.
 //
-// A node may move at most half a cell in a step, beside the body as a whole, or where a node is held: what
-// crushes cells faster cannot be undone.
+// The conjugate gradients may stop early: at any iteration the stored energy is at most that of the body at
+// rest. Their preconditioner is the Cholesky factor of the same matrix a few ticks earlier, updated in
+// parts. Bodies are long and their nodes are numbered along them, so it is a narrow band.
+//
+// Fixed nodes that move have w prescribed; their pull on free nodes is on the right-hand side.
+//
+// A node moves at most half a cell per step, relative to the rigid motion of a free body. Faster motion
+// could crush cells irreversibly.
 //
 // One owner; built outside the tick, allocates nothing afterwards.
 class ImplicitBody {
  public:
-  // Of several materials the damping ratio is the stiffest one's, for the fastest mode is there; what else
-  // differs between them counts by part. Refused: fewer than 2 nodes a direction, folded cells, materials
-  // outside their ranges.
+  // Builds the body at rest. With several materials, the damping ratio is that of the stiffest one, which
+  // has the fastest mode; all other properties apply by part. Fails on fewer than 2 nodes in a direction,
+  // folded cells and materials outside their ranges.
   static Result<ImplicitBody> make(const LatticeMesh& mesh, const BlockMaterials& materials,
                                    InstructionSet set);
   ImplicitBody(ImplicitBody&&) = default;
@@ -58,60 +116,61 @@ class ImplicitBody {
 
   const LatticeMesh& mesh() const { return mesh_; }
   int node_count() const { return mesh_.node_count(); }
-  // 0 of the second of two nodes that are one place.
+  // Mass of a node, kg; 0 for the second of two joined nodes.
   double mass_kg(int node) const { return mass_[static_cast<std::size_t>(node)]; }
   double damping_time_s() const { return damping_time_; }
   const LatticeReport& report() const { return report_; }
 
-  // One byte a node, 1 = held. Takes the factor anew.
-  void hold(std::span<const std::uint8_t> held);
-  bool is_held(int node) const { return free_[3 * static_cast<std::size_t>(mesh_.joined(node))] == 0.0; }
+  // Fixes the nodes whose byte is 1, one byte per node, and discards the factor.
+  void fix_nodes(std::span<const std::uint8_t> fixed);
+  bool is_fixed(int node) const { return free_[3 * static_cast<std::size_t>(mesh_.joined(node))] == 0.0; }
 
-  // Of either node of a place.
+  // Both nodes of a joined pair give the same result.
   Vector3 displacement(int node) const { return at(moved_, mesh_.joined(node)); }
   Vector3 velocity(int node) const { return at(velocity_, mesh_.joined(node)); }
   void set_displacement(int node, const Vector3& d) { put(moved_, mesh_.joined(node), d); }
   void set_velocity(int node, const Vector3& v) { put(velocity_, mesh_.joined(node), v); }
-  // Until changed, N.
+  // Sets the force on a node, N; it acts until it is changed.
   void set_node_force(int node, const Vector3& force_n) { put(applied_, mesh_.joined(node), force_n); }
   void add_node_force(int node, const Vector3& force_n) {
     const int joined = mesh_.joined(node);
     put(applied_, joined, at(applied_, joined) + force_n);
   }
   void clear_node_forces() { std::fill(applied_.begin(), applied_.end(), 0.0); }
-  // Moves a held node in the coming steps, until hold() is called.
-  void move_held(int node, const Vector3& velocity_m_per_s) {
-    put(held_velocity_, mesh_.joined(node), velocity_m_per_s);
-    held_moves_ = true;
+  // Sets the velocity of a fixed node for the coming steps, until fix_nodes() is called.
+  void move_fixed(int node, const Vector3& velocity_m_per_s) {
+    put(fixed_velocity_, mesh_.joined(node), velocity_m_per_s);
+    fixed_moves_ = true;
   }
-  // On a held node, N: what its cells and the applied force did as the last step began.
-  Vector3 force_on_held(int node) const { return at(force_, mesh_.joined(node)); }
+  // Force of cells and loads on a fixed node at the start of the last step, N.
+  Vector3 force_on_fixed(int node) const { return at(force_, mesh_.joined(node)); }
 
-  // Of the free nodes' velocities, with the tangent of the last step: (v.Kv) / (v.Mv); 0 at rest.
+  // Rayleigh quotient (v.Kv) / (v.Mv) of the free nodes' velocities, with the tangent of the last step; 0
+  // at rest.
   double rayleigh_quotient();
 
-  // A step in its parts: the velocities at its end, with what is known of the contacts' impulses, by
-  // coordinate (of the first node of each place), N s; what contacts push further, as far as the whole body
-  // answers at once, with the work that they do on what they change, J; and the move, which says whether a
-  // node met the speed cap.
+  // Parts of a step, to be called in order. solve_velocities() computes the velocities at the end of the
+  // step; `known_ns` are contact impulses by coordinate (of the first of joined nodes), N s. push() applies
+  // further impulses to the whole body and returns their work on the velocity change, J. move() advances
+  // the nodes and returns whether one reached the speed cap.
   ImplicitReport solve_velocities(const ImplicitStep& step, std::span<const double> known_ns = {});
   double push(const std::vector<double>& impulses) {
-    const double work = answer(impulses);
-    take_answer(1.0);
+    const double work = respond_to(impulses);
+    apply_response(1.0);
     return work;
   }
-  // The same before it is done, and a share of it done.
-  double answer(const std::vector<double>& impulses);
-  void take_answer(double share);
+  // Parts of push(): the velocity change of the impulses, and its application by a fraction.
+  double respond_to(const std::vector<double>& impulses);
+  void apply_response(double fraction);
   bool move(double step_s);
-  // All of it without contacts.
+  // Performs a whole step without contacts.
   ImplicitReport step(const ImplicitStep& step) {
     const ImplicitReport report = solve_velocities(step);
     move(step.step_s);
     return report;
   }
 
-  // All that the next step depends on.
+  // Visits everything that the next step depends on.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     for (const Doubles* a : {&moved_, &velocity_, &applied_}) visit(a->data(), a->size());
@@ -130,26 +189,28 @@ class ImplicitBody {
   static void put(Doubles& of, int node, const Vector3& v) {
     for (int axis = 0; axis < 3; ++axis) of[3 * static_cast<std::size_t>(node) + axis] = v[axis];
   }
-  void take_cells(const BlockMaterials& materials);
-  void take_damping(const BlockMaterials& materials);
+  void add_cells(const BlockMaterials& materials);
+  void set_damping(const BlockMaterials& materials);
   void free_only(Doubles& of) const;
   double fastest_square();
 
   struct RigidMotion {
     Vector3 centre_m = Vector3::Zero(), velocity_m_per_s = Vector3::Zero(), spin_rad_per_s = Vector3::Zero();
 
-    Vector3 velocity_at(const Vector3& place_m) const {
-      return velocity_m_per_s + spin_rad_per_s.cross(place_m - centre_m);
+    Vector3 velocity_at(const Vector3& position_m) const {
+      return velocity_m_per_s + spin_rad_per_s.cross(position_m - centre_m);
     }
   };
-  Vector3 place(int node) const { return mesh_.nodes[static_cast<std::size_t>(node)] + displacement(node); }
+  Vector3 deformed_position(int node) const {
+    return mesh_.nodes[static_cast<std::size_t>(node)] + displacement(node);
+  }
   RigidMotion rigid_motion() const;
   bool cap_speeds(const RigidMotion& motion, double cap_m_per_s);
   void move_and_turn(const RigidMotion& motion, double step_s);
   Vector3 sum_over_nodes(const Doubles& of) const;
   void restore_momentum();
   void apply_matrix(double inertia, double stiffness, const Doubles& field, Doubles& out) const;
-  void take_held_motion(double stiffness, double h);
+  void apply_fixed_motion(double stiffness, double h);
   void begin_solve(double inertia, double stiffness, double h);
   ImplicitReport solve(double inertia, double stiffness);
 
@@ -158,14 +219,14 @@ class ImplicitBody {
   const BandKernels* band_;
   const CellKernels* cells_;
   double damping_time_ = 0.0, cell_size_;
-  int size_;  // coordinates
-  bool has_held_nodes_ = false, held_moves_ = false;
-  Vector3 momentum_ = Vector3::Zero();  // of a free body, at the end of the step
+  int size_;  // number of coordinates
+  bool has_fixed_nodes_ = false, fixed_moves_ = false;
+  Vector3 momentum_ = Vector3::Zero();  // of a free body at the end of the step
   RollingFactor factor_;
   CellBlock block_;
-  Doubles mass_, mass3_, free_;  // by node; by coordinate, 0 where held; 1 or 0
+  Doubles mass_, mass3_, free_;  // by node; by coordinate, 0 if fixed; by coordinate, 1 or 0
   Doubles moved_, velocity_, applied_;
-  Doubles held_velocity_;                                       // 0 of free nodes
+  Doubles fixed_velocity_;                                      // 0 for free nodes
   Doubles force_, residual_, direction_, image_, conditioned_;  // working memory
 };
 

@@ -10,8 +10,7 @@
 namespace spoonbill {
 namespace {
 
-// Products that a piece may take: a tenth or two of a millisecond. A long body's factor takes some four of
-// them.
+// Multiplications in one part: about 0.1 to 0.2 ms. The factor of a long body takes about four parts.
 constexpr double products_a_piece = 8e5;
 
 }  // namespace
@@ -41,7 +40,7 @@ void RollingFactor::begin(double inertia, double stiffness) {
   next_.layers = next_.columns = 0;
 }
 
-// The columns of the nodes at one k, with their masses alone.
+// Clears the columns of the nodes at one k and sets their mass terms.
 void RollingFactor::clear_slice(const MatrixParts& parts, int k) {
   const int columns = slice_columns_;
   double* column = next_.band.columns + static_cast<std::ptrdiff_t>(k) * columns * next_.band.stride;
@@ -51,7 +50,7 @@ void RollingFactor::clear_slice(const MatrixParts& parts, int k) {
   }
 }
 
-// The stiffness of one cell, turned, into the band.
+// Adds the rotated stiffness of one cell to the band.
 void RollingFactor::add_cell(const MatrixParts& parts, const CellBatch& b, int lane) {
   Eigen::Matrix3d rotation;
   for (int e = 0; e < 9; ++e) rotation(e / 3, e % 3) = b.turn[e][lane] + (e % 4 == 0 ? 1.0 : 0.0);
@@ -67,7 +66,7 @@ void RollingFactor::add_cell(const MatrixParts& parts, const CellBatch& b, int l
       for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) here(row, column) = entry(3 * a + row, 3 * c + column);
       }
-      Eigen::Matrix3d turned = rotation * here * rotation.transpose();
+      Eigen::Matrix3d rotated = rotation * here * rotation.transpose();
       for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) {
           const int at_row = 3 * row_node + row, at_column = 3 * column_node + column;
@@ -75,7 +74,7 @@ void RollingFactor::add_cell(const MatrixParts& parts, const CellBatch& b, int l
           const double free = parts.free[at_row] * parts.free[at_column];
           next_.band
               .columns[static_cast<std::ptrdiff_t>(at_column) * next_.band.stride + (at_row - at_column)] +=
-              free * next_.stiffness * turned(row, column);
+              free * next_.stiffness * rotated(row, column);
         }
       }
     }
@@ -95,14 +94,14 @@ void RollingFactor::add_layer(const MatrixParts& parts, int k) {
   }
 }
 
-// A column needs the cells on both sides of its nodes.
-void RollingFactor::take_columns(const MatrixParts& parts, int count) {
+// Factorises further columns. A column needs the cells on both sides of its nodes.
+void RollingFactor::factorise_columns(const MatrixParts& parts, int count) {
   const int to = std::min(next_.band.size, next_.columns + count);
   const int all_layers = static_cast<int>(parts.cells->layers.size()) - 1;
   const int layers = std::min(all_layers, (to - 1) / slice_columns_ + 1);
   for (; next_.layers < layers; ++next_.layers) add_layer(parts, next_.layers);
-  // No pivot of D + K is below the entry of the diagonal D where K is not indefinite, but by rounding. The
-  // second node of a seam's pair has no mass.
+  // Except for rounding, no pivot of D + K is below the entry of the diagonal D if K is not indefinite. The
+  // second node of a seam pair has no mass.
   double lightest = std::numeric_limits<double>::max();
   for (const double* mass = parts.mass; mass != parts.mass + next_.band.size / 3; ++mass) {
     if (*mass > 0.0) lightest = std::min(lightest, *mass);
@@ -112,16 +111,16 @@ void RollingFactor::take_columns(const MatrixParts& parts, int count) {
   if (to == next_.band.size) std::swap(used_, next_.band);
 }
 
-void RollingFactor::take_piece(const MatrixParts& parts) {
+void RollingFactor::advance(const MatrixParts& parts) {
   const int size = next_.band.size;
   if (next_.stiffness == 0.0) {
     begin(parts.inertia, parts.stiffness);
-    take_columns(parts, size);
+    factorise_columns(parts, size);
   }
   const bool changed = next_.inertia != parts.inertia || next_.stiffness != parts.stiffness;
   if (next_.columns == size || changed) begin(parts.inertia, parts.stiffness);
   const double products_a_column = 0.5 * next_.band.half_band * next_.band.half_band;
-  take_columns(parts, static_cast<int>(std::ceil(products_a_piece / products_a_column)));
+  factorise_columns(parts, static_cast<int>(std::ceil(products_a_piece / products_a_column)));
 }
 
 void RollingFactor::solve(const double* from, const double* free, double* to) const {

@@ -1,4 +1,5 @@
-// The Cholesky factor of a body's matrix, taken a piece each tick while the last one is used.
+// Cholesky factor of an implicit body's matrix, updated in parts over several ticks while the last complete
+// factor is in use.
 #pragma once
 
 #include <vector>
@@ -10,27 +11,27 @@
 
 namespace spoonbill {
 
-// The cells of a body in batches, layer by layer along it.
+// Cells of a body in batches, layer by layer along it.
 struct CellBlock {
   std::vector<CellBatch> batches;
-  std::vector<int> layers;  // the first batch of each layer, and the end
-  int layer_cells = 0;      // of each layer: the last batch may have lanes to spare
+  std::vector<int> layers;  // first batch of each layer, and the end
+  int layer_cells = 0;      // cells per layer; the last batch of a layer may have unused lanes
 };
 
-// What the matrix is made of: inertia * M + stiffness * K, with rows and columns of held coordinates left
-// out.
+// Terms of the matrix inertia * M + stiffness * K, without the rows and columns of fixed coordinates.
 struct MatrixParts {
   const CellBlock* cells;
   const double* mass;  // by node, kg
-  const double* free;  // by coordinate: 1, or 0 where held
+  const double* free;  // by coordinate: 1, or 0 if fixed
   double inertia, stiffness;
 };
 
-// How far apart two nodes of a cell can be counted, nodes of a place (LatticeMesh::joined) as one.
+// Returns the largest difference of node numbers within a cell; joined nodes (LatticeMesh::joined) count as
+// one.
 int node_reach(const LatticeMesh& mesh);
 
-// Its coordinates are 3 n + axis, and nodes are counted along the body: the matrix is a band. One owner;
-// allocates only when made.
+// Coordinates are 3 n + axis, and nodes are numbered along the body, so the matrix is a band. One owner;
+// allocates only at construction.
 class RollingFactor {
  public:
   using Doubles = AlignedVector<double>;
@@ -41,14 +42,14 @@ class RollingFactor {
   RollingFactor(const RollingFactor&) = delete;
   RollingFactor& operator=(const RollingFactor&) = delete;
 
-  // How long vectors must be: zeros after the last coordinate.
+  // Length of vectors, with zeros after the last coordinate.
   int padded_size() const;
 
-  // The matrix has changed altogether: the next piece is all of it.
+  // Discards the factor: the next part factorises the whole matrix.
   void forget() { next_.stiffness = 0.0; }
-  // Takes a piece of the factor of the matrix as it is now; done, it is used from then on.
-  void take_piece(const MatrixParts& parts);
-  // to = A^-1 from, A of some ticks ago; 0 at held coordinates.
+  // Factorises a part of the present matrix. A complete factor replaces the one in use.
+  void advance(const MatrixParts& parts);
+  // Sets `to` to A^-1 `from` with the matrix A of a few ticks ago; 0 at fixed coordinates.
   void solve(const double* from, const double* free, double* to) const;
 
   template <class Visitor>
@@ -58,7 +59,7 @@ class RollingFactor {
 
  private:
   void begin(double inertia, double stiffness);
-  void take_columns(const MatrixParts& parts, int count);
+  void factorise_columns(const MatrixParts& parts, int count);
   void clear_slice(const MatrixParts& parts, int k);
   void add_layer(const MatrixParts& parts, int k);
   void add_cell(const MatrixParts& parts, const CellBatch& batch, int lane);
@@ -69,7 +70,7 @@ class RollingFactor {
   struct Next {
     BandView band;
     double inertia = 0.0, stiffness = 0.0;
-    int layers = 0, columns = 0;  // done
+    int layers = 0, columns = 0;  // finished
   } next_;
   Doubles columns_[2];
 };

@@ -1,5 +1,5 @@
-// Fills a solid of triangles with lattice nodes: a regular grid over its bounds, each cell by the share of it
-// that is inside the solid.
+// Boxes of lattice cells about solids: about a solid of triangles, and about a closed surface into which no
+// block of cells can be bent, such as a bowl or a ring.
 #pragma once
 
 #include <array>
@@ -8,29 +8,41 @@
 
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
+#include "engine/bspline/surface.h"
 #include "engine/collision/meshes/mesh_distance.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/material/lattice/lattice_mesh.h"
+#include "engine/scene/body.h"
 
 namespace spoonbill {
 
-// A cell that holds any of the surface counts as filled by at least this share: the nodes of a smaller sliver
-// would be so light and so weakly held that a contact on its surface would sink in. One that holds nothing
-// counts by a share that moves nothing but keeps its nodes together. Mass and stiffness of a cell follow its
-// share alike, so that no share makes the lattice any faster (the fastest frequency of what is put together
-// is at most that of the fastest part, Irons and Treharne 1971); void cells that follow along are those of
-// the finite cell method (Parvizian, Duester and Rank 2007).
-inline constexpr double least_filled_share = 0.1;
-inline constexpr double void_share = 1e-3;
+// Smallest fraction of a filled cell, that is of one that contains any of the surface. Nodes of smaller
+// slivers would be so light and weakly attached that a contact on their surface would sink in.
+//
+// Mass and stiffness of a cell scale alike, so no fraction makes the lattice faster: the fastest frequency
+// of an assembly is at most that of its fastest part (Irons and Treharne 1971).
+inline constexpr double min_filled_fraction = 0.1;
 
-// A box of nodes over the bounds, edges along x, y and z. Shares come from `inside`, 5 x 5 x 5 points a cell,
-// and are scaled together so that the lattice's volume is `volume_m3`; `skin_m` are the points that shall be
-// embedded. Refused: a box too flat for cells.
+// Fraction of a void cell: too small to move anything, but enough to keep its nodes together. Void cells
+// follow the body as in the finite cell method (Parvizian, Duester and Rank 2007).
+inline constexpr double void_fraction = 1e-3;
+
+// Builds a box of nodes over the bounds of a solid, with edges along x, y and z. Fractions of cells are
+// sampled from `inside` at 5 x 5 x 5 points per cell and scaled together, so that the lattice's volume is
+// `volume_m3`. `skin_m` are points of the surface that will be embedded. Fails on a box too flat for cells.
 Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
                                 std::span<const Vector3> skin_m, std::array<int, 3> counts);
 
-// A point in such a lattice at rest, of the cell that holds it or that it is nearest to.
+// Expresses a point by the nodes of the cell that contains it, or of the nearest cell, in a box at rest.
 CellPoint point_in_box(const LatticeMesh& box, const Vector3& point_m);
 EmbeddedPoint embed_in_box(const LatticeMesh& box, const Vector3& point_m);
+
+// Builds a box of cells about a closed surface. Cells have the fraction that is inside; parts thinner than
+// a cell are too stiff in bending. Counts are along x, y and z. Nodes and cells get body coordinates
+// from the nearest sample of the surface, and their depth. A feature map in the request is ignored.
+//
+// Fails on counts below 2, and on a body whose volume over half its area is below a ten-thousandth of its
+// size.
+Result<LatticeMesh> surface_in_box(const Surface& surface, const LatticeRequest& request);
 
 }  // namespace spoonbill

@@ -5,7 +5,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr float least_weight_that_matters = 0.05f;
+constexpr float min_significant_weight = 0.05f;
 
 Vector3 embedded_sum(const EmbeddedPoint& point, const float* x, const float* y, const float* z) {
   Vector3 sum = Vector3::Zero();
@@ -18,7 +18,7 @@ Vector3 embedded_sum(const EmbeddedPoint& point, const float* x, const float* y,
 
 }  // namespace
 
-bool EmbeddedPoint::add(const EmbeddedPoint& other, float share) {
+bool EmbeddedPoint::add(const EmbeddedPoint& other, float fraction) {
   for (int i = 0; i < other.count; ++i) {
     int at = 0;
     while (at < count && node[at] != other.node[i]) ++at;
@@ -28,12 +28,12 @@ bool EmbeddedPoint::add(const EmbeddedPoint& other, float share) {
       weight[at] = 0.0f;
       ++count;
     }
-    weight[at] += share * other.weight[i];
+    weight[at] += fraction * other.weight[i];
   }
   return true;
 }
 
-double EmbeddedPoint::share_of(int node_index) const {
+double EmbeddedPoint::weight_of_node(int node_index) const {
   for (int i = 0; i < count; ++i) {
     if (node[i] == node_index) return weight[i];
   }
@@ -49,14 +49,14 @@ Vector3 EmbeddedPoint::rest_m(const SpringLattice& lattice) const {
 double EmbeddedPoint::compliance(const SpringLattice& lattice) const {
   double sum = 0.0;
   for (int i = 0; i < count; ++i) {
-    const double share = weight[i];
-    sum += share * share * lattice.inverse_mass(node[i]);
+    const double fraction = weight[i];
+    sum += fraction * fraction * lattice.inverse_mass(node[i]);
   }
   return sum;
 }
 
 double EmbeddedPoint::friction(const SpringLattice& lattice) const {
-  if (lattice.materials().friction_of_node.empty() || count == 0) return lattice.material().friction;
+  if (lattice.materials().friction_index.empty() || count == 0) return lattice.material().friction;
   double sum = 0.0, least = lattice.friction(node[0]), most = least;
   for (int i = 0; i < count; ++i) {
     const double own = lattice.friction(node[i]);
@@ -78,16 +78,16 @@ Vector3 EmbeddedPoint::velocity_m_per_s(const LatticeView& lattice) const {
 void EmbeddedPoint::push(const LatticeView& lattice, const Vector3& impulse) const {
   for (int i = 0; i < count; ++i) {
     const int n = node[i];
-    const double share = static_cast<double>(weight[i]) * static_cast<double>(lattice.inverse_mass[n]);
-    lattice.vx[n] += static_cast<float>(share * impulse.x());
-    lattice.vy[n] += static_cast<float>(share * impulse.y());
-    lattice.vz[n] += static_cast<float>(share * impulse.z());
+    const double fraction = static_cast<double>(weight[i]) * static_cast<double>(lattice.inverse_mass[n]);
+    lattice.vx[n] += static_cast<float>(fraction * impulse.x());
+    lattice.vy[n] += static_cast<float>(fraction * impulse.y());
+    lattice.vz[n] += static_cast<float>(fraction * impulse.z());
   }
 }
 
 void EmbeddedPoint::mark(std::uint8_t* touched) const {
   for (int i = 0; i < count; ++i) {
-    if (weight[i] > least_weight_that_matters) touched[node[i]] = 1;
+    if (weight[i] > min_significant_weight) touched[node[i]] = 1;
   }
 }
 

@@ -12,13 +12,14 @@
 namespace spoonbill {
 namespace {
 
-constexpr int draws_between_looks = 4096;
-// Of the neighbourhood: beyond, a node follows by less than a ninetieth.
-constexpr double reach_of_neighbourhood = 3.0;
-// Halvings of a node's move before none of it is taken, and how often each is tried.
+constexpr int draws_per_report = 4096;
+// Radius of the neighbourhood that is updated, relative to its width; nodes beyond it would follow by less
+// than a ninetieth.
+constexpr double neighbourhood_reach = 3.0;
+// Halvings of a node's move before it is rejected, and number of passes over all nodes.
 constexpr int halvings = 4, passes = 3;
 
-// Calls visit(first corner's node, cell).
+// Calls visit(node of the first corner, cell) for each cell.
 template <class Visit>
 void visit_cells(const LatticeMesh& mesh, const Visit& visit) {
   for (int k = 0; k + 1 < mesh.count[2]; ++k) {
@@ -28,7 +29,7 @@ void visit_cells(const LatticeMesh& mesh, const Visit& visit) {
   }
 }
 
-// Points spread evenly through a body.
+// Random points with a uniform density in a body.
 class Draws {
  public:
   Draws(const LatticeMesh& mesh, std::uint32_t seed) : random_(seed) {
@@ -40,18 +41,18 @@ class Draws {
 
   struct Draw {
     Vector3 point;
-    int near;  // a node of the cell at the start that it lies in
+    int near;  // a node of the cell that contained the point initially
   };
   Draw next() {
-    const double where = uniform() * volumes_.back();
-    const auto cell = std::upper_bound(volumes_.begin(), volumes_.end(), where) - volumes_.begin();
+    const double target = uniform() * volumes_.back();
+    const auto cell = std::upper_bound(volumes_.begin(), volumes_.end(), target) - volumes_.begin();
     const auto at = std::min(static_cast<std::size_t>(cell), cells_.size() - 1);
     const double a = uniform(), b = uniform(), c = uniform();
     return {trilinear(cells_[at].corners, a, b, c), cells_[at].first};
   }
 
  private:
-  // By its bits: what a library makes of a distribution differs between libraries.
+  // From raw bits, because library distributions differ between implementations.
   double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
 
   std::mt19937_64 random_;
@@ -60,15 +61,15 @@ class Draws {
     CellCorners corners;
   };
   std::vector<Cell> cells_;
-  std::vector<double> volumes_;  // summed up
+  std::vector<double> volumes_;  // cumulative
 };
 
 class FeatureMap {
  public:
   explicit FeatureMap(const LatticeMesh& mesh) : mesh_(mesh) {
     for (int n = 0; n < mesh.node_count(); ++n) {
-      const auto [i, j, k] = mesh.place(n);
-      if (mesh.place_of(i, j, k) == NodePlace::in_body) inside_.push_back(n);
+      const auto [i, j, k] = mesh.grid_index(n);
+      if (mesh.node_location(i, j, k) == NodeLocation::in_body) inside_.push_back(n);
     }
   }
 
@@ -77,8 +78,8 @@ class FeatureMap {
 
   void learn(const Draws::Draw& draw, double rate, double neighbourhood) {
     const Vector3& point = draw.point;
-    const std::array<int, 3> winner = nearest(point, mesh_.place(draw.near));
-    const int reach = static_cast<int>(reach_of_neighbourhood * neighbourhood);
+    const std::array<int, 3> winner = nearest(point, mesh_.grid_index(draw.near));
+    const int reach = static_cast<int>(neighbourhood_reach * neighbourhood);
     std::array<int, 3> low{}, high{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low[axis] = std::max(0, winner[axis] - reach);
@@ -87,7 +88,7 @@ class FeatureMap {
     for (int k = low[2]; k <= high[2]; ++k) {
       for (int i = low[0]; i <= high[0]; ++i) {
         for (int j = low[1]; j <= high[1]; ++j) {
-          if (mesh_.place_of(i, j, k) != NodePlace::in_body) continue;
+          if (mesh_.node_location(i, j, k) != NodeLocation::in_body) continue;
           const double square =
               std::pow(i - winner[0], 2) + std::pow(j - winner[1], 2) + std::pow(k - winner[2], 2);
           Vector3& node = mesh_.nodes[static_cast<std::size_t>(mesh_.index(i, j, k))];
@@ -98,7 +99,7 @@ class FeatureMap {
   }
 
  private:
-  // From neighbour to neighbour, which finds the nearest of all where the grid lies in order.
+  // Descends from neighbour to neighbour, which finds the nearest node in an ordered grid.
   std::array<int, 3> nearest(const Vector3& point, std::array<int, 3> at) const {
     const auto square_to = [&](const std::array<int, 3>& node) {
       return (mesh_.nodes[static_cast<std::size_t>(mesh_.index(node[0], node[1], node[2]))] - point)
@@ -130,7 +131,7 @@ class FeatureMap {
   std::vector<int> inside_;
 };
 
-// Of the cells around a node.
+// Smallest Jacobian ratio of the cells around a node.
 double worst_around(const LatticeMesh& mesh, const std::array<int, 3>& at) {
   double worst = 1.0;
   for (int c = 0; c < 8; ++c) {
@@ -140,36 +141,37 @@ double worst_around(const LatticeMesh& mesh, const std::array<int, 3>& at) {
   return worst;
 }
 
-// Node by node, as far towards `wanted` as leaves every cell around it at least as good as `worst`; some may
-// go further once their neighbours have. Returns the share of the moves that was taken.
-double take_moves(const std::vector<Vector3>& wanted, double worst, LatticeMesh& mesh) {
-  double asked = 0.0, left = 0.0;
-  for (std::size_t n = 0; n < wanted.size(); ++n) asked += (wanted[n] - mesh.nodes[n]).norm();
+// Moves the nodes towards `targets`, each as far as keeps every cell around it at least as good as `worst`.
+// Several passes, since a node may be able to move further after its neighbours. Returns the fraction of
+// the moves that was applied.
+double apply_moves(const std::vector<Vector3>& targets, double worst, LatticeMesh& mesh) {
+  double requested = 0.0, remaining = 0.0;
+  for (std::size_t n = 0; n < targets.size(); ++n) requested += (targets[n] - mesh.nodes[n]).norm();
   for (int pass = 0; pass < passes; ++pass) {
     for (int n = 0; n < mesh.node_count(); ++n) {
       Vector3& node = mesh.nodes[static_cast<std::size_t>(n)];
-      const Vector3 before = node, move = wanted[static_cast<std::size_t>(n)] - before;
+      const Vector3 before = node, move = targets[static_cast<std::size_t>(n)] - before;
       if (move.isZero(0.0)) continue;
-      double share = 1.0;
-      for (int halving = 0; halving <= halvings; ++halving, share *= 0.5) {
-        node = before + share * move;
-        if (worst_around(mesh, mesh.place(n)) >= worst) break;
+      double fraction = 1.0;
+      for (int halving = 0; halving <= halvings; ++halving, fraction *= 0.5) {
+        node = before + fraction * move;
+        if (worst_around(mesh, mesh.grid_index(n)) >= worst) break;
         node = before;
       }
     }
   }
-  for (std::size_t n = 0; n < wanted.size(); ++n) left += (wanted[n] - mesh.nodes[n]).norm();
-  return asked > 0.0 ? 1.0 - left / asked : 0.0;
+  for (std::size_t n = 0; n < targets.size(); ++n) remaining += (targets[n] - mesh.nodes[n]).norm();
+  return requested > 0.0 ? 1.0 - remaining / requested : 0.0;
 }
 
-// Geometrically.
-double between(double first, double last, double way) {
-  return first * stable_exp(way * stable_log(last / first));
+// Interpolates geometrically.
+double interpolate(double first, double last, double progress) {
+  return first * stable_exp(progress * stable_log(last / first));
 }
 
 }  // namespace
 
-CellQuality quality_of(const LatticeMesh& mesh) {
+CellQuality measure_cell_quality(const LatticeMesh& mesh) {
   CellQuality quality{1.0, 0.0};
   std::vector<double> volumes;
   double sum = 0.0, squares = 0.0;
@@ -191,19 +193,19 @@ FeatureMapReport order_by_feature_map(LatticeMesh& mesh, const FeatureMapSetting
   SPOONBILL_ASSERT(check_feature_map(settings).ok());
   SPOONBILL_ASSERT_DEBUG(check_cells(mesh).ok());
   FeatureMapReport report;
-  report.before = report.after = quality_of(mesh);
+  report.before = report.after = measure_cell_quality(mesh);
   FeatureMap map(mesh);
   Draws draws(mesh, settings.seed);
   const auto count =
       static_cast<std::int64_t>(settings.draws_per_node) * static_cast<std::int64_t>(map.inside_count());
   for (std::int64_t draw = 0; draw < count; ++draw) {
-    const double way = static_cast<double>(draw) / static_cast<double>(count);
-    if (draw % draws_between_looks == 0 && !watch.progress.report(way)) return report;
-    map.learn(draws.next(), between(settings.first_rate, settings.last_rate, way),
-              between(settings.first_neighbourhood, settings.last_neighbourhood, way));
+    const double progress = static_cast<double>(draw) / static_cast<double>(count);
+    if (draw % draws_per_report == 0 && !watch.progress.report(progress)) return report;
+    map.learn(draws.next(), interpolate(settings.first_rate, settings.last_rate, progress),
+              interpolate(settings.first_neighbourhood, settings.last_neighbourhood, progress));
   }
-  report.share = take_moves(map.mesh().nodes, report.before.worst_jacobian, mesh);
-  report.after = quality_of(mesh);
+  report.applied_fraction = apply_moves(map.mesh().nodes, report.before.worst_jacobian, mesh);
+  report.after = measure_cell_quality(mesh);
   watch.progress.report(1.0);
   if (watch.done) watch.done(report);
   return report;

@@ -1,5 +1,5 @@
-// Spreads the nodes inside a lattice evenly through its body: the volumetric self-organising feature map of
-// section 4.3 of Pungotra et al. 2013.
+// Distributes the nodes inside a lattice evenly through its body: the volumetric self-organising feature
+// map of section 4.3 of Pungotra et al. 2013.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,27 @@
 
 namespace spoonbill {
 
-// How good cells are, each 1 for a box: the smallest Jacobian over the volume, and how even volumes are.
+// Quality of the cells of a lattice.
 struct CellQuality {
-  double worst_jacobian = 0.0;  // see smallest_jacobian_ratio()
-  double volume_spread = 0.0;   // the standard deviation of the cells' volumes over their mean
+  double worst_jacobian = 0.0;  // see smallest_jacobian_ratio(); 1 for boxes
+  double volume_spread = 0.0;   // standard deviation of the cell volumes over their mean
 };
-CellQuality quality_of(const LatticeMesh& mesh);
+CellQuality measure_cell_quality(const LatticeMesh& mesh);
 
 struct FeatureMapReport {
   CellQuality before, after;
-  double share =
-      0.0;  // how much of the map's moves was kept: all, or as much as makes no cell worse than the worst
+  double applied_fraction =
+      0.0;  // fraction of the map's moves that was applied, limited so that the worst cell gets no worse
 };
 
-// Who waits for a map.
+// Observer of a feature map computation.
 struct FeatureMapWatch {
-  Progress progress;                                  // stops the map, with nothing moved
-  std::function<void(const FeatureMapReport&)> done;  // called on the thread that makes it; may be empty
+  Progress progress;                                  // cancelling it leaves the mesh unchanged
+  std::function<void(const FeatureMapReport&)> done;  // called on the computing thread; may be empty
 };
 
-// Moves the nodes that are not on the shell. The same seed gives the same nodes. The worst Jacobian never
-// falls.
+// Moves the nodes inside the body, not those on its surface. The same seed gives the same nodes. The worst
+// Jacobian never falls.
 FeatureMapReport order_by_feature_map(LatticeMesh& mesh, const FeatureMapSettings& settings,
                                       const FeatureMapWatch& watch = {});
 

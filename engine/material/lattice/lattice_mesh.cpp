@@ -1,5 +1,6 @@
 #include "engine/material/lattice/lattice_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -16,11 +17,11 @@ CellCorners LatticeMesh::cell(int i, int j, int k) const {
   return corners;
 }
 
-NodePlace LatticeMesh::place_of(int i, int j, int k) const {
-  if (!places.empty()) return places[static_cast<std::size_t>(index(i, j, k))];
+NodeLocation LatticeMesh::node_location(int i, int j, int k) const {
+  if (!node_locations.empty()) return node_locations[static_cast<std::size_t>(index(i, j, k))];
   const bool end_of_i = !closed && (i == 0 || i == count[0] - 1);
   const bool at_end = end_of_i || j == 0 || k == 0 || j == count[1] - 1 || k == count[2] - 1;
-  return at_end ? NodePlace::on_shell : NodePlace::in_body;
+  return at_end ? NodeLocation::on_shell : NodeLocation::in_body;
 }
 
 double LatticeMesh::mean_edge() const {
@@ -147,8 +148,57 @@ Status check_cells(const LatticeMesh& mesh) {
     }
   }
   if (worst > 0.0) return {};
-  return Error{"lattice: cell (" + std::to_string(where[0]) + ", " + std::to_string(where[1]) + ", " +
-               std::to_string(where[2]) + ") is folded over; use fewer nodes or a smoother surface"};
+  return Error{ErrorCode::self_intersecting, "lattice: cell (" + std::to_string(where[0]) + ", " +
+                                                 std::to_string(where[1]) + ", " + std::to_string(where[2]) +
+                                                 ") is folded over; use fewer nodes or a smoother surface"};
+}
+
+namespace {
+
+using Counts = std::array<int, 3>;
+
+Counts near_cubic_counts(const Vector3& size, int budget, const Counts& min_cells) {
+  double edge = std::cbrt(size.x() * size.y() * size.z() / budget);
+  for (;; edge *= 1.01) {
+    // The budget itself bounds each count, so extreme sizes do not overflow.
+    const auto count = [&](int axis) {
+      const double cells = std::min(size[axis] / edge, 1.0 * budget);
+      return std::max(min_cells[static_cast<std::size_t>(axis)], static_cast<int>(std::lround(cells))) + 1;
+    };
+    const Counts counts = {count(0), count(1), count(2)};
+    const double nodes = 1.0 * counts[0] * counts[1] * counts[2];
+    const bool least = counts == Counts{min_cells[0] + 1, min_cells[1] + 1, min_cells[2] + 1};
+    if (nodes <= budget || least) return counts;
+  }
+}
+
+Result<Counts> choose_counts(const LatticeRequest& request, const Vector3& size_m, const Counts& min_cells) {
+  const Counts counts =
+      request.counts ? *request.counts : near_cubic_counts(size_m, request.node_budget, min_cells);
+  for (const int count : counts) {
+    if (count < 2)
+      return Error{ErrorCode::out_of_range, "lattice: node counts must be at least 2 in each direction",
+                   "nodes"};
+  }
+  return counts;
+}
+
+}  // namespace
+
+Result<std::array<int, 3>> lattice_counts(const LatticeRequest& request, const Vector3& size_m) {
+  return choose_counts(request, size_m, {2, 2, 2});
+}
+
+Result<std::array<int, 3>> shell_counts(const LatticeRequest& request, const Vector3& size_m, bool closed) {
+  constexpr int round_enough = 8;
+  Result<Counts> counts = choose_counts(request, size_m, {closed ? round_enough : 2, 1, 2});
+  if (counts.ok() && closed && counts.value()[0] <= min_cells_around) {
+    return Error{ErrorCode::out_of_range,
+                 "lattice: nodes[0] is " + std::to_string(counts.value()[0]) + ", must be at least " +
+                     std::to_string(min_cells_around + 1) + " around a closed shell",
+                 "nodes[0]"};
+  }
+  return counts;
 }
 
 }  // namespace spoonbill

@@ -1,4 +1,4 @@
-// Fills a thin shell with lattice nodes: layers between a surface and its offset by the thickness.
+// Thin shells filled with lattice nodes: layers between a surface and its offset by the thickness.
 #pragma once
 
 #include "engine/base/geometry.h"
@@ -9,18 +9,18 @@
 
 namespace spoonbill {
 
-// The surface is one face of the shell, that which its normals (along du x dv) point out of: what a designer
-// shapes is then what the tool touches, what is drawn and what is exported. The material lies behind it, to
-// the thickness along the normals.
+// Returns the lattice of a shell. The surface is the face that its normals (along du x dv) point out of:
+// the one that is shaped, touched, drawn and exported. The material is behind it, up to the thickness along
+// the normals.
 //
-// i runs along u, j through the thickness from the surface on, k along v; where v alone is periodic, i runs
-// along v and k along u. A surface that is open both ways makes a sheet, one that is periodic in one
-// direction a ring that is closed (LatticeMesh::closed), and one that is periodic in u with a pole at one end
-// of v a bowl, over which a square grid is laid as a cloth over a disc. Nodes are spaced by arc length.
+// i runs along u, j from the surface through the thickness, k along v. If only v is periodic, i runs along
+// v and k along u. A surface open in both directions makes a sheet; one periodic in one direction makes a
+// closed ring (LatticeMesh::closed). One periodic in u with a pole at one end of v makes a bowl, covered by
+// a square grid. Nodes are spaced by arc length.
 //
-// Cells are made of chords; their shares are such that the lattice has the volume of the shell between the
-// surface and its offset. Refused: a thickness out of range or beyond the surface's radius of curvature,
-// surfaces periodic both ways or with more than one pole, counts below 2.
+// Cells consist of chords; their fractions give the lattice the volume between the surface and its offset.
+// Fails on a thickness out of range or beyond the radius of curvature, surfaces periodic in both directions
+// or with more than one pole, and counts below 2.
 Result<LatticeMesh> shell_lattice(const Surface& surface, double thickness_m, const LatticeRequest& request);
 
 }  // namespace spoonbill

@@ -1,6 +1,4 @@
-#include "engine/material/springs/flow_kernels.h"
-
-#include "engine/material/springs/volume_kernels.h"
+#include "engine/material/springs/lattice_kernels.h"
 
 namespace spoonbill::SPOONBILL_KERNELS {
 namespace {
@@ -8,14 +6,15 @@ namespace {
 constexpr int block = lattice_block;
 constexpr float tiny = 1e-30f;
 
-inline float min_of(float a, float b) {
+inline float min(float a, float b) {
   return a < b ? a : b;
 }
-inline float max_of(float a, float b) {
+inline float max(float a, float b) {
   return a > b ? a : b;
 }
 
-// The rules of a block whose springs are alike, and of one where each has its own.
+// Flow and creep rules of a block: Common where all springs share one rule, Own where each spring has its
+// own.
 struct CommonFlow {
   FlowRule rule;
   float yield(int) const { return rule.yield; }
@@ -28,33 +27,33 @@ struct OwnFlow {
   float time;
   float yield(int l) const { return yields[l]; }
   float hardening(int l) const { return hardenings[l]; }
-  float rate_step(int l) const { return min_of(rates[l] * time, static_cast<float>(largest_flow_step)); }
+  float rate_step(int l) const { return min(rates[l] * time, static_cast<float>(largest_flow_step)); }
 };
 
 struct CommonCreep {
   CreepRule rule;
-  float share(int) const { return rule.share; }
+  float fraction(int) const { return rule.fraction; }
   float rate_step(int) const { return rule.rate_step; }
 };
 
 struct OwnCreep {
-  const float *shares, *times;
+  const float *fractions, *times;
   float time;
-  float share(int l) const { return shares[l]; }
+  float fraction(int l) const { return fractions[l]; }
   float rate_step(int l) const { return 1.0f / (1.0f + times[l] / time); }
 };
 
-// Two Newton steps from the tangent at 1: within 1e-4 for J from 0.5 to 2, exact at 1. 0 outside 0.3 to 3:
-// about a node whose cells are crushed or torn, flow would take the distortion for the new shape.
+// Cube root by two Newton steps from the tangent at 1: within 1e-4 for J from 0.5 to 2, exact at 1. Returns
+// 0 outside 0.3 to 3, because flow would adopt the distortion of crushed or torn cells as the new shape.
 inline float cube_root(float j) {
-  const float a = min_of(max_of(j, 0.3f), 3.0f);
+  const float a = min(max(j, 0.3f), 3.0f);
   float y = 1.0f + (a - 1.0f) * (1.0f / 3.0f);
   y = y - (y * y * y - a) / (3.0f * y * y);
   y = y - (y * y * y - a) / (3.0f * y * y);
   return a == j ? y : 0.0f;
 }
 
-// The present length of each spring of a block, squared.
+// Computes the squared present length of each spring of a block, m^2.
 inline void square_block(const LatticeView& view, const SpringArrays& s, int start,
                          float* __restrict square) {
   const int o = s.offset;
@@ -75,20 +74,20 @@ inline void flow_block(const float* __restrict square, const float* __restrict r
   for (int l = 0; l < block; ++l) {
     const float rest = rest_length[l];
     const float strain =
-        __builtin_sqrtf(square[l]) / (rest * max_of(0.5f * (root[l] + root_far[l]), 0.1f)) - 1.0f;
+        __builtin_sqrtf(square[l]) / (rest * max(0.5f * (root[l] + root_far[l]), 0.1f)) - 1.0f;
     const float yielded = rest / first[l] - 1.0f;
-    const float yield = rule.yield(l) + rule.hardening(l) * max_of(yielded, -yielded);
-    const float beyond = max_of(strain - yield, 0.0f) + min_of(strain + yield, 0.0f);
-    const float limited = min_of(max_of(beyond * rule.rate_step(l), -0.1f), 0.1f) * rest;
-    const float next = min_of(max_of(rest + limited, 0.5f * first[l]), 2.0f * first[l]);
+    const float yield = rule.yield(l) + rule.hardening(l) * max(yielded, -yielded);
+    const float beyond = max(strain - yield, 0.0f) + min(strain + yield, 0.0f);
+    const float limited = min(max(beyond * rule.rate_step(l), -0.1f), 0.1f) * rest;
+    const float next = min(max(rest + limited, 0.5f * first[l]), 2.0f * first[l]);
     const float change = stiffness[l] > 0.0f && root[l] > 0.0f && root_far[l] > 0.0f ? next - rest : 0.0f;
     square_difference[l] -= change * (2.0f * rest + change);
     rest_length[l] = rest + change;
   }
 }
 
-// Whether a spring of a block may be strained beyond yield, without root or quotient. The margin is far above
-// the rounding of either way to compute a strain.
+// Returns whether any spring of a block may be strained beyond yield, without roots or quotients. The
+// margin is far above the rounding of either way to compute a strain.
 template <class Rule>
 inline bool may_flow(const float* __restrict square, const float* __restrict root,
                      const float* __restrict root_far, const float* __restrict stiffness,
@@ -97,27 +96,26 @@ inline bool may_flow(const float* __restrict square, const float* __restrict roo
   for (int start = 0; start < block; start += 16) {
     for (int l = 0; l < 16; ++l) {
       const int i = start + l;
-      const float margin = rule.yield(i) - 1e-5f, over = 1.0f + margin, under = max_of(1.0f - margin, 0.0f);
-      const float free = rest[i] * max_of(0.5f * (root[i] + root_far[i]), 0.1f), free_square = free * free;
-      const float out =
-          max_of(square[i] - over * over * free_square, under * under * free_square - square[i]);
+      const float margin = rule.yield(i) - 1e-5f, over = 1.0f + margin, under = max(1.0f - margin, 0.0f);
+      const float free = rest[i] * max(0.5f * (root[i] + root_far[i]), 0.1f), free_square = free * free;
+      const float out = max(square[i] - over * over * free_square, under * under * free_square - square[i]);
       const float flows = rule.rate_step(i) > 0.0f ? stiffness[i] : 0.0f;
-      beyond[l] = max_of(beyond[l], out * flows);
-      always[l] = max_of(always[l], margin > 0.0f ? 0.0f : 1.0f);
+      beyond[l] = max(beyond[l], out * flows);
+      always[l] = max(always[l], margin > 0.0f ? 0.0f : 1.0f);
     }
   }
-  for (int l = 1; l < 16; ++l) beyond[0] = max_of(beyond[0], beyond[l]);
-  for (int l = 1; l < 16; ++l) always[0] = max_of(always[0], always[l]);
+  for (int l = 1; l < 16; ++l) beyond[0] = max(beyond[0], beyond[l]);
+  for (int l = 1; l < 16; ++l) always[0] = max(always[0], always[l]);
   return beyond[0] > 0.0f || always[0] > 0.0f;
 }
 
-void take_dilation_roots(const LatticeView& view, float* __restrict root) {
+void compute_dilation_roots(const LatticeView& view, float* __restrict root) {
   average_dilations(view);
   const float* __restrict dilation = view.node_dilation;
   for (int i = 0; i < view.padded_count; ++i) root[i] = cube_root(dilation[i]);
 }
 
-// `rule_at` gives the rule of the block that starts at a node.
+// Flows the springs of one direction. `rule_at` returns the rule of the block that starts at a node.
 template <class RuleAt>
 inline void flow_springs(const LatticeView& view, const SpringArrays& s, const RuleAt& rule_at) {
   const float* const root = view.fx;
@@ -141,10 +139,11 @@ inline void creep_block(const float* __restrict square, const float* __restrict 
   for (int l = 0; l < block; ++l) {
     const float rest = rest_length[l], own = rest / (1.0f + crept[l]);
     const float strain =
-        __builtin_sqrtf(square[l]) / (own * max_of(0.5f * (root[l] + root_far[l]), 0.1f)) - 1.0f;
-    const float moved = own * (1.0f + crept[l] + rule.rate_step(l) * (rule.share(l) * strain - crept[l]));
-    const float bounded = min_of(max_of(moved, 0.5f * first[l]), 2.0f * first[l]);
-    const bool creeps = rule.share(l) > 0.0f && stiffness[l] > 0.0f && root[l] > 0.0f && root_far[l] > 0.0f;
+        __builtin_sqrtf(square[l]) / (own * max(0.5f * (root[l] + root_far[l]), 0.1f)) - 1.0f;
+    const float moved = own * (1.0f + crept[l] + rule.rate_step(l) * (rule.fraction(l) * strain - crept[l]));
+    const float bounded = min(max(moved, 0.5f * first[l]), 2.0f * first[l]);
+    const bool creeps =
+        rule.fraction(l) > 0.0f && stiffness[l] > 0.0f && root[l] > 0.0f && root_far[l] > 0.0f;
     const float next = creeps ? bounded : rest, change = next - rest;
     square_difference[l] -= change * (2.0f * rest + change);
     rest_length[l] = rest + change;
@@ -168,7 +167,7 @@ inline void creep_springs(const LatticeView& view, const SpringArrays& s, const 
 }  // namespace
 
 void flow(const LatticeView& view, const FlowRule& rule) {
-  take_dilation_roots(view, view.fx);
+  compute_dilation_roots(view, view.fx);
   for (const SpringArrays& s : view.springs) {
     if (s.flow_rate) {
       flow_springs(view, s, [&](int start) {
@@ -181,7 +180,7 @@ void flow(const LatticeView& view, const FlowRule& rule) {
 }
 
 void creep(const LatticeView& view, int direction, const CreepRule& rule) {
-  take_dilation_roots(view, view.fx);
+  compute_dilation_roots(view, view.fx);
   const SpringArrays& s = view.springs[direction];
   if (s.relaxing_fraction) {
     creep_springs(view, s, [&](int start) {

@@ -1,9 +1,5 @@
 #include "engine/material/springs/lattice_kernels.h"
 
-#include "engine/material/springs/flow_kernels.h"
-#include "engine/material/springs/motion_kernels.h"
-#include "engine/material/springs/volume_kernels.h"
-
 namespace spoonbill::SPOONBILL_KERNELS {
 namespace {
 
@@ -14,10 +10,10 @@ struct BlockForces {
   alignas(64) float x[block], y[block], z[block];
 };
 
-inline float min_of(float a, float b) {
+inline float min(float a, float b) {
   return a < b ? a : b;
 }
-inline float max_of(float a, float b) {
+inline float max(float a, float b) {
   return a > b ? a : b;
 }
 
@@ -47,23 +43,26 @@ void clear(float* x, float* y, float* z, int count) {
   for (int i = 0; i < count; ++i) x[i] = y[i] = z[i] = 0.0f;
 }
 
-// What one block of springs of one direction adds to their near ends, and takes from their far ends at once.
+// Variants of the spring law. The springs of one block and direction add their forces to their near ends
+// and subtract them from their far ends.
+//
 // With n the rest vector, a = n + e the present one and s = |a|^2 - L0^2 = e.(n + a) + (|n|^2 - L0^2), the
-// force is k (L - L0) a / L = k s / (L^2 + L0 L) a, in which a small extension keeps all its digits. Its
-// derivative is transverse I + axial a a^T with transverse = k (L - L0) / L and axial = k L0 / L^3; a spring
-// pressed below half its length is taken as at half, where it is not yet too weak to hold its direction.
+// force is k (L - L0) a / L = k s / (L^2 + L0 L) a. This form keeps all digits of a small extension.
+//
+// Its derivative is transverse I + axial a a^T with transverse = k (L - L0) / L and axial = k L0 / L^3. The
+// transverse stiffness is bounded at that of a spring compressed to half its length.
 enum class Springs { linear, stiffening, softening, mixed };
 
 struct Stiffened {
-  float secant, tangent;  // over those of a linear spring
+  float secant, tangent;  // relative to those of a linear spring
 };
 
-// By b e^2.
+// Computes the stiffening factors for `by` = b e^2.
 template <Springs springs>
 inline Stiffened stiffened(float by) {
-  const Stiffened more = {1.0f + min_of(by, 1.0f), by < 1.0f ? 1.0f + 3.0f * by : 2.0f};
+  const Stiffened more = {1.0f + min(by, 1.0f), by < 1.0f ? 1.0f + 3.0f * by : 2.0f};
   if (springs == Springs::stiffening) return more;
-  const float square = 1.0f / (1.0f - (springs == Springs::mixed ? min_of(by, 0.0f) : by));
+  const float square = 1.0f / (1.0f - (springs == Springs::mixed ? min(by, 0.0f) : by));
   const float root = __builtin_sqrtf(square);
   const Stiffened less = {root, root * square};
   if (springs == Springs::softening) return less;
@@ -87,7 +86,7 @@ inline void linearise_block(const LatticeView& view, const SpringArrays& s, int 
     const float ax = rx[l] + ex, ay = ry[l] + ey, az = rz[l] + ez;
     const float squares = ex * (rx[l] + ax) + ey * (ry[l] + ay) + ez * (rz[l] + az) + q[l];
     const float rest_square = rest[l] * rest[l];
-    const float square = max_of(rest_square + squares, 1e-6f * rest_square);
+    const float square = max(rest_square + squares, 1e-6f * rest_square);
     const float length = __builtin_sqrtf(square), both = square + rest[l] * length;
     const float inverse = 1.0f / (square * both);
     float scale = k[l] * squares * (square * inverse), stiffness = k[l];
@@ -98,7 +97,7 @@ inline void linearise_block(const LatticeView& view, const SpringArrays& s, int 
       scale *= by.secant;
       stiffness *= by.tangent;
     }
-    const float softened = max_of(scale, -stiffness);
+    const float softened = max(scale, -stiffness);
     const float fx = scale * ax, fy = scale * ay, fz = scale * az;
     tangent[l] = ax;
     tangent[block + l] = ay;
@@ -139,10 +138,10 @@ inline void tangent_block(const LatticeView& view, int offset, const ConstField&
   }
 }
 
-// Calls for_block(springs, start, near) for every active block of every direction, and adds what it leaves in
-// `near` to each of the sums. A tile of blocks, direction by direction: positions and forces stay in the
-// first cache, and few enough arrays are read at once for the processor to fetch them ahead. Near ends are
-// summed apart, so that no load waits for an overlapping store just before it.
+// Calls for_block(springs, start, near) for every active block of every direction and adds the result in
+// `near` to each of the sums. Blocks are grouped into tiles, direction by direction: positions and forces
+// stay in the first-level cache, and few enough arrays are read at once for prefetching. Forces on near
+// ends are summed separately, so that no load waits for an overlapping store just before it.
 template <int count, class ForBlock>
 inline void over_springs(const LatticeView& view, const Field (&sums)[count], const ForBlock& for_block) {
   constexpr int tile_blocks = 8, tile = tile_blocks * block;
@@ -165,14 +164,14 @@ inline void over_springs(const LatticeView& view, const Field (&sums)[count], co
   }
 }
 
-// Where a block's tangents go: kept, or forgotten once they were used, which spares most of the memory that a
-// linearisation writes.
+// Destination of a block's tangents: stored, or a scratch buffer that spares most of the memory traffic of
+// a linearisation.
 struct Tangents {
-  Linearised kept;
-  alignas(64) float forgotten[tangent_runs * block];
+  Linearised stored;
+  alignas(64) float scratch[tangent_runs * block];
 
-  float* of(const SpringArrays& s, int start) {
-    return kept == Linearised::tangents ? s.tangent + tangent_runs * start : forgotten;
+  float* destination(const SpringArrays& s, int start) {
+    return stored == Linearised::tangents ? s.tangent + tangent_runs * start : scratch;
   }
 };
 
@@ -183,19 +182,20 @@ void linearise_all(const LatticeView& view, Tangents& tangents, bool powers) {
   if (!powers) {
     const Field springs_alone[1] = {forces[0]};
     over_springs(view, springs_alone, [&](const SpringArrays& s, int start, BlockForces(&near)[1]) {
-      linearise_block<springs>(view, s, start, tangents.of(s, start), near[0]);
+      linearise_block<springs>(view, s, start, tangents.destination(s, start), near[0]);
     });
     return;
   }
   over_springs(view, forces, [&](const SpringArrays& s, int start, BlockForces(&near)[2]) {
-    float* const tangent = tangents.of(s, start);
+    float* const tangent = tangents.destination(s, start);
     linearise_block<springs>(view, s, start, tangent, near[0]);
     tangent_block(view, s.offset, power, start, tangent, near[1]);
   });
 }
 
-// And, where it powers, sets the forces to what the springs' derivative makes of the iteration's vector.
-void linearise(const LatticeView& view, Linearised kept, bool powers) {
+// Linearises all springs. If `powers` is true, also sets the forces to the product of the springs'
+// derivative and the power vector.
+void linearise(const LatticeView& view, Linearised stored, bool powers) {
   const int count = view.padded_count;
   set_to(view.reference_x, view.ahead_x, count);
   set_to(view.reference_y, view.ahead_y, count);
@@ -204,7 +204,7 @@ void linearise(const LatticeView& view, Linearised kept, bool powers) {
   clear(view.spring_x, view.spring_y, view.spring_z, count);
   if (powers) clear(view.fx, view.fy, view.fz, count);
   Tangents tangents;
-  tangents.kept = kept;
+  tangents.stored = stored;
   if (view.springs[0].stiffening) {
     linearise_all<Springs::mixed>(view, tangents, powers);
   } else if (view.stiffening > 0.0f) {
@@ -216,8 +216,8 @@ void linearise(const LatticeView& view, Linearised kept, bool powers) {
   }
 }
 
-void linearise_springs(const LatticeView& view, Linearised kept) {
-  linearise(view, kept, false);
+void linearise_springs(const LatticeView& view, Linearised stored) {
+  linearise(view, stored, false);
 }
 
 void start_forces(const LatticeView& view) {
@@ -269,7 +269,7 @@ void damp_further(const LatticeView& view) {
 
 void row_sums(const LatticeView& view, float* sum) {
   for (int i = 0; i < view.padded_count; ++i) sum[i] = 0.0f;
-  // A stiffening spring's tangent is at most four times its stiffness.
+  // The tangent of a stiffening spring is at most four times its stiffness.
   const float twice = view.stiffening > 0.0f ? 8.0f : 2.0f;
   for (const SpringArrays& s : view.springs) {
     const float* __restrict k = s.stiffness;
@@ -296,8 +296,8 @@ inline float mass_norm(const float* mass, const float* x, const float* y, const 
   return __builtin_sqrtf(lanes[0]);
 }
 
-inline void take_power_step(float* __restrict w, const float* __restrict f, const float* __restrict noise,
-                            const float* __restrict free, float scale, float sign, int count) {
+inline void update_power_vector(float* __restrict w, const float* __restrict f, const float* __restrict noise,
+                                const float* __restrict free, float scale, float sign, int count) {
   for (int i = 0; i < count; ++i) w[i] = (f[i] * scale + sign * noise[i]) * free[i];
 }
 
@@ -305,32 +305,32 @@ inline void divide_by_mass(float* __restrict f, const float* __restrict inverse_
   for (int i = 0; i < count; ++i) f[i] *= inverse_mass[i];
 }
 
-// With the springs' part of -K w in the forces.
-float end_power_step(const LatticeView& view, const float* mass) {
+// Finishes a power step after the springs have added their part of -K w to the forces.
+float finish_power_step(const LatticeView& view, const float* mass) {
   const int count = view.padded_count;
-  take_volume_stiffness(view);
+  subtract_volume_stiffness(view);
   join_seam_forces(view);
   const float before = mass_norm(mass, view.power_x, view.power_y, view.power_z, count);
   divide_by_mass(view.fx, view.inverse_mass, count);
   divide_by_mass(view.fy, view.inverse_mass, count);
   divide_by_mass(view.fz, view.inverse_mass, count);
   const float after = mass_norm(mass, view.fx, view.fy, view.fz, count);
-  const float scale = after > 0.0f ? -1.0f / after : 0.0f;  // forces are -K w
-  take_power_step(view.power_x, view.fx, view.power_noise, view.free_node, scale, 1.0f, count);
-  take_power_step(view.power_y, view.fy, view.power_noise, view.free_node, scale, -1.0f, count);
-  take_power_step(view.power_z, view.fz, view.power_noise, view.free_node, scale, 1.0f, count);
+  const float scale = after > 0.0f ? -1.0f / after : 0.0f;  // the forces are -K w
+  update_power_vector(view.power_x, view.fx, view.power_noise, view.free_node, scale, 1.0f, count);
+  update_power_vector(view.power_y, view.fy, view.power_noise, view.free_node, scale, -1.0f, count);
+  update_power_vector(view.power_z, view.fz, view.power_noise, view.free_node, scale, 1.0f, count);
   return before > 0.0f ? after / before : 0.0f;
 }
 
 float power_step(const LatticeView& view, const float* mass) {
   clear(view.fx, view.fy, view.fz, view.padded_count);
   add_spring_tangent(view, {view.power_x, view.power_y, view.power_z});
-  return end_power_step(view, mass);
+  return finish_power_step(view, mass);
 }
 
-float linearise_with_power_step(const LatticeView& view, Linearised kept, const float* mass) {
-  linearise(view, kept, true);
-  return end_power_step(view, mass);
+float linearise_with_power_step(const LatticeView& view, Linearised stored, const float* mass) {
+  linearise(view, stored, true);
+  return finish_power_step(view, mass);
 }
 
 }  // namespace

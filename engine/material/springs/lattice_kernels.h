@@ -1,37 +1,38 @@
-// The inner loops of the spring lattice, compiled once for each instruction set and chosen at start. Every
-// set gives the same bits: lanes run over nodes, sums run in a fixed order, nothing is contracted. This
-// header and its source use no standard library, as engine/bspline/evaluate_kernels.h explains.
+// Inner loops of the spring lattice, compiled once for each instruction set and chosen at start. Every set
+// gives the same bits: lanes run over nodes, sums run in a fixed order, nothing is contracted. This header
+// and its sources use no standard library; engine/bspline/evaluate_kernels.h explains why.
 //
-// Arrays are structures of arrays over nodes in the mesh's order, padded with zeros so that every loop runs
-// over whole blocks and every neighbour offset stays inside. A spring is stored at its first node, once for
-// each of the 13 directions of a regular lattice; a cell at its first corner. Where none exists its stiffness
-// is zero.
+// Data are structures of arrays over nodes in the mesh's order. They are padded with zeros so that every
+// loop runs over whole blocks and every neighbour offset stays inside. A spring is stored at its first
+// node, once for each of the 13 directions of a regular lattice; a cell is stored at its first corner.
+// Entries without a spring or cell have zero stiffness.
 #pragma once
 
 namespace spoonbill {
 
-inline constexpr int lattice_block = 64;  // nodes a block; the order of sums depends on it, so it is fixed
+inline constexpr int lattice_block = 64;  // nodes per block; fixed, because the order of sums depends on it
 inline constexpr int lattice_direction_count = 13;
 
-// The springs of one direction, linearised: with a the vector from a node to its neighbour at the reference,
-// a spring pulls its node by transverse * m + axial * (a.m) a where its ends move apart by m. A block's
-// numbers lie together, five runs: a's x, y and z in m, axial in N/m^3 and transverse in N/m.
+// Floats per spring of the linearised springs of one direction. With a the vector from a node to its
+// neighbour at the reference, a spring pulls its node by transverse * m + axial * (a.m) a when its ends
+// move apart by m. Each block stores five runs: the x, y and z components of a in m, axial in N/m^3 and
+// transverse in N/m.
 inline constexpr int tangent_runs = 5;
 
-// The springs of one direction.
+// Springs of one direction, one entry per node.
 struct SpringArrays {
-  int offset = 0;                 // from a node to its neighbour, positive
-  const float* rest_x = nullptr;  // the vector to the neighbour in the rest shape, m
+  int offset = 0;                 // from a node to its neighbour, in entries; positive
+  const float* rest_x = nullptr;  // vector to the neighbour in the rest shape, m
   const float* rest_y = nullptr;
   const float* rest_z = nullptr;
-  const float* stiffness = nullptr;          // N/m
-  float* rest_length = nullptr;              // m; changed by flow and reforming
-  float* square_difference = nullptr;        // |rest vector|^2 - rest_length^2, m^2; exactly 0 until then
-  const float* first_rest_length = nullptr;  // as built, m
-  float* crept = nullptr;                    // the strain of the rest length that creep() made
-  float* tangent = nullptr;                  // see tangent_runs
-  // Of lattices whose springs differ in them; else null. Springs that do not flow have a flow rate of 0,
-  // those that do not creep a share of 0.
+  const float* stiffness = nullptr;    // N/m
+  float* rest_length = nullptr;        // m; changed by flow, creep and reforming
+  float* square_difference = nullptr;  // |rest vector|^2 - rest_length^2, m^2; exactly 0 in a new lattice
+  const float* first_rest_length = nullptr;  // rest length at construction, m
+  float* crept = nullptr;                    // strain of the rest length due to creep()
+  float* tangent = nullptr;                  // linearisation, see tangent_runs
+  // Per-spring properties, where the materials of the lattice differ in them; null otherwise. The flow rate
+  // is 0 for springs that do not flow, relaxing_fraction is 0 for springs that do not creep.
   const float* stiffening = nullptr;
   const float* further_damping = nullptr;  // N s/m, see damp_further()
   const float* yield = nullptr;
@@ -41,134 +42,143 @@ struct SpringArrays {
   const float* relaxation_time = nullptr;  // s
 };
 
-// How rest lengths yield: past a strain e of `yield`, more where a spring has yielded already, by `rate_step`
-// of what is beyond it. Where springs differ, each has its own, and `rate_step` is its flow rate times
-// `time_s`.
+// Flow of rest lengths: the strain beyond the yield strain relaxes by the factor `rate_step`. The yield
+// strain grows with the strain already yielded. Where springs differ, each has its own yield strain and
+// hardening, and its rate step is its flow rate times `time_s`.
 struct FlowRule {
   float yield = 0.0f;
-  float hardening = 0.0f;  // of the yield strain, by |L0 / first L0 - 1|
+  float hardening = 0.0f;  // added yield strain per |L0 / first L0 - 1|
   float rate_step = 0.0f;  // at most largest_flow_step
   float time_s = 0.0f;
 };
 
-// Of the strain beyond yield that one flow may take away: the rest of it stays for the next.
+// Largest fraction of the strain beyond yield that one flow step removes.
 inline constexpr double largest_flow_step = 0.5;
 
-// How rest lengths creep: towards `share` of the strain, by `rate_step` of the way. Where springs differ,
-// each has its own, and `rate_step` follows from `time_s`.
+// Creep of rest lengths: the creep strain approaches `fraction` of the strain by the factor `rate_step`.
+// Where springs differ, each has its own fraction and relaxation time, and its rate step follows from
+// `time_s`.
 struct CreepRule {
-  float share = 0.0f;
+  float fraction = 0.0f;
   float rate_step = 0.0f;  // 1 / (1 + relaxation time / time_s)
   float time_s = 0.0f;
 };
 
-// Views of arrays that SpringLattice owns.
+// View of arrays that a SpringLattice owns.
 struct LatticeView {
-  int padded_count = 0;           // nodes, a whole number of blocks
-  float stiffening = 0.0f;        // see linearise_springs(); the largest where springs differ
-  bool volume_gives_way = false;  // whether any K_v is below zero, see volume_forces()
+  int padded_count = 0;         // nodes, a whole number of blocks
+  float stiffening = 0.0f;      // see linearise_springs(); the largest value where springs differ
+  bool volume_softens = false;  // true if any K_v is negative, see volume_forces()
   float *dx = nullptr, *dy = nullptr, *dz = nullptr;  // displacement from the rest shape, m
   float *vx = nullptr, *vy = nullptr, *vz = nullptr;  // m/s
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
-  // Where nodes will be after the damping time at their present velocity: d + tau v, m. Forces taken there
-  // are damped: f(x + tau v) is f(x) + tau df/dt, a Voigt element each spring and cell.
+  // Node displacements extrapolated by the damping time at the present velocity: d + tau v, m. Forces
+  // evaluated there are damped: f(x + tau v) is f(x) + tau df/dt, a Voigt element for each spring and cell.
   float *ahead_x = nullptr, *ahead_y = nullptr, *ahead_z = nullptr;
   float *reference_x = nullptr, *reference_y = nullptr,
-        *reference_z = nullptr;                                         // the same, when linearised, m
-  float *moved_x = nullptr, *moved_y = nullptr, *moved_z = nullptr;     // since then, m
-  float *spring_x = nullptr, *spring_y = nullptr, *spring_z = nullptr;  // the springs' forces then, N
-  const float* inverse_mass = nullptr;                                  // 1/kg; 0 where held
-  const float* free_node = nullptr;  // 1 where free, 0 where held or padding
-  // Pairs of nodes that are one place (LatticeMesh::closed), first the one that stands for both: what acts on
-  // either acts on both, and where they move they move together.
+        *reference_z = nullptr;  // extrapolated displacements at the linearisation, m
+  float *moved_x = nullptr, *moved_y = nullptr, *moved_z = nullptr;  // change since the linearisation, m
+  float *spring_x = nullptr, *spring_y = nullptr,
+        *spring_z = nullptr;            // spring forces at the linearisation, N
+  const float* inverse_mass = nullptr;  // 1/kg; 0 for fixed nodes
+  const float* free_node = nullptr;     // 1 for free nodes, 0 for fixed nodes and padding
+  // Pairs of nodes that coincide (LatticeMesh::closed). The first of a pair is the representative. Forces
+  // on either act on both, and both move together.
   const int* seam = nullptr;
   int seam_count = 0;
-  // One a block: 0 where no spring or cell that starts there has a free node. Forces leave such blocks out,
-  // and are then those on free nodes alone.
+  // Per block: 0 if no spring or cell that starts in the block has a free node. Force kernels skip such
+  // blocks, so only the forces on free nodes are complete.
   const unsigned char* active_block = nullptr;
-  const unsigned char* free_block = nullptr;  // one a block: 0 where no node is free, so that none moves
+  const unsigned char* free_block = nullptr;  // per block: 0 if every node is fixed
   SpringArrays springs[lattice_direction_count];
-  int corner_offset[8] = {};                 // from a cell's first corner, bit 0 = k, bit 1 = j, bit 2 = i
-  int corner_direction[8] = {};              // the spring direction from the first corner to each; [0] unused
+  int corner_offset[8] = {};     // from a cell's first corner; bit 0 = k, bit 1 = j, bit 2 = i
+  int corner_direction[8] = {};  // spring direction from the first corner to each other corner; [0] is unused
   const float* bulk_stiffness = nullptr;     // K_v V0, J
-  const float* crushed_stiffness = nullptr;  // of a cell that is crushed, J; see volume_forces()
+  const float* crushed_stiffness = nullptr;  // additional stiffness of a crushed cell, J; see volume_forces()
   const float* inverse_volume = nullptr;     // 1/V0, 1/m^3
-  float* rest_volume_sum = nullptr;  // 12 V0 as volume_forces() computes it, so that rest has no strain at
-                                     // all; reforming changes it
-  const float* further_bulk_damping = nullptr;  // by cell, J s, see damp_further(); null where there is none
+  float* rest_volume_sum = nullptr;  // 12 V0 as volume_forces() computes it, so that the rest shape has
+                                     // exactly zero strain; changed by reforming
+  const float* further_bulk_damping = nullptr;  // per cell, J s, see damp_further(); null if unused
   const float* has_cell = nullptr;              // 1 or 0
-  const float* inverse_cell_count = nullptr;    // of the cells around a node
-  float* node_dilation = nullptr;               // working memory of flow(): J averaged over them
-  float* power_x = nullptr;                     // the vector of the running power iteration
+  const float* inverse_cell_count = nullptr;    // over the number of cells around a node
+  float* node_dilation = nullptr;               // working memory of flow(): mean J of the cells around a node
+  float* power_x = nullptr;                     // vector of the power iteration
   float* power_y = nullptr;
   float* power_z = nullptr;
-  const float* power_noise = nullptr;  // keeps every mode present in it
+  const float* power_noise = nullptr;  // added at each step so that no mode vanishes from the vector
 };
 
-// How the nodes move in a substep.
+// Parameters of one drift of the nodes.
 struct Drift {
   float h_s = 0.0f;
   float cap_m_per_s = 0.0f;
-  float mean_x = 0.0f, mean_y = 0.0f, mean_z = 0.0f;  // m/s; the cap is on speeds relative to it
+  float mean_x = 0.0f, mean_y = 0.0f,
+        mean_z = 0.0f;  // m/s; the cap applies to speeds relative to this velocity
   float tau_s = 0.0f;
 };
 
+// Results of one drift.
 struct Drifted {
-  float speed_square = 0.0f;  // the largest, over the cap's
-  float moved_square = 0.0f;  // the largest since the springs were linearised, m^2
+  float speed_square = 0.0f;  // largest squared ratio of speed to cap
+  float moved_square = 0.0f;  // largest squared distance from the linearisation, m^2
 };
 
-// What a linearisation keeps: the springs' forces alone, for where no substep follows on it, or their
-// derivatives beside them.
+// Result of a linearisation: the spring forces alone, which suffice if no further substep uses it, or the
+// forces and their derivatives.
 enum class Linearised { forces, tangents };
 
 struct LatticeKernels {
-  // Places nodes ahead by the damping time tau.
+  // Extrapolates all nodes by the damping time tau.
   void (*look_ahead)(const LatticeView&, float tau_s);
-  // Takes the present as the reference: F = k (L - L0) s n of every spring, ahead in time, and its
-  // derivative. With the strain e = L / L0 - 1 and a stiffening b, s = 1 + b e^2 up to 2 where b > 0,
-  // s = (1 - b e^2)^(-1/2) where b < 0, and 1 where it is 0: softening springs pull ever more weakly, and
-  // still the more the longer they are, so that no lattice of them snaps.
-  // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, and so a rotation; ahead of a rotating body there
-  // is the same body turned further, so that this does not.
-  void (*linearise_springs)(const LatticeView&, Linearised kept);
-  // Sets the forces to the springs' at the reference.
+  // Linearises the springs at the present extrapolated positions: F = k (L - L0) s n for every spring, and
+  // its derivative. With the strain e = L / L0 - 1 and a stiffening b, s = 1 + b e^2 up to 2 for b > 0, s =
+  // (1 - b e^2)^(-1/2) for b < 0, and s = 1 for b = 0. A softening spring's force still grows with its
+  // length, so no lattice snaps.
+  //
+  // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, rotations included. The extrapolation of a
+  // rotating body is the same body rotated further, so rotations are not damped here.
+  void (*linearise_springs)(const LatticeView&, Linearised stored);
+  // Sets the forces to the spring forces of the linearisation.
   void (*start_forces)(const LatticeView&);
-  // Adds what the springs' forces changed by since, to first order. This, damp_further() and power_step()
-  // want the tangents kept.
+  // Adds the first-order change of the spring forces since the linearisation. This function, damp_further()
+  // and power_step() need Linearised::tangents.
   void (*spring_forces)(const LatticeView&);
-  // f = -p dV/dx, p = K_v x, x = J - 1, ahead in time, with the exact volume of each trilinear cell. Below
-  // Poisson's ratios of 1/4 K_v is negative, and this energy unbounded below: there
-  // p = K_v x / (1 + (x / 0.1)^2), which the springs outlast. A cell crushed below 0.3 of its volume pushes
-  // back by crushed_stiffness beside that: to springs a cell inside out is as good as one that is not.
+  // Adds f = -p dV/dx with p = K_v x, x = J - 1, at the extrapolated positions, with the exact volume of
+  // each trilinear cell. For Poisson's ratios below 1/4, K_v is negative and this energy unbounded below;
+  // then p = K_v x / (1 + (x / 0.1)^2), which the springs outweigh. A cell below 0.3 of its volume also
+  // pushes back with crushed_stiffness, because springs cannot tell an inverted cell from a regular one.
   void (*volume_forces)(const LatticeView&);
-  // Adds the damping that springs and cells have beyond the time that look_ahead() takes: c ((v' - v).n) n of
-  // a spring along n at the reference, and the pressure c J' of a cell, as rates of its volume now.
+  // Adds the damping of springs and cells beyond the damping time of look_ahead(): the force c ((v' - v).n)
+  // n of a spring along n at the linearisation, and the pressure c dJ/dt of a cell at its present volume
+  // rate.
   void (*damp_further)(const LatticeView&);
-  // v = (v + h (f/m + g)) * decay, with the forces on a seam's pairs added up.
+  // Sets v = (v + h (f/m + g)) * decay, after adding the forces of each seam pair.
   void (*kick)(const LatticeView&, float h_s, float decay, float gx, float gy, float gz);
-  // Caps speeds relative to the mean, then d += h v, and looks ahead; the second of a seam's pair at the
-  // first's velocity.
+  // Caps speeds relative to the mean velocity, sets d += h v and extrapolates. The second node of a seam
+  // pair gets the velocity of the first.
   Drifted (*drift)(const LatticeView&, const Drift&);
-  // Mass-weighted sums of velocity over free nodes; masses enter as given. sum[4]: x, y, z, mass.
+  // Computes mass-weighted sums of velocity over free nodes: sum = {x, y, z, mass}. `mass` must be 0 for
+  // fixed nodes.
   void (*momentum)(const LatticeView&, const float* mass, float sum[4]);
-  // L0 += rate_step * (|e| - yield) sign(e) L0, e = L / (L0 J^(1/3)) - 1, L0 within 1/2 to 2 of its first
-  // value; none about a node whose cells are crushed or torn (J outside 0.3 to 3).
+  // Sets L0 += rate_step * (|e| - yield) sign(e) L0 for e = L / (L0 J^(1/3)) - 1 beyond yield, with L0
+  // within 1/2 to 2 of its initial value. Springs at a node whose cells are crushed or torn (J outside 0.3
+  // to 3) do not flow.
   void (*flow)(const LatticeView&, const FlowRule&);
-  // The springs of one direction: q += rate_step * (share * e - q) for the part q of the rest length
-  // L0 = L00 (1 + q) that is crept, e = L / (L00 J^(1/3)) - 1, within the same bounds. At a constant strain
-  // the stress falls by `share` of itself, as in a standard linear solid; a share of 1 leaves none.
+  // Creeps the springs of one direction: q += rate_step * (fraction * e - q) for the creep strain q in the
+  // rest length L0 = L00 (1 + q), with e = L / (L00 J^(1/3)) - 1, within the bounds of flow(). At constant
+  // strain the stress falls by `fraction` of itself, as in a standard linear solid.
   void (*creep)(const LatticeView&, int direction, const CreepRule&);
-  // Gershgorin's bound on each node's share of the stiffness: 2 k a spring, K_v/V0 |g_i| sum |g_j| a cell.
-  // Never below the largest eigenvalue of its rows; 1.4 to 1.9 times too careful for a whole lattice.
+  // Computes Gershgorin's bound on each node's part of the stiffness: 2 k for a spring, K_v/V0 |g_i| sum
+  // |g_j| for a cell. Never below the largest eigenvalue of its rows; 1.4 to 1.9 times too large for a
+  // whole lattice.
   void (*row_sums)(const LatticeView&, float* sum_n_per_m);
-  // Fills rest_volume_sum from the present shape.
+  // Sets rest_volume_sum from the present shape.
   void (*measure_rest_volumes)(const LatticeView&);
-  // One step w <- M^-1 K w of the power iteration, normalised, K linearised. Returns |M^-1 K w| / |w| in the
-  // mass norm, an estimate of the largest omega^2. Uses the force arrays as working memory.
+  // Performs one normalised step w <- M^-1 K w of the power iteration, with the linearised K. Returns |M^-1
+  // K w| / |w| in the mass norm, an estimate of the largest omega^2. Overwrites the forces.
   float (*power_step)(const LatticeView&, const float* mass);
-  // linearise_springs() and then power_step(), with the same results, in one passage over the springs.
-  float (*linearise_with_power_step)(const LatticeView&, Linearised kept, const float* mass);
+  // Performs linearise_springs() and then power_step() in one pass over the springs, with the same results.
+  float (*linearise_with_power_step)(const LatticeView&, Linearised stored, const float* mass);
 };
 
 namespace kernels_baseline {
@@ -182,3 +192,42 @@ extern const LatticeKernels lattice_kernels;
 }
 
 }  // namespace spoonbill
+
+#ifdef SPOONBILL_KERNELS
+// Parts of the kernels of one instruction set, shared by the sources of this folder. Functions without a
+// comment are described where LatticeKernels names them.
+namespace spoonbill::SPOONBILL_KERNELS {
+
+// Adds a nodal field over each seam pair and gives both nodes the sum.
+void join_seam(const LatticeView& view, float* field);
+void join_seam_forces(const LatticeView& view);
+
+void look_ahead(const LatticeView& view, float tau_s);
+void kick(const LatticeView& view, float h_s, float decay, float gx, float gy, float gz);
+Drifted drift(const LatticeView& view, const Drift& drift);
+void momentum(const LatticeView& view, const float* mass, float sum[4]);
+
+void flow(const LatticeView& view, const FlowRule& rule);
+void creep(const LatticeView& view, int direction, const CreepRule& rule);
+
+// See LatticeKernels::volume_forces.
+void volume_forces(const LatticeView& view);
+
+// Adds the cells' part of LatticeKernels::damp_further.
+void damp_volume_further(const LatticeView& view);
+
+// Sets node_dilation to the mean J of the cells around each node.
+void average_dilations(const LatticeView& view);
+
+// Adds each cell's contribution to the row sums, N/m.
+void add_volume_row_sums(const LatticeView& view, float* sum_n_per_m);
+
+// Subtracts the product of the volume stiffness, at the extrapolated positions, and the power vector from
+// the forces.
+void subtract_volume_stiffness(const LatticeView& view);
+
+// See LatticeKernels::measure_rest_volumes.
+void measure_rest_volumes(const LatticeView& view);
+
+}  // namespace spoonbill::SPOONBILL_KERNELS
+#endif

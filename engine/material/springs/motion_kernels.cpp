@@ -1,11 +1,11 @@
-#include "engine/material/springs/motion_kernels.h"
+#include "engine/material/springs/lattice_kernels.h"
 
 namespace spoonbill::SPOONBILL_KERNELS {
 namespace {
 
 constexpr int block = lattice_block;
 
-inline float max_of(float a, float b) {
+inline float max(float a, float b) {
   return a > b ? a : b;
 }
 
@@ -14,16 +14,16 @@ inline void kick_block(float* __restrict v, const float* __restrict f, const flo
   for (int l = 0; l < block; ++l) v[l] = (v[l] + h * (f[l] * inverse_mass[l] + g)) * decay * free[l];
 }
 
-// Gives the second of a seam's pair what the first has.
-void follow_seam(const LatticeView& view, float* of) {
-  for (int s = 0; s < view.seam_count; ++s) of[view.seam[2 * s + 1]] = of[view.seam[2 * s]];
+// Copies the value of the first node of each seam pair to the second.
+void follow_seam(const LatticeView& view, float* field) {
+  for (int s = 0; s < view.seam_count; ++s) field[view.seam[2 * s + 1]] = field[view.seam[2 * s]];
 }
 
 }  // namespace
 
-void join_seam(const LatticeView& view, float* of) {
-  for (int s = 0; s < view.seam_count; ++s) of[view.seam[2 * s]] += of[view.seam[2 * s + 1]];
-  follow_seam(view, of);
+void join_seam(const LatticeView& view, float* field) {
+  for (int s = 0; s < view.seam_count; ++s) field[view.seam[2 * s]] += field[view.seam[2 * s + 1]];
+  follow_seam(view, field);
 }
 
 void join_seam_forces(const LatticeView& view) {
@@ -51,7 +51,7 @@ void kick(const LatticeView& view, float h, float decay, float gx, float gy, flo
 
 namespace {
 
-// Moves a block along one axis, places it ahead and adds the squares of what moved since the reference.
+// Moves a block along one axis, extrapolates it and adds the squared distances from the reference.
 inline void drift_along(float* __restrict d, const float* __restrict v, const float* __restrict reference,
                         float* __restrict ahead, float* __restrict moved, float* __restrict squares, float h,
                         float tau) {
@@ -63,7 +63,7 @@ inline void drift_along(float* __restrict d, const float* __restrict v, const fl
   }
 }
 
-// Squared ratios of speed to cap of a block.
+// Computes the squared ratios of speed to cap of a block.
 inline void speed_ratios(const float* __restrict vx, const float* __restrict vy, const float* __restrict vz,
                          const float* __restrict free, float* __restrict ratio, const Drift& drift,
                          float inverse_square) {
@@ -73,21 +73,21 @@ inline void speed_ratios(const float* __restrict vx, const float* __restrict vy,
   }
 }
 
-// Below the cap a velocity keeps its bits.
+// Caps the speeds of a block. Velocities below the cap keep their bits.
 inline void cap_speeds(float* __restrict v, const float* __restrict ratio, float mean) {
   for (int l = 0; l < block; ++l) {
-    const float keep = 1.0f / __builtin_sqrtf(max_of(ratio[l], 1.0f));
-    v[l] = ratio[l] > 1.0f ? mean + (v[l] - mean) * keep : v[l];
+    const float scale = 1.0f / __builtin_sqrtf(max(ratio[l], 1.0f));
+    v[l] = ratio[l] > 1.0f ? mean + (v[l] - mean) * scale : v[l];
   }
 }
 
-inline float largest_of(const float* values) {
+inline float largest_value(const float* values) {
   alignas(64) float lanes[16] = {};
   for (int i = 0; i < block; i += 16) {
-    for (int l = 0; l < 16; ++l) lanes[l] = max_of(lanes[l], values[i + l]);
+    for (int l = 0; l < 16; ++l) lanes[l] = max(lanes[l], values[i + l]);
   }
   float largest = 0.0f;
-  for (const float lane : lanes) largest = max_of(largest, lane);
+  for (const float lane : lanes) largest = max(largest, lane);
   return largest;
 }
 
@@ -103,7 +103,7 @@ Drifted drift(const LatticeView& view, const Drift& drift) {
   for (int i = 0; i < view.padded_count; i += block) {
     if (view.free_block[i / block] == 0) continue;
     speed_ratios(view.vx + i, view.vy + i, view.vz + i, view.free_node + i, ratio, drift, inverse_square);
-    const float fastest = largest_of(ratio);
+    const float fastest = largest_value(ratio);
     if (fastest > 1.0f) {
       cap_speeds(view.vx + i, ratio, drift.mean_x);
       cap_speeds(view.vy + i, ratio, drift.mean_y);
@@ -116,8 +116,8 @@ Drifted drift(const LatticeView& view, const Drift& drift) {
                 drift.h_s, drift.tau_s);
     drift_along(view.dz + i, view.vz + i, view.reference_z + i, view.ahead_z + i, view.moved_z + i, squares,
                 drift.h_s, drift.tau_s);
-    drifted.speed_square = max_of(drifted.speed_square, fastest);
-    drifted.moved_square = max_of(drifted.moved_square, largest_of(squares));
+    drifted.speed_square = max(drifted.speed_square, fastest);
+    drifted.moved_square = max(drifted.moved_square, largest_value(squares));
   }
   return drifted;
 }

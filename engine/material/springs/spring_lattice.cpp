@@ -3,12 +3,38 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
-#include "engine/material/springs/lattice_assembly.h"
+#include "engine/base/assert.h"
+#include "engine/material/cells/spring_cell.h"
 
 namespace spoonbill {
 namespace {
+
+// Steps in i, j, k along the 13 spring directions of a regular lattice, each with a positive offset in
+// memory.
+constexpr int direction_step[lattice_direction_count][3] = {
+    {0, 1, 0}, {1, 0, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0}, {0, 1, 1},   {0, -1, 1},
+    {1, 0, 1}, {-1, 0, 1}, {1, 1, 1}, {1, -1, 1}, {-1, 1, 1}, {-1, -1, 1},
+};
+
+// Returns the index of a spring direction, or -1 if there is no such direction.
+int find_direction(int di, int dj, int dk) {
+  for (int d = 0; d < lattice_direction_count; ++d) {
+    if (direction_step[d][0] == di && direction_step[d][1] == dj && direction_step[d][2] == dk) return d;
+  }
+  return -1;
+}
+
+// Fixed pseudo-random number in [-1, 1), by Knuth's multiplicative hash. Start vectors made of it contain
+// every mode.
+float hashed_noise(std::uint32_t i) {
+  const std::uint32_t bits = (i * 2654435761u) ^ ((i * 2654435761u) >> 15);
+  return static_cast<float>(bits & 0xffffu) / 32768.0f - 1.0f;
+}
 
 const LatticeKernels& kernels_for(InstructionSet set) {
   switch (set) {
@@ -28,30 +54,89 @@ const float* data_or_null(const AlignedVector<float>& values) {
 
 constexpr int frequency_steps = 300;
 
+// Stiffness of a crushed cell over its shear modulus: that of a material with Poisson's ratio 0.45.
+constexpr double crushed_ratio = 8.0;
+constexpr float noise_fraction = 1e-4f;
+
+// Relative difference below which two damping times count as equal.
+constexpr double time_tolerance = 1e-6;
+
+template <class Property>
+bool differ(const LatticeMaterials& materials, const Property& property) {
+  return std::any_of(materials.materials.begin(), materials.materials.end(), [&](const Material& material) {
+    return property(material) != property(materials.own());
+  });
+}
+
+// Square of the pressure wave speed, m^2/s^2: E (1 - nu) / ((1 + nu) (1 - 2 nu)) over the density.
+double wave_speed_square(const Material& material) {
+  const double poisson = std::max(material.poissons_ratio, min_spring_poissons_ratio);
+  return material.youngs_modulus_pa * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)) /
+         material.density_kg_per_m3;
+}
+
+std::vector<double> damping_times_s(const LatticeMaterials& materials, double fastest_frequency) {
+  double fastest_square = 0.0;
+  for (const Material& material : materials.materials) {
+    fastest_square = std::max(fastest_square, wave_speed_square(material));
+  }
+  std::vector<double> times;
+  for (const Material& material : materials.materials) {
+    const double own = fastest_frequency * std::sqrt(wave_speed_square(material) / fastest_square);
+    times.push_back(2.0 * material.damping_ratio / own);
+  }
+  return times;
+}
+
 }  // namespace
+
+// Sums over the cells in double precision, before they are stored in single precision.
+struct SpringLattice::Assembly {
+  // One value per node for each direction; it belongs to the spring that starts at the node.
+  using BySpring = std::array<std::vector<double>, lattice_direction_count>;
+
+  // Moduli of one material after scaling by the effective Young's modulus.
+  struct Stiffness {
+    double youngs_modulus_pa, shear_pa, bulk_pa;
+  };
+
+  explicit Assembly(const SpringLattice& lattice);
+
+  // Returns the index of the material that contributes most to a spring's stiffness; the first one on a
+  // tie. Only for lattices of several materials.
+  std::size_t leading_material(int direction, std::size_t node) const;
+
+  std::vector<Stiffness> materials;
+  std::vector<double> mass, cell_count;  // per node
+  BySpring stiffness;
+  std::vector<BySpring>
+      by_material;  // contribution of each material to the stiffness; empty for a single material
+};
 
 Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const LatticeMaterials& materials,
                                           double youngs_modulus_pa, InstructionSet set) {
   if (const Status status = check_materials(materials); !status.ok()) return status.error();
   for (int axis = 0; axis < 3; ++axis) {
-    if (mesh.count[axis] < 2) return Error{"lattice: node counts must be at least 2 in each direction"};
+    if (mesh.count[axis] < 2)
+      return Error{ErrorCode::out_of_range, "lattice: node counts must be at least 2 in each direction",
+                   "nodes"};
   }
   if (const Status status = check_cells(mesh); !status.ok()) return status.error();
   SpringLattice lattice;
   lattice.kernels_ = &kernels_for(set);
   lattice.materials_ = materials;
   lattice.youngs_modulus_ = youngs_modulus_pa;
-  lattice.lay_out(mesh);
+  lattice.allocate(mesh);
   Assembly sum(lattice);
   lattice.assemble(sum);
   lattice.kernels_->measure_rest_volumes(lattice.view());
-  lattice.hold(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
-  lattice.fastest_frequency_ = lattice.measured_frequency();
-  lattice.take_damping(sum);
+  lattice.fix_nodes(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
+  lattice.fastest_frequency_ = lattice.measure_frequency();
+  lattice.set_damping(sum);
   return lattice;
 }
 
-void SpringLattice::lay_out(const LatticeMesh& mesh) {
+void SpringLattice::allocate(const LatticeMesh& mesh) {
   mesh_ = mesh;
   cell_size_ = static_cast<float>(mesh.mean_edge());
   const int row = mesh.count[1], layer = mesh.count[0] * mesh.count[1];
@@ -105,19 +190,19 @@ void SpringLattice::lay_out(const LatticeMesh& mesh) {
       a->assign(size, 0.0f);
     }
     tangent_[d].assign(tangent_runs * static_cast<std::size_t>(padded_count_), 0.0f);
-    // Springs that do not exist have a length all the same, so that nothing divides by zero.
+    // Unused entries get a nonzero length so that no kernel divides by zero.
     for (Floats* a : {&rest_x_[d], &rest_length_[d], &first_rest_length_[d]}) a->assign(size, cell_size_);
   }
 }
 
-// By power iteration at rest.
-float SpringLattice::measured_frequency() {
+// Measures the fastest angular frequency by power iteration at rest.
+float SpringLattice::measure_frequency() {
   const LatticeView lattice = view();
   for (int n = 0; n < mesh_.node_count(); ++n) {
-    const int place = mesh_.joined(n);
-    power_x_[n] = mixed(static_cast<std::uint32_t>(3 * place + 1));
-    power_y_[n] = mixed(static_cast<std::uint32_t>(3 * place + 2));
-    power_z_[n] = mixed(static_cast<std::uint32_t>(3 * place + 3));
+    const int representative = mesh_.joined(n);
+    power_x_[n] = hashed_noise(static_cast<std::uint32_t>(3 * representative + 1));
+    power_y_[n] = hashed_noise(static_cast<std::uint32_t>(3 * representative + 2));
+    power_z_[n] = hashed_noise(static_cast<std::uint32_t>(3 * representative + 3));
   }
   kernels_->look_ahead(lattice, 0.0f);
   kernels_->linearise_springs(lattice, Linearised::tangents);
@@ -135,7 +220,7 @@ LatticeView SpringLattice::view() {
   for (const Material& each : materials_.materials) {
     v.stiffening = std::max(v.stiffening, static_cast<float>(each.stiffening));
   }
-  v.volume_gives_way = least_poissons_ratio(materials_) < 0.25;
+  v.volume_softens = min_poissons_ratio(materials_) < 0.25;
   v.dx = dx_.data();
   v.dy = dy_.data();
   v.dz = dz_.data();
@@ -179,11 +264,11 @@ LatticeView SpringLattice::view() {
                     data_or_null(yield_[d]),
                     data_or_null(hardening_[d]),
                     data_or_null(flow_rate_[d]),
-                    data_or_null(relaxing_share_[d]),
+                    data_or_null(relaxing_fraction_[d]),
                     data_or_null(relaxation_time_[d])};
   }
   for (int c = 1; c < 8; ++c) {
-    v.corner_direction[c] = direction_of(c >> 2 & 1, c >> 1 & 1, c & 1);
+    v.corner_direction[c] = find_direction(c >> 2 & 1, c >> 1 & 1, c & 1);
     v.corner_offset[c] = offset_[v.corner_direction[c]];
   }
   v.bulk_stiffness = bulk_.data();
@@ -210,7 +295,7 @@ double SpringLattice::volume_m3() const {
         for (int c = 0; c < 8; ++c) {
           corners[c] = position(mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1)));
         }
-        volume += mesh_.share(i, j, k) * cell_volume(corners);
+        volume += mesh_.cell_fraction(i, j, k) * cell_volume(corners);
       }
     }
   }
@@ -238,21 +323,431 @@ void SpringLattice::set_node_force(int node, const Vector3& force_n) {
   has_applied_force_ = true;
 }
 
-const float* SpringLattice::steady_strained_nodes(float h_s, float share) {
+const float* SpringLattice::stabilise_strained_nodes(float h_s, float fraction) {
   kernels_->row_sums(view(), row_sum_.data());
-  // w^2 (h^2 + 2 tau h) <= 4 is h <= (2 / w) (sqrt(1 + z^2) - z) with z = tau w / 2.
-  const float by_all = h_s * h_s + 2.0f * damping_time_ * h_s, limit = 4.0f * share * share / by_all;
+  // w^2 (h^2 + 2 tau h) <= 4 is equivalent to h <= (2 / w) (sqrt(1 + z^2) - z) with z = tau w / 2.
+  const float by_all = h_s * h_s + 2.0f * damping_time_ * h_s, limit = 4.0f * fraction * fraction / by_all;
   for (int i = 0; i < padded_count_; ++i) {
     float stable = limit / std::max(row_sum_[i], 1e-30f);
     if (is_damped_further()) stable *= by_all / (by_all + 2.0f * slowest_damping_[i] * h_s);
     stable_inverse_mass_[i] = std::min(inverse_mass_[i], stable);
     if (!(stable < inverse_mass_[i])) continue;
-    // Heavier at the same momentum: otherwise forces that now act on more mass could not stop what they let
-    // loose.
+    // The momentum stays the same. At the old velocity, forces that act on more mass could not stop the
+    // node.
     const float slower = stable / inverse_mass_[i];
     for (Floats* v : {&vx_, &vy_, &vz_}) (*v)[i] *= slower;
   }
   return stable_inverse_mass_.data();
+}
+
+SpringLattice::Assembly::Assembly(const SpringLattice& lattice) {
+  const LatticeMaterials& composition = lattice.materials();
+  for (const Material& material : composition.materials) {
+    const bool is_own = &material == &composition.own();
+    const double youngs = is_own ? lattice.youngs_modulus_pa()
+                                 : material.youngs_modulus_pa * lattice.youngs_modulus_pa() /
+                                       composition.own().youngs_modulus_pa;
+    // Materials below this Poisson's ratio are moved by the implicit solver; their springs are inactive.
+    const double poisson = std::max(material.poissons_ratio, min_spring_poissons_ratio);
+    materials.push_back({youngs, shear_modulus(youngs, poisson), bulk_stiffness(youngs, poisson)});
+  }
+  const std::vector<double> none(static_cast<std::size_t>(lattice.mesh().node_count()), 0.0);
+  mass = cell_count = none;
+  stiffness.fill(none);
+  if (composition.has_several_materials()) by_material.assign(materials.size(), stiffness);
+}
+
+std::size_t SpringLattice::Assembly::leading_material(int direction, std::size_t node) const {
+  std::size_t leading = 0;
+  const auto contribution = [&](std::size_t material) {
+    return by_material[material][static_cast<std::size_t>(direction)][node];
+  };
+  for (std::size_t m = 1; m < by_material.size(); ++m) {
+    if (contribution(m) > contribution(leading)) leading = m;
+  }
+  return leading;
+}
+
+void SpringLattice::assemble(Assembly& sum) {
+  total_mass_ = rest_volume_ = 0.0;
+  report_ = {};
+  for (int i = 0; i + 1 < mesh_.count[0]; ++i) {
+    for (int j = 0; j + 1 < mesh_.count[1]; ++j) {
+      for (int k = 0; k + 1 < mesh_.count[2]; ++k) add_cell(i, j, k, sum);
+    }
+  }
+  report_.divide_by(rest_volume_);
+  if (!materials_.has_several_materials()) total_mass_ = material().density_kg_per_m3 * rest_volume_;
+  join_nodes(sum);
+  store_nodes(sum);
+  for (int d = 0; d < lattice_direction_count; ++d) store_springs(d, sum);
+  store_stiffening(sum);
+  store_flow_and_creep(sum);
+}
+
+void SpringLattice::add_cell(int i, int j, int k, Assembly& sum) {
+  const CellCorners corners = mesh_.cell(i, j, k);
+  const std::size_t composition = materials_.index_of(mesh_.cell_index(i, j, k));
+  const Assembly::Stiffness& material = sum.materials[composition];
+  const double density = materials_.materials[composition].density_kg_per_m3;
+  const CellSprings springs = cell_springs(corners, material.shear_pa);
+  // Mass and stiffness scale with the same fraction, so a partly filled cell vibrates no faster than a
+  // whole one.
+  const double fraction = mesh_.cell_fraction(i, j, k), volume_m3 = fraction * springs.volume_m3;
+  const auto corner_node = [&](int corner) {
+    return mesh_.index(i + (corner >> 2 & 1), j + (corner >> 1 & 1), k + (corner & 1));
+  };
+  for (int s = 0; s < cell_spring_count; ++s) {
+    int from = cell_spring_corners[s][0], to = cell_spring_corners[s][1];
+    const auto step = [&](int bit) { return (to >> bit & 1) - (from >> bit & 1); };
+    int d = find_direction(step(2), step(1), step(0));
+    if (d < 0) {
+      std::swap(from, to);
+      d = find_direction(step(2), step(1), step(0));
+    }
+    const auto direction = static_cast<std::size_t>(d), node = static_cast<std::size_t>(corner_node(from));
+    sum.stiffness[direction][node] += fraction * springs.stiffness_n_per_m[s];
+    if (sum.by_material.empty()) continue;
+    sum.by_material[composition][direction][node] += fraction * springs.stiffness_n_per_m[s];
+  }
+  for (int c = 0; c < 8; ++c) {
+    const auto node = static_cast<std::size_t>(corner_node(c));
+    sum.mass[node] += density * volume_m3 / 8.0;
+    sum.cell_count[node] += 1.0;
+  }
+  const int first = corner_node(0);
+  bulk_[first] = static_cast<float>(material.bulk_pa * volume_m3);
+  crushed_[first] = static_cast<float>(crushed_ratio * material.shear_pa * volume_m3);
+  inverse_volume_[first] = static_cast<float>(1.0 / springs.volume_m3);
+  has_cell_[first] = 1.0f;
+  rest_volume_ += volume_m3;
+  total_mass_ += density * volume_m3;
+  report_.add(volume_m3, achieved_elasticity(corners, springs, material.bulk_pa), material.youngs_modulus_pa,
+              materials_.materials[composition].poissons_ratio);
+  report_.worst_cell_misfit = std::max(report_.worst_cell_misfit, springs.misfit);
+  report_.worst_jacobian = std::min(report_.worst_jacobian, smallest_jacobian_ratio(corners));
+}
+
+// Gives the first node of each seam pair the mass of both.
+void SpringLattice::join_nodes(Assembly& sum) {
+  for (std::size_t s = 0; s < seam_.size(); s += 2) {
+    const auto first = static_cast<std::size_t>(seam_[s]), second = static_cast<std::size_t>(seam_[s + 1]);
+    sum.mass[first] += sum.mass[second];
+    sum.mass[second] = 0.0;
+    sum.cell_count[first] += sum.cell_count[second];
+    sum.cell_count[second] = sum.cell_count[first];
+  }
+}
+
+void SpringLattice::store_nodes(const Assembly& sum) {
+  for (std::size_t n = 0; n < sum.mass.size(); ++n) {
+    node_mass_[n] = static_cast<float>(sum.mass[n]);
+    inverse_cell_count_[n] = static_cast<float>(1.0 / sum.cell_count[n]);
+    power_noise_[n] = noise_fraction *
+                      hashed_noise(static_cast<std::uint32_t>(mesh_.joined(static_cast<int>(n))) + 1) /
+                      std::sqrt(static_cast<float>(total_mass_));
+  }
+}
+
+void SpringLattice::store_springs(int d, const Assembly& sum) {
+  for (int n = 0; n < mesh_.node_count(); ++n) {
+    const std::array<int, 3> at = mesh_.grid_index(n);
+    bool inside = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int to = at[axis] + direction_step[d][axis];
+      inside = inside && to >= 0 && to < mesh_.count[axis];
+    }
+    if (!inside) continue;
+    const Vector3 rest = mesh_.nodes[n + offset_[d]] - mesh_.nodes[n];
+    rest_x_[d][n] = static_cast<float>(rest.x());
+    rest_y_[d][n] = static_cast<float>(rest.y());
+    rest_z_[d][n] = static_cast<float>(rest.z());
+    rest_length_[d][n] = static_cast<float>(rest.norm());
+    first_rest_length_[d][n] = rest_length_[d][n];
+    stiffness_[d][n] =
+        static_cast<float>(sum.stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(n)]);
+  }
+}
+
+void SpringLattice::store_stiffening(const Assembly& sum) {
+  if (!differ(materials_, [](const Material& material) { return material.stiffening; })) return;
+  for (std::size_t d = 0; d < lattice_direction_count; ++d) {
+    stiffening_[d].assign(stiffness_[d].size(), 0.0f);
+    for (std::size_t n = 0; n < sum.mass.size(); ++n) {
+      if (!(sum.stiffness[d][n] > 0.0)) continue;
+      double mean = 0.0;
+      for (std::size_t m = 0; m < sum.by_material.size(); ++m) {
+        mean += sum.by_material[m][d][n] / sum.stiffness[d][n] * materials_.materials[m].stiffening;
+      }
+      stiffening_[d][n] = static_cast<float>(mean);
+    }
+  }
+}
+
+void SpringLattice::store_flow_and_creep(const Assembly& sum) {
+  for (const Material& material : materials_.materials) {
+    flows_ = flows_ || material.plastic;
+    creeps_ = creeps_ || material.relaxing_fraction > 0.0;
+  }
+  const bool own_flow = flows_ && differ(materials_, [](const Material& material) {
+                          return std::array<double, 4>{material.plastic ? 1.0 : 0.0, material.yield_strain,
+                                                       material.flow_rate_per_s, material.hardening};
+                        });
+  const bool own_creep = creeps_ && differ(materials_, [](const Material& material) {
+                           return std::array<double, 2>{material.relaxing_fraction, material.relaxation_time_s};
+                         });
+  if (!own_flow && !own_creep) return;
+  for (std::size_t d = 0; d < lattice_direction_count; ++d) {
+    const std::size_t size = stiffness_[d].size();
+    if (own_flow) {
+      for (Floats* a : {&yield_[d], &hardening_[d], &flow_rate_[d]}) a->assign(size, 0.0f);
+      std::fill(yield_[d].begin(), yield_[d].end(),
+                1.0f);  // springs that do not flow never reach their yield strain
+    }
+    if (own_creep) {
+      relaxing_fraction_[d].assign(size, 0.0f);
+      relaxation_time_[d].assign(size, 1.0f);
+    }
+    for (std::size_t n = 0; n < sum.mass.size(); ++n) {
+      const Material& material = materials_.materials[sum.leading_material(static_cast<int>(d), n)];
+      if (own_flow && material.plastic) {
+        yield_[d][n] = static_cast<float>(material.yield_strain);
+        hardening_[d][n] = static_cast<float>(material.hardening);
+        flow_rate_[d][n] = static_cast<float>(material.flow_rate_per_s);
+      }
+      if (own_creep) {
+        relaxing_fraction_[d][n] = static_cast<float>(material.relaxing_fraction);
+        relaxation_time_[d][n] = static_cast<float>(material.relaxation_time_s);
+      }
+    }
+  }
+}
+
+void SpringLattice::set_damping(const Assembly& sum) {
+  if (!materials_.has_several_materials()) {
+    damping_time_ = step_damping_time_ =
+        static_cast<float>(2.0 * material().damping_ratio / fastest_frequency_);
+    return;
+  }
+  const std::vector<double> times_s = damping_times_s(materials_, fastest_frequency());
+  const auto [least, most] = std::minmax_element(times_s.begin(), times_s.end());
+  damping_time_ = step_damping_time_ = static_cast<float>(*least);
+  if (*most - *least > time_tolerance * *most) set_further_damping(sum, times_s);
+}
+
+void SpringLattice::set_further_damping(const Assembly& sum, const std::vector<double>& times_s) {
+  const double least = *std::min_element(times_s.begin(), times_s.end());
+  for (std::size_t d = 0; d < lattice_direction_count; ++d) {
+    further_damping_[d].assign(stiffness_[d].size(), 0.0f);
+    for (std::size_t n = 0; n < sum.mass.size(); ++n) {
+      double damping = 0.0;
+      for (std::size_t m = 0; m < times_s.size(); ++m) {
+        damping += sum.by_material[m][d][n] * (times_s[m] - least);
+      }
+      further_damping_[d][n] = static_cast<float>(damping);
+    }
+  }
+  further_bulk_damping_.assign(bulk_.size(), 0.0f);
+  slowest_damping_.assign(node_mass_.size(), 0.0f);
+  for (int i = 0; i + 1 < mesh_.count[0]; ++i) {
+    for (int j = 0; j + 1 < mesh_.count[1]; ++j) {
+      for (int k = 0; k + 1 < mesh_.count[2]; ++k) {
+        const auto further =
+            static_cast<float>(times_s[materials_.index_of(mesh_.cell_index(i, j, k))] - least);
+        const int first = mesh_.index(i, j, k);
+        // A negative stiffness would drive the motion instead of damping it.
+        further_bulk_damping_[first] = further * std::max(bulk_[first], 0.0f);
+        for (int c = 0; c < 8; ++c) {
+          float& slowest = slowest_damping_[mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1))];
+          slowest = std::max(slowest, further);
+        }
+      }
+    }
+  }
+  for (std::size_t s = 0; s < seam_.size(); s += 2) {
+    float &first = slowest_damping_[seam_[s]], &second = slowest_damping_[seam_[s + 1]];
+    first = second = std::max(first, second);
+  }
+  step_damping_time_ =
+      static_cast<float>(measure_damping_eigenvalue() / (fastest_frequency() * fastest_frequency()));
+}
+
+// Returns the largest eigenvalue of the damping matrix over the mass, 1/s. A step h is stable while h^2 w^2
+// plus 2 h times this eigenvalue stays below 4. Measured as the frequency is, with the damping of every
+// spring and cell in place of its stiffness.
+double SpringLattice::measure_damping_eigenvalue() {
+  const Floats vector[3] = {power_x_, power_y_, power_z_}, bulk = bulk_;
+  Floats stiffness[lattice_direction_count];
+  for (std::size_t d = 0; d < lattice_direction_count; ++d) {
+    stiffness[d] = stiffness_[d];
+    for (std::size_t n = 0; n < stiffness[d].size(); ++n) {
+      stiffness_[d][n] = damping_time_ * stiffness[d][n] + further_damping_[d][n];
+    }
+  }
+  for (std::size_t n = 0; n < bulk.size(); ++n) bulk_[n] = damping_time_ * bulk[n] + further_bulk_damping_[n];
+  const double root = measure_frequency();
+  bulk_ = bulk;
+  for (std::size_t d = 0; d < lattice_direction_count; ++d) stiffness_[d] = stiffness[d];
+  power_x_ = vector[0];
+  power_y_ = vector[1];
+  power_z_ = vector[2];
+  return root * root;
+}
+
+float SpringLattice::free_inverse_mass(int node) const {
+  return contact_inverse_mass_ > 0.0f ? contact_inverse_mass_ : 1.0f / node_mass_[mesh_.joined(node)];
+}
+
+void SpringLattice::set_contact_inverse_mass(double inverse_mass_per_kg) {
+  SPOONBILL_ASSERT(inverse_mass_per_kg >= 0.0);
+  contact_inverse_mass_ = static_cast<float>(inverse_mass_per_kg);
+  for (int n = 0; n < mesh_.node_count(); ++n) {
+    if (inverse_mass_[n] > 0.0f) inverse_mass_[n] = free_inverse_mass(n);
+  }
+}
+
+void SpringLattice::fix_nodes(std::span<const std::uint8_t> fixed) {
+  SPOONBILL_ASSERT(fixed.size() == static_cast<std::size_t>(mesh_.node_count()));
+  fixed_count_ =
+      static_cast<int>(std::count_if(fixed.begin(), fixed.end(), [](std::uint8_t is) { return is != 0; }));
+  for (int n = 0; n < mesh_.node_count(); ++n) {
+    const bool free =
+        fixed[static_cast<std::size_t>(n)] == 0 && fixed[static_cast<std::size_t>(mesh_.twin(n))] == 0;
+    inverse_mass_[n] = free ? free_inverse_mass(n) : 0.0f;
+    free_mass_[n] = free ? node_mass_[n] : 0.0f;
+    free_node_[n] = free ? 1.0f : 0.0f;
+    if (!free) set_velocity(n, Vector3::Zero());
+  }
+  find_active_blocks();
+}
+
+void SpringLattice::find_active_blocks() {
+  active_block_.assign(static_cast<std::size_t>(padded_count_ / lattice_block), 0);
+  free_block_ = active_block_;
+  const int reach = *std::max_element(offset_, offset_ + lattice_direction_count);
+  for (int n = 0; n < mesh_.node_count(); ++n) {
+    if (free_node_[n] == 0.0f) continue;
+    free_block_[static_cast<std::size_t>(n / lattice_block)] = 1;
+    const int first = std::max(0, n - reach) / lattice_block;
+    for (int b = first; b <= n / lattice_block; ++b) active_block_[static_cast<std::size_t>(b)] = 1;
+  }
+}
+
+void SpringLattice::write_shape(std::vector<float>& shape) const {
+  shape.clear();
+  visit_shape([&](const float* data, std::size_t count) { shape.insert(shape.end(), data, data + count); });
+}
+
+std::vector<float> SpringLattice::shape() const {
+  std::vector<float> all;
+  write_shape(all);
+  return all;
+}
+
+std::vector<Vector3> SpringLattice::positions() const {
+  std::vector<Vector3> all;
+  all.reserve(mesh_.nodes.size());
+  for (int n = 0; n < mesh_.node_count(); ++n) all.push_back(position(n));
+  return all;
+}
+
+std::size_t SpringLattice::shape_size() const {
+  std::size_t size = 0;
+  visit_shape([&](const float*, std::size_t count) { size += count; });
+  return size;
+}
+
+bool SpringLattice::set_shape(std::span<const float> shape) {
+  if (shape_size() != shape.size()) return false;
+  const float* from = shape.data();
+  const auto restore = [&](Floats& to) {
+    std::copy(from, from + to.size(), to.begin());
+    from += to.size();
+  };
+  for (Floats* a : {&dx_, &dy_, &dz_, &vx_, &vy_, &vz_}) restore(*a);
+  for (Floats& a : rest_length_) restore(a);
+  for (Floats& a : square_difference_) restore(a);
+  for (Floats& a : crept_) restore(a);
+  restore(rest_volume_sum_);
+  return true;
+}
+
+struct SpringLattice::Reforming {
+  struct Spring {
+    int direction, start;
+    float rest_length;
+  };
+  struct Cell {
+    int first;
+    float rest_volume_sum;
+  };
+  std::array<Spring, 2 * lattice_direction_count> springs{};
+  std::array<Cell, 8> cells{};
+  std::size_t spring_count = 0, cell_count = 0;
+};
+
+bool SpringLattice::reform_springs(int node, const Vector3& move, Reforming& next) const {
+  const Vector3 here = position(node);
+  for (int d = 0; d < lattice_direction_count; ++d) {
+    for (const bool starts_here : {true, false}) {
+      const int start = starts_here ? node : node - offset_[d];
+      if (start < 0 || !(stiffness_[d][start] > 0.0f)) continue;
+      const Vector3 there = position(starts_here ? node + offset_[d] : start);
+      const double longer = (here + move - there).norm() - (here - there).norm();
+      const float rest = rest_length_[d][start] + static_cast<float>(longer);
+      const float first = first_rest_length_[d][start];
+      if (!(rest >= 0.5f * first && rest <= 2.0f * first)) return false;
+      next.springs[next.spring_count++] = {d, start, rest};
+    }
+  }
+  return true;
+}
+
+bool SpringLattice::reform_cells(int node, const Vector3& move, Reforming& next) const {
+  constexpr float min_fraction = 0.25f, max_fraction = 4.0f, sum_of_volume = 12.0f;
+  for (int c = 0; c < 8; ++c) {
+    const int step_i = c >> 2 & 1, step_j = c >> 1 & 1, step_k = c & 1;
+    const int first = node - mesh_.index(step_i, step_j, step_k);
+    if (first < 0 || has_cell_[first] == 0.0f) continue;
+    CellCorners corners;
+    for (int o = 0; o < 8; ++o) corners[o] = position(first + mesh_.index(o >> 2 & 1, o >> 1 & 1, o & 1));
+    const double before = cell_volume(corners);
+    corners[c] += move;
+    const double larger = cell_volume(corners) - before;
+    const float sum = rest_volume_sum_[first] + sum_of_volume * static_cast<float>(larger);
+    const float fraction = sum * inverse_volume_[first] / sum_of_volume;
+    if (!(fraction >= min_fraction && fraction <= max_fraction)) return false;
+    next.cells[next.cell_count++] = {first, sum};
+  }
+  return true;
+}
+
+bool SpringLattice::reform(int node, const Vector3& move_m) {
+  // The move as single precision stores it.
+  const Vector3 before = displacement(node);
+  const Vector3 move = (before + move_m).cast<float>().cast<double>() - before;
+  const int twin = mesh_.twin(node);
+  Reforming next, twin_next;
+  if (!reform_springs(node, move, next) || !reform_cells(node, move, next)) return false;
+  if (twin != node && (!reform_springs(twin, move, twin_next) || !reform_cells(twin, move, twin_next))) {
+    return false;
+  }
+  set_displacement(node, before + move);
+  apply_reforming(next);
+  apply_reforming(twin_next);
+  return true;
+}
+
+void SpringLattice::apply_reforming(const Reforming& next) {
+  for (std::size_t s = 0; s < next.spring_count; ++s) {
+    const auto& [d, start, rest] = next.springs[s];
+    const float change = rest - rest_length_[d][start];
+    square_difference_[d][start] -= change * (2.0f * rest_length_[d][start] + change);
+    rest_length_[d][start] = rest;
+  }
+  for (std::size_t c = 0; c < next.cell_count; ++c) {
+    rest_volume_sum_[next.cells[c].first] = next.cells[c].rest_volume_sum;
+  }
 }
 
 }  // namespace spoonbill

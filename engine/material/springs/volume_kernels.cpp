@@ -1,6 +1,4 @@
-#include "engine/material/springs/volume_kernels.h"
-
-#include "engine/material/springs/motion_kernels.h"
+#include "engine/material/springs/lattice_kernels.h"
 
 namespace spoonbill::SPOONBILL_KERNELS {
 namespace {
@@ -26,10 +24,9 @@ inline float dot(Vector a, Vector b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// What a trilinear cell's volume depends on: a diagonal of each of its faces (corner bits: 1 = k, 2 = j, 4 =
-// i). With these, 12 V = (a + b).(c x d) + (c + e).(f x b) + (f + d).(a x e), the mean of the two
-// triangulations of each face (Grandy, "Efficient computation of volume of hexahedral cells", UCRL-ID-128886,
-// 1997).
+// Face diagonals that determine the volume of a trilinear cell (corner bits: 1 = k, 2 = j, 4 = i). 12 V =
+// (a + b).(c x d) + (c + e).(f x b) + (f + d).(a x e), the mean of the two triangulations of each face
+// (Grandy, "Efficient computation of volume of hexahedral cells", UCRL-ID-128886, 1997).
 struct FaceDiagonals {
   Vector a;  // from corner 4 to 7
   Vector b;  // 0 to 3
@@ -43,9 +40,9 @@ inline Vector difference(const float* x, const float* y, const float* z, int fro
   return {x[to] - x[from], y[to] - y[from], z[to] - z[from]};
 }
 
-// Of a field on the nodes, for the cell at node n.
-inline FaceDiagonals diagonals_of(const LatticeView& view, const float* x, const float* y, const float* z,
-                                  int n) {
+// Differences of a nodal field along the face diagonals of the cell at node n.
+inline FaceDiagonals field_diagonals(const LatticeView& view, const float* x, const float* y, const float* z,
+                                     int n) {
   const int* o = view.corner_offset;
   return {difference(x, y, z, n + o[4], n + o[7]), difference(x, y, z, n, n + o[3]),
           difference(x, y, z, n + o[2], n + o[7]), difference(x, y, z, n, n + o[6]),
@@ -56,14 +53,14 @@ inline Vector rest_vector(const SpringArrays& s, int n) {
   return {s.rest_x[n], s.rest_y[n], s.rest_z[n]};
 }
 
-// Of the shape at given displacements: face diagonals are springs.
+// Face diagonals at the given displacements; their rest vectors are those of springs.
 inline FaceDiagonals diagonals_at(const LatticeView& view, const float* dx, const float* dy, const float* dz,
                                   int n) {
   const SpringArrays& jk = view.springs[view.corner_direction[3]];
   const SpringArrays& ik = view.springs[view.corner_direction[5]];
   const SpringArrays& ij = view.springs[view.corner_direction[6]];
   const int* o = view.corner_offset;
-  const FaceDiagonals moved = diagonals_of(view, dx, dy, dz, n);
+  const FaceDiagonals moved = field_diagonals(view, dx, dy, dz, n);
   return {rest_vector(jk, n + o[4]) + moved.a, rest_vector(jk, n) + moved.b,
           rest_vector(ik, n + o[2]) + moved.c, rest_vector(ij, n) + moved.d,
           rest_vector(ik, n) + moved.e,        rest_vector(ij, n + o[1]) + moved.f};
@@ -77,12 +74,12 @@ inline FaceDiagonals diagonals_ahead(const LatticeView& view, int n) {
   return diagonals_at(view, view.ahead_x, view.ahead_y, view.ahead_z, n);
 }
 
-// 12 V.
+// Returns 12 V.
 inline float volume_sum(const FaceDiagonals& p) {
   return dot(p.a + p.b, cross(p.c, p.d)) + dot(p.c + p.e, cross(p.f, p.b)) + dot(p.f + p.d, cross(p.a, p.e));
 }
 
-// Its gradient by the diagonals.
+// Gradient of 12 V by the diagonals.
 inline FaceDiagonals volume_gradient(const FaceDiagonals& p) {
   const Vector ab = p.a + p.b, ce = p.c + p.e, fd = p.f + p.d;
   const Vector cd = cross(p.c, p.d), fb = cross(p.f, p.b), ae = cross(p.a, p.e);
@@ -90,19 +87,19 @@ inline FaceDiagonals volume_gradient(const FaceDiagonals& p) {
           cross(ab, p.c) + ae, fb + cross(fd, p.a), cross(p.b, ce) + ae};
 }
 
-// How 12 V changes along a field on the nodes, to first order.
+// Rate of 12 V along a nodal field, to first order.
 inline float volume_rate(const LatticeView& view, const FaceDiagonals& gradient, const float* x,
                          const float* y, const float* z, int n) {
-  const FaceDiagonals v = diagonals_of(view, x, y, z, n);
+  const FaceDiagonals v = field_diagonals(view, x, y, z, n);
   return dot(v.a, gradient.a) + dot(v.b, gradient.b) + dot(v.c, gradient.c) + dot(v.d, gradient.d) +
          dot(v.e, gradient.e) + dot(v.f, gradient.f);
 }
 
-// Corner-major results of one block of cells, scattered afterwards.
+// Corner-major results for one block of cells, scattered afterwards.
 struct BlockCells {
   alignas(64) float x[8][block], y[8][block], z[8][block];
 
-  // `scale` times the gradient by each corner.
+  // Sets `scale` times the gradient at each corner.
   void set(int l, float scale, const FaceDiagonals& gradient) {
     const FaceDiagonals g = {scale * gradient.a, scale * gradient.b, scale * gradient.c,
                              scale * gradient.d, scale * gradient.e, scale * gradient.f};
@@ -124,8 +121,8 @@ struct BlockCells {
   }
 };
 
-// Of one block of cells, between two loops over it: one loop of both has more numbers at once than a
-// processor has registers.
+// Volume gradients of one block of cells, passed between two loops: a single loop would need more values at
+// once than the processor has registers.
 struct BlockGradients {
   alignas(64) float number[18][block];
 
@@ -156,21 +153,21 @@ inline void add_corner_forces(const LatticeView& view, int start, const BlockCel
   }
 }
 
-// J - 1.
-inline float dilation_of(const LatticeView& view, const FaceDiagonals& p, int n) {
+// Returns J - 1.
+inline float cell_dilation(const LatticeView& view, const FaceDiagonals& p, int n) {
   return (volume_sum(p) - view.rest_volume_sum[n]) * (1.0f / 12.0f) * view.inverse_volume[n];
 }
 
-// Below this dilation a cell is crushed.
+// Dilation below which a cell is crushed.
 constexpr float crushed_dilation = -0.7f;
 
-// How a cell's pressure grows with its volume, J.
-inline float tangent_of(const LatticeView& view, const FaceDiagonals& p, int n) {
-  const float crushed = view.crushed_stiffness[n];  // read for every cell, or lanes cannot run side by side
-  return view.bulk_stiffness[n] + (dilation_of(view, p, n) < crushed_dilation ? crushed : 0.0f);
+// Derivative of a cell's pressure by J, times its rest volume.
+inline float volume_tangent(const LatticeView& view, const FaceDiagonals& p, int n) {
+  const float crushed = view.crushed_stiffness[n];  // read unconditionally, so that the loop vectorises
+  return view.bulk_stiffness[n] + (cell_dilation(view, p, n) < crushed_dilation ? crushed : 0.0f);
 }
 
-template <bool gives_way>
+template <bool softens>
 void add_volume_forces(const LatticeView& view) {
   BlockCells cells;
   for (int start = 0; start < view.padded_count; start += block) {
@@ -178,15 +175,15 @@ void add_volume_forces(const LatticeView& view) {
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
       const FaceDiagonals p = diagonals_ahead(view, n);
-      float dilation = dilation_of(view, p, n);
+      float dilation = cell_dilation(view, p, n);
       const float beyond = dilation - crushed_dilation, crushed = beyond < 0.0f ? beyond : 0.0f;
-      if (gives_way) {
+      if (softens) {
         const float softening = view.bulk_stiffness[n] < 0.0f ? 100.0f : 0.0f;
         dilation = dilation / (1.0f + softening * dilation * dilation);
       }
       const float elastic = view.bulk_stiffness[n] * view.inverse_volume[n] * dilation * (1.0f / 12.0f);
-      const float held = view.crushed_stiffness[n] * view.inverse_volume[n] * crushed * (1.0f / 12.0f);
-      cells.set(l, -(elastic + held), volume_gradient(p));
+      const float resistance = view.crushed_stiffness[n] * view.inverse_volume[n] * crushed * (1.0f / 12.0f);
+      cells.set(l, -(elastic + resistance), volume_gradient(p));
     }
     add_corner_forces(view, start, cells);
   }
@@ -195,7 +192,7 @@ void add_volume_forces(const LatticeView& view) {
 }  // namespace
 
 void volume_forces(const LatticeView& view) {
-  if (view.volume_gives_way) {
+  if (view.volume_softens) {
     add_volume_forces<true>(view);
   } else {
     add_volume_forces<false>(view);
@@ -223,7 +220,7 @@ void average_dilations(const LatticeView& view) {
   for (int start = 0; start < view.padded_count; start += block) {
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
-      dilation[l] = (1.0f + dilation_of(view, present_diagonals(view, n), n)) * view.has_cell[n];
+      dilation[l] = (1.0f + cell_dilation(view, present_diagonals(view, n), n)) * view.has_cell[n];
     }
     for (int c = 0; c < 8; ++c) {
       float* __restrict j = view.node_dilation + start + view.corner_offset[c];
@@ -235,7 +232,7 @@ void average_dilations(const LatticeView& view) {
 }
 
 void add_volume_row_sums(const LatticeView& view, float* sum) {
-  alignas(64) float share[8][block];
+  alignas(64) float fraction[8][block];
   for (int start = 0; start < view.padded_count; start += block) {
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
@@ -247,18 +244,18 @@ void add_volume_row_sums(const LatticeView& view, float* sum) {
         total += length[c];
       }
       const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
-      const float bulk = tangent_of(view, p, n);
+      const float bulk = volume_tangent(view, p, n);
       const float scale = (bulk < 0.0f ? -bulk : bulk) * inverse * inverse * total;
-      for (int c = 0; c < 8; ++c) share[c][l] = scale * length[c];
+      for (int c = 0; c < 8; ++c) fraction[c][l] = scale * length[c];
     }
     for (int c = 0; c < 8; ++c) {
       float* __restrict to = sum + start + view.corner_offset[c];
-      for (int l = 0; l < block; ++l) to[l] += share[c][l];
+      for (int l = 0; l < block; ++l) to[l] += fraction[c][l];
     }
   }
 }
 
-void take_volume_stiffness(const LatticeView& view) {
+void subtract_volume_stiffness(const LatticeView& view) {
   BlockCells cells;
   BlockGradients gradients;
   alignas(64) float factor[block];
@@ -268,7 +265,7 @@ void take_volume_stiffness(const LatticeView& view) {
       const int n = start + l;
       const FaceDiagonals p = diagonals_ahead(view, n);
       const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
-      factor[l] = -tangent_of(view, p, n) * inverse * inverse;
+      factor[l] = -volume_tangent(view, p, n) * inverse * inverse;
       gradients.set(l, volume_gradient(p));
     }
     for (int l = 0; l < block; ++l) {

@@ -1,8 +1,9 @@
-// A body as a study sees it: the cells of a lattice with the material's own stiffness, in double, and what
-// loads and holds it.
+// Body of a static study: the cells of a lattice with the material's own stiffness, in double precision,
+// and their loads and fixtures.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <variant>
 #include <vector>
@@ -10,14 +11,56 @@
 #include "engine/base/result.h"
 #include "engine/material/cells/corotated_cell.h"
 #include "engine/material/cells/spring_cell.h"
+#include "engine/material/lattice/lattice_mesh.h"
 #include "engine/material/lattice_materials.h"
-#include "engine/material/statics/pressed_skin.h"
 
 namespace spoonbill {
 
+// Pressure on the skin of a body in a box of cells. Each triangle bears its pressure times its deformed
+// area, a third at each corner. The corners distribute it to the nodes that they follow, so the work equals
+// that of the pressure on the enclosed volume. One owner.
+class PressedSkin {
+ public:
+  bool empty() const { return triangles_.empty(); }
+
+  // Adds a pressure on a triangle, Pa; it acts inwards. All triangles must be of one skin.
+  void press(const BodySkin& skin, std::size_t triangle, double pressure_pa);
+
+  std::vector<int> nodes() const;  // Returns the loaded nodes in ascending order.
+
+  // Calls `receive(node, force_n)` for the forces on nodes at the positions `position_of(node)`, m. A node
+  // may occur more than once. Allocates nothing.
+  template <class PositionOf, class Receive>
+  void find_forces(const PositionOf& position_of, const Receive& receive) {
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      position_m_[p].setZero();
+      force_n_[p].setZero();
+      for (std::size_t c = 0; c < 8; ++c) {
+        position_m_[p] += points_[p].weights[c] * position_of(points_[p].nodes[c]);
+      }
+    }
+    update_point_forces();
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      for (std::size_t c = 0; c < 8; ++c) receive(points_[p].nodes[c], points_[p].weights[c] * force_n_[p]);
+    }
+  }
+
+ private:
+  struct Pressed {
+    BodySkin::Triangle points{};
+    double pressure_pa = 0.0;
+  };
+  void update_point_forces();
+
+  std::vector<CellPoint> points_;  // corners of the triangles
+  std::vector<Pressed> triangles_;
+  std::vector<int> point_index_;               // index in points_ by point of the skin, or -1
+  std::vector<Vector3> position_m_, force_n_;  // by point: working memory
+};
+
 enum class CellKind : std::uint8_t {
-  springs,    // what sculpting steps; Poisson's ratio from 1/4 on
-  hexahedra,  // far fewer cells for the same error where bodies bend; any Poisson's ratio
+  springs,    // as sculpting steps them; Poisson's ratio from 1/4 on
+  hexahedra,  // far fewer cells for the same error in bending; any Poisson's ratio
 };
 
 struct NodeForce {
@@ -25,7 +68,7 @@ struct NodeForce {
   Vector3 force_n = Vector3::Zero();
 };
 
-// A face of the body, its corners counter-clockwise seen from outside; the pressure pushes inwards and
+// Pressure on a face of the body, with corners counter-clockwise seen from outside. It acts inwards and
 // follows the face.
 struct PressedFace {
   std::array<int, 4> nodes{};
@@ -39,26 +82,26 @@ struct StaticLoads {
   PressedSkin pressed_skin = {};
 };
 
-// One coordinate of a node that is given.
-struct HeldAxis {
+// A prescribed coordinate of a node.
+struct FixedAxis {
   int node = 0;
   int axis = 0;  // 0 to 2: x, y, z
   double displacement_m = 0.0;
 };
 
-// All three coordinates of a node.
-void hold_node(int node, const Vector3& displacement_m, std::vector<HeldAxis>& held);
+// Fixes all three coordinates of a node.
+void fix_node(int node, const Vector3& displacement_m, std::vector<FixedAxis>& fixed);
 
-// One owner; immutable. Made for a study, never in the tick.
+// Immutable; one owner. Built for a study, never in the tick.
 class StaticBody {
  public:
-  // Refused: materials outside their ranges, folded cells, springs below a Poisson's ratio of 1/4.
+  // Fails on materials outside their ranges, folded cells, and springs below a Poisson's ratio of 1/4.
   static Result<StaticBody> make(const LatticeMesh& mesh, const LatticeMaterials& materials, CellKind kind);
 
   const LatticeMesh& mesh() const { return mesh_; }
   std::size_t cell_count() const { return cells_.size(); }
-  // Corner by corner, as LatticeMesh::cell() counts them.
-  const std::array<int, 8>& nodes_of(std::size_t cell) const { return cells_[cell].nodes; }
+  // Nodes in the corner order of LatticeMesh::cell().
+  const std::array<int, 8>& cell_nodes(std::size_t cell) const { return cells_[cell].nodes; }
   CellResponse respond(std::size_t cell, const CellMoves& moves, Tangent tangent) const;
   double energy_j(std::size_t cell, const CellMoves& moves) const;
   double mass_kg(int node) const { return mass_[static_cast<std::size_t>(node)]; }
@@ -66,7 +109,7 @@ class StaticBody {
  private:
   struct Cell {
     std::array<int, 8> nodes{};
-    std::variant<SpringCell, CorotatedCell> is;
+    std::variant<SpringCell, CorotatedCell> model;
   };
 
   LatticeMesh mesh_;

@@ -14,15 +14,15 @@ namespace {
 
 using Coordinates = StaticSystem::Coordinates;
 
-// Of the largest pivot: a smaller one means that nothing holds a motion.
-constexpr double least_pivot = 1e-13;
-constexpr double least_load_step = 1e-3;
-// Newton steps for one step of the loads.
-constexpr int steps_a_load = 40;
+// Smallest pivot relative to the largest; below it, a rigid motion is free.
+constexpr double min_pivot = 1e-13;
+constexpr double min_load_step = 1e-3;
+// Newton steps for one load step.
+constexpr int steps_per_load = 40;
 constexpr int halvings = 12;
-// Of the fall of energy that the slope promises.
-constexpr double enough_fall = 1e-4;
-// Of an energy that is a sum over cells.
+// Accepted decrease of the energy, relative to the decrease that the slope predicts.
+constexpr double min_decrease = 1e-4;
+// Relative rounding error of an energy that is a sum over cells.
 constexpr double rounding = 1e-13;
 
 class Equilibrium {
@@ -32,28 +32,28 @@ class Equilibrium {
     factors_.analyzePattern(system.stiffness());
   }
 
-  // Whether every motion is held, at rest.
-  bool is_held() {
+  // Returns whether every motion is fixed, in the rest shape.
+  bool is_fixed() {
     system_->respond(system_->rest(), Tangent::plain);
     factors_.factorize(system_->stiffness());
     return factors_.info() == Eigen::Success &&
-           factors_.vectorD().minCoeff() > least_pivot * factors_.vectorD().maxCoeff();
+           factors_.vectorD().minCoeff() > min_pivot * factors_.vectorD().maxCoeff();
   }
 
-  // From `at` on, with this share of the loads.
-  bool find(double share, Coordinates& at) {
+  // Finds the equilibrium under this fraction of the loads, starting from `at`.
+  bool solve(double fraction, Coordinates& at) {
     double first = 0.0;
-    for (int step = 0; step < steps_a_load && steps_ < settings_->step_limit; ++step) {
-      const StaticSystem::Forces forces = take(at, Tangent::stressed);
-      const Coordinates loads = share * system_->loads(*loads_, at);
-      const Coordinates unbalanced = system_->free_of(loads - forces.held_so);
+    for (int step = 0; step < steps_per_load && steps_ < settings_->step_limit; ++step) {
+      const StaticSystem::Forces forces = respond(at, Tangent::stressed);
+      const Coordinates loads = fraction * system_->loads(*loads_, at);
+      const Coordinates unbalanced = system_->restrict_to_free(loads - forces.restoring);
       const double size = std::max(forces.size, loads.norm());
       if (!std::isfinite(size)) return false;
       if (unbalanced.norm() <= settings_->tolerance * size) return true;
       ++steps_;
       first = std::max(first, unbalanced.norm() / size);
-      if (!report(share, unbalanced.norm() / size, first)) {
-        stopped_ = true;
+      if (!report(fraction, unbalanced.norm() / size, first)) {
+        cancelled_ = true;
         return false;
       }
       if (!factor(at)) return false;
@@ -63,24 +63,27 @@ class Equilibrium {
   }
 
   int steps() const { return steps_; }
-  bool may_go_on() const { return steps_ < settings_->step_limit; }
-  bool stopped() const { return stopped_; }
+  bool has_steps_left() const { return steps_ < settings_->step_limit; }
+  bool cancelled() const { return cancelled_; }
 
  private:
-  // Newton's method comes nearer by orders of magnitude, the more the nearer it is.
-  bool report(double share, double unbalanced, double first) const {
+  // Reports progress. Newton's method gains orders of magnitude, the more the closer it is.
+  bool report(double fraction, double unbalanced, double first) const {
     if (!settings_->progress.is_watched()) return true;
     const double orders = std::log(first / settings_->tolerance);
-    return settings_->progress.report(orders > 0.0 ? share * std::log(first / unbalanced) / orders : 0.0);
+    return settings_->progress.report(orders > 0.0 ? fraction * std::log(first / unbalanced) / orders : 0.0);
   }
 
-  StaticSystem::Forces take(const Coordinates& at, Tangent tangent) { return system_->respond(at, tangent); }
+  StaticSystem::Forces respond(const Coordinates& at, Tangent tangent) {
+    return system_->respond(at, tangent);
+  }
 
-  // Where stress makes the tangent indefinite, Newton's step need not lead downhill.
+  // Factorises the tangent. Where stress makes it indefinite, Newton's step may not descend; then the plain
+  // tangent is used.
   bool factor(const Coordinates& at) {
     factors_.factorize(system_->stiffness());
     if (factors_.info() == Eigen::Success && factors_.vectorD().minCoeff() > 0.0) return true;
-    take(at, Tangent::plain);
+    respond(at, Tangent::plain);
     factors_.factorize(system_->stiffness());
     return factors_.info() == Eigen::Success && factors_.vectorD().minCoeff() > 0.0;
   }
@@ -88,12 +91,12 @@ class Equilibrium {
   bool descend(const Coordinates& step, const Coordinates& loads, const Coordinates& unbalanced,
                Coordinates& at) const {
     const double fall = unbalanced.dot(step), before = potential(at, loads);
-    double share = 1.0;
-    for (int halving = 0; halving <= halvings; ++halving, share *= 0.5) {
+    double fraction = 1.0;
+    for (int halving = 0; halving <= halvings; ++halving, fraction *= 0.5) {
       Coordinates next = at;
-      system_->move(step, share, next);
-      const double enough = before + rounding * std::abs(before) - enough_fall * share * fall;
-      if (!(potential(next, loads) <= enough)) continue;
+      system_->move(step, fraction, next);
+      const double threshold = before + rounding * std::abs(before) - min_decrease * fraction * fall;
+      if (!(potential(next, loads) <= threshold)) continue;
       at = next;
       return true;
     }
@@ -109,34 +112,35 @@ class Equilibrium {
   const StaticSettings* settings_;
   Eigen::SimplicialLDLT<StaticSystem::Stiffness> factors_;
   int steps_ = 0;
-  bool stopped_ = false;
+  bool cancelled_ = false;
 };
 
-Status check_held(const StaticBody& body, const std::vector<HeldAxis>& held) {
-  for (const HeldAxis& axis : held) {
+Status check_fixed(const StaticBody& body, const std::vector<FixedAxis>& fixed) {
+  for (const FixedAxis& axis : fixed) {
     if (axis.node < 0 || axis.node >= body.mesh().node_count() || axis.axis < 0 || axis.axis > 2) {
-      return Error{"held axis " + std::to_string(axis.axis) + " of node " + std::to_string(axis.node) +
-                   ": the body has no such node or axis"};
+      return Error{ErrorCode::unknown, "fixed axis " + std::to_string(axis.axis) + " of node " +
+                                           std::to_string(axis.node) + ": the body has no such node or axis"};
     }
     if (!std::isfinite(axis.displacement_m)) {
-      return Error{"held axis of node " + std::to_string(axis.node) + ": its displacement is no number"};
+      return Error{ErrorCode::out_of_range, "fixed axis of node " + std::to_string(axis.node) +
+                                                ": its displacement is not a finite number"};
     }
   }
   return {};
 }
 
-StaticResult result_of(StaticSystem& system, const StaticLoads& loads, const std::vector<HeldAxis>& held,
-                       const Coordinates& at) {
+StaticResult make_result(StaticSystem& system, const StaticLoads& loads, const std::vector<FixedAxis>& fixed,
+                         const Coordinates& at) {
   StaticResult result;
-  const Coordinates borne = system.respond(at, Tangent::plain).held_so - system.loads(loads, at);
+  const Coordinates reactions = system.respond(at, Tangent::plain).restoring - system.loads(loads, at);
   result.energy_j = system.energy_j(at);
   for (int n = 0; n < system.body().mesh().node_count(); ++n) {
     result.displacement_m.emplace_back(at.segment<3>(3 * static_cast<Eigen::Index>(n)));
   }
   result.reaction_n.assign(result.displacement_m.size(), Vector3::Zero());
-  for (const HeldAxis& axis : held) {
+  for (const FixedAxis& axis : fixed) {
     result.reaction_n[static_cast<std::size_t>(axis.node)][axis.axis] =
-        borne[3 * static_cast<Eigen::Index>(axis.node) + axis.axis];
+        reactions[3 * static_cast<Eigen::Index>(axis.node) + axis.axis];
   }
   return result;
 }
@@ -144,35 +148,38 @@ StaticResult result_of(StaticSystem& system, const StaticLoads& loads, const std
 }  // namespace
 
 Result<StaticResult> rest_under_load(const StaticBody& body, const StaticLoads& loads,
-                                     const std::vector<HeldAxis>& held, const StaticSettings& settings) {
+                                     const std::vector<FixedAxis>& fixed, const StaticSettings& settings) {
   SPOONBILL_ASSERT(settings.tolerance > 0.0 && settings.step_limit >= 1);
-  if (const Status status = check_held(body, held); !status.ok()) return status.error();
-  StaticSystem system(body, held);
+  if (const Status status = check_fixed(body, fixed); !status.ok()) return status.error();
+  StaticSystem system(body, fixed);
   Equilibrium equilibrium(system, loads, settings);
-  if (!equilibrium.is_held()) {
-    return Error{
-        "supports: the body can move or turn freely; hold at least three nodes that are not in line"};
+  if (!equilibrium.is_fixed()) {
+    return Error{ErrorCode::too_few,
+                 "supports: the body can move or turn freely; fix at least three nodes that are not in line",
+                 "supports"};
   }
   Coordinates at = system.rest();
-  double share = 0.0, step = 1.0;
-  while (share < 1.0) {
-    const double next = std::min(1.0, share + step);
+  double fraction = 0.0, step = 1.0;
+  while (fraction < 1.0) {
+    const double next = std::min(1.0, fraction + step);
     Coordinates tried = at;
-    system.hold(next, tried);
-    if (equilibrium.find(next, tried)) {
+    system.set_fixed(next, tried);
+    if (equilibrium.solve(next, tried)) {
       at = tried;
-      share = next;
+      fraction = next;
       step *= 2.0;
       continue;
     }
-    if (equilibrium.stopped()) return Progress::stopped();
+    if (equilibrium.cancelled()) return Progress::stopped();
     step *= 0.25;
-    if (step < least_load_step || !equilibrium.may_go_on()) {
-      return Error{"loads: the body finds no rest beyond " + std::to_string(static_cast<int>(100.0 * share)) +
-                   " % of them; reduce them or hold the body elsewhere"};
+    if (step < min_load_step || !equilibrium.has_steps_left()) {
+      return Error{ErrorCode::not_converged,
+                   "loads: no equilibrium beyond " + std::to_string(static_cast<int>(100.0 * fraction)) +
+                       " % of them; reduce them or fix more of the body",
+                   "loads"};
     }
   }
-  StaticResult result = result_of(system, loads, held, at);
+  StaticResult result = make_result(system, loads, fixed, at);
   result.newton_steps = equilibrium.steps();
   return result;
 }

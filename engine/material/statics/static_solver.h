@@ -1,4 +1,4 @@
-// The shape in which a body rests under its loads.
+// Equilibrium shape of a body under its loads.
 #pragma once
 
 #include "engine/base/progress.h"
@@ -7,25 +7,26 @@
 namespace spoonbill {
 
 struct StaticSettings {
-  // Of the forces that the cells exert on the nodes: what may be left unbalanced.
+  // Largest unbalanced force, relative to the forces of the cells on the nodes.
   double tolerance = 1e-8;
-  int step_limit = 400;  // Newton steps in all
-  // After each of them; may go back where the loads must grow more slowly. Stops the search, which is then an
+  int step_limit = 400;  // Newton steps in total
+  // Reported after each step; may decrease where the loads must grow more slowly. Cancelling it is an
   // error.
   Progress progress = {};
 };
 
 struct StaticResult {
-  std::vector<Vector3> displacement_m;  // one a node
-  std::vector<Vector3> reaction_n;      // one a node: what its held axes bear; 0 of the others
+  std::vector<Vector3> displacement_m;  // by node
+  std::vector<Vector3> reaction_n;      // by node: reaction of its fixed axes; 0 for free nodes
   double energy_j = 0.0;                // stored in the cells
   int newton_steps = 0;
 };
 
-// Newton's method on the potential energy, by sparse Cholesky factors, with the step halved until the energy
-// falls; loads grow in steps where it does not get there at once. Refused: a held axis that is not in the
-// body, supports that let the body move freely, loads under which it finds no rest.
+// Minimises the potential energy by Newton's method with sparse Cholesky factors, halving each step until
+// the energy falls. The loads grow in steps if that does not converge at once. Fails on a fixed axis
+// outside the body, supports that leave the body free to move, and loads without an equilibrium.
 Result<StaticResult> rest_under_load(const StaticBody& body, const StaticLoads& loads,
-                                     const std::vector<HeldAxis>& held, const StaticSettings& settings = {});
+                                     const std::vector<FixedAxis>& fixed,
+                                     const StaticSettings& settings = {});
 
 }  // namespace spoonbill

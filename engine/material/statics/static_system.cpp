@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/material/lattice/shell_faces.h"
+#include "engine/material/lattice/body_coordinates.h"
 
 namespace spoonbill {
 namespace {
@@ -18,7 +18,7 @@ Vector3 at_node(const Eigen::VectorXd& all, int node) {
   return all.segment<3>(3 * static_cast<Eigen::Index>(node));
 }
 
-// A quarter of the pressure on the face's vector area for each corner.
+// Adds a quarter of the pressure on the face's vector area to each corner.
 void add_pressure(const PressedFace& face, const LatticeMesh& mesh, const Eigen::VectorXd& at,
                   Eigen::VectorXd& forces) {
   const auto corner = [&](std::size_t c) -> Vector3 {
@@ -32,34 +32,34 @@ void add_pressure(const PressedFace& face, const LatticeMesh& mesh, const Eigen:
 
 }  // namespace
 
-StaticSystem::StaticSystem(const StaticBody& body, const std::vector<HeldAxis>& held)
-    : body_(&body), held_(held), free_(3 * static_cast<std::size_t>(body.mesh().node_count()), 0) {
+StaticSystem::StaticSystem(const StaticBody& body, const std::vector<FixedAxis>& fixed)
+    : body_(&body), fixed_(fixed), free_(3 * static_cast<std::size_t>(body.mesh().node_count()), 0) {
   const LatticeMesh& mesh = body.mesh();
-  for (const HeldAxis& axis : held) {
+  for (const FixedAxis& axis : fixed) {
     if (mesh.twin(axis.node) != axis.node) {
-      held_.push_back({mesh.twin(axis.node), axis.axis, axis.displacement_m});
+      fixed_.push_back({mesh.twin(axis.node), axis.axis, axis.displacement_m});
     }
   }
-  for (const HeldAxis& axis : held_) free_[static_cast<std::size_t>(3 * axis.node + axis.axis)] = -1;
+  for (const FixedAxis& axis : fixed_) free_[static_cast<std::size_t>(3 * axis.node + axis.axis)] = -1;
   for (std::size_t c = 0; c < free_.size(); ++c) {
-    const int node = static_cast<int>(c / 3), joined = mesh.joined(node);  // not after the node
+    const int node = static_cast<int>(c / 3), joined = mesh.joined(node);  // never larger than `node`
     if (free_[c] != 0) continue;
     free_[c] = joined == node ? free_count_++ : free_[3 * static_cast<std::size_t>(joined) + c % 3];
   }
-  lay_out();
+  build_pattern();
 }
 
-void StaticSystem::lay_out() {
+void StaticSystem::build_pattern() {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(body_->cell_count() * cell_entries);
-  const auto visit = [&](const auto& take) {
+  const auto visit = [&](const auto& receive) {
     for (std::size_t cell = 0; cell < body_->cell_count(); ++cell) {
-      const std::array<int, 8>& nodes = body_->nodes_of(cell);
+      const std::array<int, 8>& nodes = body_->cell_nodes(cell);
       for (int row = 0; row < cell_axes; ++row) {
         for (int column = 0; column <= row; ++column) {
           const Eigen::Index a = free_[static_cast<std::size_t>(coordinate(nodes, row))];
           const Eigen::Index b = free_[static_cast<std::size_t>(coordinate(nodes, column))];
-          take(std::max(a, b), std::min(a, b));
+          receive(std::max(a, b), std::min(a, b));
         }
       }
     }
@@ -70,41 +70,41 @@ void StaticSystem::lay_out() {
   stiffness_.resize(free_count_, free_count_);
   stiffness_.setFromTriplets(entries.begin(), entries.end());
   stiffness_.makeCompressed();
-  places_.reserve(entries.size());
+  value_index_.reserve(entries.size());
   const auto *begin = stiffness_.innerIndexPtr(), *start = stiffness_.outerIndexPtr();
   visit([&](Eigen::Index row, Eigen::Index column) {
     if (column < 0) {
-      places_.push_back(-1);
+      value_index_.push_back(-1);
       return;
     }
     const auto* const found =
         std::lower_bound(begin + start[column], begin + start[column + 1], static_cast<int>(row));
-    places_.push_back(found - begin);
+    value_index_.push_back(found - begin);
   });
 }
 
-void StaticSystem::hold(double share, Coordinates& at) const {
-  for (const HeldAxis& axis : held_) {
-    at[3 * static_cast<Eigen::Index>(axis.node) + axis.axis] = share * axis.displacement_m;
+void StaticSystem::set_fixed(double fraction, Coordinates& at) const {
+  for (const FixedAxis& axis : fixed_) {
+    at[3 * static_cast<Eigen::Index>(axis.node) + axis.axis] = fraction * axis.displacement_m;
   }
 }
 
-void StaticSystem::move(const Coordinates& free_step, double share, Coordinates& at) const {
+void StaticSystem::move(const Coordinates& free_step, double fraction, Coordinates& at) const {
   for (std::size_t c = 0; c < free_.size(); ++c) {
-    if (free_[c] >= 0) at[static_cast<Eigen::Index>(c)] += share * free_step[free_[c]];
+    if (free_[c] >= 0) at[static_cast<Eigen::Index>(c)] += fraction * free_step[free_[c]];
   }
 }
 
-CellMoves StaticSystem::moves_of(std::size_t cell, const Coordinates& at) const {
+CellMoves StaticSystem::cell_moves(std::size_t cell, const Coordinates& at) const {
   CellMoves moves;
-  for (std::size_t c = 0; c < 8; ++c) moves[c] = at_node(at, body_->nodes_of(cell)[c]);
+  for (std::size_t c = 0; c < 8; ++c) moves[c] = at_node(at, body_->cell_nodes(cell)[c]);
   return moves;
 }
 
 double StaticSystem::energy_j(const Coordinates& at) const {
   double sum = 0.0;
   for (std::size_t cell = 0; cell < body_->cell_count(); ++cell) {
-    sum += body_->energy_j(cell, moves_of(cell, at));
+    sum += body_->energy_j(cell, cell_moves(cell, at));
   }
   return sum;
 }
@@ -113,9 +113,9 @@ StaticSystem::Forces StaticSystem::respond(const Coordinates& at, Tangent tangen
   Forces forces{Coordinates::Zero(at.size())};
   std::fill_n(stiffness_.valuePtr(), stiffness_.nonZeros(), 0.0);
   for (std::size_t cell = 0; cell < body_->cell_count(); ++cell) {
-    const CellResponse response = body_->respond(cell, moves_of(cell, at), tangent);
-    const std::array<int, 8>& nodes = body_->nodes_of(cell);
-    for (int a = 0; a < cell_axes; ++a) forces.held_so[coordinate(nodes, a)] += response.force_n[a];
+    const CellResponse response = body_->respond(cell, cell_moves(cell, at), tangent);
+    const std::array<int, 8>& nodes = body_->cell_nodes(cell);
+    for (int a = 0; a < cell_axes; ++a) forces.restoring[coordinate(nodes, a)] += response.force_n[a];
     forces.size += response.force_n.squaredNorm();
     add(cell, response.tangent);
   }
@@ -124,10 +124,10 @@ StaticSystem::Forces StaticSystem::respond(const Coordinates& at, Tangent tangen
 }
 
 void StaticSystem::add(std::size_t cell, const CellMatrix& tangent) {
-  const Eigen::Index* place = places_.data() + cell * cell_entries;
+  const Eigen::Index* index = value_index_.data() + cell * cell_entries;
   for (int row = 0; row < cell_axes; ++row) {
-    for (int column = 0; column <= row; ++column, ++place) {
-      if (*place >= 0) stiffness_.valuePtr()[*place] += tangent(row, column);
+    for (int column = 0; column <= row; ++column, ++index) {
+      if (*index >= 0) stiffness_.valuePtr()[*index] += tangent(row, column);
     }
   }
 }
@@ -152,7 +152,7 @@ StaticSystem::Coordinates StaticSystem::loads(const StaticLoads& loads, const Co
   return forces;
 }
 
-StaticSystem::Coordinates StaticSystem::free_of(const Coordinates& all) const {
+StaticSystem::Coordinates StaticSystem::restrict_to_free(const Coordinates& all) const {
   Coordinates result = Coordinates::Zero(free_count_);
   for (std::size_t c = 0; c < free_.size(); ++c) {
     if (free_[c] >= 0) result[free_[c]] += all[static_cast<Eigen::Index>(c)];

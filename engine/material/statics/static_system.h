@@ -1,4 +1,4 @@
-// The equations of a body at rest: forces and stiffness by its free coordinates.
+// Equations of a body in equilibrium: forces and stiffness by its free coordinates.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -11,45 +11,45 @@ namespace spoonbill {
 // must outlive it.
 class StaticSystem {
  public:
-  // Each coordinate is held at most once.
-  StaticSystem(const StaticBody& body, const std::vector<HeldAxis>& held);
+  // Each coordinate may be fixed at most once.
+  StaticSystem(const StaticBody& body, const std::vector<FixedAxis>& fixed);
 
   using Coordinates = Eigen::VectorXd;
-  // The lower half, by free coordinates.
+  // Lower half, by free coordinates.
   using Stiffness = Eigen::SparseMatrix<double>;
 
   const StaticBody& body() const { return *body_; }
 
   Coordinates rest() const { return Coordinates::Zero(static_cast<Eigen::Index>(free_.size())); }
-  // With the held coordinates at this share of their displacement.
-  void hold(double share, Coordinates& at) const;
-  void move(const Coordinates& free_step, double share, Coordinates& at) const;
+  // Sets the fixed coordinates to this fraction of their displacements.
+  void set_fixed(double fraction, Coordinates& at) const;
+  void move(const Coordinates& free_step, double fraction, Coordinates& at) const;
 
   double energy_j(const Coordinates& at) const;
-  // What the cells need to be held so, by all coordinates; their size is the root of the sum of squares of
-  // what each cell alone needs.
+  // Forces that keep the cells in their shape, by coordinate. `size` is the root of the sum of squares over
+  // the cells.
   struct Forces {
-    Coordinates held_so;
+    Coordinates restoring;
     double size = 0.0;
   };
-  // Also takes the tangent, for stiffness().
+  // Computes the forces and the tangent for stiffness().
   Forces respond(const Coordinates& at, Tangent tangent);
   const Stiffness& stiffness() const { return stiffness_; }
   Coordinates loads(const StaticLoads& loads, const Coordinates& at) const;
-  Coordinates free_of(const Coordinates& all) const;
+  Coordinates restrict_to_free(const Coordinates& all) const;
 
  private:
-  CellMoves moves_of(std::size_t cell, const Coordinates& at) const;
-  void lay_out();
+  CellMoves cell_moves(std::size_t cell, const Coordinates& at) const;
+  void build_pattern();
   void add(std::size_t cell, const CellMatrix& tangent);
 
   const StaticBody* body_;
-  std::vector<HeldAxis> held_;      // on both nodes of a place
-  std::vector<Eigen::Index> free_;  // by coordinate: which free one it is; -1 where held
+  std::vector<FixedAxis> fixed_;    // on both of joined nodes
+  std::vector<Eigen::Index> free_;  // by coordinate: index of the free coordinate, or -1 if fixed
   Eigen::Index free_count_ = 0;
   Stiffness stiffness_;
-  // By cell, 300 each: where the lower half of its tangent goes in the values of the stiffness; -1 nowhere.
-  std::vector<Eigen::Index> places_;
+  // 300 per cell: positions of the lower half of its tangent in the values of the stiffness, or -1.
+  std::vector<Eigen::Index> value_index_;
 };
 
 }  // namespace spoonbill

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "engine/exchange/document.h"
-#include "engine/material/lattice/tube_lattice.h"
+#include "engine/material/lattice/body_lattice.h"
 #include "engine/material/statics/static_solver.h"
 #include "tests/engine/effort.h"
 
@@ -39,8 +39,8 @@ double slice_x_m(const LatticeMesh& mesh, int k) {
 }
 
 // Both ends are held along x and slip across it.
-std::vector<HeldAxis> drawn_ends(const LatticeMesh& mesh) {
-  std::vector<HeldAxis> held;
+std::vector<FixedAxis> drawn_ends(const LatticeMesh& mesh) {
+  std::vector<FixedAxis> held;
   const int last = mesh.count[2] - 1;
   const double stretch_m = strain * (slice_x_m(mesh, last) - slice_x_m(mesh, 0));
   for (int i = 0; i < mesh.count[0]; ++i) {

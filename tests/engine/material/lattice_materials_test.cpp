@@ -31,7 +31,7 @@ LatticeMaterials made_of(const std::vector<MaterialRegion>& regions) {
 
 TEST(LatticeMaterials, WithoutRegionsThereIsOne) {
   const LatticeMaterials materials = made_of({});
-  EXPECT_FALSE(materials.are_several());
+  EXPECT_FALSE(materials.has_several_materials());
   EXPECT_EQ(materials.of(17).name, "own");
   EXPECT_EQ(materials.friction(17), 0.2);
 }
@@ -114,15 +114,16 @@ TEST(LatticeMaterials, WrongRegionsAreRefusedInALine) {
   EXPECT_EQ(refusal(region), "regions[1].along is [0.7, 0.2], must run from the lower to the higher");
   region.region = {};
   region.region.depth_m = {0.001, 0.003};
-  EXPECT_EQ(refusal(region),
-            "regions[1].friction: the region holds no node of the surface; make it larger or let its depth "
-            "begin at 0");
+  EXPECT_EQ(
+      refusal(region),
+      "regions[1].friction: the region contains no node of the surface; make it larger or let its depth "
+      "begin at 0");
   region.material = named("skin", 1e6, 0.0);
   region.friction.reset();
   region.region.depth_m = {0.0, 0.0005};
-  EXPECT_EQ(refusal(region),
-            "regions[1]: holds the middle of no cell of the lattice; make it larger or give the lattice more "
-            "nodes");
+  EXPECT_EQ(
+      refusal(region),
+      "regions[1]: contains no cell centre of the lattice; make it larger or give the lattice more nodes");
   region.region = {};
   region.material->density_kg_per_m3 = 0.0;
   EXPECT_EQ(refusal(region), "regions[1].material skin: density_kg_per_m3 is 0, must be 1 to 30000");

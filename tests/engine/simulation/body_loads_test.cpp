@@ -92,8 +92,8 @@ TEST(BodyLoads, ASupportBearsWhatIsPutOnItsOwnNodes) {
 StaticResult at_rest(const LatticeMesh& mesh, const Material& material, CellKind kind,
                      const std::vector<Load>& list, const Vector3& gravity_m_per_s2) {
   const BodyLoads made = BodyLoads::make(list, mesh, [](double, double) { return EmbeddedPoint(); }).value();
-  std::vector<HeldAxis> held;
-  for (int n = 0; n < mesh.count[0] * mesh.count[1]; ++n) hold_node(n, Vector3::Zero(), held);
+  std::vector<FixedAxis> held;
+  for (int n = 0; n < mesh.count[0] * mesh.count[1]; ++n) fix_node(n, Vector3::Zero(), held);
   return rest_under_load(StaticBody::make(mesh, material, kind).value(),
                          {gravity_m_per_s2, made.forces(), made.pressures()}, held)
       .value();

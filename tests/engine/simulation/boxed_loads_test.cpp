@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "engine/material/lattice/solid_lattice.h"
+#include "engine/material/lattice/body_lattice.h"
 #include "engine/material/statics/static_solver.h"
 #include "engine/simulation/body_loads.h"
 #include "engine/simulation/body_state.h"
@@ -57,7 +57,7 @@ NetForce net_of(const SpringLattice& lattice) {
 
 void expect_on_the_body(const SpringLattice& lattice) {
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    if (lattice.mesh().places[static_cast<std::size_t>(n)] != NodePlace::beside_body) continue;
+    if (lattice.mesh().node_locations[static_cast<std::size_t>(n)] != NodeLocation::outside_body) continue;
     EXPECT_EQ(applied_n(lattice, n).norm(), 0.0) << n;
   }
 }
@@ -122,7 +122,7 @@ double skin_volume_m3(const LatticeMesh& mesh, const std::vector<Vector3>& moved
 
 // Fixes six coordinates of three nodes, which prevents rigid motion only. They bear nothing if the loads
 // balance.
-std::vector<HeldAxis> held_loosely(const LatticeMesh& mesh) {
+std::vector<FixedAxis> held_loosely(const LatticeMesh& mesh) {
   const auto nearest = [&](const Vector3& place) {
     int best = 0;
     for (int n = 1; n < mesh.node_count(); ++n) {
@@ -190,7 +190,7 @@ TEST(BoxedLoads, ASupportHoldsNothingBesideTheBody) {
     supports.claim_nodes(lattice, held);
     EXPECT_GT(std::accumulate(held.begin(), held.end(), 0), 20);
     for (std::size_t n = 0; n < held.size(); ++n) {
-      EXPECT_FALSE(held[n] != 0 && mesh.places[n] == NodePlace::beside_body) << n;
+      EXPECT_FALSE(held[n] != 0 && mesh.node_locations[n] == NodeLocation::outside_body) << n;
     }
   }
 }
@@ -210,7 +210,7 @@ TEST(BoxedLoads, ABodyWeighsWhatItIs) {
   for (int k = 0; k + 1 < block.count[2]; ++k) {
     for (int i = 0; i + 1 < block.count[0]; ++i) {
       for (int j = 0; j + 1 < block.count[1]; ++j) {
-        of_block_kg += 1000.0 * block.share(i, j, k) * cell_volume(block.cell(i, j, k));
+        of_block_kg += 1000.0 * block.cell_fraction(i, j, k) * cell_volume(block.cell(i, j, k));
       }
     }
   }
@@ -246,8 +246,8 @@ TEST(BoxedLoads, RestTellsWhatTheBodyDoes) {
   const std::vector<Vector3>& moved = rest->result.displacement_m;
   const auto furthest = std::max_element(
       moved.begin(), moved.end(), [](const Vector3& a, const Vector3& b) { return a.norm() < b.norm(); });
-  ASSERT_EQ(mesh.places[static_cast<std::size_t>(furthest - moved.begin())], NodePlace::beside_body);
-  EXPECT_NE(mesh.places[static_cast<std::size_t>(rest->furthest_node)], NodePlace::beside_body);
+  ASSERT_EQ(mesh.node_locations[static_cast<std::size_t>(furthest - moved.begin())], NodeLocation::outside_body);
+  EXPECT_NE(mesh.node_locations[static_cast<std::size_t>(rest->furthest_node)], NodeLocation::outside_body);
   const double from_tube = std::hypot(
       std::hypot(rest->largest_strain_position_m.x(), rest->largest_strain_position_m.z()) - ring_m,
       rest->largest_strain_position_m.y());

@@ -14,7 +14,7 @@ LoadedBlock::LoadedBlock(const Vector3& size_m, std::array<int, 3> counts, const
                          Stepping stepping)
     : lattice(block(size_m, counts, material)) {
   if (stepping == Stepping::springs) return;
-  core = ImplicitCore::make(lattice.mesh(), lattice.mesh().nodes, material, InstructionSet::baseline).value();
+  core = ImplicitSolver::make(lattice.mesh(), lattice.mesh().nodes, material, InstructionSet::baseline).value();
   lattice.set_contact_inverse_mass(core->contact_inverse_mass());
 }
 
@@ -31,13 +31,13 @@ void LoadedBlock::support(const std::vector<Support>& list) {
   supports = std::move(made).value();
   std::vector<std::uint8_t> held(lattice.mesh().nodes.size(), 0);
   supports.claim_nodes(lattice, held);
-  lattice.hold(held);
-  if (core) core->hold(held);
+  lattice.fix_nodes(held);
+  if (core) core->fix_nodes(held);
 }
 
 void LoadedBlock::tick(double damping_per_s, const Vector3& gravity_m_per_s2, GroundContacts* ground) {
   const DenormalsFlushed flushed;
-  ImplicitCore* const active_solver = core ? &*core : nullptr;
+  ImplicitSolver* const active_solver = core ? &*core : nullptr;
   loads.apply(load_share, lattice, active_solver);
   time_s += tick_s;
   const RelaxedLattice relaxed{&lattice, gravity_m_per_s2, active_solver,

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/material/implicit/implicit_core.h"
+#include "engine/material/implicit/implicit_solver.h"
 #include "engine/material/lattice_solver.h"
 #include "engine/simulation/body_loads.h"
 
@@ -25,7 +25,7 @@ class LoadedBlock {
             GroundContacts* ground = nullptr);
 
   SpringLattice lattice;
-  std::optional<ImplicitCore> core;
+  std::optional<ImplicitSolver> core;
   BodySupports supports;
   BodyLoads loads;
   double load_share = 1.0;

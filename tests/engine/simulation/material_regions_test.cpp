@@ -185,9 +185,9 @@ TEST(MaterialRegions, StayWhereTheyAreWhenAShapeIsKept) {
   const Material clay = small_handle().bodies[0].material;
   Simulation simulation = simulate(held_handle(clay, {far_half_of(elastic("rubber", 1e5))}));
   for (int tick = 0; tick < 300; ++tick) simulation.advance(above(0.02, 0.0095 - 1e-5 * tick));
-  const std::vector<std::uint8_t> before = simulation.lattice().materials().of_cell;
+  const std::vector<std::uint8_t> before = simulation.lattice().materials().material_index;
   ASSERT_TRUE(simulation.apply(KeepShape{}).ok());
-  EXPECT_EQ(simulation.lattice().materials().of_cell, before);
+  EXPECT_EQ(simulation.lattice().materials().material_index, before);
 }
 
 TEST(MaterialRegions, WrongOnesAreRefused) {

@@ -32,7 +32,7 @@ class Incline {
     contacts_.begin(Vector3::UnitY(), tick_s);
     const LatticeMesh& mesh = block_.lattice.mesh();
     for (int n = 0; n < mesh.node_count(); ++n) {
-      if (mesh.place(n)[1] > 0) continue;
+      if (mesh.grid_index(n)[1] > 0) continue;
       EXPECT_TRUE(contacts_.add(0, block_.lattice, n, block_.lattice.position(n).y(), friction_));
     }
     block_.tick(0.0, gravity_, &contacts_);

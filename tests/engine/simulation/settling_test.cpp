@@ -1,5 +1,5 @@
 // Sculpting without ringing.
-#include "engine/material/settling.h"
+#include "engine/material/lattice_solver.h"
 
 #include <gtest/gtest.h>
 

@@ -63,9 +63,9 @@ double sunk_m(const Simulation& simulation) {
 double sinking_at_rest_m(const Scene& scene, double force_n) {
   const BodyState body = make_body_state(scene.bodies[0], scene.planes, InstructionSet::baseline).value();
   const LatticeMesh& mesh = body.implicit_solver->mesh();
-  std::vector<HeldAxis> held;
+  std::vector<FixedAxis> held;
   for (int n = 0; n < mesh.node_count(); ++n) {
-    if (mesh.nodes[static_cast<std::size_t>(n)].x() <= plane_x_m) hold_node(n, Vector3::Zero(), held);
+    if (mesh.nodes[static_cast<std::size_t>(n)].x() <= plane_x_m) fix_node(n, Vector3::Zero(), held);
   }
   StaticLoads loads;
   double weights = 0.0;

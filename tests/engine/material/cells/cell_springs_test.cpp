@@ -1,8 +1,8 @@
-#include "engine/material/cells/cell_springs.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+
+#include "engine/material/cells/spring_cell.h"
 
 namespace spoonbill {
 namespace {

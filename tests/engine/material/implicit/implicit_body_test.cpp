@@ -31,14 +31,14 @@ Material damped(Material material, double ratio) {
 struct Cantilever {
   LatticeMesh mesh = box_mesh({0.012, 0.005, 0.1}, {5, 3, 41});
   std::vector<std::uint8_t> held;
-  std::vector<HeldAxis> held_axes;
+  std::vector<FixedAxis> held_axes;
   StaticLoads loads;
 
   explicit Cantilever(double force_n) : held(static_cast<std::size_t>(mesh.node_count()), 0) {
     for (int i = 0; i < 5; ++i) {
       for (int j = 0; j < 3; ++j) {
         held[static_cast<std::size_t>(mesh.index(i, j, 0))] = 1;
-        hold_node(mesh.index(i, j, 0), Vector3::Zero(), held_axes);
+        fix_node(mesh.index(i, j, 0), Vector3::Zero(), held_axes);
         loads.forces.push_back({mesh.index(i, j, 40), Vector3(0.0, -force_n / 15.0, 0.0)});
       }
     }
@@ -60,7 +60,7 @@ TEST(ImplicitBody, SettlesToTheStaticAnswer) {
                                   .displacement_m[static_cast<std::size_t>(beam.tip())]
                                   .y();
       ImplicitBody body = body_of(beam.mesh, material);
-      body.hold(beam.held);
+      body.fix_nodes(beam.held);
       for (const NodeForce& force : beam.loads.forces) body.set_node_force(force.node, force.force_n);
       ImplicitStep step;
       step.damping_per_s = 20.0;
@@ -110,7 +110,7 @@ TEST(ImplicitBody, DampsAModeAsImplicitEulerDoes) {
       far[static_cast<std::size_t>(c / 2)] = node;
     }
   }
-  body.hold(held);
+  body.fix_nodes(held);
   // So small that the mode does not turn.
   constexpr double amplitude_m = 1e-9;
   for (int c = 0; c < 4; ++c) {
@@ -187,7 +187,7 @@ TEST(ImplicitBody, EveryInstructionSetGivesTheSameBits) {
   const Material material = damped(elastic_material(2e9, 0.35, 1000.0), 0.1);
   const auto shape_after = [&](InstructionSet set) {
     ImplicitBody body = body_of(beam.mesh, material, set);
-    body.hold(beam.held);
+    body.fix_nodes(beam.held);
     for (const NodeForce& force : beam.loads.forces) body.set_node_force(force.node, force.force_n);
     for (int tick = 0; tick < 30; ++tick) body.step({});
     std::vector<double> state;

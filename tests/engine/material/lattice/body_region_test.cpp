@@ -4,10 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/material/lattice/body_place.h"
-#include "engine/material/lattice/shell_faces.h"
+#include "engine/material/lattice/body_coordinates.h"
+#include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice/shell_lattice.h"
-#include "engine/material/lattice/tube_lattice.h"
 #include "tests/engine/material/lattice/shells.h"
 
 namespace spoonbill {
@@ -98,13 +97,13 @@ void expect_places_of_a_bar(const std::vector<Vector3>& points, const std::vecto
 
 TEST(BodyRegion, NodesOfARoundBarAreWhereTheCylinderHasThem) {
   const LatticeMesh mesh = bar_lattice({7, 7, 41});
-  expect_places_of_a_bar(mesh.nodes, node_places(mesh), false);
+  expect_places_of_a_bar(mesh.nodes, find_node_coordinates(mesh), false);
 }
 
 TEST(BodyRegion, CellsOfARoundBarAreWhereTheCylinderHasThem) {
   for (const int across : {7, 8}) {
     const LatticeMesh mesh = bar_lattice({across, across, 41});
-    expect_places_of_a_bar(cell_middles(mesh), cell_places(mesh), true);
+    expect_places_of_a_bar(cell_middles(mesh), find_cell_coordinates(mesh), true);
   }
 }
 
@@ -112,7 +111,7 @@ TEST(BodyRegion, CellsOfARoundBarAreWhereTheCylinderHasThem) {
 TEST(BodyRegion, DepthInABoxIsTheDistanceToItsNearestFace) {
   const Vector3 size_m(0.012, 0.007, 0.03);
   const LatticeMesh mesh = box_mesh(size_m, {6, 5, 11});
-  const std::vector<BodyCoordinates> places = node_places(mesh);
+  const std::vector<BodyCoordinates> places = find_node_coordinates(mesh);
   for (std::size_t n = 0; n < places.size(); ++n) {
     const Vector3& point = mesh.nodes[n];
     const double depth = std::min(point.minCoeff(), (size_m - point).minCoeff());
@@ -128,7 +127,7 @@ TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
   request.counts = {25, 2, 3};
   const Result<LatticeMesh> ring = shell_lattice(open_ring(0.02, 0.006), 0.002, request);
   ASSERT_TRUE(ring.ok()) << ring.error().message;
-  const std::vector<BodyCoordinates> places = cell_places(ring.value());
+  const std::vector<BodyCoordinates> places = find_cell_coordinates(ring.value());
   BodyRegion across_seam;
   across_seam.around = {0.9, 0.1};
   int held = 0;
@@ -148,7 +147,7 @@ TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
 // Also those of the caps that meet on the axis, which lies in no direction.
 TEST(BodyRegion, FacesOfARoundBarAreWhereTheCylinderHasThem) {
   const LatticeMesh mesh = bar_lattice({7, 7, 41});
-  const std::vector<BodyCoordinates> places = node_places(mesh);
+  const std::vector<BodyCoordinates> places = find_node_coordinates(mesh);
   int seen = 0;
   for (const ShellFace& face : shell_faces(mesh)) {
     Vector3 middle = Vector3::Zero();
@@ -157,7 +156,8 @@ TEST(BodyRegion, FacesOfARoundBarAreWhereTheCylinderHasThem) {
     const double low = turn - 0.03, high = turn + 0.03;
     BodyRegion region;
     region.around = {low - std::floor(low), high - std::floor(high)};
-    EXPECT_EQ(faces_in(region, mesh, {face}, places).size(), 1u) << middle.transpose() << " turn " << turn;
+    EXPECT_EQ(find_faces_in(region, mesh, {face}, places).size(), 1u)
+        << middle.transpose() << " turn " << turn;
     ++seen;
   }
   EXPECT_EQ(seen, 2 * 36 + 4 * 6 * 40);
@@ -191,7 +191,7 @@ TEST(BodyRegion, CellsOfAQuarterTurnHoldAQuarterOfTheBar) {
   const LatticeMesh mesh = bar_lattice({9, 9, 21});
   BodyRegion region;
   region.around = {0.875, 0.125};
-  const std::vector<BodyCoordinates> places = cell_places(mesh);
+  const std::vector<BodyCoordinates> places = find_cell_coordinates(mesh);
   double inside = 0.0, all = 0.0;
   for (int i = 0; i + 1 < mesh.count[0]; ++i) {
     for (int j = 0; j + 1 < mesh.count[1]; ++j) {

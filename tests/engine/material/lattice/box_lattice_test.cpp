@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/material/lattice/lattice_counts.h"
-#include "engine/material/lattice/lattice_of.h"
+#include "engine/material/lattice/body_lattice.h"
+#include "engine/material/lattice/lattice_mesh.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
 #include "tests/engine/material/block.h"
@@ -20,7 +20,7 @@ ShellDistance shell_of(const TriangleMesh& mesh) {
   return ShellDistance(mesh.vertices_m, mesh.triangles, ShellDistance::Kind::solid);
 }
 
-SpringLattice lattice_of(const LatticeMesh& mesh) {
+SpringLattice make_body_lattice(const LatticeMesh& mesh) {
   return SpringLattice::make(mesh, material, material.youngs_modulus_pa, InstructionSet::baseline).value();
 }
 
@@ -28,8 +28,9 @@ TEST(BoxLattice, OfABoxIsAWholeBlock) {
   const TriangleMesh box = box_of_triangles({-0.01, 0.0, 0.005}, {0.02, 0.02, 0.045});
   const double volume = 0.03 * 0.02 * 0.04;
   const LatticeMesh mesh = box_lattice(shell_of(box), volume, box.vertices_m, {4, 3, 5}).value();
-  for (const double share : mesh.cell_shares) EXPECT_NEAR(share, 1.0, 1e-12);
-  const SpringLattice lattice = lattice_of(mesh), whole = block({0.03, 0.02, 0.04}, {4, 3, 5}, material);
+  for (const double share : mesh.cell_fractions) EXPECT_NEAR(share, 1.0, 1e-12);
+  const SpringLattice lattice = make_body_lattice(mesh),
+                      whole = block({0.03, 0.02, 0.04}, {4, 3, 5}, material);
   EXPECT_NEAR(lattice.mass_kg(), 1100.0 * volume, 1e-12);
   for (int n = 0; n < mesh.node_count(); ++n) {
     EXPECT_NEAR(lattice.mass(n) / whole.mass(n), 1.0, 1e-6);
@@ -41,7 +42,8 @@ TEST(BoxLattice, WeighsWhatTheSolidWeighsAndIsNoFasterForItsParts) {
   const TriangleMesh ball = ball_mesh(40, 60, 0.02);
   const double volume = 4.0 / 3.0 * std::numbers::pi * 0.02 * 0.02 * 0.02;
   const LatticeMesh mesh = box_lattice(shell_of(ball), volume, ball.vertices_m, {9, 9, 9}).value();
-  const SpringLattice lattice = lattice_of(mesh), whole = block({0.04, 0.04, 0.04}, {9, 9, 9}, material);
+  const SpringLattice lattice = make_body_lattice(mesh),
+                      whole = block({0.04, 0.04, 0.04}, {9, 9, 9}, material);
   EXPECT_NEAR(lattice.mass_kg() / (1100.0 * volume), 1.0, 1e-12);
   double sum = 0.0;
   Vector3 middle = Vector3::Zero();
@@ -61,15 +63,15 @@ TEST(BoxLattice, WeighsWhatTheSolidWeighsAndIsNoFasterForItsParts) {
   }
   EXPECT_LT(lattice.fastest_frequency(), 1.001 * whole.fastest_frequency());
   // A cell in the very middle is whole but for what slivers at the surface add.
-  EXPECT_NEAR(mesh.share(4, 4, 4), 1.0, 0.05);
-  EXPECT_LT(mesh.share(0, 0, 0), 2e-3) << "the ball does not reach the box's corner";
+  EXPECT_NEAR(mesh.cell_fraction(4, 4, 4), 1.0, 0.05);
+  EXPECT_LT(mesh.cell_fraction(0, 0, 0), 2e-3) << "the ball does not reach the box's corner";
 }
 
 TEST(BoxLattice, EmbedsPointsWhereTheyAre) {
   Random random(3);
   const TriangleMesh box = box_of_triangles({-0.01, 0.0, 0.005}, {0.02, 0.02, 0.045});
   const LatticeMesh mesh = box_lattice(shell_of(box), 2.4e-5, box.vertices_m, {4, 3, 5}).value();
-  SpringLattice lattice = lattice_of(mesh);
+  SpringLattice lattice = make_body_lattice(mesh);
   Eigen::Matrix3d turn;
   turn << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.03, 0.02, 0.07;
   const Vector3 shift(0.004, -0.002, 0.001);

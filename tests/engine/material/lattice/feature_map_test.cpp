@@ -11,8 +11,8 @@ namespace spoonbill {
 namespace {
 
 bool is_inside(const LatticeMesh& mesh, int node) {
-  const auto [i, j, k] = mesh.place(node);
-  return mesh.place_of(i, j, k) == NodePlace::in_body;
+  const auto [i, j, k] = mesh.grid_index(node);
+  return mesh.node_location(i, j, k) == NodeLocation::in_body;
 }
 
 // A bar of 6 x 6 x 18 cells that is bent to a quarter of a ring, its cells crowded towards one side and
@@ -39,10 +39,10 @@ TEST(FeatureMap, MakesCellsMoreEvenAndNoneWorse) {
   FeatureMapSettings settings;
   settings.draws_per_node = 100;
   const FeatureMapReport report = order_by_feature_map(mesh, settings);
-  EXPECT_GT(report.share, 0.0);
+  EXPECT_GT(report.applied_fraction, 0.0);
   EXPECT_LT(report.after.volume_spread, 0.9 * report.before.volume_spread);
   EXPECT_GE(report.after.worst_jacobian, report.before.worst_jacobian);
-  EXPECT_EQ(report.after.worst_jacobian, quality_of(mesh).worst_jacobian);
+  EXPECT_EQ(report.after.worst_jacobian, measure_cell_quality(mesh).worst_jacobian);
   EXPECT_TRUE(check_cells(mesh).ok());
   for (int n = 0; n < mesh.node_count(); ++n) {
     const auto at = static_cast<std::size_t>(n);
@@ -75,7 +75,7 @@ TEST(FeatureMap, NeverFoldsACell) {
     settings.seed = static_cast<std::uint32_t>(trial);
     const FeatureMapReport report = order_by_feature_map(mesh, settings);
     EXPECT_TRUE(check_cells(mesh).ok()) << trial;
-    EXPECT_GE(quality_of(mesh).worst_jacobian, report.before.worst_jacobian) << trial;
+    EXPECT_GE(measure_cell_quality(mesh).worst_jacobian, report.before.worst_jacobian) << trial;
   }
 }
 
@@ -93,7 +93,7 @@ TEST(FeatureMap, CanBeStopped) {
                                                         [&done](const FeatureMapReport&) { ++done; }});
   EXPECT_EQ(done, 0);
   EXPECT_EQ(mesh.nodes, before);
-  EXPECT_EQ(report.share, 0.0);
+  EXPECT_EQ(report.applied_fraction, 0.0);
   EXPECT_GE(last, 0.1);
 }
 
@@ -108,8 +108,8 @@ TEST(FeatureMap, TellsHowItComesAlongAndWhatItMade) {
                                                         }),
                                                         [&told](const FeatureMapReport& of) { told = of; }});
   EXPECT_EQ(last, 1.0);
-  EXPECT_EQ(told.share, report.share);
-  EXPECT_EQ(told.after.worst_jacobian, quality_of(mesh).worst_jacobian);
+  EXPECT_EQ(told.applied_fraction, report.applied_fraction);
+  EXPECT_EQ(told.after.worst_jacobian, measure_cell_quality(mesh).worst_jacobian);
 }
 
 TEST(FeatureMap, SettingsHaveRanges) {

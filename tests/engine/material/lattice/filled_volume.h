@@ -10,7 +10,7 @@ inline double filled_m3(const LatticeMesh& mesh) {
   for (int k = 0; k + 1 < mesh.count[2]; ++k) {
     for (int i = 0; i + 1 < mesh.count[0]; ++i) {
       for (int j = 0; j + 1 < mesh.count[1]; ++j) {
-        volume += mesh.share(i, j, k) * cell_volume(mesh.cell(i, j, k));
+        volume += mesh.cell_fraction(i, j, k) * cell_volume(mesh.cell(i, j, k));
       }
     }
   }

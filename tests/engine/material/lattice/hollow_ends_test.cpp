@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice/feature_map.h"
-#include "engine/material/lattice/tube_lattice.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/material/lattice/revolved.h"
 
@@ -94,7 +94,7 @@ void expect_positive_cells(std::initializer_list<int> budgets) {
         }
       }
       // As good as the cells of a ball, whose caps are flat squares too.
-      EXPECT_GT(quality_of(mesh).worst_jacobian, 0.05) << fruit.name << ", " << budget;
+      EXPECT_GT(measure_cell_quality(mesh).worst_jacobian, 0.05) << fruit.name << ", " << budget;
     }
   }
 }

@@ -7,8 +7,8 @@
 #include <functional>
 #include <numbers>
 
+#include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice/feature_map.h"
-#include "engine/material/lattice/tube_lattice.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/material/block.h"
@@ -98,7 +98,7 @@ TEST(RoundBodies, HavePositiveCells) {
       if (sanitized && budget > 2000) continue;
       const Result<LatticeMesh> mesh = tube_lattice(tube_of(of.profile), {budget, {}});
       ASSERT_TRUE(mesh.ok()) << of.name << ", " << budget << ": " << mesh.error().message;
-      const CellQuality quality = quality_of(mesh.value());
+      const CellQuality quality = measure_cell_quality(mesh.value());
       EXPECT_GT(quality.worst_jacobian, of.worst_jacobian) << of.name << ", " << budget;
       EXPECT_LT(quality.volume_spread, 1.0) << of.name << ", " << budget;
     }

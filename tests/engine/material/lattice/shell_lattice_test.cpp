@@ -10,8 +10,8 @@
 #include <string>
 
 #include "engine/material/implicit/implicit_body.h"
+#include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice/feature_map.h"
-#include "engine/material/lattice/lattice_of.h"
 #include "engine/material/statics/static_solver.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/material/block.h"
@@ -22,7 +22,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-LatticeMesh lattice_of(const Surface& surface, double thickness_m, const LatticeRequest& request) {
+LatticeMesh make_body_lattice(const Surface& surface, double thickness_m, const LatticeRequest& request) {
   Result<LatticeMesh> mesh = shell_lattice(surface, thickness_m, request);
   EXPECT_TRUE(mesh.ok()) << mesh.error().message;
   return std::move(mesh).value();
@@ -33,9 +33,15 @@ double mass_of(const LatticeMesh& mesh, double density_kg_per_m3) {
   return SpringLattice::make(mesh, material, 1e5, InstructionSet::baseline).value().mass_kg();
 }
 
-std::string refusal(const Surface& surface, double thickness_m, const LatticeRequest& request = {}) {
-  const Result<LatticeMesh> mesh = shell_lattice(surface, thickness_m, request);
+std::string refusal(const Surface& surface, double thickness_m) {
+  const Result<LatticeMesh> mesh = shell_lattice(surface, thickness_m, {});
   return mesh.ok() ? "accepted" : mesh.error().message;
+}
+
+ErrorCode refusal_code(const Surface& surface, double thickness_m, const LatticeRequest& request = {}) {
+  const Result<LatticeMesh> mesh = shell_lattice(surface, thickness_m, request);
+  EXPECT_FALSE(mesh.ok());
+  return mesh.ok() ? ErrorCode::internal : mesh.error().code;
 }
 
 TEST(ShellLattice, BowlHasTheVolumeOfTheShell) {
@@ -47,47 +53,48 @@ TEST(ShellLattice, BowlHasTheVolumeOfTheShell) {
   for (const bool pole_at_end : {false, true}) {
     const Surface bowl = spherical_bowl(radius, opening, pole_at_end);
     for (const int budget : {500, 2000, 8000}) {
-      const LatticeMesh mesh = lattice_of(bowl, thickness, {budget, {}});
+      const LatticeMesh mesh = make_body_lattice(bowl, thickness, {budget, {}});
       EXPECT_FALSE(mesh.closed);
       EXPECT_LE(mesh.node_count(), budget);
       EXPECT_GT(mesh.node_count(), budget / 2);
       // The surface is a sphere to 1e-5, and its area to twice that.
       EXPECT_NEAR(mass_of(mesh, density) / (density * volume), 1.0, 1e-4) << budget;
-      const CellQuality quality = quality_of(mesh);
+      const CellQuality quality = measure_cell_quality(mesh);
       EXPECT_GT(quality.worst_jacobian, 0.0) << budget;
       EXPECT_LT(quality.volume_spread, 0.5) << budget;
       for (int n = 0; n < mesh.node_count(); ++n) {
-        const double depth = thickness * mesh.place(n)[1] / (mesh.count[1] - 1);
+        const double depth = thickness * mesh.grid_index(n)[1] / (mesh.count[1] - 1);
         EXPECT_NEAR(mesh.nodes[static_cast<std::size_t>(n)].norm(), radius - depth, 2e-5 * radius);
       }
     }
   }
   // To first order: area times thickness; what is left is the thickness over the radius.
   const double area = 2.0 * pi * radius * radius * (1.0 - std::cos(opening));
-  EXPECT_NEAR(mass_of(lattice_of(spherical_bowl(radius, opening), thickness, {}), density) /
+  EXPECT_NEAR(mass_of(make_body_lattice(spherical_bowl(radius, opening), thickness, {}), density) /
                   (density * area * thickness),
               1.0, thickness / radius);
 }
 
 TEST(ShellLattice, CellsOfABudgetAreNearlyCubes) {
-  const LatticeMesh mesh = lattice_of(spherical_bowl(0.03, pi / 3.0), 0.002, {2000, {}});
+  const LatticeMesh mesh = make_body_lattice(spherical_bowl(0.03, pi / 3.0), 0.002, {2000, {}});
   EXPECT_EQ(mesh.count[1], 2) << "one layer";
   const double pitch = 2.0 * 0.03 * pi / 3.0 / (mesh.count[0] - 1);
   EXPECT_NEAR(pitch / 0.002, 1.0, 0.35);
-  EXPECT_GT(lattice_of(spherical_bowl(0.03, pi / 3.0), 0.004, {8000, {}}).count[1], 2) << "more by budget";
-  const LatticeMesh given = lattice_of(flat_sheet(0.06, 0.04), 0.002, {2000, {{13, 4, 9}}});
+  EXPECT_GT(make_body_lattice(spherical_bowl(0.03, pi / 3.0), 0.004, {8000, {}}).count[1], 2)
+      << "more by budget";
+  const LatticeMesh given = make_body_lattice(flat_sheet(0.06, 0.04), 0.002, {2000, {{13, 4, 9}}});
   EXPECT_EQ(given.count, (std::array{13, 4, 9}));
 }
 
 TEST(ShellLattice, SheetIsABlockBehindItsNormals) {
   for (const bool up : {true, false}) {
-    const LatticeMesh mesh = lattice_of(flat_sheet(0.06, 0.04, up), 0.003, {2000, {}});
+    const LatticeMesh mesh = make_body_lattice(flat_sheet(0.06, 0.04, up), 0.003, {2000, {}});
     EXPECT_NEAR(mass_of(mesh, 1000.0), 1000.0 * 0.06 * 0.04 * 0.003, 1e-12);
     for (int n = 0; n < mesh.node_count(); ++n) {
-      const double depth = 0.003 * mesh.place(n)[1] / (mesh.count[1] - 1);
+      const double depth = 0.003 * mesh.grid_index(n)[1] / (mesh.count[1] - 1);
       EXPECT_NEAR(mesh.nodes[static_cast<std::size_t>(n)].y(), up ? -depth : depth, 1e-12);
     }
-    for (const double share : mesh.cell_shares) EXPECT_NEAR(share, 1.0, 1e-9);
+    for (const double share : mesh.cell_fractions) EXPECT_NEAR(share, 1.0, 1e-9);
   }
 }
 
@@ -95,7 +102,7 @@ TEST(ShellLattice, RingIsClosed) {
   constexpr double radius = 0.02, height = 0.015, thickness = 0.002;
   const double inner = radius - thickness, volume = pi * height * (radius * radius - inner * inner);
   for (const Surface& ring : {open_ring(radius, height), open_ring_around_v(radius, height)}) {
-    const LatticeMesh mesh = lattice_of(ring, thickness, {2000, {}});
+    const LatticeMesh mesh = make_body_lattice(ring, thickness, {2000, {}});
     EXPECT_TRUE(mesh.closed);
     EXPECT_GT(mesh.count[0], 2 * mesh.count[2]) << "i runs around";
     EXPECT_NEAR(mass_of(mesh, 1000.0) / (1000.0 * volume), 1.0, 1e-4);
@@ -121,27 +128,25 @@ TEST(ShellLattice, RefusesWhatIsNoShell) {
   const std::string thick = refusal(bowl, 0.031);
   EXPECT_EQ(thick.substr(0, 71), "shell_thickness_mm: 31 mm folds over where the surface is curved; use l");
   EXPECT_NE(thick.find("use less than 2"), std::string::npos) << thick;
-  EXPECT_NE(refusal(bowl, 0.09).find("folds over"), std::string::npos) << "beyond the middle too";
+  EXPECT_EQ(refusal_code(bowl, 0.09), ErrorCode::self_intersecting) << "beyond the centre too";
   EXPECT_EQ(refusal(bowl, 0.02), "accepted");
-  EXPECT_NE(refusal(ellipsoid_tube(12, 12, {0, 0, 0}), 0.002).find("a pole at one end only"),
-            std::string::npos);
-  EXPECT_NE(refusal(open_ring(0.02, 0.01), 0.002, {2000, {{3, 2, 4}}}).find("must be at least 4 around"),
-            std::string::npos);
-  EXPECT_NE(refusal(sheet, 0.002, {2000, {{1, 2, 4}}}).find("at least 2"), std::string::npos);
-  EXPECT_NE(refusal(sheet, 0.002, {2000, {}, FeatureMapSettings{}}).find("feature_map"), std::string::npos);
+  EXPECT_EQ(refusal_code(ellipsoid_tube(12, 12, {0, 0, 0}), 0.002), ErrorCode::unsupported);
+  EXPECT_EQ(refusal_code(open_ring(0.02, 0.01), 0.002, {2000, {{3, 2, 4}}}), ErrorCode::out_of_range);
+  EXPECT_EQ(refusal_code(sheet, 0.002, {2000, {{1, 2, 4}}}), ErrorCode::out_of_range);
+  EXPECT_EQ(refusal_code(sheet, 0.002, {2000, {}, FeatureMapSettings{}}), ErrorCode::inconsistent);
   Surface fan = sheet;
   for (int j = 0; j < fan.net.columns; ++j) fan.net.set_point(0, j, fan.net.point(0, 0));
-  EXPECT_NE(refusal(fan, 0.002).find("shrinks to a point"), std::string::npos);
+  EXPECT_EQ(refusal_code(fan, 0.002), ErrorCode::degenerate);
 }
 
 // Of a plate that is held along one edge and bent to a cylinder, P L^3 (1 - nu^2) / 3 E I a width, with what
 // shear adds: (6/5) P L / G t.
 TEST(ShellLattice, SheetBendsAsAPlate) {
   constexpr double length = 0.06, width = 0.03, thickness = 0.002, youngs = 2e9, poisson = 0.35, force = 0.5;
-  const LatticeMesh mesh = lattice_of(flat_sheet(length, width), thickness, {2000, {}});
+  const LatticeMesh mesh = make_body_lattice(flat_sheet(length, width), thickness, {2000, {}});
   const StaticBody body =
       StaticBody::make(mesh, elastic_material(youngs, poisson, 1000.0), CellKind::hexahedra).value();
-  std::vector<HeldAxis> held;
+  std::vector<FixedAxis> held;
   StaticLoads loads;
   int loaded = 0;
   const auto is_at = [&](int n, double x) {
@@ -150,7 +155,7 @@ TEST(ShellLattice, SheetBendsAsAPlate) {
   for (int n = 0; n < mesh.node_count(); ++n) loaded += is_at(n, length) ? 1 : 0;
   for (int n = 0; n < mesh.node_count(); ++n) {
     if (is_at(n, 0.0)) {
-      hold_node(n, Vector3::Zero(), held);
+      fix_node(n, Vector3::Zero(), held);
       continue;
     }
     held.push_back({n, 2, 0.0});
@@ -171,7 +176,7 @@ TEST(ShellLattice, SheetBendsAsAPlate) {
 
 // A ring of 64 cells, its seam between two of them.
 LatticeMesh round_ring(double radius_m, double height_m, double thickness_m) {
-  return lattice_of(open_ring(radius_m, height_m), thickness_m, {2000, {{65, 3, 4}}});
+  return make_body_lattice(open_ring(radius_m, height_m), thickness_m, {2000, {{65, 3, 4}}});
 }
 
 // How far the nodes of the outer face in the middle of the height have gone out.
@@ -210,7 +215,7 @@ TEST(ShellLattice, RingUnderPressureHasNoSeam) {
       loads.pressures.push_back(face);
     }
   }
-  std::vector<HeldAxis> held;
+  std::vector<FixedAxis> held;
   for (int i = 0; i < mesh.count[0]; ++i) {
     for (int j = 0; j < mesh.count[1]; ++j) held.push_back({mesh.index(i, j, 0), 1, 0.0});
   }
@@ -234,9 +239,9 @@ TEST(ShellLattice, RingDrawnAcrossItsSeamGivesWayAsElsewhere) {
       StaticBody::make(mesh, elastic_material(1e9, 0.3, 1000.0), CellKind::hexahedra).value();
   const auto opened = [&](int at) {
     const int across = at + 32;
-    std::vector<HeldAxis> held;
+    std::vector<FixedAxis> held;
     for (int j = 0; j < mesh.count[1]; ++j) {
-      for (int k = 0; k < mesh.count[2]; ++k) hold_node(mesh.index(across, j, k), Vector3::Zero(), held);
+      for (int k = 0; k < mesh.count[2]; ++k) fix_node(mesh.index(across, j, k), Vector3::Zero(), held);
     }
     StaticLoads loads;
     Vector3 outward = mesh.nodes[static_cast<std::size_t>(mesh.index(at, 0, 0))];
@@ -282,16 +287,16 @@ TEST(ShellLattice, SpringsOfARingKnowNoSeam) {
 
 // The implicit method settles to the static answer, pushed at the seam as elsewhere.
 TEST(ShellLattice, ImplicitRingKnowsNoSeam) {
-  const LatticeMesh mesh = lattice_of(open_ring(0.02, 0.006), 0.002, {2000, {{25, 2, 3}}});
+  const LatticeMesh mesh = make_body_lattice(open_ring(0.02, 0.006), 0.002, {2000, {{25, 2, 3}}});
   Material material = elastic_material(1e7, 0.3, 1000.0);
   material.damping_ratio = 0.05;
   const auto pushed_in = [&](int at, bool at_twin) {
     ImplicitBody body = ImplicitBody::make(mesh, material, InstructionSet::baseline).value();
     std::vector<std::uint8_t> held(static_cast<std::size_t>(mesh.node_count()), 0);
     for (int n = 0; n < mesh.node_count(); ++n) {
-      held[static_cast<std::size_t>(n)] = mesh.place(n)[0] == at + 12 ? 1 : 0;
+      held[static_cast<std::size_t>(n)] = mesh.grid_index(n)[0] == at + 12 ? 1 : 0;
     }
-    body.hold(held);
+    body.fix_nodes(held);
     const int node = mesh.index(at, 0, 1), pushed = at_twin ? mesh.twin(node) : node;
     Vector3 inward = -mesh.nodes[static_cast<std::size_t>(node)];
     inward.y() = 0.0;

@@ -1,6 +1,4 @@
 // Which bodies in a box of cells are thinner than two of them.
-#include "engine/material/lattice/surface_in_box.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -8,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/material/lattice/box_lattice.h"
 #include "tests/engine/collision/surfaces/sheets.h"
 
 namespace spoonbill {

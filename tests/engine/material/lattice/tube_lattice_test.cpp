@@ -1,11 +1,10 @@
 // Lattices of bodies that are bent.
-#include "engine/material/lattice/tube_lattice.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "engine/material/lattice/body_lattice.h"
 #include "tests/engine/material/lattice/revolved.h"
 
 namespace spoonbill {

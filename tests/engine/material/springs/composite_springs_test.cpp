@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/base/processor.h"
-#include "engine/material/lattice/lattice_of.h"
+#include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice_solver.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/random_surface.h"
@@ -15,8 +15,8 @@
 namespace spoonbill {
 namespace {
 
-SpringLattice lattice_of(const LatticeMesh& mesh, const LatticeMaterials& materials,
-                         InstructionSet set = InstructionSet::baseline) {
+SpringLattice make_body_lattice(const LatticeMesh& mesh, const LatticeMaterials& materials,
+                                InstructionSet set = InstructionSet::baseline) {
   Result<SpringLattice> lattice =
       SpringLattice::make(mesh, materials, materials.own().youngs_modulus_pa, set);
   EXPECT_TRUE(lattice.ok()) << lattice.error().message;
@@ -53,10 +53,10 @@ double strain_between(const SpringLattice& lattice, int from, int to) {
 
 // Held at z = 0 and drawn at the other end by an even stress, until it rests.
 SpringLattice drawn_bar(const LatticeMaterials& materials, double stress_pa) {
-  SpringLattice lattice = lattice_of(bar(), materials);
+  SpringLattice lattice = make_body_lattice(bar(), materials);
   std::vector<std::uint8_t> held(static_cast<std::size_t>(bar().node_count()), 0);
   std::fill_n(held.begin(), 25, std::uint8_t{1});
-  lattice.hold(held);
+  lattice.fix_nodes(held);
   for (int i = 0; i < 5; ++i) {
     for (int j = 0; j < 5; ++j) {
       const double area = 9e-6 * (i % 4 == 0 ? 0.5 : 1.0) * (j % 4 == 0 ? 0.5 : 1.0);
@@ -138,7 +138,7 @@ const LatticeMesh& small_block() {
 
 TEST(CompositeSprings, KeepTheirMomentum) {
   const DenormalsFlushed flushed;
-  SpringLattice lattice = lattice_of(small_block(), all_different(small_block()));
+  SpringLattice lattice = make_body_lattice(small_block(), all_different(small_block()));
   EXPECT_TRUE(lattice.is_damped_further());
   shake(lattice, 0.05, 5);
   const Momentum before = momentum_of(lattice);
@@ -151,7 +151,7 @@ TEST(CompositeSprings, KeepTheirMomentum) {
 
 // A body that moves and turns as a whole is not damped.
 TEST(CompositeSprings, RigidMotionsAreNotDampedFurther) {
-  SpringLattice lattice = lattice_of(small_block(), all_different(small_block()));
+  SpringLattice lattice = make_body_lattice(small_block(), all_different(small_block()));
   const Vector3 velocity(0.3, -0.2, 0.1), spin(2.0, 1.0, -3.0);
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
     lattice.set_velocity(n, velocity + spin.cross(lattice.position(n)));
@@ -189,7 +189,7 @@ TEST(CompositeSprings, EachMaterialIsDampedByItsOwnRatio) {
     Material first = elastic_material(4e3, 0.3, 1000.0), second = elastic_material(4e3, 0.3, 1000.0);
     first.damping_ratio = first_ratio;
     second.damping_ratio = second_ratio;
-    SpringLattice lattice = lattice_of(bar(), composite(bar(), first, second, in_far_half));
+    SpringLattice lattice = make_body_lattice(bar(), composite(bar(), first, second, in_far_half));
     Random random(9);
     for (int n = 0; n < bar().node_count(); ++n) {
       const double z = bar().nodes[static_cast<std::size_t>(n)].z();
@@ -219,11 +219,11 @@ TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
   clay.yield_strain = 0.005;
   clay.flow_rate_per_s = 50.0;
   clay.damping_ratio = rubber.damping_ratio = 0.1;
-  SpringLattice lattice = lattice_of(bar(), composite(bar(), clay, rubber, in_far_half));
+  SpringLattice lattice = make_body_lattice(bar(), composite(bar(), clay, rubber, in_far_half));
   std::vector<std::uint8_t> held(static_cast<std::size_t>(bar().node_count()), 0);
   std::fill_n(held.begin(), 25, std::uint8_t{1});
   std::fill_n(held.end() - 25, 25, std::uint8_t{1});
-  lattice.hold(held);
+  lattice.fix_nodes(held);
   for (int n = 0; n < bar().node_count(); ++n) {
     const Vector3& at = bar().nodes[static_cast<std::size_t>(n)];
     lattice.set_displacement(n, {0.0, 0.0, 0.05 * at.z()});
@@ -237,7 +237,7 @@ TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
   };
   run(500);
   std::fill(held.end() - 25, held.end(), std::uint8_t{0});
-  lattice.hold(held);
+  lattice.fix_nodes(held);
   run(1500);
   EXPECT_GT(strain_between(lattice, 3, 9), 0.03);
   EXPECT_NEAR(strain_between(lattice, 15, 21), 0.0, 2e-3);
@@ -250,11 +250,11 @@ TEST(CompositeSprings, OnlyTheGelCreeps) {
   gel.relaxing_fraction = 0.5;
   gel.relaxation_time_s = 0.2;
   gel.damping_ratio = rubber.damping_ratio = 0.1;
-  SpringLattice lattice = lattice_of(bar(), composite(bar(), gel, rubber, in_far_half));
+  SpringLattice lattice = make_body_lattice(bar(), composite(bar(), gel, rubber, in_far_half));
   std::vector<std::uint8_t> held(static_cast<std::size_t>(bar().node_count()), 0);
   std::fill_n(held.begin(), 25, std::uint8_t{1});
   std::fill_n(held.end() - 25, 25, std::uint8_t{1});
-  lattice.hold(held);
+  lattice.fix_nodes(held);
   for (int n = 0; n < bar().node_count(); ++n) {
     lattice.set_displacement(n, {0.0, 0.0, 0.02 * bar().nodes[static_cast<std::size_t>(n)].z()});
   }
@@ -275,7 +275,7 @@ TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
                  second = elastic_material(2e4 * softer, 0.4, 1000.0);
         first.damping_ratio = first_ratio;
         second.damping_ratio = second_ratio;
-        SpringLattice lattice = lattice_of(
+        SpringLattice lattice = make_body_lattice(
             small_block(),
             composite(small_block(), first, second, [](const Vector3& at) { return at.x() > 0.006; }));
         shake(lattice, 1e-3, 3);
@@ -294,7 +294,7 @@ TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
 
 TEST(CompositeSprings, EveryInstructionSetGivesTheSameBits) {
   const auto shape_after = [&](InstructionSet set) {
-    SpringLattice lattice = lattice_of(small_block(), all_different(small_block()), set);
+    SpringLattice lattice = make_body_lattice(small_block(), all_different(small_block()), set);
     shake(lattice, 0.3, 7);
     RelaxSettings settings;
     for (; settings.tick < 100; ++settings.tick) relax(std::array{RelaxedLattice{&lattice}}, settings, {});
@@ -312,7 +312,7 @@ TEST(CompositeSprings, OneMaterialBehavesAsByItself) {
   LatticeMaterials twice =
       composite(small_block(), material, material, [](const Vector3& at) { return at.x() > 0.006; });
   const auto shape_of = [&](const LatticeMaterials& materials) {
-    SpringLattice lattice = lattice_of(small_block(), materials);
+    SpringLattice lattice = make_body_lattice(small_block(), materials);
     shake(lattice, 0.1, 7);
     RelaxSettings settings;
     for (; settings.tick < 50; ++settings.tick) relax(std::array{RelaxedLattice{&lattice}}, settings, {});
@@ -324,7 +324,7 @@ TEST(CompositeSprings, OneMaterialBehavesAsByItself) {
 }
 
 TEST(CompositeSprings, StepsAllocateNothing) {
-  SpringLattice lattice = lattice_of(small_block(), all_different(small_block()));
+  SpringLattice lattice = make_body_lattice(small_block(), all_different(small_block()));
   shake(lattice, 0.1, 7);
   RelaxSettings settings;
   const std::array lattices{RelaxedLattice{&lattice}};
@@ -346,7 +346,7 @@ TEST(CompositeSprings, ABlockSlidesByTheFrictionsOfItsBase) {
     MaterialRegion middle;
     middle.region.along = {0.3, 0.7};
     middle.friction = rough;
-    SpringLattice lattice = lattice_of(mesh, lattice_materials(mesh, smooth, {&middle, 1}).value());
+    SpringLattice lattice = make_body_lattice(mesh, lattice_materials(mesh, smooth, {&middle, 1}).value());
     ContactConstraints contacts(35);
     for (int n = 0; n < mesh.node_count(); ++n) {
       if (mesh.nodes[static_cast<std::size_t>(n)].y() > 1e-9) continue;

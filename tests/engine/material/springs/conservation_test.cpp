@@ -40,12 +40,12 @@ Energies energies_of(const SpringLattice& lattice, const StaticBody& springs, do
   double by_force = 0.0;
   for (std::size_t cell = 0; cell < springs.cell_count(); ++cell) {
     CellMoves moves;
-    for (std::size_t c = 0; c < 8; ++c) moves[c] = lattice.displacement(springs.nodes_of(cell)[c]);
+    for (std::size_t c = 0; c < 8; ++c) moves[c] = lattice.displacement(springs.cell_nodes(cell)[c]);
     const CellResponse response = springs.respond(cell, moves, Tangent::plain);
     energies.whole += response.energy_j;
     for (std::size_t c = 0; c < 8; ++c) {
       const Vector3 force = response.force_n.segment<3>(3 * static_cast<Eigen::Index>(c));
-      by_force += force.dot(lattice.velocity(springs.nodes_of(cell)[c]));
+      by_force += force.dot(lattice.velocity(springs.cell_nodes(cell)[c]));
     }
   }
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {

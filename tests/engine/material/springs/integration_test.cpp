@@ -246,7 +246,7 @@ TEST(Integration, HeldNodesDoNotMoveAtAll) {
   SpringLattice lattice = block({0.02, 0.01, 0.02}, {5, 3, 5}, elastic_material(500.0, 0.45, 1000.0));
   std::vector<std::uint8_t> held(75, 0);
   for (int n = 0; n < 15; ++n) held[static_cast<std::size_t>(n)] = 1;
-  lattice.hold(held);
+  lattice.fix_nodes(held);
   ContactConstraints none(1);
   ToolState tool;
   RelaxSettings settings;
@@ -271,7 +271,7 @@ class StretchedBlock {
       if (z < 1e-6 || z > length_m - 1e-6) ends_[static_cast<std::size_t>(n)] = 1;
       lattice_.set_displacement(n, {0.0, 0.0, strain * z});
     }
-    lattice_.hold(ends_);
+    lattice_.fix_nodes(ends_);
     settings_.damping_per_s = 60.0;
   }
 
@@ -281,7 +281,7 @@ class StretchedBlock {
             std::array{TouchingTool{ToolMotion{}, &tool_, &none_}});
     }
   }
-  void let_go() { lattice_.hold(std::vector<std::uint8_t>(ends_.size(), 0)); }
+  void let_go() { lattice_.fix_nodes(std::vector<std::uint8_t>(ends_.size(), 0)); }
 
   // Of the stretch.
   double kept() const {

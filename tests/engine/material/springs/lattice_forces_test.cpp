@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/material/cells/cell_springs.h"
+#include "engine/material/cells/spring_cell.h"
 #include "engine/material/lattice_solver.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/material/block.h"

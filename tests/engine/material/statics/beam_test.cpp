@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/material/lattice/lattice_counts.h"
+#include "engine/material/lattice/lattice_mesh.h"
 #include "tests/engine/material/block.h"
 #include "tests/engine/material/statics/static_cases.h"
 
@@ -21,8 +21,8 @@ struct Beam {
 // The mean sinking of the far end, with the near one held altogether.
 double sinking_m(const Beam& beam, const Material& material, CellKind kind) {
   const LatticeMesh mesh = box_mesh(beam.size_m, beam.counts);
-  std::vector<HeldAxis> held;
-  visit_face(mesh, 0, false, [&](int node, double) { hold_node(node, Vector3::Zero(), held); });
+  std::vector<FixedAxis> held;
+  visit_face(mesh, 0, false, [&](int node, double) { fix_node(node, Vector3::Zero(), held); });
   StaticLoads loads;
   visit_face(mesh, 0, true, [&](int node, double share) {
     loads.forces.push_back({node, {0.0, 0.0, -share * beam.force_n}});

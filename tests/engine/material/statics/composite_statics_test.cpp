@@ -19,9 +19,9 @@ double youngs_modulus_along_z(const LatticeMesh& mesh, const LatticeMaterials& m
   EXPECT_TRUE(body.ok()) << body.error().message;
   const int last = mesh.count[2] - 1;
   const Vector3 size_m = mesh.nodes.back() - mesh.nodes.front();
-  std::vector<HeldAxis> held = {{mesh.index(0, 0, 0), 0, 0.0},
-                                {mesh.index(0, 0, 0), 1, 0.0},
-                                {mesh.index(mesh.count[0] - 1, 0, 0), 1, 0.0}};
+  std::vector<FixedAxis> held = {{mesh.index(0, 0, 0), 0, 0.0},
+                                 {mesh.index(0, 0, 0), 1, 0.0},
+                                 {mesh.index(mesh.count[0] - 1, 0, 0), 1, 0.0}};
   for (int i = 0; i < mesh.count[0]; ++i) {
     for (int j = 0; j < mesh.count[1]; ++j) {
       held.push_back({mesh.index(i, j, 0), 2, 0.0});
@@ -129,11 +129,11 @@ struct Sandwich {
 TEST(CompositeStatics, ASandwichSinksAsTheCompositeBeamSays) {
   const LatticeMesh mesh = box_mesh({Sandwich::width_m, Sandwich::height_m, Sandwich::length_m}, {2, 11, 41});
   const StaticBody body = StaticBody::make(mesh, Sandwich::materials(mesh), CellKind::hexahedra).value();
-  std::vector<HeldAxis> held;
+  std::vector<FixedAxis> held;
   StaticLoads loads;
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 11; ++j) {
-      hold_node(mesh.index(i, j, 0), Vector3::Zero(), held);
+      fix_node(mesh.index(i, j, 0), Vector3::Zero(), held);
       loads.forces.push_back({mesh.index(i, j, 40), {0.0, -Sandwich::load_n / 22.0, 0.0}});
     }
   }
@@ -151,12 +151,12 @@ TEST(CompositeStatics, OneCellOfABlockBendsAsItsLayersDo) {
   const Vector3 size_m(Sandwich::width_m, Sandwich::height_m, Sandwich::length_m);
   const LatticeMesh fine = box_mesh(size_m, {2, 11, 41}), block = box_mesh(size_m, {2, 2, 21});
   ImplicitBody body =
-      ImplicitBody::make(block, block_materials(Sandwich::materials(fine), fine.count, block.count),
+      ImplicitBody::make(block, make_block_materials(Sandwich::materials(fine), fine.count, block.count),
                          InstructionSet::baseline)
           .value();
   std::vector<std::uint8_t> held(static_cast<std::size_t>(block.node_count()), 0);
   for (int n = 0; n < 4; ++n) held[static_cast<std::size_t>(n)] = 1;
-  body.hold(held);
+  body.fix_nodes(held);
   for (int n = 0; n < 4; ++n) {
     body.set_node_force(block.node_count() - 1 - n, {0.0, -Sandwich::load_n / 4.0, 0.0});
   }
@@ -175,7 +175,8 @@ TEST(CompositeStatics, MassesAreThoseOfTheParts) {
   const LatticeMaterials materials =
       composite(fine, light, heavy, [](const Vector3& at) { return at.z() > 0.04; });
   const ImplicitBody body =
-      ImplicitBody::make(block, block_materials(materials, fine.count, block.count), InstructionSet::baseline)
+      ImplicitBody::make(block, make_block_materials(materials, fine.count, block.count),
+                         InstructionSet::baseline)
           .value();
   const SpringLattice lattice =
       SpringLattice::make(fine, materials, light.youngs_modulus_pa, InstructionSet::baseline).value();

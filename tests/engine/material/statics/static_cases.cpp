@@ -13,15 +13,15 @@ StaticBody body_of(const LatticeMesh& mesh, const Material& material, CellKind k
   return std::move(body).value();
 }
 
-StaticResult rest_of(const StaticBody& body, const StaticLoads& loads, const std::vector<HeldAxis>& held) {
+StaticResult rest_of(const StaticBody& body, const StaticLoads& loads, const std::vector<FixedAxis>& held) {
   Result<StaticResult> result = rest_under_load(body, loads, held);
   EXPECT_TRUE(result.ok()) << result.error().message;
   return std::move(result).value();
 }
 
-std::vector<HeldAxis> slipping_base(const LatticeMesh& mesh, int axis) {
+std::vector<FixedAxis> slipping_base(const LatticeMesh& mesh, int axis) {
   const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-  std::vector<HeldAxis> held;
+  std::vector<FixedAxis> held;
   visit_face(mesh, axis, false, [&](int node, double) { held.push_back({node, axis, 0.0}); });
   std::array<int, 3> beside{};
   beside[a] = mesh.count[a] - 1;

@@ -9,7 +9,7 @@ namespace spoonbill {
 
 StaticBody body_of(const LatticeMesh& mesh, const Material& material, CellKind kind);
 
-StaticResult rest_of(const StaticBody& body, const StaticLoads& loads, const std::vector<HeldAxis>& held);
+StaticResult rest_of(const StaticBody& body, const StaticLoads& loads, const std::vector<FixedAxis>& held);
 
 // Visits the nodes of the face at the low or high end of an axis (0 to 2: i, j, k), with their share of its
 // area where cells are alike.
@@ -31,6 +31,6 @@ void visit_face(const LatticeMesh& mesh, int axis, bool high, const Visit& visit
 }
 
 // Held along the axis only, and in one corner and one edge just as much as keeps it from sliding and turning.
-std::vector<HeldAxis> slipping_base(const LatticeMesh& mesh, int axis);
+std::vector<FixedAxis> slipping_base(const LatticeMesh& mesh, int axis);
 
 }  // namespace spoonbill

@@ -1,0 +1,444 @@
+#include "engine/material/implicit/implicit_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/assert.h"
+#include "engine/material/contact/contact_constraints.h"
+#include "engine/material/implicit/implicit_body.h"
+#include "engine/material/lattice/lattice_mesh.h"
+
+namespace spoonbill {
+namespace {
+
+// Each step needs one solution with the factor, as an iteration of the conjugate gradients does.
+constexpr int step_limit = 4;
+// Velocity error below which a tick is solved: a nanometre per second.
+constexpr double accepted_error_m_per_s = 1e-9;
+constexpr double min_fraction = 0.1;
+// Bounds of the spectral mass, relative to the body's mass.
+constexpr double min_mass_ratio = 1e-5, max_mass_ratio = 10.0;
+
+// A point attached mostly to fixed nodes would not respond, or would throw its free nodes.
+constexpr double min_free_fraction = 0.5;
+
+double free_fraction(const GridPoint& point, const ImplicitBody& body) {
+  double fraction = 0.0;
+  for (std::size_t c = 0; c < 8; ++c) fraction += body.is_fixed(point.node[c]) ? 0.0 : point.weight[c];
+  return fraction;
+}
+
+// Projects an impulse onto the friction cone.
+Vector3 project_onto_cone(const Vector3& impulse, const Vector3& normal, double friction) {
+  const double push = std::max(0.0, impulse.dot(normal));
+  const Vector3 along = impulse - impulse.dot(normal) * normal;
+  const double drag = along.norm();
+  return push * normal + (drag > friction * push ? friction * push / drag : 1.0) * along;
+}
+
+}  // namespace
+
+ImplicitGroundContacts::ImplicitGroundContacts(int points, double mass_kg)
+    : mass_(0.1 * mass_kg), min_mass_(min_mass_ratio * mass_kg), max_mass_(max_mass_ratio * mass_kg) {
+  SPOONBILL_ASSERT(mass_kg > 0.0);
+  target_.assign(static_cast<std::size_t>(points), 0.0);
+  velocity_errors_.assign(static_cast<std::size_t>(points), Vector3::Zero());
+  impulse_changes_.assign(static_cast<std::size_t>(points), Vector3::Zero());
+}
+
+void ImplicitGroundContacts::restore_last_impulses(std::span<GroundContact> contacts,
+                                                   std::span<const GridPoint> points, double time_s,
+                                                   std::vector<double>& impulses_ns) {
+  SPOONBILL_ASSERT(time_s > 0.0);
+  std::fill(impulses_ns.begin(), impulses_ns.end(), 0.0);
+  for (GroundContact& contact : contacts) {
+    contact.impulse_ns = time_s * contact.force_n;
+    points[static_cast<std::size_t>(contact.node)].spread(contact.impulse_ns, impulses_ns);
+  }
+}
+
+void ImplicitGroundContacts::compute_velocity_errors(std::span<const GroundContact> contacts,
+                                                     std::span<const GridPoint> points,
+                                                     const ImplicitBody& body) {
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const GridPoint& point = points[static_cast<std::size_t>(contacts[c].node)];
+    velocity_errors_[c].setZero();
+    if (free_fraction(point, body) < min_free_fraction) continue;
+    velocity_errors_[c] =
+        point.sum_over([&](int node) { return body.velocity(node); }) - target_[c] * normal_;
+  }
+}
+
+double ImplicitGroundContacts::compute_impulse_changes(std::span<const GroundContact> contacts) {
+  double square = 0.0;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const Vector3& now = contacts[c].impulse_ns;
+    impulse_changes_[c] =
+        project_onto_cone(now - mass_ * velocity_errors_[c], normal_, contacts[c].friction) - now;
+    square += impulse_changes_[c].squaredNorm();
+  }
+  return square;
+}
+
+void ImplicitGroundContacts::solve(const GroundContacts& ground, std::span<GroundContact> contacts,
+                                   std::span<const GridPoint> points, double time_s, double cap_m_per_s,
+                                   ImplicitBody& body, std::vector<double>& impulses_ns) {
+  SPOONBILL_ASSERT(time_s > 0.0);
+  normal_ = ground.normal();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const ContactPush push{contacts[c].gap_m, normal_, Vector3::Zero(), 0.0};
+    target_[c] = push.target_m_per_s(time_s, ground_pace, cap_m_per_s);
+  }
+  for (int step = 0; step < step_limit; ++step) {
+    compute_velocity_errors(contacts, points, body);
+    const double square = compute_impulse_changes(contacts), still = mass_ * accepted_error_m_per_s;
+    if (!(square > still * still)) return;
+    std::fill(impulses_ns.begin(), impulses_ns.end(), 0.0);
+    double slope = 0.0;
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+      points[static_cast<std::size_t>(contacts[c].node)].spread(impulse_changes_[c], impulses_ns);
+      slope -= impulse_changes_[c].dot(velocity_errors_[c]);
+    }
+    const double work = body.respond_to(impulses_ns);
+    const double fraction = work > 0.0 && slope > 0.0 ? std::clamp(slope / work, min_fraction, 1.0) : 1.0;
+    body.apply_response(fraction);
+    for (std::size_t c = 0; c < contacts.size(); ++c)
+      contacts[c].impulse_ns += fraction * impulse_changes_[c];
+    if (work > 0.0) mass_ = std::clamp(square / work, min_mass_, max_mass_);
+  }
+}
+
+namespace {
+
+// Largest size of the band. A solution multiplies each entry twice, and a tick takes about five solutions.
+constexpr double max_band = 1.3e5;
+constexpr int min_budget = 30;
+// Inverse mass in contacts relative to that of the whole body: before the first contact, and the largest.
+constexpr double initial_lightness = 8.0, max_lightness = 1e5;
+
+// Position of a node of one grid in another over the same body, along one axis.
+struct GridPosition {
+  int first;
+  double fraction;  // fraction of the step to the next node
+};
+
+GridPosition locate_in(int at, int count, int other_count) {
+  const double coordinate = static_cast<double>(at) * (other_count - 1) / (count - 1);
+  const int first = std::min(static_cast<int>(coordinate), other_count - 2);
+  return {first, coordinate - first};
+}
+
+// Mean extents of a lattice along i, j and k, m.
+Vector3 extents(const LatticeMesh& mesh, const std::vector<Vector3>& nodes) {
+  Vector3 size = Vector3::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    double sum = 0.0;
+    int lines = 0;
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      std::array<int, 3> next = mesh.grid_index(n);
+      if (next[static_cast<std::size_t>(axis)] == 0) ++lines;
+      if (++next[static_cast<std::size_t>(axis)] == mesh.count[static_cast<std::size_t>(axis)]) continue;
+      const int beyond = mesh.index(next[0], next[1], next[2]);
+      sum += (nodes[static_cast<std::size_t>(beyond)] - nodes[static_cast<std::size_t>(n)]).norm();
+    }
+    size[axis] = sum / lines;
+  }
+  return size;
+}
+
+// Expresses a node of one grid by the nodes of another, trilinear in the grid.
+GridPoint embed_node(const LatticeMesh& of, int node, const LatticeMesh& by) {
+  const std::array<int, 3> at = of.grid_index(node);
+  std::array<GridPosition, 3> positions{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    positions[axis] = locate_in(at[axis], of.count[axis], by.count[axis]);
+  }
+  GridPoint result;
+  for (int c = 0; c < 8; ++c) {
+    const std::array<int, 3> high = {c >> 2 & 1, c >> 1 & 1, c & 1};
+    std::array<int, 3> corner{};
+    double weight = 1.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      corner[axis] = positions[axis].first + high[axis];
+      weight *= high[axis] ? positions[axis].fraction : 1.0 - positions[axis].fraction;
+    }
+    result.node[static_cast<std::size_t>(c)] = by.joined(by.index(corner[0], corner[1], corner[2]));
+    result.weight[static_cast<std::size_t>(c)] = weight;
+  }
+  return result;
+}
+
+std::size_t find_heaviest_node(const GridPoint& follower) {
+  const auto most =
+      std::max_element(follower.weight.begin(), follower.weight.end()) - follower.weight.begin();
+  return static_cast<std::size_t>(follower.node[static_cast<std::size_t>(most)]);
+}
+
+// Number of entries of the band, which a solution multiplies.
+double band_size(const LatticeMesh& block) {
+  return 9.0 * block.node_count() * (node_reach(block) + 1);
+}
+
+Vector3 applied_force_n(const SpringLattice& lattice, int node) {
+  return {lattice.applied_force(0)[node], lattice.applied_force(1)[node], lattice.applied_force(2)[node]};
+}
+
+// Chooses the largest counts that fit the node budget and the band, and no more than the lattice has.
+Result<LatticeMesh> choose_coarse_counts(const LatticeMesh& mesh, const Vector3& size_m) {
+  LatticeMesh block;
+  block.closed = mesh.closed;
+  block.thin = mesh.thin;
+  for (int budget = implicit_node_budget;; budget = budget * 4 / 5) {
+    const LatticeRequest request{budget, std::nullopt};
+    Result<std::array<int, 3>> counts =
+        mesh.thin ? shell_counts(request, size_m, mesh.closed) : lattice_counts(request, size_m);
+    if (!counts.ok()) return counts.error();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      block.count[axis] = std::min(counts.value()[axis], mesh.count[axis]);
+    }
+    if (band_size(block) <= max_band || budget < min_budget) return block;
+  }
+}
+
+// Scales the cells of a coarse shell to the volume of the fine one: its longer chords would lose volume
+// where the shell is bent.
+void set_shell_fractions(const LatticeMesh& mesh, LatticeMesh& coarse) {
+  const auto filled_volume = [](const LatticeMesh& of) {
+    double volume = 0.0;
+    for (int k = 0; k + 1 < of.count[2]; ++k) {
+      for (int i = 0; i + 1 < of.count[0]; ++i) {
+        for (int j = 0; j + 1 < of.count[1]; ++j)
+          volume += of.cell_fraction(i, j, k) * cell_volume(of.cell(i, j, k));
+      }
+    }
+    return volume;
+  };
+  coarse.cell_fractions.assign(coarse.cell_count(), filled_volume(mesh) / filled_volume(coarse));
+}
+
+// Fraction of a coarse cell that belongs to the body, from the overlapping cells of the lattice. Cells of a
+// box are congruent, so the body's mass is conserved.
+double overlapped_fraction(const LatticeMesh& mesh, const std::array<std::vector<Overlap>, 3>& overlaps) {
+  double fraction = 0.0;
+  for (const Overlap& k : overlaps[2]) {
+    for (const Overlap& i : overlaps[0]) {
+      for (const Overlap& j : overlaps[1]) {
+        fraction += i.fraction() * j.fraction() * k.fraction() * mesh.cell_fraction(i.cell, j.cell, k.cell);
+      }
+    }
+  }
+  return fraction;
+}
+
+void set_box_fractions(const LatticeMesh& mesh, LatticeMesh& coarse) {
+  const auto overlaps = [&](std::size_t axis, int cell) {
+    return find_overlaps(cell, coarse.count[axis], mesh.count[axis]);
+  };
+  coarse.cell_fractions.assign(coarse.cell_count(), 0.0);
+  for (int k = 0; k + 1 < coarse.count[2]; ++k) {
+    for (int i = 0; i + 1 < coarse.count[0]; ++i) {
+      for (int j = 0; j + 1 < coarse.count[1]; ++j) {
+        coarse.cell_fractions[coarse.cell_index(i, j, k)] =
+            overlapped_fraction(mesh, {overlaps(0, i), overlaps(1, j), overlaps(2, k)});
+      }
+    }
+  }
+}
+
+Result<LatticeMesh> make_coarse_mesh(const LatticeMesh& mesh, const std::vector<Vector3>& nodes) {
+  Result<LatticeMesh> block = choose_coarse_counts(mesh, extents(mesh, nodes));
+  if (!block.ok()) return block;
+  LatticeMesh coarse = std::move(block).value();
+  coarse.nodes.assign(static_cast<std::size_t>(coarse.node_count()), Vector3::Zero());
+  for (int n = 0; n < coarse.node_count(); ++n) {
+    const GridPoint at = embed_node(coarse, n, mesh);
+    for (std::size_t c = 0; c < 8; ++c) {
+      coarse.nodes[static_cast<std::size_t>(n)] += at.weight[c] * nodes[static_cast<std::size_t>(at.node[c])];
+    }
+  }
+  if (mesh.thin) set_shell_fractions(mesh, coarse);
+  if (!mesh.thin && !mesh.cell_fractions.empty()) set_box_fractions(mesh, coarse);
+  return coarse;
+}
+
+}  // namespace
+
+ImplicitSolver::ImplicitSolver(ImplicitBody body, int nodes, double mass_kg)
+    : body_(std::move(body)),
+      velocity_(static_cast<std::size_t>(nodes)),
+      impulse_(3 * static_cast<std::size_t>(body_.node_count()), 0.0),
+      ground_contacts_(nodes, mass_kg),
+      contact_inverse_mass_(initial_lightness / mass_kg),
+      min_inverse_mass_(1.0 / mass_kg) {}
+
+Result<ImplicitSolver> ImplicitSolver::make(const LatticeMesh& mesh, const std::vector<Vector3>& rest_m,
+                                            const LatticeMaterials& materials, InstructionSet set) {
+  const Result<LatticeMesh> coarse = make_coarse_mesh(mesh, rest_m);
+  if (!coarse.ok()) return coarse.error();
+  Result<ImplicitBody> body =
+      ImplicitBody::make(coarse.value(), make_block_materials(materials, mesh.count, coarse->count), set);
+  if (!body.ok()) return body.error();
+  double mass_kg = 0.0;
+  for (int n = 0; n < coarse->node_count(); ++n) mass_kg += body->mass_kg(n);
+  ImplicitSolver solver(std::move(body).value(), mesh.node_count(), mass_kg);
+  solver.rest_m_ = rest_m;
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    solver.followers_.push_back(embed_node(mesh, n, coarse.value()));
+  }
+  for (int n = 0; n < coarse->node_count(); ++n) {
+    const GridPoint at = embed_node(coarse.value(), n, mesh);
+    solver.nearest_.push_back(static_cast<int>(find_heaviest_node(at)));
+  }
+  solver.fixing_node_.assign(solver.nearest_.size(), -1);
+  return solver;
+}
+
+void ImplicitSolver::fix_nodes(std::span<const std::uint8_t> fixed) {
+  SPOONBILL_ASSERT(fixed.size() == followers_.size());
+  for (std::size_t b = 0; b < nearest_.size(); ++b) {
+    fixing_node_[b] = fixed[static_cast<std::size_t>(nearest_[b])] != 0 ? nearest_[b] : -1;
+  }
+  for (std::size_t n = 0; n < fixed.size(); ++n) {
+    if (fixed[n] == 0 || follows_fixed(followers_[n])) continue;
+    fixing_node_[find_heaviest_node(followers_[n])] = static_cast<int>(n);
+  }
+  std::vector<std::uint8_t> block_fixed;
+  block_fixed.reserve(fixing_node_.size());
+  for (const int node : fixing_node_) block_fixed.push_back(node >= 0 ? 1 : 0);
+  body_.fix_nodes(block_fixed);
+}
+
+bool ImplicitSolver::follows_fixed(const GridPoint& follower) const {
+  for (std::size_t c = 0; c < 8; ++c) {
+    if (follower.weight[c] > 0.0 && fixing_node_[static_cast<std::size_t>(follower.node[c])] >= 0)
+      return true;
+  }
+  return false;
+}
+
+void ImplicitSolver::adopt_shape(const SpringLattice& lattice) {
+  for (int n = 0; n < body_.node_count(); ++n) {
+    const GridPoint at = embed_node(body_.mesh(), n, lattice.mesh());
+    Vector3 position = Vector3::Zero(), velocity = Vector3::Zero();
+    for (std::size_t c = 0; c < 8; ++c) {
+      position += at.weight[c] * lattice.position(at.node[c]);
+      velocity += at.weight[c] * lattice.velocity(at.node[c]);
+    }
+    body_.set_displacement(n, position - body_.mesh().nodes[static_cast<std::size_t>(n)]);
+    body_.set_velocity(n, velocity);
+  }
+}
+
+void ImplicitSolver::adopt_moved_nodes(const SpringLattice& lattice) {
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const auto at = static_cast<std::size_t>(n);
+    if (lattice.is_fixed(n)) continue;
+    rest_m_[at] =
+        lattice.position(n) - followers_[at].sum_over([&](int node) { return body_.displacement(node); });
+  }
+}
+
+void ImplicitSolver::set_node_forces(const SpringLattice& lattice, std::span<const int> nodes) {
+  body_.clear_node_forces();
+  for (const int n : nodes) {
+    if (lattice.is_fixed(n)) continue;
+    const Vector3 force_n = applied_force_n(lattice, n);
+    const GridPoint& follower = followers_[static_cast<std::size_t>(n)];
+    for (std::size_t c = 0; c < 8; ++c) body_.add_node_force(follower.node[c], follower.weight[c] * force_n);
+  }
+}
+
+void ImplicitSolver::move_fixed(std::span<const int> nodes, const Vector3& velocity_m_per_s) {
+  SPOONBILL_ASSERT_DEBUG(std::is_sorted(nodes.begin(), nodes.end()));
+  for (int n = 0; n < body_.node_count(); ++n) {
+    if (is_fixed_by(n, nodes)) body_.move_fixed(n, velocity_m_per_s);
+  }
+}
+
+bool ImplicitSolver::is_fixed_by(int node, std::span<const int> nodes) const {
+  return std::binary_search(nodes.begin(), nodes.end(), fixing_node_[static_cast<std::size_t>(node)]);
+}
+
+Vector3 ImplicitSolver::force_on_fixed(const SpringLattice& lattice, std::span<const int> nodes,
+                                       const Vector3& gravity_m_per_s2) const {
+  Vector3 sum = Vector3::Zero();
+  for (int n = 0; n < body_.node_count(); ++n) {
+    if (mesh().joined(n) != n || !is_fixed_by(n, nodes)) continue;
+    sum += body_.force_on_fixed(n) + body_.mass_kg(n) * gravity_m_per_s2;
+  }
+  for (const int n : nodes) sum += applied_force_n(lattice, n);
+  return sum;
+}
+
+ImplicitReport ImplicitSolver::begin_step(const ImplicitStep& step, SpringLattice& lattice,
+                                          std::span<GroundContact> on_ground) {
+  SPOONBILL_ASSERT(step.step_s > 0.0);
+  step_s_ = step.step_s;
+  std::span<const double> known_ns;
+  if (!on_ground.empty()) {
+    ground_contacts_.restore_last_impulses(on_ground, followers_, step_s_, impulse_);
+    known_ns = impulse_;
+  }
+  const ImplicitReport report = body_.solve_velocities(step, known_ns);
+  write_velocities(lattice);
+  return report;
+}
+
+void ImplicitSolver::write_velocities(SpringLattice& lattice) {
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    if (lattice.is_fixed(n)) continue;
+    const auto at = static_cast<std::size_t>(n);
+    lattice.set_velocity(n, followers_[at].sum_over([&](int node) { return body_.velocity(node); }));
+    const Vector3 rounded = lattice.velocity(n);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      velocity_[at][axis] = static_cast<float>(rounded[static_cast<Eigen::Index>(axis)]);
+    }
+  }
+}
+
+// Collects the contact impulses. Returns the sum of their squares by node.
+double ImplicitSolver::collect_impulses(const SpringLattice& lattice) {
+  std::fill(impulse_.begin(), impulse_.end(), 0.0);
+  double squares = 0.0;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    if (lattice.is_fixed(n) || lattice.mesh().joined(n) != n) continue;
+    const auto at = static_cast<std::size_t>(n);
+    const Vector3 before(velocity_[at][0], velocity_[at][1], velocity_[at][2]);
+    const Vector3 impulse = (lattice.velocity(n) - before) / contact_inverse_mass_;
+    if (impulse.isZero(0.0)) continue;
+    squares += impulse.squaredNorm();
+    followers_[at].spread(impulse, impulse_);
+  }
+  return squares;
+}
+
+// Updates the inverse mass in contacts to the geometric mean of the old and the measured one, so that two
+// bodies that adapt to each other converge.
+void ImplicitSolver::update_contact_mass(double measured, SpringLattice& lattice) {
+  if (!std::isfinite(measured)) return;
+  const double target = std::clamp(measured, min_inverse_mass_, max_lightness * min_inverse_mass_);
+  contact_inverse_mass_ = std::sqrt(contact_inverse_mass_ * target);
+  lattice.set_contact_inverse_mass(contact_inverse_mass_);
+}
+
+void ImplicitSolver::end_step(SpringLattice& lattice, const GroundPush& on_ground) {
+  // Contacts have given each node its impulse over the contact mass; the body now responds to all of them
+  // together.
+  const double squares = collect_impulses(lattice);
+  if (squares > 0.0) update_contact_mass(body_.push(impulse_) / squares, lattice);
+  if (!on_ground.contacts.empty()) {
+    ground_contacts_.solve(*on_ground.ground, on_ground.contacts, followers_, step_s_,
+                           on_ground.push_speed_cap_m_per_s, body_, impulse_);
+  }
+  body_.move(step_s_);
+  write_velocities(lattice);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    if (lattice.is_fixed(n)) continue;
+    const auto at = static_cast<std::size_t>(n);
+    const Vector3 moved = followers_[at].sum_over([&](int node) { return body_.displacement(node); });
+    lattice.set_displacement(n, rest_m_[at] - lattice.mesh().nodes[at] + moved);
+  }
+}
+
+}  // namespace spoonbill

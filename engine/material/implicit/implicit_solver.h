@@ -1,0 +1,178 @@
+// Implicit solver of a lattice whose material is too stiff for its springs: a coarser block of hexahedra
+// that the lattice's nodes follow. Drawing, contacts and supports use the lattice.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/base/geometry.h"
+#include "engine/material/contact/body_contacts.h"
+#include "engine/material/implicit/implicit_body.h"
+#include "engine/material/springs/spring_lattice.h"
+
+namespace spoonbill {
+
+// A node of one grid as a weighted sum of the nodes of another.
+struct GridPoint {
+  std::array<int, 8> node{};
+  std::array<double, 8> weight{};
+
+  template <class Of>
+  Vector3 sum_over(const Of& of) const {
+    Vector3 sum = Vector3::Zero();
+    for (std::size_t c = 0; c < 8; ++c) sum += weight[c] * of(node[c]);
+    return sum;
+  }
+  // Adds a vector at the point to the nodes' values, by coordinate.
+  void spread(const Vector3& point_value, std::vector<double>& by_coordinate) const {
+    for (std::size_t c = 0; c < 8; ++c) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        by_coordinate[3 * static_cast<std::size_t>(node[c]) + axis] +=
+            weight[c] * point_value[static_cast<Eigen::Index>(axis)];
+      }
+    }
+  }
+};
+
+// Impulses of the ground on a body that an implicit step moves once a tick, for all of its contacts
+// together.
+//
+// Impulses r on points of the body change their velocities by W r, where W is the response of the whole
+// body. The solution complements the gaps, with Coulomb friction:
+//
+//   r_n >= 0,  v_n >= target,  with equality in one of them;
+//   |r_t| <= friction r_n,  v_t = 0 or r_t opposite to v_t.
+//
+// This is the fixed point of r <- P(r - m (v - target)) with the projection P onto the cone, for every mass
+// m. Starting from the forces of the last tick, a few of these steps are taken with the spectral mass
+// |dr|^2 / (dr.W dr) (Barzilai and Borwein 1988). Each is shortened where it would pass the minimum of the
+// energy along its direction (Birgin, Martinez and Raydan 2000). A body at rest is at the fixed point and
+// does not creep.
+//
+// `points` are indexed by nodes of the lattice to which the contacts belong; points of fixed nodes do not
+// respond.
+//
+// One owner, the implicit solver of the body; allocates only at construction.
+class ImplicitGroundContacts {
+ public:
+  ImplicitGroundContacts(int points, double mass_kg);
+
+  // Sets the contacts to their impulses of the last tick and sums these by coordinate of the body, N s, as
+  // the start of the step.
+  void restore_last_impulses(std::span<GroundContact> contacts, std::span<const GridPoint> points,
+                             double time_s, std::vector<double>& impulses_ns);
+  // Solves the contacts after everything else that pushes the body. Changes the impulses and the body's
+  // velocities. Overwrites `impulses_ns`, one entry per coordinate of the body.
+  void solve(const GroundContacts& ground, std::span<GroundContact> contacts,
+             std::span<const GridPoint> points, double time_s, double push_speed_cap_m_per_s,
+             ImplicitBody& body, std::vector<double>& impulses_ns);
+
+  template <class Visitor>
+  void visit_state(Visitor&& visit) const {
+    visit(&mass_, 1);
+  }
+
+ private:
+  // Computes the velocity errors of the points, m/s.
+  void compute_velocity_errors(std::span<const GroundContact> contacts, std::span<const GridPoint> points,
+                               const ImplicitBody& body);
+  // Computes the changes of the impulses in a step of the present mass. Returns the square of their norm.
+  double compute_impulse_changes(std::span<const GroundContact> contacts);
+
+  double mass_, min_mass_, max_mass_;
+  Vector3 normal_ = Vector3::UnitY();
+  std::vector<double> target_;                              // target speed along the normal by contact, m/s
+  std::vector<Vector3> velocity_errors_, impulse_changes_;  // by contact, m/s and N s
+};
+
+// Node budget of the hexahedral block: the most that a tick can solve for a long body with a narrow band.
+// Compact bodies get fewer. Hexahedra need few nodes, since each can bend.
+inline constexpr int implicit_node_budget = 500;
+
+// Contacts push the lattice's nodes as if each were free, with an inverse mass that matches the block's
+// response to the last contacts. The block then responds as a whole. The ground comes last and pushes the
+// block directly. One owner, the body; built outside the tick, allocates nothing afterwards.
+class ImplicitSolver {
+ public:
+  // Builds the solver, unstrained where the lattice's nodes are at `rest_m`.
+  static Result<ImplicitSolver> make(const LatticeMesh& mesh, const std::vector<Vector3>& rest_m,
+                                     const LatticeMaterials& materials, InstructionSet set);
+
+  const LatticeMesh& mesh() const { return body_.mesh(); }
+  const LatticeReport& report() const { return body_.report(); }
+  const std::vector<Vector3>& rest_m() const { return rest_m_; }
+  // Velocity change of a lattice node per impulse in contacts, 1/kg.
+  double contact_inverse_mass() const { return contact_inverse_mass_; }
+
+  // Fixes nodes of the lattice, one byte per node. Each node of the block is fixed if its nearest lattice
+  // node is. A fixed lattice node that would then follow only free block nodes also fixes the one that it
+  // follows most.
+  void fix_nodes(std::span<const std::uint8_t> fixed);
+  // Sets displacements and velocities from the lattice.
+  void adopt_shape(const SpringLattice& lattice);
+
+  // Adopts the positions of lattice nodes that something else has moved permanently, relative to the block.
+  void adopt_moved_nodes(const SpringLattice& lattice);
+
+  // Rayleigh quotient (v.Kv) / (v.Mv) of the block's velocities; 0 at rest.
+  double rayleigh_quotient() { return body_.rayleigh_quotient(); }
+  // Replaces all node forces by the forces on these nodes of the lattice, N. Fixed nodes bear theirs
+  // directly.
+  void set_node_forces(const SpringLattice& lattice, std::span<const int> nodes);
+  // Moves the followers of these fixed nodes of the lattice, in ascending order, at the given velocity in
+  // the coming step.
+  void move_fixed(std::span<const int> nodes, const Vector3& velocity_m_per_s);
+  // Force of cells, loads and gravity on these fixed nodes and their followers at the start of the last
+  // step, N.
+  Vector3 force_on_fixed(const SpringLattice& lattice, std::span<const int> nodes,
+                         const Vector3& gravity_m_per_s2) const;
+
+  // Sets the lattice's velocities to those at the end of a step without contacts. The present ground
+  // contacts act with their impulses of the last tick. Contacts then change the velocities.
+  ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice,
+                            std::span<GroundContact> on_ground = {});
+  // Ground contacts of the lattice for end_step().
+  struct GroundPush {
+    const GroundContacts* ground = nullptr;
+    std::span<GroundContact> contacts;
+    double push_speed_cap_m_per_s = 0.0;
+  };
+  void end_step(SpringLattice& lattice, const GroundPush& on_ground);
+
+  template <class Visitor>
+  void visit_state(Visitor&& visit) const {
+    body_.visit_state(visit);
+    visit(&contact_inverse_mass_, 1);
+    for (const Vector3& rest : rest_m_) visit(rest.data(), 3);
+  }
+  // Visits the further state of a body on the ground.
+  template <class Visitor>
+  void visit_state_on_ground(Visitor&& visit) const {
+    ground_contacts_.visit_state(visit);
+  }
+
+ private:
+  ImplicitSolver(ImplicitBody body, int nodes, double mass_kg);
+  void write_velocities(SpringLattice& lattice);
+  double collect_impulses(const SpringLattice& lattice);
+  void update_contact_mass(double measured, SpringLattice& lattice);
+  bool follows_fixed(const GridPoint& follower) const;
+  // Returns whether one of the lattice nodes fixes this node of the block.
+  bool is_fixed_by(int node, std::span<const int> nodes) const;
+
+  ImplicitBody body_;
+  std::vector<Vector3> rest_m_;       // of the lattice's nodes
+  std::vector<GridPoint> followers_;  // by node of the lattice
+  std::vector<int> nearest_;          // by node of the block: nearest node of the lattice in the grid
+  std::vector<int> fixing_node_;      // by node of the block: the lattice node that fixes it, or -1
+  std::vector<std::array<float, 3>> velocity_;  // of the lattice's nodes, before contacts
+  std::vector<double> impulse_;                 // by coordinate of the block, N s: working memory
+  ImplicitGroundContacts ground_contacts_;
+  double step_s_ = 0.0;
+  double contact_inverse_mass_ = 0.0, min_inverse_mass_ = 0.0;
+};
+
+}  // namespace spoonbill

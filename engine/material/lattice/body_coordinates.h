@@ -1,0 +1,49 @@
+// Body coordinates of a lattice's nodes, cells and faces: along, around and depth.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "engine/material/lattice/lattice_mesh.h"
+#include "engine/scene/material.h"
+
+namespace spoonbill {
+
+// Returns the body coordinates of each node at rest. The depth is the distance to the hull of the block, or
+// to the surface in a box about a surface. Nodes outside the body are in no region. In a block that is not a
+// tube, `along` is measured along the block and `around` is 0.
+std::vector<BodyCoordinates> find_node_coordinates(const LatticeMesh& mesh);
+
+// Returns the mean body coordinates of some nodes, given those of all nodes: the mean of `along`, and the
+// mean of `around` with weights by distance from the centre line. `around` is 0 if the nodes surround the
+// axis. The depth is not set.
+//
+// Uses sums only: the C library's trigonometric functions differ between processors, and the cells of a
+// region are part of the state.
+BodyCoordinates mean_coordinates(const LatticeMesh& mesh, const std::vector<BodyCoordinates>& nodes,
+                           std::span<const int> selected);
+
+// Returns the body coordinates of each cell's centre, by LatticeMesh::cell_index(): its own depth and the
+// mean_coordinates() of its corners. In a box about a surface, returns LatticeMesh::cell_centres.
+std::vector<BodyCoordinates> find_cell_coordinates(const LatticeMesh& mesh);
+
+// Nodes of a boundary quad of the block, counter-clockwise seen from outside.
+using ShellFace = std::array<int, 4>;
+
+// Returns the faces of the block's hull. They bear pressure and measure areas of a body that fills its
+// block; a body in a box of cells has a BodySkin instead.
+std::vector<ShellFace> shell_faces(const LatticeMesh& mesh);
+
+// Returns the faces whose mean_coordinates() are in the region. `coordinates` are those of all nodes.
+std::vector<ShellFace> find_faces_in(const BodyRegion& region, const LatticeMesh& mesh,
+                                     const std::vector<ShellFace>& faces,
+                                     const std::vector<BodyCoordinates>& coordinates);
+
+// Returns half the cross product of the diagonals, m^2, pointing outward: the exact vector area of a
+// bilinear patch.
+inline Vector3 vector_area(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
+  return 0.5 * (c - a).cross(d - b);
+}
+
+}  // namespace spoonbill
