@@ -22,11 +22,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/base/progress.h"
-#include "engine/exchange/cad/cad_reader.h"
-#include "engine/exchange/cad/cad_writer.h"
-#include "engine/exchange/cad/session.h"
-#include "engine/exchange/cad/solid_meshes.h"
-#include "engine/exchange/cad_solid_stream.h"
+#include "engine/exchange/cad/cad.h"
 #include "engine/exchange/cad_stream.h"
 #include "engine/exchange/frame_stream.h"
 

@@ -17,7 +17,7 @@
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
 #include "engine/base/text.h"
-#include "engine/exchange/cad_names.h"
+#include "engine/exchange/cad_model.h"
 
 namespace spoonbill {
 namespace {
@@ -41,7 +41,7 @@ void replace_body(std::vector<Body>& bodies, std::size_t place, ChangedSurfaces 
   for (std::size_t k = 0; k < changed.surfaces.size(); ++k) {
     Body part = body;
     if (changed.surfaces.size() > 1) {
-      part.name = clean_cad_name(body.name, "part", longest_cad_name - 2) + " " + std::to_string(k + 1);
+      part.name = clean_cad_name(body.name, "part", cad_name_bytes_limit - 2) + " " + std::to_string(k + 1);
     }
     part.surface = std::move(changed.surfaces[k]);
     part.trims = changed.trims;

@@ -15,7 +15,7 @@ void add_json_option(OptionSet parser, bool& json) {
 CommandOption add_document_output(OptionSet parser, std::filesystem::path& out, const std::string& help) {
   const auto take = [&out](const std::string& text) -> Status {
     out = text;
-    if (format_of(out) == FileFormat::document) return {};
+    if (format_from_name(out) == FileFormat::document) return {};
     return Error{"'" + excerpt(text) +
                  "' does not end in .json, as documents do; `spoonbill convert` "
                  "makes CAD files and meshes of them"};

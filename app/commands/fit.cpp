@@ -20,7 +20,7 @@
 #include "app/report/fit_facts.h"
 #include "app/report/progress_bar.h"
 #include "engine/base/text.h"
-#include "engine/exchange/cad_names.h"
+#include "engine/exchange/cad_model.h"
 #include "engine/exchange/file_format.h"
 
 namespace spoonbill {
@@ -62,7 +62,7 @@ Result<ScanFit> fit_with_progress(const FitOptions& options, Scan scan, Console&
 
 // That a document can hold, with the number of a body behind it.
 std::string name_of(const std::filesystem::path& scan) {
-  return clean_cad_name(scan.stem().string(), "scan", longest_cad_name - 2);
+  return clean_cad_name(scan.stem().string(), "scan", cad_name_bytes_limit - 2);
 }
 
 Status fit(const FitOptions& options, Console& console) {
@@ -119,7 +119,7 @@ Result<IslandChoice> parse_islands(const std::string& text) {
 }
 
 Result<std::filesystem::path> parse_cloud_name(const std::string& text) {
-  if (format_of(text) == FileFormat::ply) return std::filesystem::path(text);
+  if (format_from_name(text) == FileFormat::ply) return std::filesystem::path(text);
   return Error{"'" + excerpt(text) + "' does not end in .ply, as a cloud with colours does"};
 }
 

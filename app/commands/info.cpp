@@ -127,7 +127,7 @@ Status describe_cad(FactSheet& facts, const std::filesystem::path& file, Console
   InterruptWatch interrupt;
   ProgressBar bar(console, "Reading", false);
   CadReading reading;
-  reading.format = format_of(file);
+  reading.format = format_from_name(file);
   CadChild child;
   child.progress = Progress([&](double fraction) {
     bar.show(fraction);
@@ -146,7 +146,7 @@ Status describe_cad(FactSheet& facts, const std::filesystem::path& file, Console
 }
 
 Status describe(FactSheet& facts, const std::filesystem::path& file, Console& console) {
-  if (is_cad(format_of(file))) return describe_cad(facts, file, console);
+  if (is_cad(format_from_name(file))) return describe_cad(facts, file, console);
   if (Status native = check_native_name(file); !native) return native;
   const auto format = find_native_format(file);
   if (!format) return format.error();

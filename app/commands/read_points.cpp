@@ -18,7 +18,7 @@ constexpr std::size_t header_bytes = 65536;
 
 // The header of a PLY file tells, which may be long after it.
 Status hand_over(const std::filesystem::path& file, Console& console) {
-  const FileFormat format = format_of(file);
+  const FileFormat format = format_from_name(file);
   if (format == FileFormat::ply && ply_face_count(read_first_bytes(file, header_bytes)) > 0) {
     write_frame(console.out, FrameKind::faces, {});
     return {};

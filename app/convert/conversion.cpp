@@ -10,7 +10,7 @@
 #include "app/report/quantity_text.h"
 #include "engine/base/text.h"
 #include "engine/base/file.h"
-#include "engine/exchange/cad_names.h"
+#include "engine/exchange/cad_model.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/mesh_export/mesh_writer.h"
@@ -25,7 +25,7 @@ constexpr double share_of_reading = 0.5, share_of_solids = 0.7;
 // A request and the formats that its names stand for.
 struct Job {
   const ConversionRequest& request;
-  FileFormat in = format_of(request.in), out = format_of(request.out);
+  FileFormat in = format_from_name(request.in), out = format_from_name(request.out);
 };
 
 Error about(const std::filesystem::path& file, const std::string& message) {
@@ -88,7 +88,7 @@ CadModel model_of(std::vector<Body> bodies) {
   std::vector<std::string> names;
   names.reserve(bodies.size());
   for (const Body& body : bodies) names.push_back(body.name);
-  names = told_apart(names, "body");
+  names = make_names_unique(names, "body");
   CadModel model;
   model.unit = millimetre.name;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
@@ -247,7 +247,7 @@ Result<ConversionReport> written_report(CadModel model, const Job& job, const Pr
 }  // namespace
 
 bool is_exported_to(const std::filesystem::path& file) {
-  const FileFormat format = format_of(file);
+  const FileFormat format = format_from_name(file);
   return is_cad(format) || is_written_mesh(format);
 }
 

@@ -6,9 +6,8 @@
 #include <set>
 #include <utility>
 
-#include "engine/exchange/cad_names.h"
+#include "engine/exchange/cad_model.h"
 #include "engine/exchange/mesh_export/tessellation.h"
-#include "engine/exchange/mesh_export/thickened.h"
 
 namespace spoonbill {
 namespace {
@@ -41,7 +40,7 @@ class Mesher {
   ModelMeshes take() {
     std::vector<std::string> names;
     for (const NamedMesh& mesh : made_.meshes) names.push_back(mesh.name);
-    names = told_apart(names, "body");
+    names = make_names_unique(names, "body");
     for (std::size_t k = 0; k < names.size(); ++k) made_.meshes[k].name = std::move(names[k]);
     return std::move(made_);
   }
@@ -94,7 +93,7 @@ class Mesher {
   }
 
   void thicken(const CadSurface& part, Tessellation& tessellation) {
-    auto shell = thickened(tessellation.mesh, part.shell_thickness_m);
+    auto shell = thicken_mesh(tessellation.mesh, part.shell_thickness_m);
     if (shell) {
       tessellation.mesh = std::move(shell).value();
       tessellation.closed = true;

@@ -14,8 +14,7 @@
 #include "app/files/foreign_child.h"
 #include "engine/base/file.h"
 #include "engine/base/text.h"
-#include "engine/exchange/cad_names.h"
-#include "engine/exchange/cad_solid_stream.h"
+#include "engine/exchange/cad_model.h"
 #include "engine/exchange/cad_stream.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/file_format.h"
@@ -126,7 +125,7 @@ class ModelInMemory {
 };
 
 std::string name_of(FileFormat format) {
-  return std::string(ending_of(format));
+  return std::string(usual_ending(format));
 }
 
 }  // namespace
@@ -217,7 +216,7 @@ Result<CadSolids> make_cad_solids(const CadModel& model, const SolidMeshing& mes
   });
   if (!ending) return ending.error();
   const Status read = read_ending(ending.value(), file, child.value(), [&](FieldReader& reader) {
-    found.loose = read_places(reader, "loose", model.surfaces.size());
+    found.loose = read_surface_indices(reader, "loose", model.surfaces.size());
     found.notes = read_notes(reader);
   });
   if (!read) return read.error();

@@ -8,7 +8,6 @@
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
-#include "engine/exchange/cad_solid.h"
 
 namespace spoonbill {
 

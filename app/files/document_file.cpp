@@ -5,7 +5,7 @@
 namespace spoonbill {
 
 Status check_native_name(const std::filesystem::path& file) {
-  const FileFormat format = format_of(file);
+  const FileFormat format = format_from_name(file);
   if (is_cad(format)) {
     return Error{file.string() + ": is a CAD file; make a document of it with `spoonbill convert`"};
   }

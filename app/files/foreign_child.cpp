@@ -92,7 +92,7 @@ Error ForeignChild::end_without_answer() {
 }
 
 Error ForeignChild::failure(const FrameHead& head) {
-  const auto reason = content({head.kind, std::min<std::uint64_t>(head.bytes, longest_failure)});
+  const auto reason = content({head.kind, std::min<std::uint64_t>(head.bytes, failure_bytes_limit)});
   if (!reason) return reason.error();
   if (reason->find("bad alloc") != std::string::npos || reason->find("bad_alloc") != std::string::npos) {
     return about(task_.too_much + std::to_string(ChildOutput::memory_limit >> 30) + " GiB; " + task_.remedy);

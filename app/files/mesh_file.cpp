@@ -17,7 +17,7 @@ constexpr std::size_t file_bytes_limit = std::size_t{512} << 20;
 const char* const smaller = "reduce the mesh";
 
 std::string upper_case_name(FileFormat format) {
-  std::string name(ending_of(format));
+  std::string name(usual_ending(format));
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
   return name;
@@ -25,7 +25,7 @@ std::string upper_case_name(FileFormat format) {
 
 ForeignTask task_for(const std::filesystem::path& file) {
   ForeignTask task{file, "mesh", smaller};
-  task.refusal = [format = upper_case_name(format_of(file))](const std::string& reason) {
+  task.refusal = [format = upper_case_name(format_from_name(file))](const std::string& reason) {
     return "cannot be read as " + format + " (" + ForeignTask::printable(reason) + "); export it anew";
   };
   return task;
@@ -43,7 +43,7 @@ Status check_counts(const std::filesystem::path& file, const MeshCounts& counts,
 }  // namespace
 
 Result<MeshFile> read_mesh_file(const std::filesystem::path& file, const MeshReading& reading) {
-  const FileFormat format = format_of(file);
+  const FileFormat format = format_from_name(file);
   if (!is_mesh(format)) {
     return Error{file.string() + ": is no mesh by its name; .obj, .stl and .ply are read"};
   }

@@ -88,7 +88,7 @@ ScanFile scan_of(PointCloud cloud, LengthUnit unit) {
 }
 
 Result<ScanFile> read_any(const std::filesystem::path& file, const MeshReading& reading) {
-  const FileFormat format = format_of(file);
+  const FileFormat format = format_from_name(file);
   if (format == FileFormat::stl) return read_mesh_scan(file, reading);
   if (!is_cloud(format)) {
     return Error{

@@ -11,7 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_area.h"
-#include "engine/exchange/region_json.h"
+#include "engine/exchange/scene_json.h"
 
 namespace spoonbill {
 namespace {

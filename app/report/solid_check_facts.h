@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "app/report/fact_sheet.h"
-#include "engine/exchange/cad_solid.h"
+#include "engine/exchange/cad_model.h"
 #include "engine/inspection/solid_check.h"
 #include "engine/scene/scene.h"
 

@@ -8,7 +8,7 @@
 
 #include "engine/base/geometry.h"
 #include "engine/exchange/field_reader.h"
-#include "engine/exchange/length.h"
+#include "engine/exchange/json.h"
 #include "engine/scene/scene.h"
 
 namespace spoonbill {

@@ -1,13 +1,17 @@
 #include "engine/exchange/document.h"
 
+#include <algorithm>
+#include <optional>
+#include <string_view>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "engine/base/file.h"
 #include "engine/exchange/field_json.h"
 #include "engine/exchange/field_reader.h"
-#include "engine/exchange/length.h"
-#include "engine/exchange/region_json.h"
 #include "engine/exchange/scene_json.h"
+#include "engine/exchange/surface_json.h"
 
 namespace spoonbill {
 
@@ -16,25 +20,25 @@ namespace {
 constexpr std::size_t document_bytes_limit = std::size_t{64} << 20;
 constexpr std::size_t material_bytes_limit = std::size_t{1} << 20;
 
-// And supports; a body may have neither.
-void read_loads(FieldReader& reader, Body& body) {
-  const auto visit = [&](const char* field, const Range<int>& count, const auto& take) {
+// Reads the optional lists of loads and supports of a body.
+void read_loads_and_supports(FieldReader& reader, Body& body) {
+  const auto read_list = [&](const char* field, const Range<int>& count, const auto& read_item) {
     reader.ignore(field);
     if (!reader.has(field)) return;
     std::size_t index = 0;
     for (const Json& item : reader.list(field, count)) {
       FieldReader item_reader = reader.element(item, field, index++);
-      take(item_reader);
+      read_item(item_reader);
       item_reader.finish();
     }
   };
-  visit("loads", load_count_range,
-        [&](FieldReader& item) { body.loads.push_back(read_load(item, body.surface)); });
-  visit("supports", support_count_range,
-        [&](FieldReader& item) { body.supports.push_back(read_support(item)); });
+  read_list("loads", load_count_range,
+            [&](FieldReader& item) { body.loads.push_back(read_load(item, body.surface)); });
+  read_list("supports", support_count_range,
+            [&](FieldReader& item) { body.supports.push_back(read_support(item)); });
 }
 
-// Version 1 had neither trims nor solids, so that they are unknown there.
+// Reads a body. The fields "trims" and "solid" are unknown in version 1.
 std::optional<Body> read_body(FieldReader reader, int version) {
   std::string name = reader.text("name");
   FieldReader surface_reader = reader.inner("surface");
@@ -50,7 +54,7 @@ std::optional<Body> read_body(FieldReader reader, int version) {
   lattice_reader.finish();
   if (!surface || !reader.status().ok()) return std::nullopt;
   Body body{std::move(name), *std::move(surface), std::move(material), lattice};
-  read_loads(reader, body);
+  read_loads_and_supports(reader, body);
   if (reader.has("shell_thickness_mm")) {
     body.shell_thickness_m = reader.length_m("shell_thickness_mm", shell_thickness_range_m);
   }
@@ -62,15 +66,15 @@ std::optional<Body> read_body(FieldReader reader, int version) {
   return body;
 }
 
-// Those of a document with one body are in no list.
+// Reads the fields "body" and "other_bodies", the second optional.
 std::optional<std::vector<Body>> read_bodies(FieldReader& reader, int version) {
   std::vector<Body> bodies;
-  const auto take = [&](std::optional<Body> body) {
+  const auto append = [&](std::optional<Body> body) {
     if (!body) return false;
     bodies.push_back(*std::move(body));
     return true;
   };
-  if (!take(read_body(reader.inner("body"), version))) return std::nullopt;
+  if (!append(read_body(reader.inner("body"), version))) return std::nullopt;
   if (!reader.has("other_bodies")) {
     reader.ignore("other_bodies");
     return bodies;
@@ -78,7 +82,7 @@ std::optional<std::vector<Body>> read_bodies(FieldReader& reader, int version) {
   const Range<int> others{0, body_count_range.high - 1};
   for (const Json& item : reader.list("other_bodies", others)) {
     FieldReader body_reader = reader.element(item, "other_bodies", bodies.size() - 1);
-    if (!take(read_body(std::move(body_reader), version))) return std::nullopt;
+    if (!append(read_body(std::move(body_reader), version))) return std::nullopt;
   }
   return bodies;
 }
@@ -97,7 +101,7 @@ std::vector<FixingPlane> read_planes(FieldReader& reader) {
   return planes;
 }
 
-Symmetry read_symmetry_of(FieldReader& reader) {
+Symmetry read_symmetry(FieldReader& reader) {
   if (!reader.has("symmetry")) return {};
   FieldReader symmetry_reader = reader.inner("symmetry");
   Symmetry symmetry = read_fields<Symmetry>(symmetry_reader);
@@ -105,7 +109,7 @@ Symmetry read_symmetry_of(FieldReader& reader) {
   return symmetry;
 }
 
-std::optional<Ground> read_ground_of(FieldReader& reader) {
+std::optional<Ground> read_ground(FieldReader& reader) {
   if (!reader.has("ground")) return std::nullopt;
   FieldReader ground_reader = reader.inner("ground");
   const Ground ground = read_fields<Ground>(ground_reader);
@@ -113,10 +117,10 @@ std::optional<Ground> read_ground_of(FieldReader& reader) {
   return ground;
 }
 
-// One that nobody has chosen is left out, so that documents without symmetry stay as they are.
-bool is_chosen(const Symmetry& symmetry) {
-  const Symmetry usual;
-  return symmetry.on || symmetry.point_m != usual.point_m || symmetry.normal != usual.normal;
+// Returns true where the symmetry differs from the default; only then is it written.
+bool is_not_default(const Symmetry& symmetry) {
+  const Symmetry standard;
+  return symmetry.on || symmetry.point_m != standard.point_m || symmetry.normal != standard.normal;
 }
 
 Json body_to_json(const Body& body) {
@@ -140,6 +144,66 @@ Result<Json> read_json(const std::filesystem::path& file, std::size_t bytes_limi
   return parse_json(text.value(), file.string());
 }
 
+constexpr const auto& command_names = kind_names<Command>;
+
+auto find_command(std::string_view name) {
+  return std::find(command_names.begin(), command_names.end(), name);
+}
+
+// Reads the optional index of the body that a command is for.
+int read_body_index(FieldReader& reader) {
+  return reader.has("body") ? reader.integer("body", {0, sculpted_body_count_range.high - 1}) : 0;
+}
+
+void add_body_index(int body, Json& json) {
+  if (body != 0) json["body"] = body;
+}
+
+// Reads the fields of a command other than its name.
+template <class CommandWithoutFields>
+void read_content(FieldReader&, CommandWithoutFields&) {}
+void read_content(FieldReader& reader, PlacePlane& command) {
+  read_fields(reader, command.plane);
+}
+void read_content(FieldReader& reader, SetTool& command) {
+  command.tool = read_tool(reader);
+}
+void read_content(FieldReader& reader, SetMaterial& command) {
+  read_fields(reader, command.material);
+  command.body = read_body_index(reader);
+}
+void read_content(FieldReader& reader, SetSculpting& command) {
+  read_fields(reader, command.sculpting);
+}
+void read_content(FieldReader& reader, SetSymmetry& command) {
+  read_fields(reader, command.symmetry);
+}
+void read_content(FieldReader& reader, RefineKnots& command) {
+  command.body = read_body_index(reader);
+}
+
+template <class CommandWithoutFields>
+void add_content(const CommandWithoutFields&, Json&) {}
+void add_content(const PlacePlane& command, Json& json) {
+  add_fields(command.plane, json);
+}
+void add_content(const SetTool& command, Json& json) {
+  add_tool(command.tool, json);
+}
+void add_content(const SetMaterial& command, Json& json) {
+  add_fields(command.material, json);
+  add_body_index(command.body, json);
+}
+void add_content(const SetSculpting& command, Json& json) {
+  add_fields(command.sculpting, json);
+}
+void add_content(const SetSymmetry& command, Json& json) {
+  add_fields(command.symmetry, json);
+}
+void add_content(const RefineKnots& command, Json& json) {
+  add_body_index(command.body, json);
+}
+
 }  // namespace
 
 Result<Document> document_from_json(const Json& json, const std::string& source) {
@@ -154,8 +218,8 @@ Result<Document> document_from_json(const Json& json, const std::string& source)
   FieldReader sculpting_reader = reader.inner("sculpting");
   const Sculpting sculpting = read_fields<Sculpting>(sculpting_reader);
   sculpting_reader.finish();
-  const Symmetry symmetry = read_symmetry_of(reader);
-  const std::optional<Ground> ground = read_ground_of(reader);
+  const Symmetry symmetry = read_symmetry(reader);
+  const std::optional<Ground> ground = read_ground(reader);
   Json view = reader.has("view") ? reader.object("view") : Json::object();
   reader.ignore("view");
   reader.finish();
@@ -178,7 +242,7 @@ Json document_to_json(const Document& document) {
   for (const FixingPlane& plane : document.scene.planes) add_fields(plane, planes.emplace_back());
   add_tool(document.scene.tool, json["tool"]);
   add_fields(document.scene.sculpting, json["sculpting"]);
-  if (is_chosen(document.scene.symmetry)) add_fields(document.scene.symmetry, json["symmetry"]);
+  if (is_not_default(document.scene.symmetry)) add_fields(document.scene.symmetry, json["symmetry"]);
   if (document.scene.ground) add_fields(*document.scene.ground, json["ground"]);
   json["view"] = document.view;
   return json;
@@ -193,7 +257,7 @@ Result<Document> read_document(const std::filesystem::path& file) {
 Status write_document(const Document& document, const std::filesystem::path& file) {
   const std::string page = json_to_page(document_to_json(document));
   if (page.size() > document_bytes_limit) {
-    return Error{file.string() + ": not saved, larger than 64 MiB; leave bodies out"};
+    return Error{ErrorCode::too_many, file.string() + ": not saved, larger than 64 MiB; remove bodies"};
   }
   auto read_back = parse_json(page, file.string() + ": not saved");
   if (!read_back.ok()) return read_back.error();
@@ -220,6 +284,46 @@ Result<Material> read_material(const std::filesystem::path& file) {
   auto json = read_json(file, material_bytes_limit);
   if (!json.ok()) return json.error();
   return material_from_json(json.value(), file.string());
+}
+
+bool is_simulation_command(const Json& json) {
+  if (!json.is_object()) return false;
+  const auto name = json.find("command");
+  if (name == json.end() || !name->is_string()) return false;
+  return find_command(name->get_ref<const std::string&>()) != command_names.end();
+}
+
+std::string simulation_command_names() {
+  std::string names;
+  for (const char* name : command_names) names += (names.empty() ? "" : ", ") + std::string(name);
+  return names;
+}
+
+Result<Command> command_from_json(const Json& json, const std::string& source) {
+  FieldReader reader(json, source);
+  const std::string name = reader.text("command");
+  if (!reader.status().ok()) return reader.status().error();
+  const auto known = find_command(name);
+  if (known == command_names.end()) {
+    reader.refuse("command",
+                  "is " + json_excerpt(Json(name)) + ", must be one of " + simulation_command_names(),
+                  ErrorCode::unknown);
+    return reader.status().error();
+  }
+  auto command = make_kind<Command>(static_cast<std::size_t>(known - command_names.begin()));
+  std::visit([&](auto& kind) { read_content(reader, kind); }, command);
+  reader.finish();
+  if (!reader.status().ok()) return reader.status().error();
+  return command;
+}
+
+Json command_to_json(const Command& command) {
+  const auto write = []<class Kind>(const Kind& kind) {
+    Json json{{"command", kind_name<Kind>}};
+    add_content(kind, json);
+    return json;
+  };
+  return std::visit(write, command);
 }
 
 }  // namespace spoonbill

@@ -1,11 +1,10 @@
 #include "engine/exchange/field_json.h"
 
 #include "engine/base/text.h"
-#include "engine/exchange/length.h"
 
 namespace spoonbill {
 
-bool is_due(const FieldReader& reader, const FieldForm& form) {
+bool is_field_expected(const FieldReader& reader, const FieldForm& form) {
   if (form.partner != nullptr) return reader.has(form.partner);
   return !form.optional || reader.has(form.name);
 }
@@ -26,7 +25,8 @@ void read_value(FieldReader& reader, const FieldForm& form, Range<double> range,
     return;
   }
   if (reader.has(form.name)) {
-    reader.refuse(alias.name, "says what " + std::string(form.name) + " says; leave one of them out");
+    reader.refuse(alias.name, "is another name for " + std::string(form.name) + "; leave one of them out",
+                  ErrorCode::duplicate);
     reader.ignore(form.name);
   }
   value = reader.number(alias.name, {alias.factor * range.low, alias.factor * range.high}) / alias.factor;

@@ -1,5 +1,5 @@
-// The fields of a described struct (field.h) as JSON: what a document, a material file and a command hold of
-// it. Reading and writing are inverse to each other, to the last bit.
+// Conversion between JSON and structs that have a table of fields (field.h). Reading and writing are inverse
+// to each other, to the last bit.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@
 
 namespace spoonbill {
 
-// Whether the reader's object must have the field, or has what may be left out.
-bool is_due(const FieldReader& reader, const FieldForm& form);
+// Returns true where the field is to be read: it is required, or it is optional and present.
+bool is_field_expected(const FieldReader& reader, const FieldForm& form);
 
-// One value; the reader keeps the first problem.
+// Each function reads one value; a problem is stored in the reader.
 void read_value(FieldReader& reader, const FieldForm& form, Range<double> range, std::string& value);
 void read_value(FieldReader& reader, const FieldForm& form, Range<double> range, bool& value);
 void read_value(FieldReader& reader, const FieldForm& form, Range<double> range, double& value);
@@ -33,11 +33,11 @@ Json value_to_json(const FieldForm& form, int value);
 Json value_to_json(const FieldForm& form, std::uint32_t value);
 Json value_to_json(const FieldForm& form, const Vector3& value);
 
-// All fields of the table, in its order; what files leave out stays as it is in `object`.
+// Reads all fields of the table, in its order. An optional field that is missing keeps its value in `object`.
 template <class Object>
 void read_fields(FieldReader& reader, Object& object) {
   for (const Field<Object>& field : fields_of<Object>) {
-    if (!field.applies(object) || !is_due(reader, field.form)) continue;
+    if (!field.applies(object) || !is_field_expected(reader, field.form)) continue;
     const auto read = [&](auto member) {
       if constexpr (std::is_same_v<decltype(member), ChoiceMember<Object>>) {
         member.set(object, reader.choose(field.form.name, field.form.choices));
@@ -56,17 +56,18 @@ Object read_fields(FieldReader& reader) {
   return object;
 }
 
-// Those that files leave out only where they have another value than the struct's default.
+// Writes all fields of the table into `json`; an optional field only where its value differs from the
+// struct's default.
 template <class Object>
 void add_fields(const Object& object, Json& json) {
-  static const Object unset{};
+  static const Object default_object{};
   for (const Field<Object>& field : fields_of<Object>) {
     const FieldForm& form = field.form;
     if (!field.applies(object) || (form.partner != nullptr && !json.contains(form.partner))) continue;
     const auto add = [&](auto member) {
       if constexpr (std::is_same_v<decltype(member), ChoiceMember<Object>>) {
         json[form.name] = form.choices[member.get(object)];
-      } else if (!form.optional || object.*member != unset.*member) {
+      } else if (!form.optional || object.*member != default_object.*member) {
         json[form.name] = value_to_json(form, object.*member);
       }
     };
@@ -74,12 +75,12 @@ void add_fields(const Object& object, Json& json) {
   }
 }
 
-// The alternative of a variant that stands at a place in kind_names, as it is by default.
+// Returns the default value of the variant's alternative at an index into kind_names.
 template <class Variant>
-Variant make_kind(std::size_t place) {
-  return [&]<std::size_t... places>(std::index_sequence<places...>) {
-    const Variant all[] = {Variant(std::in_place_index<places>)...};
-    return all[place];
+Variant make_kind(std::size_t index) {
+  return [&]<std::size_t... indices>(std::index_sequence<indices...>) {
+    const Variant all[] = {Variant(std::in_place_index<indices>)...};
+    return all[index];
   }
   (std::make_index_sequence<std::variant_size_v<Variant>>());
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/base/text.h"
-#include "engine/exchange/length.h"
 
 namespace spoonbill {
 
@@ -12,10 +11,11 @@ namespace {
 
 constexpr std::size_t text_limit = 200;
 
-// A direction this near to unit length is taken as it stands, so that writing and reading keep its bits.
+// Largest deviation from unit length at which a direction is not normalised, so that writing and reading keep
+// its bits.
 constexpr double unit_tolerance = 1e-12;
 
-const Json& nothing() {
+const Json& null_value() {
   static const Json value;
   return value;
 }
@@ -24,24 +24,31 @@ const Json& nothing() {
 
 FieldReader::FieldReader(const Json& json, std::string source)
     : json_(&json), source_(std::move(source)), problem_(std::make_shared<std::optional<Error>>()) {
-  if (!json.is_object()) refuse("is " + json_excerpt(json) + ", must be an object");
+  if (!json.is_object()) refuse("is " + json_excerpt(json) + ", must be an object", ErrorCode::wrong_type);
 }
 
 FieldReader::FieldReader(const Json& json, const FieldReader& parent, std::string path)
     : json_(&json), source_(parent.source_), path_(std::move(path)), problem_(parent.problem_) {
-  if (!json.is_object()) refuse("is " + json_excerpt(json) + ", must be an object");
+  if (!json.is_object()) refuse("is " + json_excerpt(json) + ", must be an object", ErrorCode::wrong_type);
 }
 
-std::string FieldReader::name_of(std::string_view field) const {
+std::string FieldReader::path_to(std::string_view field) const {
   return path_.empty() ? std::string(field) : path_ + "." + std::string(field);
 }
 
-void FieldReader::refuse(std::string_view field, const std::string& message) {
-  if (!*problem_) *problem_ = Error{source_ + ": " + name_of(field) + " " + message};
+void FieldReader::refuse(std::string_view field, const std::string& message, ErrorCode code) {
+  if (*problem_) return;
+  const std::string path = path_to(field);
+  *problem_ = Error{code, source_ + ": " + path + " " + message, path};
 }
 
-void FieldReader::refuse(const std::string& message) {
-  if (!*problem_) *problem_ = Error{source_ + ": " + (path_.empty() ? message : path_ + " " + message)};
+void FieldReader::refuse(const std::string& message, ErrorCode code) {
+  if (*problem_) return;
+  *problem_ = Error{code, source_ + ": " + (path_.empty() ? message : path_ + " " + message), path_};
+}
+
+void FieldReader::refuse(const Error& error) {
+  refuse(error.message, error.code);
 }
 
 Status FieldReader::status() const {
@@ -53,7 +60,9 @@ bool FieldReader::has(std::string_view field) const {
 }
 
 void FieldReader::ignore(std::string_view field) {
-  if (std::find(asked_.begin(), asked_.end(), field) == asked_.end()) asked_.emplace_back(field);
+  if (std::find(known_fields_.begin(), known_fields_.end(), field) == known_fields_.end()) {
+    known_fields_.emplace_back(field);
+  }
 }
 
 const Json* FieldReader::find(std::string_view field) {
@@ -61,12 +70,12 @@ const Json* FieldReader::find(std::string_view field) {
   if (*problem_) return nullptr;
   const auto found = json_->find(std::string(field));
   if (found != json_->end()) return &*found;
-  refuse(field, "is missing");
+  refuse(field, "is missing", ErrorCode::missing);
   return nullptr;
 }
 
-void FieldReader::wrong_type(std::string_view field, const Json& value, const char* wanted) {
-  refuse(field, "is " + json_excerpt(value) + ", must be " + wanted);
+void FieldReader::refuse_type(std::string_view field, const Json& value, const char* wanted) {
+  refuse(field, "is " + json_excerpt(value) + ", must be " + wanted, ErrorCode::wrong_type);
 }
 
 void FieldReader::version(std::string_view field, int known) {
@@ -80,9 +89,11 @@ int FieldReader::version(std::string_view field, Range<int> known) {
   const bool newer = value->is_number_integer() && *value > known.high;
   const std::string forms = std::to_string(known.low) +
                             (known.low < known.high ? " to " + std::to_string(known.high) : std::string());
-  refuse(field, "is " + json_excerpt(*value) + ", this program reads " + forms +
-                    (newer ? "; the file is from a newer program, update this one"
-                           : "; the file is not of a known form"));
+  refuse(
+      field,
+      "is " + json_excerpt(*value) + ", this program reads " + forms +
+          (newer ? "; the file is from a newer program, update this one" : "; the file has no known version"),
+      ErrorCode::unsupported);
   return known.high;
 }
 
@@ -90,16 +101,16 @@ std::string FieldReader::text(std::string_view field) {
   const Json* value = find(field);
   if (value == nullptr) return {};
   if (!value->is_string()) {
-    wrong_type(field, *value, "a text in quotes");
+    refuse_type(field, *value, "a text in quotes");
     return {};
   }
   const auto& text = value->get_ref<const std::string&>();
   const bool has_control =
       std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   if (text.size() > text_limit) {
-    refuse(field, "is longer than " + std::to_string(text_limit) + " bytes, shorten it");
+    refuse(field, "is longer than " + std::to_string(text_limit) + " bytes, shorten it", ErrorCode::too_many);
   }
-  if (has_control) refuse(field, "holds control characters, remove them");
+  if (has_control) refuse(field, "contains control characters, remove them", ErrorCode::malformed);
   return text;
 }
 
@@ -107,19 +118,19 @@ bool FieldReader::boolean(std::string_view field) {
   const Json* value = find(field);
   if (value == nullptr) return false;
   if (!value->is_boolean()) {
-    wrong_type(field, *value, "true or false");
+    refuse_type(field, *value, "true or false");
     return false;
   }
   return value->get<bool>();
 }
 
-double FieldReader::component(std::string_view field, const Json& value, Range<double> range,
-                              bool is_length) {
+double FieldReader::read_component(std::string_view field, const Json& value, Range<double> range,
+                                   bool is_length) {
   const std::optional<double> read =
       is_length ? length_from_json(value)
                 : (value.is_number() ? std::optional(value.get<double>()) : std::nullopt);
   if (!read) {
-    wrong_type(field, value, "a number");
+    refuse_type(field, value, "a number");
     return range.low;
   }
   if (range.contains(*read)) return *read;
@@ -131,12 +142,12 @@ double FieldReader::component(std::string_view field, const Json& value, Range<d
 
 double FieldReader::number(std::string_view field, Range<double> range) {
   const Json* value = find(field);
-  return value == nullptr ? range.low : component(field, *value, range, false);
+  return value == nullptr ? range.low : read_component(field, *value, range, false);
 }
 
 double FieldReader::length_m(std::string_view field, Range<double> range_m) {
   const Json* value = find(field);
-  return value == nullptr ? range_m.low : component(field, *value, range_m, true);
+  return value == nullptr ? range_m.low : read_component(field, *value, range_m, true);
 }
 
 int FieldReader::integer(std::string_view field, Range<int> range) {
@@ -158,27 +169,27 @@ std::uint64_t FieldReader::unsigned_integer(std::string_view field, std::uint64_
   return value->get<std::uint64_t>();
 }
 
-Vector3 FieldReader::components(std::string_view field, Range<double> range, bool are_lengths) {
+Vector3 FieldReader::read_components(std::string_view field, Range<double> range, bool are_lengths) {
   const Json* value = find(field);
   Vector3 vector = Vector3::Zero();
   if (value == nullptr) return vector;
   if (!value->is_array() || value->size() != 3) {
-    wrong_type(field, *value, "a list of 3 numbers");
+    refuse_type(field, *value, "a list of 3 numbers");
     return vector;
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name = std::string(field) + "[" + std::to_string(axis) + "]";
-    vector[static_cast<Eigen::Index>(axis)] = component(name, (*value)[axis], range, are_lengths);
+    vector[static_cast<Eigen::Index>(axis)] = read_component(name, (*value)[axis], range, are_lengths);
   }
   return vector;
 }
 
 Vector3 FieldReader::vector(std::string_view field, Range<double> range) {
-  return components(field, range, false);
+  return read_components(field, range, false);
 }
 
 Vector3 FieldReader::position_m(std::string_view field, Range<double> range_m) {
-  return components(field, range_m, true);
+  return read_components(field, range_m, true);
 }
 
 Vector3 FieldReader::direction(std::string_view field) {
@@ -186,7 +197,7 @@ Vector3 FieldReader::direction(std::string_view field) {
   if (*problem_) return Vector3::UnitX();
   const double length = given.norm();
   if (length < 1e-6) {
-    refuse(field, "is zero, must point somewhere");
+    refuse(field, "is zero, must have a length", ErrorCode::degenerate);
     return Vector3::UnitX();
   }
   return std::abs(length - 1.0) <= unit_tolerance ? given : Vector3(given / length);
@@ -194,19 +205,22 @@ Vector3 FieldReader::direction(std::string_view field) {
 
 const Json& FieldReader::object(std::string_view field) {
   const Json* value = find(field);
-  if (value == nullptr) return nothing();
-  if (!value->is_object()) wrong_type(field, *value, "an object");
+  if (value == nullptr) return null_value();
+  if (!value->is_object()) refuse_type(field, *value, "an object");
   return *value;
 }
 
 const Json& FieldReader::list(std::string_view field, Range<int> size) {
   const Json* value = find(field);
-  if (value == nullptr) return nothing();
+  if (value == nullptr) return null_value();
   const std::size_t low = static_cast<std::size_t>(size.low), high = static_cast<std::size_t>(size.high);
   if (value->is_array() && value->size() >= low && value->size() <= high) return *value;
-  refuse(field, "is " + json_excerpt(*value) + ", must be a list of " + std::to_string(size.low) +
-                    (low == high ? "" : " to " + std::to_string(size.high)));
-  return nothing();
+  refuse(field,
+         "is " + json_excerpt(*value) + ", must be a list of " + std::to_string(size.low) +
+             (low == high ? "" : " to " + std::to_string(size.high)),
+         !value->is_array() ? ErrorCode::wrong_type
+                            : (value->size() < low ? ErrorCode::too_few : ErrorCode::too_many));
+  return null_value();
 }
 
 std::size_t FieldReader::choose(std::string_view field, std::span<const char* const> names) {
@@ -217,27 +231,29 @@ std::size_t FieldReader::choose(std::string_view field, std::span<const char* co
     if (value->is_string() && value->get_ref<const std::string&>() == names[i]) return i;
     known += (i == 0 ? "" : " or ") + std::string(names[i]);
   }
-  refuse(field, "is " + json_excerpt(*value) + ", must be " + known);
+  refuse(field, "is " + json_excerpt(*value) + ", must be " + known,
+         value->is_string() ? ErrorCode::unknown : ErrorCode::wrong_type);
   return 0;
 }
 
 FieldReader FieldReader::inner(std::string_view field) {
   const Json* value = find(field);
-  return {value == nullptr ? nothing() : *value, *this, name_of(field)};
+  return {value == nullptr ? null_value() : *value, *this, path_to(field)};
 }
 
 FieldReader FieldReader::element(const Json& json, std::string_view list_field, std::size_t index) {
-  return {json, *this, name_of(list_field) + "[" + std::to_string(index) + "]"};
+  return {json, *this, path_to(list_field) + "[" + std::to_string(index) + "]"};
 }
 
 void FieldReader::finish() {
   if (*problem_) return;
   for (const auto& item : json_->items()) {
-    if (std::find(asked_.begin(), asked_.end(), item.key()) != asked_.end()) continue;
+    if (std::find(known_fields_.begin(), known_fields_.end(), item.key()) != known_fields_.end()) continue;
     std::string known;
-    for (const std::string& field : asked_) known += (known.empty() ? "" : ", ") + field;
-    refuse("has an unknown field " + json_excerpt(Json(item.key())) +
-           (known.empty() ? "" : "; known: " + known));
+    for (const std::string& field : known_fields_) known += (known.empty() ? "" : ", ") + field;
+    refuse(
+        "has an unknown field " + json_excerpt(Json(item.key())) + (known.empty() ? "" : "; known: " + known),
+        ErrorCode::unknown);
   }
 }
 

@@ -1,5 +1,6 @@
-// Reads the fields of one JSON object. The first problem sticks and names file, path and range; later reads
-// return harmless values, so that the caller reads straight through and asks status() once at the end.
+// Reader of the fields of one JSON object. The first problem is stored and names file, path and range; later
+// reads return harmless values, so that the caller reads straight through and checks status() once at the
+// end.
 //
 //   FieldReader reader(json, "spoon.json");
 //   tool.radius_m = reader.length_m("radius_mm", tool_radius_range_m);
@@ -23,7 +24,8 @@
 
 namespace spoonbill {
 
-// Refers to the JSON it reads, which must outlive it. Readers of inner objects report to the outermost one.
+// Reader of one object. The JSON must outlive the reader. Readers of inner objects report problems to the
+// outermost reader; copies share its status.
 class FieldReader {
  public:
   // `source` names the file (and line) in messages.
@@ -31,12 +33,11 @@ class FieldReader {
 
   bool has(std::string_view field) const;
 
-  // The number that says which form the file has; refused unless it is `known`, or in the range of those
-  // known.
+  // Reads the version number of the file's format and returns it; a version outside `known` is refused.
   void version(std::string_view field, int known);
   int version(std::string_view field, Range<int> known);
 
-  // Each returns the field's value, or a harmless one after a problem. A missing field is a problem.
+  // Each read returns the field's value, or a harmless one after a problem. A missing field is a problem.
   std::string text(std::string_view field);  // at most 200 bytes, no control characters
   bool boolean(std::string_view field);
   double number(std::string_view field, Range<double> range);
@@ -49,25 +50,29 @@ class FieldReader {
   const Json& object(std::string_view field);
   const Json& list(std::string_view field, Range<int> size);
 
-  // The place of the value among the names.
+  // Returns the index of the field's text among the names.
   std::size_t choose(std::string_view field, std::span<const char* const> names);
+  // Returns the value that belongs to the field's text.
   template <class Choice>
   Choice choice(std::string_view field, std::initializer_list<std::pair<const char*, Choice>> choices);
 
-  // The reader of a field that is an object, and of an object in a list; finish() each.
+  // Returns the reader of a field that is an object, or of an object in a list. Call finish() on each.
   FieldReader inner(std::string_view field);
   FieldReader element(const Json& json, std::string_view list_field, std::size_t index);
 
-  // A known field whose value the caller does not read.
+  // Marks a field as known although its value is not read.
   void ignore(std::string_view field);
 
-  // Reports the fields that nobody asked for.
+  // Refuses fields that were neither read nor ignored.
   void finish();
 
-  // "FILE: path.field " and then the message.
-  void refuse(std::string_view field, const std::string& message);
-  // "FILE: path: message", about the object as a whole.
-  void refuse(const std::string& message);
+  // Stores the problem "FILE: path.field message", unless one is stored already. The error's field is the
+  // path.
+  void refuse(std::string_view field, const std::string& message, ErrorCode code = ErrorCode::out_of_range);
+  // Stores the problem "FILE: path message" about the object as a whole, unless one is stored already.
+  void refuse(const std::string& message, ErrorCode code = ErrorCode::inconsistent);
+  // Stores an error of the object's content, with its code, unless a problem is stored already.
+  void refuse(const Error& error);
 
   Status status() const;
 
@@ -75,15 +80,15 @@ class FieldReader {
   FieldReader(const Json& json, const FieldReader& parent, std::string path);
 
   const Json* find(std::string_view field);
-  std::string name_of(std::string_view field) const;
-  void wrong_type(std::string_view field, const Json& value, const char* wanted);
-  double component(std::string_view field, const Json& value, Range<double> range, bool is_length);
-  Vector3 components(std::string_view field, Range<double> range, bool are_lengths);
+  std::string path_to(std::string_view field) const;
+  void refuse_type(std::string_view field, const Json& value, const char* wanted);
+  double read_component(std::string_view field, const Json& value, Range<double> range, bool is_length);
+  Vector3 read_components(std::string_view field, Range<double> range, bool are_lengths);
 
   const Json* json_;
   std::string source_;
-  std::string path_;
-  std::vector<std::string> asked_;
+  std::string path_;                       // of the object within the file; empty for the outermost
+  std::vector<std::string> known_fields_;  // in the order of the first read
   std::shared_ptr<std::optional<Error>> problem_;
 };
 

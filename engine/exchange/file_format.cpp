@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t bytes_limit = std::size_t{64} << 20;
 
-// A recording is known by its first bytes: it may be long, and be cut where its JSON ends early.
+// Returns true for a recording, which its first bytes identify: it may be long, or cut within its JSON.
 bool starts_like_recording(const std::filesystem::path& file) {
   return read_first_bytes(file, 64).find("\"spoonbill_recording\"") != std::string::npos;
 }
@@ -28,7 +28,8 @@ Result<FileFormat> find_native_format(const std::filesystem::path& file) {
     if (json->contains("spoonbill_script")) return FileFormat::script;
     if (json->contains("youngs_modulus_pa")) return FileFormat::material;
   }
-  return Error{file.string() + ": is no Spoonbill document, recording, script or material"};
+  return Error{ErrorCode::unsupported,
+               file.string() + ": is no Spoonbill document, recording, script or material"};
 }
 
 }  // namespace spoonbill

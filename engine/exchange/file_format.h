@@ -1,4 +1,4 @@
-// The formats of files that the program reads and writes.
+// Formats of the files that the program reads and writes, by name and by content.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace spoonbill {
 
 enum class FileFormat {
   unknown,
-  document,  // .json, and so are the next three: their content tells which (find_native_format())
+  document,  // .json, like the next three; find_native_format() distinguishes them by content
   recording,
   script,
   material,
@@ -29,11 +29,11 @@ enum class FileFormat {
 };
 
 struct FileEnding {
-  std::string_view ending;  // in small letters, without the point
+  std::string_view ending;  // in lower case, without the point
   FileFormat format;
 };
 
-// Every ending that stands for a format. The first of a format is its usual one.
+// All endings of known formats. The first of a format is its usual one.
 inline constexpr std::array<FileEnding, 15> file_endings{{{"json", FileFormat::document},
                                                           {"step", FileFormat::step},
                                                           {"stp", FileFormat::step},
@@ -50,8 +50,8 @@ inline constexpr std::array<FileEnding, 15> file_endings{{{"json", FileFormat::d
                                                           {"asc", FileFormat::point_text},
                                                           {"pts", FileFormat::point_text}}};
 
-// Returns the format that the ending of the name stands for, in any case of letters.
-inline FileFormat format_of(const std::filesystem::path& file) {
+// Returns the format that belongs to the ending of the name, in upper or lower case.
+inline FileFormat format_from_name(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   if (ending.empty()) return FileFormat::unknown;
   ending.erase(0, 1);
@@ -63,8 +63,8 @@ inline FileFormat format_of(const std::filesystem::path& file) {
   return FileFormat::unknown;
 }
 
-// Returns the usual ending of a format's files, without the point; none of FileFormat::unknown.
-inline std::string_view ending_of(FileFormat format) {
+// Returns the usual ending of a format's files, without the point; empty for FileFormat::unknown.
+inline std::string_view usual_ending(FileFormat format) {
   for (const FileEnding& known : file_endings) {
     if (known.format == format) return known.ending;
   }
@@ -75,24 +75,24 @@ inline bool is_cad(FileFormat format) {
   return format == FileFormat::step || format == FileFormat::iges;
 }
 
-// Whether triangles are read from such files.
+// Returns true for formats from which triangles are read.
 inline bool is_mesh(FileFormat format) {
   return format == FileFormat::obj || format == FileFormat::stl || format == FileFormat::ply;
 }
 
-// Whether triangles are written to such files.
+// Returns true for formats to which triangles are written.
 inline bool is_written_mesh(FileFormat format) {
   return is_mesh(format) || format == FileFormat::three_mf;
 }
 
-// Whether points are read from such files.
+// Returns true for formats from which points are read.
 inline bool is_cloud(FileFormat format) {
   return format == FileFormat::ply || format == FileFormat::pcd || format == FileFormat::obj ||
          format == FileFormat::point_text;
 }
 
-// Returns which of the program's own formats a file has: document, recording, script or material. Its name
-// says nothing. Refused: a file that cannot be read, or is none of these.
+// Returns which of the program's own formats a file has: document, recording, script or material. Its name is
+// ignored. Refused: a file that cannot be read, or has none of these formats.
 Result<FileFormat> find_native_format(const std::filesystem::path& file);
 
 }  // namespace spoonbill

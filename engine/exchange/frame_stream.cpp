@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 namespace spoonbill {
 namespace {
@@ -15,6 +16,9 @@ void write_head(std::ostream& out, FrameKind kind, std::uint64_t bytes) {
   const FrameHead head{kind, bytes};
   write_raw(out, &head, 1);
 }
+
+// Letter before the code in the content of a failure frame: "#4 message".
+constexpr char code_mark = '#';
 
 }  // namespace
 
@@ -32,9 +36,9 @@ void write_frame(std::ostream& out, FrameKind kind, std::string_view content) {
   out.flush();
 }
 
-void write_progress(std::ostream& out, double share) {
+void write_progress(std::ostream& out, double fraction) {
   write_frame(out, FrameKind::progress,
-              std::to_string(static_cast<int>(1000.0 * std::clamp(share, 0.0, 1.0))));
+              std::to_string(static_cast<int>(1000.0 * std::clamp(fraction, 0.0, 1.0))));
 }
 
 void write_mesh(std::ostream& out, const TriangleMesh& mesh) {
@@ -56,10 +60,28 @@ void write_cloud(std::ostream& out, const PointCloud& cloud) {
 }
 
 void write_failure(std::ostream& out, const std::string& message) {
-  std::string line = message.substr(0, longest_failure);
+  std::string line = message.substr(0, failure_bytes_limit);
   std::replace_if(
       line.begin(), line.end(), [](char letter) { return letter < ' ' || letter > '~'; }, ' ');
   write_frame(out, FrameKind::failure, line);
+}
+
+void write_failure(std::ostream& out, const Error& error) {
+  write_failure(out, code_mark + std::to_string(static_cast<int>(error.code)) + " " + error.message);
+}
+
+Error parse_failure(std::string_view content) {
+  int code = -1;
+  if (content.starts_with(code_mark)) {
+    const char* end = content.data() + content.size();
+    const auto [after, problem] = std::from_chars(content.data() + 1, end, code);
+    const bool is_code = problem == std::errc() && code >= 0 && code <= static_cast<int>(ErrorCode::internal);
+    if (is_code && after != end && *after == ' ') {
+      const auto length = static_cast<std::size_t>(after + 1 - content.data());
+      return Error{static_cast<ErrorCode>(code), std::string(content.substr(length))};
+    }
+  }
+  return Error{ErrorCode::process_failed, std::string(content)};
 }
 
 bool is_known(FrameKind kind) {

@@ -1,8 +1,10 @@
-// Frames of bytes between the program and the children that read and write foreign files for it, on one
-// machine: eight letters that say what follows, its length in 64 bits, and so many bytes. A child sends
-// progress as it likes, then what it was asked for, and last one of ending, mesh, cloud, faces or failure.
+// Protocol between the program and the child processes that read and write foreign files, on one machine. A
+// frame is eight letters that name its kind, its length in 64 bits, and that many bytes. A child sends any
+// number of progress frames, then its results, and last one frame of kind ending, mesh, cloud, faces or
+// failure.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -10,22 +12,22 @@
 #include <string>
 #include <string_view>
 
+#include "engine/base/result.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/exchange/points/point_cloud.h"
 
 namespace spoonbill {
 
 enum class FrameKind : std::uint64_t {
-  progress = 0x676f72706c6e7073,  // "spnlprog" in little-endian order: a share in thousandths, as text
-  surface = 0x667275736c6e7073,   // "spnlsurf": cad_stream.h
+  progress = 0x676f72706c6e7073,  // "spnlprog" in little-endian order: finished thousandths, as text
+  surface = 0x667275736c6e7073,   // "spnlsurf": a surface of a CAD model (cad_stream.h)
   file = 0x656c69666c6e7073,      // "spnlfile": the text of a CAD file
-  solid = 0x646c6f736c6e7073,     // "spnlsold": cad_solid_stream.h
-  ending = 0x20646e656c6e7073,    // "spnlend ": what is said of all surfaces together, as JSON
-  mesh =
-      0x6873656d6c6e7073,  // "spnlmesh": MeshCounts, then vertices and triangles as TriangleMesh holds them
-  cloud = 0x64756c636c6e7073,   // "spnlclud": CloudCounts, then points and normals as PointCloud holds them
-  faces = 0x656361666c6e7073,   // "spnlface": no cloud but a mesh; no bytes
-  failure = 0x6c6961666c6e7073  // "spnlfail": the line that says why there is nothing
+  solid = 0x646c6f736c6e7073,     // "spnlsold": a joined solid (cad_stream.h)
+  ending = 0x20646e656c6e7073,    // "spnlend ": facts about all surfaces together, as JSON
+  mesh = 0x6873656d6c6e7073,      // "spnlmesh": MeshCounts, then vertices and triangles as in TriangleMesh
+  cloud = 0x64756c636c6e7073,     // "spnlclud": CloudCounts, then points and normals as in PointCloud
+  faces = 0x656361666c6e7073,     // "spnlface": the file is a mesh instead of a cloud; no bytes
+  failure = 0x6c6961666c6e7073    // "spnlfail": one line, an error's message with an optional code before it
 };
 
 struct MeshCounts {
@@ -39,13 +41,13 @@ struct CloudCounts {
   std::uint64_t skipped = 0;
 };
 
-// Of the frame's content, counts included.
+// Return the size of a frame's content in bytes, counts included.
 std::uint64_t mesh_frame_bytes(const MeshCounts& counts);
 std::uint64_t cloud_frame_bytes(const CloudCounts& counts);
 
 struct FrameHead {
-  FrameKind kind = FrameKind::failure;  // perhaps of no known letters
-  std::uint64_t bytes = 0;              // that follow
+  FrameKind kind = FrameKind::failure;  // as received, perhaps unknown
+  std::uint64_t bytes = 0;              // size of the content
 };
 
 struct Frame {
@@ -53,26 +55,33 @@ struct Frame {
   std::string content;
 };
 
-// The most that a frame's content may be when it is read as a whole.
+// Largest content of a frame that is read as a whole.
 inline constexpr std::uint64_t frame_bytes_limit = std::uint64_t{1} << 30;
-// Of a failure's line, in bytes.
-inline constexpr std::size_t longest_failure = 400;
-// The failure of a child that has not the memory for its file.
+// Longest line of a failure, in bytes.
+inline constexpr std::size_t failure_bytes_limit = 400;
+// Message of a child whose memory limit is too small for its file.
 inline constexpr const char* bad_allocation = "bad allocation";
 
 void write_frame(std::ostream& out, FrameKind kind, std::string_view content);
-void write_progress(std::ostream& out, double share);
+// `fraction` is the finished part of the work, from 0 to 1.
+void write_progress(std::ostream& out, double fraction);
 void write_mesh(std::ostream& out, const TriangleMesh& mesh);
 void write_cloud(std::ostream& out, const PointCloud& cloud);
-// As one line of printable letters, cut to the longest.
-void write_failure(std::ostream& out, const std::string& message);
 
-// Whether the letters are those of a kind.
+// Writes a message as one line of printable ASCII, cut to the limit.
+void write_failure(std::ostream& out, const std::string& message);
+// Writes an error's code and message, for parse_failure().
+void write_failure(std::ostream& out, const Error& error);
+// Converts the content of a failure frame to an error. The code is `process_failed` where the child sent
+// none.
+Error parse_failure(std::string_view content);
+
+// Returns true where the letters name a kind of frame.
 bool is_known(FrameKind kind);
 
-// Reads so many bytes; false when there are fewer.
+// Reads exactly `bytes` bytes; returns false where fewer are left.
 using ReadBytes = std::function<bool(void* to, std::size_t bytes)>;
-// Reads a whole frame. Nothing where the bytes end, are no frame, or a frame of more than the limit.
+// Reads a whole frame. Returns nullopt where the bytes end, are no frame, or exceed frame_bytes_limit.
 std::optional<Frame> read_frame(const ReadBytes& read);
 
 }  // namespace spoonbill

@@ -1,7 +1,8 @@
-// JSON text to values and back: strict in, stable out. No exceptions for any input.
+// Parsing and printing of JSON: strict input, stable output, no exceptions.
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -9,25 +10,35 @@
 
 namespace spoonbill {
 
-// Keeps the order of fields, so that reading and writing give the same bytes.
+// JSON value that preserves the order of fields, so that reading and writing give the same bytes.
 using Json = nlohmann::ordered_json;
 
-// JSON text to a value. `source` names the file in messages, which give line and column. Besides syntax
-// errors refused: NaN and infinities, numbers beyond a double, a field given twice, nesting deeper than 64,
-// more than two million values, more than 1,000 fields in one object.
+// Parses JSON text. `source` names the file in messages, which give line and column. Besides syntax errors,
+// these are refused: NaN and infinities, numbers beyond a double, a field given twice, nesting deeper than
+// 64, more than six million values, more than 1,000 fields in one object, a zero byte.
 Result<Json> parse_json(std::string_view text, const std::string& source);
 
-// On one line, without spaces. Bytes that are not UTF-8 are replaced.
+// Returns the value on one line, without spaces. Bytes that are not UTF-8 are replaced.
 std::string json_to_line(const Json& json);
 
-// For people: what fits stands on one line, the rest is indented by two; ends with a newline.
+// Returns the value laid out for people and ending with a newline: a value that fits into 110 columns is on
+// one line, any other is indented by two spaces a level.
 std::string json_to_page(const Json& json);
 
-// Whole numbers without a fraction ("8", not "8.0"). What is not finite is written as null, which no reader
-// takes.
+// Converts a number to JSON, whole numbers without a fraction ("8", not "8.0"). A number that is not finite
+// is written as null, which every reader refuses.
 Json number_to_json(double number);
 
-// A value as messages show it: on one line and at most 40 characters.
+// Converts a length from metres to the shortest number of millimetres whose thousandth is `metres` to the
+// last bit. About one length in fifty has no such double (a binade has more metres than millimetres); it
+// becomes a decimal in quotes. Lengths that a person would write in millimetres are always plain numbers.
+Json length_to_json(double metres);
+
+// Returns the length in metres of a number of millimetres or a decimal in quotes; nullopt for any other
+// value.
+std::optional<double> length_from_json(const Json& millimetres);
+
+// Returns a value as messages show it: on one line and at most 40 characters, longer text cut with "...".
 std::string json_excerpt(const Json& json);
 
 }  // namespace spoonbill

@@ -1,5 +1,6 @@
-// Meshes out of foreign files, through Assimp. What a hostile file does to Assimp it does to this process:
-// call it in a child with limits (app/files/mesh_file.h).
+// Import of triangle meshes from foreign files through Assimp, after checks that the file is complete. A
+// hostile file can take over the process, so call these functions in a child process with limits. Each Error
+// says what is wrong, without the file's name.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +10,21 @@
 
 namespace spoonbill {
 
-// The triangles as they stand in the file, polygons cut, points and lines left out, coordinates in the file's
-// own unit (not yet metres) and single precision. No other file is opened, whatever this one names. The Error
-// says what is wrong, without the file's name.
+// Reads the triangles of an STL, OBJ or PLY file; polygons are cut, points and lines are ignored. Coordinates
+// are in the file's own unit (not yet metres) and single precision. No other file is opened, whatever this
+// one names.
 Result<TriangleMesh> import_mesh(const std::filesystem::path& file);
+
+// Checks that a PLY file contains the rows that its header promises. Assimp invents the rest of a truncated
+// file, hangs or crashes.
+Status check_ply(const std::filesystem::path& file);
+
+// Checks that an STL file in text form ends with `endsolid`, with or without a name and a line feed. Binary
+// files pass: Assimp checks their length.
+Status check_text_stl(const std::filesystem::path& file);
+
+// Checks the last line of an OBJ file that lacks a line feed: a vertex needs three numbers, a face three or
+// more corners of one form. A file cut between two lines, or within the last number, passes.
+Status check_last_obj_line(const std::filesystem::path& file);
 
 }  // namespace spoonbill

@@ -1,13 +1,14 @@
-// The parts of a scene that a table of fields does not describe whole, as JSON, shared by documents and
-// commands; field_json.h has the rest. Each read_ function takes the fields it names from the reader, which
-// keeps the first problem; each add_ function is its inverse.
+// Conversion between JSON and the parts of a scene that a table of fields does not describe as a whole;
+// documents and commands share it. field_json.h has the rest. Each read_ function reads the fields it names
+// and stores the first problem in the reader; each add_ or _to_json function is the inverse of a read_
+// function.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "engine/exchange/field_reader.h"
 #include "engine/exchange/json.h"
+#include "engine/scene/material.h"
 #include "engine/scene/scene.h"
 
 namespace spoonbill {
@@ -21,27 +22,15 @@ void add_tool(const Tool& tool, Json& json);
 BodyRegion read_region(FieldReader reader);
 Json region_to_json(const BodyRegion& region);
 
-// A point must be on the body's surface.
+// Reads the optional list "regions" of a body, the regions of other material or friction.
+std::vector<MaterialRegion> read_material_regions(FieldReader& body);
+void add_material_regions(const std::vector<MaterialRegion>& regions, Json& body);
+
+// Reads a load of a body. The parameters of a point load must be within the domain of `surface`.
 Load read_load(FieldReader& reader, const Surface& surface);
 Json load_to_json(const Load& load);
+
 Support read_support(FieldReader& reader);
 Json support_to_json(const Support& support);
-
-// Nothing after a problem: a surface has no harmless value.
-std::optional<Surface> read_surface(FieldReader& reader);
-Json surface_to_json(const Surface& surface);
-
-// The trim loops of a surface, within its fields; none where there are none. What they bound is checked too.
-std::vector<TrimLoop> read_trims(FieldReader& surface_reader, const Surface& surface);
-void add_trims(const std::vector<TrimLoop>& trims, Json& surface_json);
-
-// The knots of one direction of a surface, or of a loop. Nothing after a problem.
-std::optional<KnotVector> read_knot_vector(FieldReader& reader, Range<int> control_point_counts);
-void add_knot_vector(const KnotVector& knots, Json& json);
-
-// False where it is not three lengths within position_range_m.
-bool read_point(const Json& json, Vector3& point_m);
-
-Json position_to_json(const Vector3& position_m);
 
 }  // namespace spoonbill

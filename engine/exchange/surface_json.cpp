@@ -1,20 +1,23 @@
-#include <utility>
-#include <vector>
+#include "engine/exchange/surface_json.h"
 
-#include "engine/exchange/length.h"
-#include "engine/exchange/scene_json.h"
+#include <string>
+#include <utility>
+
+#include "engine/bspline/trimmed_area.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 
 namespace {
 
 constexpr Range<double> knot_range{-1e6, 1e6};
-// Knots nearer than this share of the domain are meant to be equal; apart they make derivatives overflow.
+// Smallest distance of unequal knots, as a fraction of the domain; smaller ones make derivatives overflow.
 constexpr double smallest_knot_step = 1e-9;
+constexpr Range<double> parameter_range{-1e7, 1e7};
 
-std::vector<double> read_knots(FieldReader& reader, int most) {
+std::vector<double> read_knots(FieldReader& reader, int largest_count) {
   std::vector<double> knots;
-  for (const Json& item : reader.list("knots", {3, most})) {
+  for (const Json& item : reader.list("knots", {3, largest_count})) {
     const double knot = item.is_number() ? item.get<double>() : knot_range.high + 1.0;
     if (!knot_range.contains(knot)) {
       reader.refuse("knots[" + std::to_string(knots.size()) + "]",
@@ -32,7 +35,8 @@ void check_knot_steps(const KnotVector& direction, FieldReader& reader) {
   for (std::size_t i = 1; i < knots.size(); ++i) {
     const double step = knots[i] - knots[i - 1];
     if (step == 0.0 || step >= smallest) continue;
-    reader.refuse("knots[" + std::to_string(i) + "]", "is nearly the knot before it, make the two equal");
+    reader.refuse("knots[" + std::to_string(i) + "]",
+                  "is nearly equal to the knot before it, make the two equal", ErrorCode::degenerate);
   }
 }
 
@@ -45,8 +49,10 @@ std::optional<ControlNet> read_net(FieldReader& reader, int row_count, int colum
     const Json& row = rows[static_cast<std::size_t>(i)];
     const std::string row_name = field + ("[" + std::to_string(i) + "]");
     if (!row.is_array() || row.size() != static_cast<std::size_t>(column_count)) {
-      reader.refuse(row_name, "is " + json_excerpt(row) + ", must be a list of " +
-                                  std::to_string(column_count) + " points as the knots along v ask");
+      reader.refuse(row_name,
+                    "is " + json_excerpt(row) + ", must be a list of " + std::to_string(column_count) +
+                        " points to match the knots along v",
+                    ErrorCode::inconsistent);
       return std::nullopt;
     }
     for (int j = 0; j < column_count; ++j) {
@@ -68,6 +74,32 @@ std::optional<KnotVector> read_direction(FieldReader reader) {
   return direction;
 }
 
+bool read_parameters(const Json& json, double& u, double& v) {
+  if (!json.is_array() || json.size() != 2 || !json[0].is_number() || !json[1].is_number()) return false;
+  u = json[0].get<double>();
+  v = json[1].get<double>();
+  return parameter_range.contains(u) && parameter_range.contains(v);
+}
+
+std::optional<TrimLoop> read_trim(FieldReader reader, const Surface& surface) {
+  std::optional<KnotVector> knots = read_knot_vector(reader, trim_control_point_count_range);
+  const char* field = "control_points_uv";
+  const int count = knots ? knots->control_point_count() : 0;
+  std::vector<double> u, v;
+  for (const Json& item : reader.list(field, {count, count})) {
+    if (read_parameters(item, u.emplace_back(), v.emplace_back())) continue;
+    reader.refuse(field + ("[" + std::to_string(u.size() - 1) + "]"),
+                  "must be 2 numbers from -10000000 to 10000000");
+    break;
+  }
+  reader.finish();
+  if (!knots || !reader.status().ok()) return std::nullopt;
+  auto loop = make_trim_loop(surface.u, surface.v, *std::move(knots), std::move(u), std::move(v));
+  if (loop.ok()) return std::move(loop).value();
+  reader.refuse(loop.error());
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<KnotVector> read_knot_vector(FieldReader& reader, Range<int> control_point_counts) {
@@ -79,13 +111,15 @@ std::optional<KnotVector> read_knot_vector(FieldReader& reader, Range<int> contr
   auto direction =
       periodic ? KnotVector::periodic(degree, std::move(knots)) : KnotVector::open(degree, std::move(knots));
   if (!direction.ok()) {
-    reader.refuse("knots", "do not fit: " + direction.error().message);
+    reader.refuse("knots", "are invalid: " + direction.error().message, direction.error().code);
     return std::nullopt;
   }
   const int count = direction->control_point_count();
   if (!control_point_counts.contains(count)) {
-    reader.refuse("knots", "ask for " + std::to_string(count) + " control points, at most " +
-                               std::to_string(control_point_counts.high) + " are handled");
+    reader.refuse("knots",
+                  "need " + std::to_string(count) + " control points, the limit is " +
+                      std::to_string(control_point_counts.high),
+                  ErrorCode::too_many);
   }
   check_knot_steps(direction.value(), reader);
   if (!reader.status().ok()) return std::nullopt;
@@ -117,7 +151,7 @@ std::optional<Surface> read_surface(FieldReader& reader) {
   if (!net) return std::nullopt;
   auto surface = make_surface(*std::move(u), *std::move(v), *std::move(net));
   if (surface.ok()) return std::move(surface).value();
-  reader.refuse(surface.error().message);
+  reader.refuse(surface.error());
   return std::nullopt;
 }
 
@@ -132,6 +166,35 @@ Json surface_to_json(const Surface& surface) {
     rows.push_back(std::move(row));
   }
   return json;
+}
+
+std::vector<TrimLoop> read_trims(FieldReader& surface_reader, const Surface& surface) {
+  std::vector<TrimLoop> trims;
+  if (!surface_reader.has("trims")) return trims;
+  for (const Json& item : surface_reader.list("trims", trim_loop_count_range)) {
+    std::optional<TrimLoop> loop = read_trim(surface_reader.element(item, "trims", trims.size()), surface);
+    if (!loop) return {};
+    trims.push_back(*std::move(loop));
+  }
+  const auto area = TrimmedArea::make(surface.u, surface.v, trims);
+  if (!area.ok()) surface_reader.refuse("trims", "are invalid: " + area.error().message, area.error().code);
+  return trims;
+}
+
+void add_trims(const std::vector<TrimLoop>& trims, Json& surface_json) {
+  for (const TrimLoop& loop : trims) {
+    Json& json = surface_json["trims"].emplace_back(Json::object());
+    add_knot_vector(loop.knots, json);
+    Json& points = json["control_points_uv"] = Json::array();
+    for (std::size_t i = 0; i < loop.u.size(); ++i) {
+      points.push_back(Json::array({number_to_json(loop.u[i]), number_to_json(loop.v[i])}));
+    }
+  }
+}
+
+Json position_to_json(const Vector3& position_m) {
+  return Json::array(
+      {length_to_json(position_m.x()), length_to_json(position_m.y()), length_to_json(position_m.z())});
 }
 
 }  // namespace spoonbill

@@ -43,7 +43,7 @@ class CadFileTest : public testing::Test {
 
   static Result<CadModel> read(const std::string& file, const CadChild& child = by_program()) {
     CadReading reading;
-    reading.format = format_of(file);
+    reading.format = format_from_name(file);
     return read_cad_file(file, reading, child);
   }
 
@@ -91,12 +91,12 @@ TEST_F(CadFileTest, WhatIsMadeIsRead) {
 }
 
 TEST_F(CadFileTest, NamesTellTheFormat) {
-  EXPECT_TRUE(is_cad(format_of("a.STEP")));
-  EXPECT_TRUE(is_cad(format_of("a.b.igs")));
-  EXPECT_FALSE(is_cad(format_of("a.stl")));
-  EXPECT_FALSE(is_cad(format_of("step")));
-  EXPECT_EQ(format_of("a.Stp"), FileFormat::step);
-  EXPECT_EQ(format_of("a.IGES"), FileFormat::iges);
+  EXPECT_TRUE(is_cad(format_from_name("a.STEP")));
+  EXPECT_TRUE(is_cad(format_from_name("a.b.igs")));
+  EXPECT_FALSE(is_cad(format_from_name("a.stl")));
+  EXPECT_FALSE(is_cad(format_from_name("step")));
+  EXPECT_EQ(format_from_name("a.Stp"), FileFormat::step);
+  EXPECT_EQ(format_from_name("a.IGES"), FileFormat::iges);
 }
 
 TEST_F(CadFileTest, WhatIsNoFileIsRefused) {
@@ -199,7 +199,7 @@ TEST_F(CadFileTest, AFaceThatCannotBeTakenIsLeftOutAndNamed) {
   ASSERT_EQ(model->surfaces.size(), 1u);
   EXPECT_EQ(model->surfaces[0].name, "two");
   ASSERT_EQ(model->notes.size(), 1u);
-  EXPECT_TRUE(model->notes[0].starts_with("'one' is left out: ")) << model->notes[0];
+  EXPECT_TRUE(model->notes[0].starts_with("'one' is skipped: ")) << model->notes[0];
   spoil_next_surface();
   expect_refusal(write("none.step", text), "'one': ");
 }

@@ -122,7 +122,7 @@ TEST(Script, NamesWhatIsWrong) {
             "bend.json: steps[1]: kind is \"cube\", must be point or sphere or solid");
   EXPECT_EQ(refusal(begin + "5"), "bend.json: steps[1] is 5, must be an object");
   EXPECT_EQ(refusal(begin + "{\"turn_to\": {\"axis\": [0,0,0], \"degrees\": 3}, \"over_s\": 1}"),
-            "bend.json: steps[1].turn_to.axis is zero, must point somewhere");
+            "bend.json: steps[1].turn_to.axis is zero, must have a length");
 }
 
 TEST(Script, SaysWhichModelIsMissing) {

@@ -1,40 +1,30 @@
-// Any smooth patch as a B-spline surface within a tolerance: interpolated at the Greville parameters, with
-// more control points wherever the error asks for them.
+// Approximation of any OpenCASCADE surface by a B-spline surface within a tolerance: interpolated at the
+// Greville parameters, with more control points where the error is too large.
 #pragma once
 
-#include <functional>
-#include <vector>
+#include <Geom_Surface.hxx>
 
 #include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {
 
-// A break between two smooth pieces, across which derivatives up to this order agree.
-struct PatchBreak {
-  double parameter;
-  int continuity;
-};
-
-struct PatchDirection {
-  std::vector<PatchBreak> breaks;  // increasing, both ends of the domain included
-  // The end meets the start, with the first break's continuity; the result is periodic then.
-  bool closed = false;
-};
-
-struct Patch {
-  PatchDirection u, v;
-  std::function<Vector3(double u, double v)> at;  // metres
+// Range of a surface's parameters.
+struct ParameterBox {
+  double u_start = 0.0, u_end = 0.0, v_start = 0.0, v_end = 0.0;
 };
 
 struct PatchFit {
-  Surface surface;  // over the patch's own parameters
-  // The largest distance at equal parameters over nine places of each of its pieces, each way.
+  Surface surface;  // over the parameters of the original
+  // Largest distance at equal parameters over nine positions of each piece in both directions, in metres.
   double deviation_m = 0.0;
 };
 
-// Cubic where that is enough, of degree 5 or 7 where fewer control points then do. Refused: a tolerance that
-// would take more control points than a surface has, a patch that is not finite.
-Result<PatchFit> approximate(const Patch& patch, double tolerance_m);
+// Approximates the part of a surface over a box. `scale` is metres for each unit of the surface. The result
+// is cubic where that is enough, and of degree 5 or 7 where fewer control points then suffice. A direction
+// whose box is a whole period, or whose ends meet, becomes periodic. Refused: a tolerance that needs more
+// control points than a surface may have, a surface that is not finite.
+Result<PatchFit> approximate_patch(const opencascade::handle<Geom_Surface>& surface, const ParameterBox& box,
+                                   double scale, double tolerance_m);
 
 }  // namespace spoonbill

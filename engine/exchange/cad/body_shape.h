@@ -1,5 +1,4 @@
-// A surface as a shape of OpenCASCADE: a closed solid where it closes, an open shell where not
-// or where it is trimmed. Lengths are millimetres.
+// Construction of OpenCASCADE shapes from surfaces with trim loops. Lengths are millimetres.
 #pragma once
 
 #include <TopoDS_Face.hxx>
@@ -18,21 +17,26 @@ struct BodyShape {
 };
 
 struct PartFaces {
-  std::vector<TopoDS_Face> faces;  // their normals are the surface's
-  bool was_cut = false;            // in two parts, which the faces are of
+  std::vector<TopoDS_Face> faces;  // with the normals of the surface
+  bool was_cut = false;            // the surface was divided into two parts, which the faces belong to
 };
 
-// What the trims keep of a surface. Refused: as body_shape() does.
-Result<PartFaces> faces_of(const CadSurface& part);
+// Builds the faces of the part of a surface that its trims keep. A face's edge ends at each corner of its
+// loop. A surface that closes and has nothing but holes is divided into two parts: CAD systems support no
+// face between poles without an outer edge. Refused: as build_body_shape() does.
+Result<PartFaces> build_faces(const CadSurface& part);
 
-TopoDS_Shell shell_of(const TopoDS_Face& face);
+// Returns a shell of one face.
+TopoDS_Shell make_shell(const TopoDS_Face& face);
 
-// A trimmed surface is one shell, or a compound of one for each of its islands.
+// Builds a solid of a surface that closes, and otherwise an open shell. A trimmed surface is one shell, or a
+// compound of one for each connected component.
 //
 // A side whose control points coincide is a pole of the body, two opposite sides that coincide are its seam;
-// it is closed when every side is one or the other. The faces of what closes, trimmed or not, turn their
-// outsides outwards, whichever way the surface's normals point. A face of a solid is a shell, as it is.
-// Refused: a surface or trim loops of which OpenCASCADE can build no valid shape.
-Result<BodyShape> body_shape(const CadSurface& part);
+// the surface closes when every side is one or the other. Faces of a surface that closes, trimmed or not,
+// face outwards, whatever the direction of the surface's normals. A face of a solid becomes a shell and keeps
+// its orientation. Refused: a surface or trim loops of which OpenCASCADE can build no valid shape, and loops
+// that leave no position for a seam.
+Result<BodyShape> build_body_shape(const CadSurface& part);
 
 }  // namespace spoonbill

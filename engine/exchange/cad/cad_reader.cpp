@@ -1,35 +1,177 @@
-#include "engine/exchange/cad/cad_reader.h"
-
+// Reader of STEP and IGES files.
 #include <IGESCAFControl_Reader.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <Standard_Failure.hxx>
+#include <TCollection_AsciiString.hxx>
+#include <TDF_Label.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
+#include <TopoDS.hxx>
 #include <XCAFApp_Application.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <new>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "engine/base/assert.h"
 #include "engine/base/text.h"
 #include "engine/base/geometry.h"
-#include "engine/exchange/cad/external_files.h"
+#include "engine/exchange/cad/cad.h"
 #include "engine/exchange/cad/face_surface.h"
-#include "engine/exchange/cad/file_unit.h"
-#include "engine/exchange/cad/iges_globals.h"
-#include "engine/exchange/cad/iges_lines.h"
-#include "engine/exchange/cad/lost_faces.h"
-#include "engine/exchange/cad/named_faces.h"
-#include "engine/exchange/cad/placements.h"
+#include "engine/exchange/cad/file_report.h"
+#include "engine/exchange/cad/iges_file.h"
+#include "engine/exchange/frame_stream.h"
 
 namespace spoonbill {
 namespace {
 
-constexpr double share_of_parsing = 0.3, share_of_transfer = 0.5;
+struct NamedFace {
+  TopoDS_Face face;
+  std::string name;   // its own, its body's or its product's; unique within the file
+  std::string solid;  // unique name of the solid that it is one of several faces of; empty without one
+};
+
+struct NamedFaces {
+  std::vector<NamedFace> faces;
+  int solids = 0;           // solids of more than one face
+  int faces_of_solids = 0;  // faces of these
+};
+
+using Shapes = opencascade::handle<XCAFDoc_ShapeTool>;
+
+// Depth beyond which assemblies are ignored.
+constexpr int depth_limit = 64;
+
+std::string label_name(const TDF_Label& label) {
+  opencascade::handle<TDataStd_Name> name;
+  if (label.IsNull() || !label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
+  return TCollection_AsciiString(name->Get()).ToCString();
+}
+
+// Returns true for names that OpenCASCADE gives to shapes and instances without a name.
+bool is_generic_name(const std::string& name) {
+  static constexpr std::array<std::string_view, 9> kinds{
+      "", "SOLID", "SHELL", "FACE", "COMPOUND", "COMPSOLID", "WIRE", "ASSEMBLY", "OPEN CASCADE"};
+  static constexpr std::string_view use = "NAUO";
+  return std::find(kinds.begin(), kinds.end(), name) != kinds.end() || name.starts_with("=>") ||
+         name.starts_with("Open CASCADE STEP translator") ||
+         (name.starts_with(use) && name.find_first_not_of("0123456789", use.size()) == std::string::npos);
+}
+
+// Returns true for the numbers that OpenCASCADE gives to instances without a name.
+bool is_number(const std::string& name) {
+  return name.find_first_not_of("0123456789") == std::string::npos;
+}
+
+// Traversal of an assembly that collects its faces with their names.
+class FaceCollector {
+ public:
+  explicit FaceCollector(Shapes shapes) : shapes_(std::move(shapes)) {}
+
+  void visit(const TDF_Label& label, const TopLoc_Location& location, const std::string& name, int depth) {
+    if (depth > depth_limit) return;
+    if (!XCAFDoc_ShapeTool::IsAssembly(label)) {
+      visit_part(label, location, name);
+      return;
+    }
+    TDF_LabelSequence components;
+    XCAFDoc_ShapeTool::GetComponents(label, components);
+    for (int k = 1; k <= components.Length(); ++k) {
+      const TDF_Label& component = components.Value(k);
+      TDF_Label part;
+      if (!XCAFDoc_ShapeTool::GetReferredShape(component, part)) continue;
+      const std::string instance_name = label_name(component), referred_name = label_name(part);
+      visit(part, location.Multiplied(XCAFDoc_ShapeTool::GetLocation(component)),
+            !is_generic_name(instance_name) && !is_number(instance_name) ? instance_name
+            : is_generic_name(referred_name)                             ? name
+                                                                         : referred_name,
+            depth + 1);
+    }
+  }
+
+  NamedFaces release_faces() {
+    std::vector<std::string> names;
+    for (const NamedFace& face : found_.faces) names.push_back(face.name);
+    names = make_names_unique(names, "face");
+    for (std::size_t k = 0; k < names.size(); ++k) found_.faces[k].name = std::move(names[k]);
+    std::vector<std::string> solids;
+    for (const Solid& solid : solids_) solids.push_back(solid.name);
+    solids = make_names_unique(solids, "solid");
+    for (std::size_t s = 0; s < solids.size(); ++s) {
+      for (std::size_t k = solids_[s].first; k < solids_[s].end; ++k) found_.faces[k].solid = solids[s];
+    }
+    return std::move(found_);
+  }
+
+ private:
+  void visit_part(const TDF_Label& label, const TopLoc_Location& location, const std::string& part_name) {
+    const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
+    if (shape.IsNull()) return;
+    for (TopExp_Explorer solids(shape, TopAbs_SOLID); solids.More(); solids.Next()) {
+      const std::size_t before = found_.faces.size();
+      const std::string name = shape_name(label, solids.Current(), part_name);
+      add_faces(label, TopExp_Explorer(solids.Current(), TopAbs_FACE), location, name);
+      const auto count = static_cast<int>(found_.faces.size() - before);
+      if (count < 2) continue;
+      solids_.push_back({name, before, found_.faces.size()});
+      ++found_.solids;
+      found_.faces_of_solids += count;
+    }
+    add_faces(label, TopExp_Explorer(shape, TopAbs_FACE, TopAbs_SOLID), location, part_name);
+  }
+
+  void add_faces(const TDF_Label& label, TopExp_Explorer faces, const TopLoc_Location& location,
+                 const std::string& body_name) {
+    for (; faces.More(); faces.Next()) {
+      const std::string name = shape_name(label, faces.Current(), body_name);
+      found_.faces.push_back({TopoDS::Face(faces.Current().Moved(location)), name, {}});
+    }
+  }
+
+  std::string shape_name(const TDF_Label& part, const TopoDS_Shape& shape, const std::string& fallback) {
+    TDF_Label label;
+    if (!shapes_->FindSubShape(part, shape, label)) return fallback;
+    const std::string name = label_name(label);
+    return is_generic_name(name) ? fallback : name;
+  }
+
+  // Solid of more than one face, a range of the faces.
+  struct Solid {
+    std::string name;
+    std::size_t first = 0, end = 0;
+  };
+
+  Shapes shapes_;
+  NamedFaces found_;
+  std::vector<Solid> solids_;
+};
+
+// Returns the faces of a document where its assemblies place them, each with the most specific name.
+NamedFaces collect_faces(const opencascade::handle<TDocStd_Document>& document) {
+  const Shapes shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  TDF_LabelSequence roots;
+  shapes->GetFreeShapes(roots);
+  FaceCollector collector(shapes);
+  for (int k = 1; k <= roots.Length(); ++k) {
+    const std::string name = label_name(roots.Value(k));
+    // The shape of a root includes its location.
+    collector.visit(roots.Value(k), TopLoc_Location(), is_generic_name(name) ? std::string() : name, 0);
+  }
+  return collector.release_faces();
+}
+
+constexpr double parsing_fraction = 0.3, transfer_fraction = 0.5;
 
 using OcctDocument = opencascade::handle<TDocStd_Document>;
 
@@ -39,7 +181,7 @@ struct Content {
   LossCount losses = {};
   int external_files = 0;
   int unread_placements = 0;
-  double model_scale = 1.0;  // of IGES
+  double model_scale = 1.0;  // of IGES files only
 };
 
 OcctDocument new_document() {
@@ -53,11 +195,13 @@ Result<Content> read_step(const std::filesystem::path& file, const Progress& pro
   reader.SetColorMode(false);
   reader.SetLayerMode(false);
   reader.SetNameMode(true);
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return Error{"is no STEP file, or a damaged one"};
-  if (!progress.report(share_of_parsing)) return Progress::stopped();
-  Content content{new_document(), unit_of(reader.Reader().StepModel())};
-  content.external_files = forget_external_files(reader.Reader().StepModel());
-  if (!reader.Transfer(content.document)) return Error{"holds no shape"};
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
+    return Error{ErrorCode::malformed, "is no STEP file, or a damaged one"};
+  }
+  if (!progress.report(parsing_fraction)) return Progress::stopped();
+  Content content{new_document(), find_unit(reader.Reader().StepModel())};
+  content.external_files = remove_external_files(reader.Reader().StepModel());
+  if (!reader.Transfer(content.document)) return Error{ErrorCode::missing, "contains no shape"};
   content.losses = count_losses(reader.Reader().WS(), FileFormat::step);
   content.unread_placements = count_unread_placements(reader.Reader().StepModel());
   return content;
@@ -70,10 +214,12 @@ Result<Content> read_iges(const std::filesystem::path& file, const Progress& pro
   reader.SetColorMode(false);
   reader.SetLayerMode(false);
   reader.SetNameMode(true);
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) return Error{"is no IGES file, or a damaged one"};
-  if (!progress.report(share_of_parsing)) return Progress::stopped();
-  Content content{new_document(), unit_of(reader.IGESModel(), file)};
-  if (!reader.Transfer(content.document)) return Error{"holds no shape"};
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
+    return Error{ErrorCode::malformed, "is no IGES file, or a damaged one"};
+  }
+  if (!progress.report(parsing_fraction)) return Progress::stopped();
+  Content content{new_document(), find_unit(reader.IGESModel(), file)};
+  if (!reader.Transfer(content.document)) return Error{ErrorCode::missing, "contains no shape"};
   content.losses = count_losses(reader.WS(), FileFormat::iges);
   content.losses.unread -= std::min(content.losses.unread, null_entities.value());
   content.unread_placements = count_unread_placements(reader.IGESModel());
@@ -81,34 +227,38 @@ Result<Content> read_iges(const std::filesystem::path& file, const Progress& pro
   return content;
 }
 
-void say_unit(const FileUnit& unit, const CadReading& reading, CadModel& model) {
+// Stores the unit, with a note where none is known.
+void add_unit(const FileUnit& unit, const CadReading& reading, CadModel& model) {
   model.unit = unit.name;
   model.unit_declared = unit.declared;
   if (!unit.declared && reading.unit_m == 0.0) {
     model.unit = "mm";
     model.notes.push_back(
-        "the file declares no unit of length that is known; millimetres are taken (--unit names another)");
+        "the file declares no unit of length that is known; millimetres are assumed (--unit sets another)");
   }
 }
 
-Error no_surface(const Content& content) {
+Error no_surface_error(const Content& content) {
   if (content.losses.faces > 0) {
-    return Error{"has " + std::to_string(content.losses.faces) +
-                 " faces, none of which can be read; export it anew"};
+    return Error{ErrorCode::malformed, "has " + std::to_string(content.losses.faces) +
+                                           " faces, none of which can be read; export it anew"};
   }
-  if (content.external_files > 0) return Error{"holds no surface but names other files; export all as one"};
-  return Error{"holds no surface"};
+  if (content.external_files > 0) {
+    return Error{ErrorCode::missing, "contains no surface but names other files; export all as one"};
+  }
+  return Error{ErrorCode::missing, "contains no surface"};
 }
 
-void say_losses(const Content& content, CadModel& model) {
+// Adds notes about everything that is missing or ignored.
+void add_loss_notes(const Content& content, CadModel& model) {
   const LossCount& losses = content.losses;
-  const auto say = [&](int lost, int all, const char* what) {
+  const auto add_note = [&](int lost, int all, const char* what) {
     if (lost == 0) return;
     model.notes.push_back(std::to_string(lost) + " of the file's " + std::to_string(all) + " " + what +
                           " cannot be read and are missing; repair them in the CAD system");
   };
-  say(losses.lost_faces, losses.faces, "faces");
-  say(losses.lost_instances, losses.instances, "placed parts");
+  add_note(losses.lost_faces, losses.faces, "faces");
+  add_note(losses.lost_instances, losses.instances, "placed parts");
   if (losses.unread > 0) {
     model.notes.push_back("damaged entities of the file: " + std::to_string(losses.unread) +
                           "; what they belong to is missing or wrong; export it anew");
@@ -129,8 +279,8 @@ void say_losses(const Content& content, CadModel& model) {
   }
 }
 
-// A body of ours is one surface.
-void say_solids(const NamedFaces& named, CadModel& model) {
+// Adds a note about solids, whose faces become a body each.
+void add_solid_notes(const NamedFaces& named, CadModel& model) {
   if (named.solids == 0) return;
   const std::string faces = std::to_string(named.faces_of_solids);
   model.notes.push_back("the " + faces + " faces of " +
@@ -138,13 +288,13 @@ void say_solids(const NamedFaces& named, CadModel& model) {
                         " come in as a body each; they leave joined where they still close");
 }
 
-// Metres for each of what OpenCASCADE made of the file's numbers, which are millimetres if the unit is right.
-double scale_of(const FileUnit& unit, const CadReading& reading) {
+// Returns metres for each unit of OpenCASCADE's numbers, which are millimetres where the unit is right.
+double find_scale(const FileUnit& unit, const CadReading& reading) {
   if (reading.unit_m > 0.0) return reading.unit_m / unit.millimetres;
   return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
 }
 
-CadSurface surface_of(const NamedFace& face, FaceSurface found) {
+CadSurface make_cad_surface(const NamedFace& face, FaceSurface found) {
   CadSurface surface;
   surface.name = face.name;
   surface.surface = std::move(found.surface);
@@ -155,7 +305,7 @@ CadSurface surface_of(const NamedFace& face, FaceSurface found) {
   return surface;
 }
 
-// A document would not take it.
+// Returns true for coordinates that no document may contain.
 bool is_far_away(const ControlNet& net) {
   for (const auto* coordinates : {&net.x, &net.y, &net.z}) {
     for (const double coordinate : *coordinates) {
@@ -165,71 +315,75 @@ bool is_far_away(const ControlNet& net) {
   return false;
 }
 
-Result<FaceSurface> near_surface(const TopoDS_Face& face, double scale, double tolerance_m) {
-  auto found = face_surface(face, scale, tolerance_m);
+Result<FaceSurface> convert_near_face(const TopoDS_Face& face, double scale, double tolerance_m) {
+  auto found = convert_face(face, scale, tolerance_m);
   if (found && is_far_away(found->surface.net)) {
-    return Error{"lies more than " + number_text(position_range_m.high) +
-                 " m from the origin; move it nearer in the CAD system, or check the unit"};
+    return Error{ErrorCode::out_of_range,
+                 "is more than " + number_text(position_range_m.high) +
+                     " m from the origin; move it nearer in the CAD system, or check the unit"};
   }
   return found;
 }
 
-// Those that are no surfaces of ours are told in notes. Refused: when all are.
-Status take_faces(const std::vector<NamedFace>& faces, double scale, const CadReading& reading,
-                  const TakeSurface& take, const Progress& progress, CadModel& model) {
+// Passes the surfaces of all faces to the sink; notes report faces that cannot be converted. Refused: no face
+// left.
+Status convert_faces(const std::vector<NamedFace>& faces, double scale, const CadReading& reading,
+                     const SurfaceSink& sink, const Progress& progress, CadModel& model) {
   std::optional<Error> first;
-  std::size_t taken = 0;
+  std::size_t converted = 0;
   for (std::size_t k = 0; k < faces.size(); ++k) {
-    auto found = near_surface(faces[k].face, scale, reading.tolerance_m);
+    auto found = convert_near_face(faces[k].face, scale, reading.tolerance_m);
     if (found) {
-      take(surface_of(faces[k], std::move(found).value()));
-      ++taken;
+      sink(make_cad_surface(faces[k], std::move(found).value()));
+      ++converted;
     } else {
-      if (!first) first = Error{"'" + faces[k].name + "': " + found.error().message};
-      model.notes.push_back("'" + faces[k].name + "' is left out: " + found.error().message);
+      if (!first) first = found.error().in("'" + faces[k].name + "'");
+      model.notes.push_back("'" + faces[k].name + "' is skipped: " + found.error().message);
     }
     const double fraction = static_cast<double>(k + 1) / static_cast<double>(faces.size());
     if (!progress.report(fraction)) return Progress::stopped();
   }
-  return taken > 0 ? Status() : *first;
+  return converted > 0 ? Status() : *first;
 }
 
-Result<CadModel> read(const std::filesystem::path& file, const CadReading& reading, const TakeSurface& take,
+Result<CadModel> read(const std::filesystem::path& file, const CadReading& reading, const SurfaceSink& sink,
                       const Progress& progress) {
   const auto content =
       reading.format == FileFormat::step ? read_step(file, progress) : read_iges(file, progress);
   if (!content) return content.error();
-  if (!progress.report(share_of_transfer)) return Progress::stopped();
-  const NamedFaces named = named_faces(content->document);
+  if (!progress.report(transfer_fraction)) return Progress::stopped();
+  const NamedFaces named = collect_faces(content->document);
   const std::vector<NamedFace>& faces = named.faces;
-  if (faces.empty()) return no_surface(content.value());
+  if (faces.empty()) return no_surface_error(content.value());
   if (faces.size() > reading.face_limit) {
-    return Error{"has " + std::to_string(faces.size()) + " faces, more than the " +
-                 std::to_string(reading.face_limit) + " that are read; export fewer"};
+    return Error{ErrorCode::too_many, "has " + std::to_string(faces.size()) + " faces, more than the " +
+                                          std::to_string(reading.face_limit) +
+                                          " that are read; export fewer"};
   }
   CadModel model;
-  say_unit(content->unit, reading, model);
-  say_losses(content.value(), model);
-  say_solids(named, model);
-  const Status taken = take_faces(faces, scale_of(content->unit, reading), reading, take,
-                                  progress.part(share_of_transfer, 1.0), model);
-  if (!taken) return taken.error();
+  add_unit(content->unit, reading, model);
+  add_loss_notes(content.value(), model);
+  add_solid_notes(named, model);
+  const Status status = convert_faces(faces, find_scale(content->unit, reading), reading, sink,
+                                      progress.part(transfer_fraction, 1.0), model);
+  if (!status) return status.error();
   return model;
 }
 
 }  // namespace
 
 Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& reading,
-                          const TakeSurface& take, const Progress& progress) {
-  SPOONBILL_ASSERT(static_cast<bool>(take));
+                          const SurfaceSink& sink, const Progress& progress) {
+  SPOONBILL_ASSERT(static_cast<bool>(sink));
   try {
-    return read(file, reading, take, progress);
+    return read(file, reading, sink, progress);
   } catch (const Standard_Failure& failure) {
-    return Error{std::string("OpenCASCADE fails on it (") + failure.DynamicType()->Name() + ")"};
+    return Error{ErrorCode::unsupported,
+                 std::string("OpenCASCADE fails on it (") + failure.DynamicType()->Name() + ")"};
   } catch (const std::bad_alloc&) {
-    return Error{"bad allocation"};
+    return Error{ErrorCode::too_many, bad_allocation};
   } catch (const std::exception& exception) {
-    return Error{std::string("OpenCASCADE fails on it (") + exception.what() + ")"};
+    return Error{ErrorCode::unsupported, std::string("OpenCASCADE fails on it (") + exception.what() + ")"};
   }
 }
 

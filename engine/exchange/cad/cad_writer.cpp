@@ -1,10 +1,10 @@
-#include "engine/exchange/cad/cad_writer.h"
-
+// Writer of STEP and IGES files, and OpenCASCADE's settings.
 #include <APIHeaderSection_MakeHeader.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepToIGESBRep_Entity.hxx>
 #include <Bnd_Box.hxx>
 #include <IGESBasic_Name.hxx>
+#include <IGESControl_Controller.hxx>
 #include <IGESControl_Writer.hxx>
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESEntity.hxx>
@@ -13,7 +13,12 @@
 #include <IGESData_Protocol.hxx>
 #include <IGESSelect_WorkLibrary.hxx>
 #include <Interface_FloatWriter.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Writer.hxx>
+#include <STEPControl_Controller.hxx>
 #include <Standard_Failure.hxx>
 #include <StepData_Protocol.hxx>
 #include <StepData_StepModel.hxx>
@@ -27,25 +32,193 @@
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <XSControl_WorkSession.hxx>
+#include <cstdint>
+#include <cstdio>
 #include <new>
+#include <set>
 #include <sstream>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
+#include "engine/base/text.h"
+#include "engine/exchange/cad/body_shape.h"
+#include "engine/exchange/cad/cad.h"
+#include "engine/exchange/cad/joined_faces.h"
 #include "engine/exchange/cad/occt_surface.h"
-#include "engine/exchange/cad/session.h"
-#include "engine/exchange/cad/step_text.h"
-#include "engine/exchange/cad/written_bodies.h"
+#include "engine/exchange/frame_stream.h"
+#include "engine/inspection/surface_check.h"
 
 namespace spoonbill {
 namespace {
 
-// Seventeen digits, which read back as the same number; OpenCASCADE's own choice is six decimals. Leaving out
-// trailing zeros would lose the exponent of a number as long.
+struct WrittenBody {
+  std::string name;  // unique within the file
+  TopoDS_Shape shape;
+  bool solid = false;
+  const CadSurface* surface = nullptr;  // of the model; null for a solid joined of several
+};
+
+const char* const two_bytes = "\\X2\\";
+const char* const four_bytes = "\\X4\\";
+
+struct Character {
+  std::uint32_t code;
+  std::size_t bytes;
+};
+
+// Returns the character at `start` of valid UTF-8 beyond ASCII. A line break within a character is skipped.
+Character character_at(std::string_view text, std::size_t start) {
+  const auto byte = [&](std::size_t k) {
+    return static_cast<std::uint32_t>(static_cast<unsigned char>(text[k]));
+  };
+  const std::size_t wanted = byte(start) >= 0xf0 ? 4 : byte(start) >= 0xe0 ? 3 : 2;
+  std::uint32_t code = byte(start) & (0xffU >> (wanted + 1));
+  std::size_t end = start + 1;
+  for (std::size_t read = 1; read < wanted && end < text.size(); ++end) {
+    if (text[end] == '\n') continue;
+    code = (code << 6) | (byte(end) & 0x3f);
+    ++read;
+  }
+  return {code, end - start};
+}
+
+// Writes characters of UTF-8 beyond ASCII, which occur in strings only, as hexadecimal digits of STEP (ISO
+// 10303-21, 6.4.3): \X2\....\X0\ or \X4\........\X0\.
+std::string to_step_ascii(std::string_view text) {
+  std::string ascii;
+  ascii.reserve(text.size());
+  const char* open_prefix = nullptr;  // prefix of the characters being written; null: ASCII
+  const auto switch_to = [&](const char* wanted) {
+    if (open_prefix == wanted) return;
+    if (open_prefix != nullptr) ascii += "\\X0\\";
+    if (wanted != nullptr) ascii += wanted;
+    open_prefix = wanted;
+  };
+  for (std::size_t k = 0; k < text.size();) {
+    if (static_cast<unsigned char>(text[k]) < 0x80) {
+      switch_to(nullptr);
+      ascii += text[k++];
+      continue;
+    }
+    const Character character = character_at(text, k);
+    const bool is_wide = character.code > 0xffff;
+    switch_to(is_wide ? four_bytes : two_bytes);
+    char digits[12];
+    std::snprintf(digits, sizeof digits, is_wide ? "%08X" : "%04X", static_cast<unsigned>(character.code));
+    ascii += digits;
+    k += character.bytes;
+  }
+  switch_to(nullptr);
+  return ascii;
+}
+
+// Displacement below which a closed surface counts as unchanged.
+constexpr double smallest_move_m = 1e-9;
+
+int face_count(const TopoDS_Shape& shape) {
+  int count = 0;
+  for (TopExp_Explorer each(shape, TopAbs_FACE); each.More(); each.Next()) ++count;
+  return count;
+}
+
+std::string describe_open_shell(const CadSurface& surface, const BodyShape& body) {
+  if (surface.trims.empty()) {
+    return "' closes, but OpenCASCADE finds no solid in it; an open shell is written";
+  }
+  const int faces = face_count(body.shape);
+  return "' would close, but is trimmed; an open shell of what is left is written" +
+         (faces > 1 ? ", cut in " + std::to_string(faces) + " faces, which come back as a body each"
+                    : std::string());
+}
+
+// Counts a body, and adds a note where it is not the solid that one expects of a surface that closes.
+void add_body_notes(const CadSurface& surface, const BodyShape& body, double moved_m,
+                    CadFileContent& content) {
+  ++(body.solid ? content.solids : content.open_shells);
+  if (body.solid && moved_m > smallest_move_m) {
+    content.notes.push_back("'" + surface.name + "' misses closing by " + short_length_text(moved_m) +
+                            "; it is written closed");
+  }
+  if (body.solid || !surface.solid.empty()) return;
+  if (find_closing(surface.surface).closedness != Closedness::solid) return;
+  content.notes.push_back("'" + surface.name + describe_open_shell(surface, body));
+}
+
+// Collector of the bodies of a model in the order of its surfaces.
+class BodyCollector {
+ public:
+  BodyCollector(const CadModel& model, CadFileContent& content) : model_(model), content_(content) {}
+
+  Status add(const CadSurface& surface) {
+    if (surface.solid.empty()) return add_surface_body(surface);
+    return added_solids_.insert(surface.solid).second ? add_solid(surface.solid) : Status();
+  }
+
+  std::vector<WrittenBody> release_bodies() {
+    std::vector<std::string> names;
+    for (const WrittenBody& body : bodies_) names.push_back(body.name);
+    names = make_names_unique(names, "body");
+    for (std::size_t k = 0; k < names.size(); ++k) bodies_[k].name = std::move(names[k]);
+    return std::move(bodies_);
+  }
+
+ private:
+  Status add_surface_body(const CadSurface& surface) {
+    CadSurface closed = surface;
+    auto [exact, moved_m] = close_exactly(surface.surface);
+    closed.surface = std::move(exact);
+    const auto body = build_body_shape(closed);
+    if (!body) return body.error().in("'" + surface.name + "'");
+    add_body_notes(surface, body.value(), moved_m, content_);
+    bodies_.push_back({surface.name, body->shape, body->solid, &surface});
+    return {};
+  }
+
+  Status add_solid(const std::string& name) {
+    std::vector<const CadSurface*> parts;
+    for (const CadSurface& surface : model_.surfaces) {
+      if (surface.solid == name) parts.push_back(&surface);
+    }
+    const auto joined = join_faces(parts);
+    if (!joined) return joined.error();
+    for (const JoinedSolid& solid : joined->solids) bodies_.push_back({name, solid.shape, true, nullptr});
+    content_.solids += static_cast<int>(joined->solids.size());
+    for (const std::size_t index : joined->loose) {
+      if (Status added = add_surface_body(*parts[index]); !added) return added;
+    }
+    const auto notes = describe_joining(joined.value(), name, parts, "; they are written one by one");
+    content_.notes.insert(content_.notes.end(), notes.begin(), notes.end());
+    return {};
+  }
+
+  const CadModel& model_;
+  CadFileContent& content_;
+  std::vector<WrittenBody> bodies_;
+  std::set<std::string> added_solids_;
+};
+
+// Returns the bodies of a file: surfaces and joined solids, which are at the position of their first face.
+// Counts and notes are added to `content`.
+Result<std::vector<WrittenBody>> collect_bodies(const CadModel& model, const Progress& progress,
+                                                CadFileContent& content) {
+  BodyCollector collector(model, content);
+  for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
+    if (Status added = collector.add(model.surfaces[k]); !added) return added.error();
+    const double fraction = static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size());
+    if (!progress.report(fraction)) return Progress::stopped();
+  }
+  return collector.release_bodies();
+}
+
+// Sets seventeen digits, which read back as the same number; OpenCASCADE's default is six decimals. Its
+// removal of trailing zeros is off, because it loses the exponent of numbers of this length.
 void set_digits(Interface_FloatWriter& writer) {
   writer.SetFormat("%.16E");
 }
 
-std::string text_of(const opencascade::handle<StepData_StepModel>& model) {
+std::string to_text(const opencascade::handle<StepData_StepModel>& model) {
   StepData_StepWriter writer(model);
   set_digits(writer.FloatWriter());
   writer.SendModel(opencascade::handle<StepData_Protocol>::DownCast(model->Protocol()));
@@ -54,7 +227,7 @@ std::string text_of(const opencascade::handle<StepData_StepModel>& model) {
   return std::move(text).str();
 }
 
-std::string text_of(const opencascade::handle<IGESData_IGESModel>& model) {
+std::string to_text(const opencascade::handle<IGESData_IGESModel>& model) {
   IGESData_IGESWriter writer(model);
   set_digits(writer.FloatWriter());
   writer.SendModel(IGESSelect_WorkLibrary::DefineProtocol());
@@ -63,13 +236,13 @@ std::string text_of(const opencascade::handle<IGESData_IGESModel>& model) {
   return std::move(text).str();
 }
 
-opencascade::handle<TCollection_HAsciiString> text(const char* letters) {
-  return new TCollection_HAsciiString(letters);
+opencascade::handle<TCollection_HAsciiString> text(const char* characters) {
+  return new TCollection_HAsciiString(characters);
 }
 
 const char* const program_name = "Spoonbill";
 
-// OpenCASCADE fills in itself, and in IGES files the name that the person is logged in by.
+// Replaces OpenCASCADE's own entries, in IGES files with the name of the logged-in user.
 void fill_header(const opencascade::handle<StepData_StepModel>& model) {
   APIHeaderSection_MakeHeader header(model);
   header.SetDescriptionValue(1, text("Spoonbill model"));
@@ -90,17 +263,17 @@ void fill_header(const opencascade::handle<IGESData_IGESModel>& model) {
   header.SetCompanyName(text(""));
 }
 
-// Of the work; putting the file together takes the rest.
-constexpr double share_of_shapes = 0.5;
+// Fraction of the work for shapes; the rest is for the file.
+constexpr double shape_fraction = 0.5;
 
 Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writing,
                                   const Progress& progress) {
-  choose_schema(writing.schema);
+  set_step_schema(writing.schema);
   opencascade::handle<TDocStd_Document> document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
   const auto shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
   CadFileContent content;
-  const auto bodies = written_bodies(model, progress.part(0.0, share_of_shapes), content);
+  const auto bodies = collect_bodies(model, progress.part(0.0, shape_fraction), content);
   if (!bodies) return bodies.error();
   for (const WrittenBody& body : bodies.value()) {
     const TDF_Label label = shapes->AddShape(body.shape, false);
@@ -109,10 +282,12 @@ Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writi
   STEPCAFControl_Writer writer;
   writer.SetColorMode(false);
   writer.SetLayerMode(false);
-  if (!writer.Transfer(document)) return Error{"OpenCASCADE makes no STEP file of it"};
+  if (!writer.Transfer(document)) {
+    return Error{ErrorCode::unsupported, "OpenCASCADE makes no STEP file of it"};
+  }
   const auto step = opencascade::handle<StepData_StepModel>::DownCast(writer.Writer().WS()->Model());
   fill_header(step);
-  content.text = step_text_in_ascii(text_of(step));
+  content.text = to_step_ascii(to_text(step));
   return content;
 }
 
@@ -125,7 +300,7 @@ void name_entity(const opencascade::handle<IGESData_IGESModel>& model,
   model->AddEntity(property);
 }
 
-// The entities that stand for a surface are among those after `before`, of this type.
+// Names the entities of a type that were added after the first `before`.
 void name_entities(const opencascade::handle<IGESData_IGESModel>& model, int before, int type,
                    const std::string& name) {
   for (int k = before + 1, count = model->NbEntities(); k <= count; ++k) {
@@ -134,8 +309,8 @@ void name_entities(const opencascade::handle<IGESData_IGESModel>& model, int bef
   }
 }
 
-// Other than its own shapes the writer does not count those in.
-void count_in_extent(const TopoDS_Shape& shape, const opencascade::handle<IGESData_IGESModel>& model) {
+// Extends the extent in the header by a shape that the writer does not consider.
+void extend_extent(const TopoDS_Shape& shape, const opencascade::handle<IGESData_IGESModel>& model) {
   Bnd_Box box;
   BRepBndLib::Add(shape, box);
   IGESData_GlobalSection& header = model->ChangeGlobalSection();
@@ -143,16 +318,16 @@ void count_in_extent(const TopoDS_Shape& shape, const opencascade::handle<IGESDa
   for (const gp_Pnt& corner : {box.CornerMin(), box.CornerMax()}) header.MaxMaxCoords(corner.XYZ() / unit_mm);
 }
 
-// IGESControl_Writer makes all of a file solids, or none.
+// Adds a solid. IGESControl_Writer itself writes either all shapes of a file as solids, or none.
 bool add_solid(IGESControl_Writer& writer, const TopoDS_Shape& solid) {
   BRepToIGESBRep_Entity maker;
   maker.SetModel(writer.Model());
   const auto entity = maker.TransferShape(solid);
-  count_in_extent(solid, writer.Model());
+  extend_extent(solid, writer.Model());
   return !entity.IsNull() && writer.AddEntity(entity);
 }
 
-// Each by itself: a name within a group is not read.
+// Adds each face separately, because readers ignore names within a group.
 bool add_faces(IGESControl_Writer& writer, const TopoDS_Shape& shape) {
   for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next()) {
     if (!writer.AddShape(faces.Current())) return false;
@@ -165,14 +340,16 @@ bool add_surface(IGESControl_Writer& writer, const Surface& surface) {
   return geometry && writer.AddGeom(geometry.value());
 }
 
-Status add_to(IGESControl_Writer& writer, const WrittenBody& body) {
+Status add_body(IGESControl_Writer& writer, const WrittenBody& body) {
   constexpr int solid = 186, untrimmed = 128, trimmed = 144;
   const int type = body.solid ? solid : body.surface->trims.empty() ? untrimmed : trimmed;
   const int before = writer.Model()->NbEntities();
   const bool added = type == solid       ? add_solid(writer, body.shape)
                      : type == untrimmed ? add_surface(writer, body.surface->surface)
                                          : add_faces(writer, body.shape);
-  if (!added) return Error{"'" + body.name + "': OpenCASCADE makes no IGES entity of it"};
+  if (!added) {
+    return Error{ErrorCode::unsupported, "'" + body.name + "': OpenCASCADE makes no IGES entity of it"};
+  }
   name_entities(writer.Model(), before, type, body.name);
   return {};
 }
@@ -180,28 +357,49 @@ Status add_to(IGESControl_Writer& writer, const WrittenBody& body) {
 Result<CadFileContent> write_iges(const CadModel& model, const Progress& progress) {
   IGESControl_Writer writer;
   CadFileContent content;
-  const auto bodies = written_bodies(model, progress.part(0.0, share_of_shapes), content);
+  const auto bodies = collect_bodies(model, progress.part(0.0, shape_fraction), content);
   if (!bodies) return bodies.error();
   for (const WrittenBody& body : bodies.value()) {
-    if (Status added = add_to(writer, body); !added) return added.error();
+    if (Status added = add_body(writer, body); !added) return added.error();
   }
   writer.ComputeModel();
   fill_header(writer.Model());
-  content.text = text_of(writer.Model());
+  content.text = to_text(writer.Model());
   return content;
 }
 
 }  // namespace
 
+void prepare_occt() {
+  Message::DefaultMessenger()->ChangePrinters().Clear();
+  STEPControl_Controller::Init();
+  STEPCAFControl_Controller::Init();
+  IGESControl_Controller::Init();
+  Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+  Interface_Static::SetIVal("read.stepcaf.subshapes.name", 1);
+  Interface_Static::SetIVal("read.iges.bspline.continuity", 0);
+}
+
+void set_step_schema(StepSchema schema) {
+  Interface_Static::SetCVal("write.step.schema", schema == StepSchema::ap242 ? "AP242DIS" : "AP214IS");
+}
+
+void set_file_unit(std::string_view unit) {
+  const char* name = unit == "cm" ? "CM" : unit == "m" ? "M" : unit == "in" ? "INCH" : "MM";
+  Interface_Static::SetCVal("write.step.unit", name);
+  Interface_Static::SetCVal("write.iges.unit", name);
+}
+
 Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writing, const Progress& progress) {
-  choose_unit(writing.unit);
+  set_file_unit(writing.unit);
   try {
     return writing.format == FileFormat::step ? write_step(model, writing, progress)
                                               : write_iges(model, progress);
   } catch (const Standard_Failure& failure) {
-    return Error{std::string("OpenCASCADE fails on it (") + failure.DynamicType()->Name() + ")"};
+    return Error{ErrorCode::unsupported,
+                 std::string("OpenCASCADE fails on it (") + failure.DynamicType()->Name() + ")"};
   } catch (const std::bad_alloc&) {
-    return Error{"bad allocation"};
+    return Error{ErrorCode::too_many, bad_allocation};
   }
 }
 

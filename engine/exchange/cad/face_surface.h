@@ -1,5 +1,4 @@
-// The surface under a face of a CAD file as one of ours: a spline with trim loops is whole, all others are
-// cut to the face's range of parameters.
+// Conversion of a face of a CAD file to a surface with trim loops.
 #pragma once
 
 #include <TopoDS_Face.hxx>
@@ -7,21 +6,23 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/exchange/cad_model.h"
+#include "engine/bspline/surface.h"
+#include "engine/bspline/trim_loop.h"
 
 namespace spoonbill {
 
 struct FaceSurface {
   Surface surface;              // metres, normals out of the face
-  double deviation_m = 0.0;     // 0 where it was taken as it stands
-  std::vector<TrimLoop> trims;  // where the face is less than its range of parameters
-  std::string trim_problem;     // why there are none although it is
+  double deviation_m = 0.0;     // 0 where the conversion is exact
+  std::vector<TrimLoop> trims;  // empty where the face is its whole range of parameters
+  std::string trim_problem;     // reason why a trimmed face has no trims; empty otherwise
 };
 
-// B-spline and Bezier surfaces, planes and extrusions of such curves are taken exactly; whatever is rational,
-// of a higher degree than ours, or no spline at all is approximated. `scale` is metres for each unit of the
-// face. Refused: a face without a surface, or of no finite extent; a tolerance that asks for too many control
-// points.
-Result<FaceSurface> face_surface(const TopoDS_Face& face, double scale, double tolerance_m);
+// Converts a face. B-spline and Bezier surfaces, planes and extrusions of such curves are converted exactly;
+// rational surfaces, those of a degree above max_degree and all others are approximated. A spline with trim
+// loops stays whole, any other surface is cut to the face's range of parameters. `scale` is metres for each
+// unit of the face. Refused: a face without a surface or of no finite extent, a tolerance that needs too many
+// control points.
+Result<FaceSurface> convert_face(const TopoDS_Face& face, double scale, double tolerance_m);
 
 }  // namespace spoonbill

@@ -25,75 +25,74 @@
 
 #include "engine/base/text.h"
 #include "engine/exchange/cad/body_shape.h"
-#include "engine/exchange/cad/closing.h"
 #include "engine/exchange/cad/occt_surface.h"
 
 namespace spoonbill {
 namespace {
 
-// From what files round to what two faces, each approximated, may miss each other by.
+// Sewing tolerances that are tried, from the rounding of files to the distance of two approximated faces.
 constexpr double tolerances_mm[] = {1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1};
 
-// What two faces that are as near to others as is usual may miss each other by.
+// Gap between two faces of usual accuracy.
 constexpr double expected_gap_m = 2e-5;
 constexpr int gap_samples = 16;
 
-// Sewing makes faces anew, on the same geometry.
+// Index of the part of each geometry; sewing makes new faces on the same geometry.
 using PartOf = std::map<const Geom_Surface*, std::size_t>;
 
-// How many faces of each part.
+// Number of faces of each part.
 using FaceCounts = std::map<std::size_t, int>;
 
 struct ClosedShell {
-  TopoDS_Shell shell;  // most of its faces as they were
+  TopoDS_Shell shell;  // oriented like most of its faces
   FaceCounts faces;
   bool is_cavity = false;
 };
 
-const Geom_Surface* geometry_of(const TopoDS_Face& face) {
+const Geom_Surface* get_geometry(const TopoDS_Face& face) {
   return BRep_Tool::Surface(face).get();
 }
 
-double volume_of(const TopoDS_Shape& shell) {
+double measure_volume(const TopoDS_Shape& shell) {
   GProp_GProps properties;
   BRepGProp::VolumeProperties(shell, properties);
   return properties.Mass();
 }
 
-ClosedShell closed_shell(const TopoDS_Shell& sewn, const PartOf& part_of) {
+ClosedShell make_closed_shell(const TopoDS_Shell& sewn, const PartOf& part_of) {
   ClosedShell closed;
-  int as_they_were = 0;
+  int balance = 0;
   for (TopExp_Explorer faces(sewn, TopAbs_FACE); faces.More(); faces.Next()) {
-    const auto part = part_of.find(geometry_of(TopoDS::Face(faces.Current())));
+    const auto part = part_of.find(get_geometry(TopoDS::Face(faces.Current())));
     if (part != part_of.end()) ++closed.faces[part->second];
-    as_they_were += faces.Current().Orientation() == TopAbs_REVERSED ? -1 : 1;
+    balance += faces.Current().Orientation() == TopAbs_REVERSED ? -1 : 1;
   }
-  closed.shell = as_they_were < 0 ? TopoDS::Shell(sewn.Reversed()) : sewn;
-  closed.is_cavity = volume_of(closed.shell) < 0.0;
+  closed.shell = balance < 0 ? TopoDS::Shell(sewn.Reversed()) : sewn;
+  closed.is_cavity = measure_volume(closed.shell) < 0.0;
   return closed;
 }
 
-std::vector<ClosedShell> sewn_shells(const std::vector<TopoDS_Face>& faces, const PartOf& part_of,
-                                     double tolerance_mm) {
+std::vector<ClosedShell> sew_shells(const std::vector<TopoDS_Face>& faces, const PartOf& part_of,
+                                    double tolerance_mm) {
   BRepBuilderAPI_Sewing sewing(tolerance_mm);
   for (const TopoDS_Face& face : faces) sewing.Add(face);
   sewing.Perform();
   std::vector<ClosedShell> shells;
   const TopoDS_Shape& shape = sewing.SewedShape();
   if (shape.IsNull()) return shells;
-  const auto take = [&](const TopoDS_Shell& shell) {
-    if (BRep_Tool::IsClosed(shell)) shells.push_back(closed_shell(shell, part_of));
+  const auto add_if_closed = [&](const TopoDS_Shell& shell) {
+    if (BRep_Tool::IsClosed(shell)) shells.push_back(make_closed_shell(shell, part_of));
   };
   for (TopExp_Explorer each(shape, TopAbs_SHELL); each.More(); each.Next()) {
-    take(TopoDS::Shell(each.Current()));
+    add_if_closed(TopoDS::Shell(each.Current()));
   }
   for (TopExp_Explorer each(shape, TopAbs_FACE, TopAbs_SHELL); each.More(); each.Next()) {
-    take(shell_of(TopoDS::Face(each.Current())));
+    add_if_closed(make_shell(TopoDS::Face(each.Current())));
   }
   return shells;
 }
 
-TopoDS_Solid solid_of(const TopoDS_Shell& outside) {
+TopoDS_Solid make_solid(const TopoDS_Shell& outside) {
   TopoDS_Solid solid;
   const BRep_Builder builder;
   builder.MakeSolid(solid);
@@ -101,7 +100,7 @@ TopoDS_Solid solid_of(const TopoDS_Shell& outside) {
   return solid;
 }
 
-bool holds(const TopoDS_Solid& solid, const TopoDS_Shell& shell) {
+bool contains(const TopoDS_Solid& solid, const TopoDS_Shell& shell) {
   const TopExp_Explorer vertex(shell, TopAbs_VERTEX);
   if (!vertex.More()) return false;
   const gp_Pnt at = BRep_Tool::Pnt(TopoDS::Vertex(vertex.Current()));
@@ -112,16 +111,17 @@ void add(const FaceCounts& more, FaceCounts& counts) {
   for (const auto& [part, count] : more) counts[part] += count;
 }
 
-// The points of both faces that the edge between them holds for one.
-double gap_along_m(const TopoDS_Edge& edge, const TopoDS_Face& one, const TopoDS_Face& other) {
-  const BRepAdaptor_Curve here(edge, one), there(edge, other);
+// Returns the largest distance between the curves that an edge has on its two faces.
+double edge_gap_m(const TopoDS_Edge& edge, const TopoDS_Face& one, const TopoDS_Face& other) {
+  const BRepAdaptor_Curve first_curve(edge, one), second_curve(edge, other);
   double widest_mm = 0.0;
   for (int k = 0; k <= gap_samples; ++k) {
-    const double share = static_cast<double>(k) / gap_samples;
-    const auto at = [share](const BRepAdaptor_Curve& curve) {
-      return curve.Value(curve.FirstParameter() + share * (curve.LastParameter() - curve.FirstParameter()));
+    const double fraction = static_cast<double>(k) / gap_samples;
+    const auto at = [fraction](const BRepAdaptor_Curve& curve) {
+      return curve.Value(curve.FirstParameter() +
+                         fraction * (curve.LastParameter() - curve.FirstParameter()));
     };
-    widest_mm = std::max(widest_mm, at(here).Distance(at(there)));
+    widest_mm = std::max(widest_mm, at(first_curve).Distance(at(second_curve)));
   }
   return widest_mm / millimetres_per_metre;
 }
@@ -134,7 +134,7 @@ double widest_gap_m(const TopoDS_Shape& shape) {
     const TopoDS_Edge& edge = TopoDS::Edge(faces_of_edge.FindKey(k));
     const TopTools_ListOfShape& faces = faces_of_edge(k);
     if (BRep_Tool::Degenerated(edge) || faces.Extent() != 2) continue;
-    widest_m = std::max(widest_m, gap_along_m(edge, TopoDS::Face(faces.First()), TopoDS::Face(faces.Last())));
+    widest_m = std::max(widest_m, edge_gap_m(edge, TopoDS::Face(faces.First()), TopoDS::Face(faces.Last())));
   }
   return widest_m;
 }
@@ -144,21 +144,21 @@ struct Solids {
   FaceCounts faces;
 };
 
-Solids solids_of(const std::vector<ClosedShell>& shells) {
+Solids make_solids(const std::vector<ClosedShell>& shells) {
   Solids found;
   for (const ClosedShell& outside : shells) {
     if (outside.is_cavity) continue;
-    const TopoDS_Solid whole = solid_of(outside.shell);
-    TopoDS_Solid solid = solid_of(outside.shell);
+    const TopoDS_Solid whole = make_solid(outside.shell);
+    TopoDS_Solid solid = make_solid(outside.shell);
     FaceCounts faces = outside.faces;
     for (const ClosedShell& cavity : shells) {
-      if (!cavity.is_cavity || !holds(whole, cavity.shell)) continue;
+      if (!cavity.is_cavity || !contains(whole, cavity.shell)) continue;
       BRep_Builder().Add(solid, cavity.shell);
       add(cavity.faces, faces);
     }
     if (!BRepCheck_Analyzer(solid).IsValid()) continue;
     JoinedSolid joined{solid, widest_gap_m(solid), {}};
-    for (const auto& [part, count] : faces) joined.places.push_back(part);
+    for (const auto& [part, count] : faces) joined.parts.push_back(part);
     found.solids.push_back(std::move(joined));
     add(faces, found.faces);
   }
@@ -171,35 +171,36 @@ struct AllFaces {
   FaceCounts counts;
 };
 
-Result<AllFaces> all_faces(const std::vector<const CadSurface*>& parts) {
+Result<AllFaces> collect_faces(const std::vector<const CadSurface*>& parts) {
   AllFaces all;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     CadSurface part = *parts[k];
-    part.surface = closed_exactly(part.surface).surface;
-    const auto of_part = faces_of(part);
-    if (!of_part) return Error{"'" + parts[k]->name + "': " + of_part.error().message};
-    for (const TopoDS_Face& face : of_part->faces) {
+    part.surface = close_exactly(part.surface).surface;
+    const auto part_faces = build_faces(part);
+    if (!part_faces) return part_faces.error().in("'" + parts[k]->name + "'");
+    for (const TopoDS_Face& face : part_faces->faces) {
       all.faces.push_back(face);
-      all.part_of[geometry_of(face)] = k;
+      all.part_of[get_geometry(face)] = k;
       ++all.counts[k];
     }
   }
   return all;
 }
 
-// Faces of one surface, of which some would be in a solid and some not, are none of it.
-bool are_whole(const FaceCounts& found, const FaceCounts& all) {
+// Returns true where all faces of each part were found; a part with faces outside a solid does not belong to
+// it.
+bool are_complete(const FaceCounts& found, const FaceCounts& all) {
   return std::all_of(found.begin(), found.end(),
                      [&](const auto& count) { return count.second == all.at(count.first); });
 }
 
 Result<JoinedFaces> join(const std::vector<const CadSurface*>& parts) {
-  const auto all = all_faces(parts);
+  const auto all = collect_faces(parts);
   if (!all) return all.error();
   Solids best;
   for (const double tolerance_mm : tolerances_mm) {
-    Solids found = solids_of(sewn_shells(all->faces, all->part_of, tolerance_mm));
-    if (found.faces.size() > best.faces.size() && are_whole(found.faces, all->counts)) {
+    Solids found = make_solids(sew_shells(all->faces, all->part_of, tolerance_mm));
+    if (found.faces.size() > best.faces.size() && are_complete(found.faces, all->counts)) {
       best = std::move(found);
     }
     if (best.faces.size() == parts.size()) break;
@@ -220,9 +221,9 @@ double explained_gap_m(const std::vector<const CadSurface*>& parts) {
 
 }  // namespace
 
-std::vector<std::string> notes_of(const JoinedFaces& joined, const std::string& name,
-                                  const std::vector<const CadSurface*>& parts,
-                                  const std::string& what_becomes_of_loose) {
+std::vector<std::string> describe_joining(const JoinedFaces& joined, const std::string& name,
+                                          const std::vector<const CadSurface*>& parts,
+                                          const std::string& loose_outcome) {
   std::vector<std::string> notes;
   double gap_m = 0.0;
   for (const JoinedSolid& solid : joined.solids) gap_m = std::max(gap_m, solid.gap_m);
@@ -232,7 +233,7 @@ std::vector<std::string> notes_of(const JoinedFaces& joined, const std::string& 
   }
   if (!joined.loose.empty()) {
     notes.push_back(std::to_string(joined.loose.size()) + " of the " + std::to_string(parts.size()) +
-                    " faces of '" + name + "' enclose nothing together" + what_becomes_of_loose);
+                    " faces of '" + name + "' enclose nothing together" + loose_outcome);
   }
   return notes;
 }
@@ -241,7 +242,8 @@ Result<JoinedFaces> join_faces(const std::vector<const CadSurface*>& parts) {
   try {
     return join(parts);
   } catch (const Standard_Failure& failure) {
-    return Error{std::string("its faces cannot be joined (") + failure.DynamicType()->Name() + ")"};
+    return Error{ErrorCode::mismatch,
+                 std::string("its faces cannot be joined (") + failure.DynamicType()->Name() + ")"};
   }
 }
 

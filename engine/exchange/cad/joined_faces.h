@@ -1,4 +1,4 @@
-// The faces of solids, which are surfaces of their own here, as those solids again.
+// Joining of the faces of a solid, which are surfaces of their own in the program, to that solid.
 #pragma once
 
 #include <TopoDS_Solid.hxx>
@@ -12,27 +12,26 @@
 namespace spoonbill {
 
 struct JoinedSolid {
-  TopoDS_Solid shape;               // with its cavities
-  double gap_m = 0.0;               // the widest between the two faces of an edge that was bridged
-  std::vector<std::size_t> places;  // of its faces among the parts
+  TopoDS_Solid shape;              // including its cavities
+  double gap_m = 0.0;              // widest gap between the two faces of an edge
+  std::vector<std::size_t> parts;  // indices of the parts whose faces it has
 };
 
 struct JoinedFaces {
   std::vector<JoinedSolid> solids;
-  std::vector<std::size_t> loose;  // places among the parts of those that are no faces of them
+  std::vector<std::size_t> loose;  // indices of the parts that belong to no solid
 };
 
-// Edges are sewn where they are no farther apart than what approximated faces may miss each other by. Which
-// side of them is outside most faces of a shell tell by their normals: one that is inside out is a cavity of
-// the solid around it, and loose where there is none, never a solid by itself. Refused: a surface or trim
-// loops of which OpenCASCADE can build no face.
+// Sews the parts' edges where they are no farther apart than approximated faces may be. The normals of most
+// of a shell's faces decide which side is outside: a shell that is inside out is a cavity of the solid around
+// it, or loose where there is none. Refused: a surface or trim loops of which OpenCASCADE can build no face.
 Result<JoinedFaces> join_faces(const std::vector<const CadSurface*>& parts);
 
-// What there is to say of the joined faces of the solid of that name, a line each: gaps that were bridged and
-// are wider than two approximated faces explain, and how many faces are loose, with what becomes of those
-// ("; they are written one by one").
-std::vector<std::string> notes_of(const JoinedFaces& joined, const std::string& name,
-                                  const std::vector<const CadSurface*>& parts,
-                                  const std::string& what_becomes_of_loose);
+// Returns notes about the joined faces of the solid `name`, one line each: bridged gaps that are wider than
+// two approximated faces explain, and the number of loose faces followed by `loose_outcome`, such as
+// "; they are written one by one".
+std::vector<std::string> describe_joining(const JoinedFaces& joined, const std::string& name,
+                                          const std::vector<const CadSurface*>& parts,
+                                          const std::string& loose_outcome);
 
 }  // namespace spoonbill

@@ -1,28 +1,32 @@
 #include "engine/exchange/cad/occt_surface.h"
 
+#include <Eigen/LU>
 #include <Standard_Failure.hxx>
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
 #include <TColgp_Array2OfPnt.hxx>
 #include <algorithm>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "engine/bspline/reparameterise.h"
+#include "engine/base/assert.h"
+#include "engine/bspline/blending_matrix.h"
+#include "engine/inspection/surface_check.h"
 
 namespace spoonbill {
 namespace {
 
-// One direction of theirs, and our control point for each of their poles.
+// One direction of an OpenCASCADE surface, and the index of the control point of each of its poles.
 struct OcctDirection {
   TColStd_Array1OfReal knots;
   TColStd_Array1OfInteger multiplicities;
   std::vector<int> controls;
 };
 
-// One period from a seam of full multiplicity, clamped.
-std::vector<double> period_of(const KnotVector& knots) {
+// Returns one period from a seam of full multiplicity, with clamped ends.
+std::vector<double> clamped_period(const KnotVector& knots) {
   const auto degree = static_cast<std::size_t>(knots.degree());
   std::vector<double> period(degree + 1, knots.domain_start());
   for (const double knot : knots.extended_knots()) {
@@ -32,9 +36,9 @@ std::vector<double> period_of(const KnotVector& knots) {
   return period;
 }
 
-OcctDirection occt_direction(const KnotVector& direction) {
+OcctDirection to_occt_direction(const KnotVector& direction) {
   const bool periodic = direction.is_periodic();
-  const std::vector<double> all = periodic ? period_of(direction) : direction.knots();
+  const std::vector<double> all = periodic ? clamped_period(direction) : direction.knots();
   std::vector<double> distinct = all;
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   const int count = static_cast<int>(distinct.size());
@@ -52,15 +56,20 @@ OcctDirection occt_direction(const KnotVector& direction) {
   return result;
 }
 
-Result<Surface> with_full_seam(const Surface& surface, Direction direction) {
+// Raises the multiplicity of the seam's knot of a periodic direction to the degree.
+Result<Surface> insert_full_seam(const Surface& surface, Direction direction) {
   const KnotVector& knots = direction == Direction::u ? surface.u : surface.v;
   if (!knots.is_periodic()) return surface;
   return insert_knot(surface, direction, knots.domain_start(), knots.degree());
 }
 
 bool is_clamped(const KnotVector& knots) {
-  const std::vector<double>& all = knots.knots();
-  return knots.is_periodic() || (all.front() == knots.domain_start() && all.back() == knots.domain_end());
+  return !knots.is_periodic() && knots.knots().front() == knots.domain_start() &&
+         knots.knots().back() == knots.domain_end();
+}
+
+bool has_unclamped_end(const KnotVector& knots) {
+  return !knots.is_periodic() && !is_clamped(knots);
 }
 
 std::vector<double> flat_knots(const TColStd_Array1OfReal& knots,
@@ -72,39 +81,115 @@ std::vector<double> flat_knots(const TColStd_Array1OfReal& knots,
   return flat;
 }
 
+using ControlLines = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// Returns the control points as a matrix; those of one index along the direction are a row.
+ControlLines control_lines(const Surface& surface, Direction direction) {
+  const ControlNet& net = surface.net;
+  const bool along_u = direction == Direction::u;
+  ControlLines lines(along_u ? net.rows : net.columns, 3 * (along_u ? net.columns : net.rows));
+  for (int i = 0; i < net.rows; ++i) {
+    for (int j = 0; j < net.columns; ++j) {
+      const Vector3 point = net.point(i, j);
+      for (int axis = 0; axis < 3; ++axis) {
+        (along_u ? lines(i, 3 * j + axis) : lines(j, 3 * i + axis)) = point[axis];
+      }
+    }
+  }
+  return lines;
+}
+
+// Returns the surface with other knots and control points along the direction.
+Surface replace_controls(const Surface& like, Direction direction, const KnotVector& knots,
+                         const ControlLines& lines) {
+  const bool along_u = direction == Direction::u;
+  const auto rows = static_cast<int>(along_u ? lines.rows() : lines.cols() / 3);
+  const auto columns = static_cast<int>(along_u ? lines.cols() / 3 : lines.rows());
+  Surface surface{along_u ? knots : like.u, along_u ? like.v : knots, ControlNet(rows, columns)};
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      const auto at = [&](int axis) { return along_u ? lines(i, 3 * j + axis) : lines(j, 3 * i + axis); };
+      surface.net.set_point(i, j, {at(0), at(1), at(2)});
+    }
+  }
+  return surface;
+}
+
+double largest_point_distance(const ControlLines& a, const ControlLines& b) {
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    for (Eigen::Index j = 0; j + 2 < a.cols(); j += 3) {
+      largest = std::max(largest, (a.block(i, j, 1, 3) - b.block(i, j, 1, 3)).norm());
+    }
+  }
+  return largest;
+}
+
+// Returns one period of the clamped knots of an open direction, with a seam of the given multiplicity.
+Result<KnotVector> periodic_knots(const KnotVector& open, int seam_multiplicity) {
+  std::vector<double> knots(static_cast<std::size_t>(seam_multiplicity), open.domain_start());
+  for (const double knot : open.knots()) {
+    if (knot > open.domain_start() && knot < open.domain_end()) knots.push_back(knot);
+  }
+  knots.push_back(open.domain_end());
+  return KnotVector::periodic(open.degree(), std::move(knots));
+}
+
+// Returns the control points of the open form of a periodic surface, for comparison.
+ControlLines opened_lines(const Surface& periodic, Direction direction) {
+  const KnotVector& before = direction == Direction::u ? periodic.u : periodic.v;
+  const auto full = insert_knot(periodic, direction, before.domain_start(), before.degree());
+  if (!full) return {};
+  const KnotVector& knots = direction == Direction::u ? full->u : full->v;
+  const ControlLines lines = control_lines(full.value(), direction);
+  const int count = knots.control_point_count();
+  const int first = knots.control_index(knots.find_span(knots.domain_start()), 0);
+  ControlLines opened(lines.rows() + 1, lines.cols());
+  for (int i = 0; i <= count; ++i) opened.row(i) = lines.row((first + i) % count);
+  return opened;
+}
+
+// Largest ratio of the spread of an edge's control points to the width of the edge.
+constexpr double control_spread = 10.0;
+constexpr int moved_samples = 64;
+
+double parameter_at(const KnotVector& knots, double fraction) {
+  return knots.domain_start() + fraction * (knots.domain_end() - knots.domain_start());
+}
+
 }  // namespace
 
 Result<opencascade::handle<Geom_BSplineSurface>> to_occt(const Surface& surface) {
-  auto opened = with_full_seam(surface, Direction::u);
-  if (opened) opened = with_full_seam(opened.value(), Direction::v);
+  auto opened = insert_full_seam(surface, Direction::u);
+  if (opened) opened = insert_full_seam(opened.value(), Direction::v);
   if (!opened) return opened.error();
-  const OcctDirection u = occt_direction(opened->u), v = occt_direction(opened->v);
+  const OcctDirection u = to_occt_direction(opened->u), v = to_occt_direction(opened->v);
   TColgp_Array2OfPnt poles(1, static_cast<int>(u.controls.size()), 1, static_cast<int>(v.controls.size()));
   for (std::size_t i = 0; i < u.controls.size(); ++i) {
     for (std::size_t j = 0; j < v.controls.size(); ++j) {
-      const Vector3 at = millimetres_per_metre * opened->net.point(u.controls[i], v.controls[j]);
-      poles(static_cast<int>(i) + 1, static_cast<int>(j) + 1) = gp_Pnt(at.x(), at.y(), at.z());
+      const Vector3 point = millimetres_per_metre * opened->net.point(u.controls[i], v.controls[j]);
+      poles(static_cast<int>(i) + 1, static_cast<int>(j) + 1) = gp_Pnt(point.x(), point.y(), point.z());
     }
   }
   try {
     opencascade::handle<Geom_BSplineSurface> result = new Geom_BSplineSurface(
         poles, u.knots, v.knots, u.multiplicities, v.multiplicities, surface.u.degree(), surface.v.degree());
-    if (!is_clamped(surface.u) || !is_clamped(surface.v)) {
+    if (has_unclamped_end(surface.u) || has_unclamped_end(surface.v)) {
       result->Segment(surface.u.domain_start(), surface.u.domain_end(), surface.v.domain_start(),
                       surface.v.domain_end(), 0.0, 0.0);
     }
     return result;
   } catch (const Standard_Failure& failure) {
-    return Error{std::string("its knots are too near each other for a CAD file (") +
-                 failure.DynamicType()->Name() + "); make near ones equal"};
+    return Error{ErrorCode::degenerate, std::string("its knots are too near each other for a CAD file (") +
+                                            failure.DynamicType()->Name() + "); make near ones equal"};
   }
 }
 
 Result<Surface> from_occt(const Geom_BSplineSurface& surface) {
   auto u = KnotVector::open(surface.UDegree(), flat_knots(surface.UKnots(), surface.UMultiplicities()));
-  if (!u) return Error{"along u: " + u.error().message};
+  if (!u) return u.error().in("along u");
   auto v = KnotVector::open(surface.VDegree(), flat_knots(surface.VKnots(), surface.VMultiplicities()));
-  if (!v) return Error{"along v: " + v.error().message};
+  if (!v) return v.error().in("along v");
   ControlNet net(surface.NbUPoles(), surface.NbVPoles());
   for (int i = 0; i < net.rows; ++i) {
     for (int j = 0; j < net.columns; ++j) {
@@ -113,6 +198,90 @@ Result<Surface> from_occt(const Geom_BSplineSurface& surface) {
     }
   }
   return make_surface(std::move(u).value(), std::move(v).value(), std::move(net));
+}
+
+std::vector<double> greville_parameters(const KnotVector& knots) {
+  const std::vector<double>& all = knots.extended_knots();
+  const auto degree = static_cast<std::size_t>(knots.degree());
+  std::vector<double> parameters;
+  // In a periodic direction the first control point is the one whose basis function starts in the period.
+  const std::size_t first = knots.is_periodic() ? degree : 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(knots.control_point_count()); ++i) {
+    double sum = 0.0;
+    for (std::size_t k = 1; k <= degree; ++k) sum += all[first + i + k];
+    parameters.push_back(knots.into_domain(sum / knots.degree()));
+  }
+  return parameters;
+}
+
+Surface close_seam(const Surface& surface, Direction direction, double tolerance_m) {
+  SPOONBILL_ASSERT(tolerance_m >= 0.0);
+  const KnotVector& open = direction == Direction::u ? surface.u : surface.v;
+  if (open.is_periodic()) return surface;
+  const ControlLines lines = control_lines(surface, direction);
+  const ControlLines first = lines.topRows(1), last = lines.bottomRows(1);
+  if (largest_point_distance(first, last) > tolerance_m) return surface;
+  const ControlLines one_point = first.leftCols(3).replicate(1, first.cols() / 3);
+  if (largest_point_distance(first, one_point) <= tolerance_m) return surface;
+  for (int multiplicity = 1; multiplicity <= open.degree(); ++multiplicity) {
+    auto knots = periodic_knots(open, multiplicity);
+    if (!knots) continue;
+    const std::vector<double> parameters = greville_parameters(knots.value());
+    const Eigen::PartialPivLU<Eigen::MatrixXd> solver(blending_matrix(knots.value(), parameters, 0).dense());
+    const ControlLines controls = solver.solve(blending_matrix(open, parameters, 0).dense() * lines);
+    if (!controls.allFinite()) continue;
+    Surface closed = replace_controls(surface, direction, knots.value(), controls);
+    const ControlLines opened = opened_lines(closed, direction);
+    if (opened.rows() == lines.rows() && largest_point_distance(opened, lines) <= tolerance_m) return closed;
+  }
+  return surface;
+}
+
+void close_poles(Surface& surface, double tolerance_m) {
+  SPOONBILL_ASSERT(tolerance_m >= 0.0);
+  ControlNet& net = surface.net;
+  const auto close = [&](int count, const auto& point, const auto& set) {
+    Vector3 mean = Vector3::Zero();
+    for (int k = 0; k < count; ++k) mean += point(k) / count;
+    for (int k = 0; k < count; ++k) {
+      if ((point(k) - mean).norm() > tolerance_m) return;
+    }
+    for (int k = 0; k < count; ++k) set(k, mean);
+  };
+  for (const int i : {0, net.rows - 1}) {
+    if (surface.u.is_periodic()) break;
+    close(
+        net.columns, [&](int j) { return net.point(i, j); },
+        [&](int j, const Vector3& p) { net.set_point(i, j, p); });
+  }
+  for (const int j : {0, net.columns - 1}) {
+    if (surface.v.is_periodic()) break;
+    close(
+        net.rows, [&](int i) { return net.point(i, j); },
+        [&](int i, const Vector3& p) { net.set_point(i, j, p); });
+  }
+}
+
+ClosedSurface close_exactly(const Surface& surface) {
+  ClosedSurface closed{surface, 0.0};
+  const Closing closing = find_closing(surface);
+  if (closing.closedness != Closedness::solid) return closed;
+  if (is_clamped(surface.u) && closing.u.apart_m <= closing_tolerance_m) {
+    closed.surface = close_seam(closed.surface, Direction::u, closing_tolerance_m);
+  }
+  if (is_clamped(surface.v) && closing.v.apart_m <= closing_tolerance_m) {
+    closed.surface = close_seam(closed.surface, Direction::v, closing_tolerance_m);
+  }
+  close_poles(closed.surface, control_spread * closing_tolerance_m);
+  for (int i = 0; i <= moved_samples; ++i) {
+    for (int j = 0; j <= moved_samples; ++j) {
+      const double u = parameter_at(surface.u, static_cast<double>(i) / moved_samples);
+      const double v = parameter_at(surface.v, static_cast<double>(j) / moved_samples);
+      const Vector3 move = position(closed.surface, u, v) - position(surface, u, v);
+      closed.moved_m = std::max(closed.moved_m, move.norm());
+    }
+  }
+  return closed;
 }
 
 }  // namespace spoonbill

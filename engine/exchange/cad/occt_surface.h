@@ -1,21 +1,46 @@
-// Our surfaces as OpenCASCADE's and back, exactly. Lengths of theirs are millimetres.
+// Conversion of surfaces to and from OpenCASCADE, and the closing of seams and poles that CAD files leave
+// open. OpenCASCADE's lengths are millimetres.
 #pragma once
 
 #include <Geom_BSplineSurface.hxx>
+#include <vector>
 
 #include "engine/base/result.h"
+#include "engine/bspline/reparameterise.h"
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {
 
 inline constexpr double millimetres_per_metre = 1e3;
 
-// Both directions open and clamped: a periodic one is opened at its seam by knot insertion, an open one that
-// is not clamped gets the knots at its ends. Refused: knots that OpenCASCADE holds for one.
+// Converts a surface exactly. The result is open and clamped in both directions: a periodic direction is
+// opened at its seam by knot insertion, an open one that is not clamped gets the knots at its ends. Refused:
+// knots that OpenCASCADE takes for equal.
 Result<opencascade::handle<Geom_BSplineSurface>> to_occt(const Surface& surface);
 
-// Of a surface that is neither rational nor periodic. Refused: a degree above ours, coordinates or knots that
-// are no surface of ours.
+// Converts a surface that is neither rational nor periodic exactly. Refused: a degree above max_degree,
+// invalid knots, coordinates that are not finite.
 Result<Surface> from_occt(const Geom_BSplineSurface& surface);
+
+// Returns the surface made periodic in `direction`, where it must be clamped, if its two edges coincide to
+// `tolerance_m`; otherwise, and where an edge is a single point, the surface unchanged. As many knots of the
+// seam are removed as possible without moving a control point of the open form by more than the tolerance.
+Surface close_seam(const Surface& surface, Direction direction, double tolerance_m);
+
+// Makes all control points of an edge equal where they coincide to `tolerance_m`, in both directions.
+void close_poles(Surface& surface, double tolerance_m);
+
+struct ClosedSurface {
+  Surface surface;
+  double moved_m = 0.0;  // largest displacement of samples
+};
+
+// Returns a surface that find_closing() calls a solid with periodic seams and poles of a single point. Any
+// other surface, and one that cannot be closed within the tolerance, is returned unchanged.
+ClosedSurface close_exactly(const Surface& surface);
+
+// Returns the Greville parameters, at which a spline of as many control points is interpolated well: the mean
+// of the inner knots that each basis function reaches (Greville 1964), brought into the domain.
+std::vector<double> greville_parameters(const KnotVector& knots);
 
 }  // namespace spoonbill

@@ -1,52 +1,54 @@
 #include "engine/exchange/mesh_export/mesh_writer.h"
 
+#include <zip.h>
+
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "engine/base/assert.h"
 #include "engine/base/text.h"
-#include "engine/exchange/mesh_export/three_mf.h"
 
 namespace spoonbill {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "STL and PLY are written in the machine's order");
+static_assert(std::endian::native == std::endian::little, "STL and PLY are written in native byte order");
 
 constexpr std::size_t part_bytes = std::size_t{1} << 20;
 
-// Bytes on their way to a file; the first refusal sticks.
-class Parts {
+// Buffer that passes bytes to the sink in large parts. The first error is stored; later bytes are dropped.
+class PartBuffer {
  public:
-  explicit Parts(const TakeBytes& take) : take_(take) {}
+  explicit PartBuffer(const ByteSink& sink) : sink_(sink) {}
 
-  Parts& text(std::string_view more) {
+  PartBuffer& text(std::string_view more) {
     bytes_ += more;
-    return passed_on();
+    return flush_if_full();
   }
   template <class T>
-  Parts& raw(const T& value) {
+  PartBuffer& raw(const T& value) {
     bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-    return passed_on();
+    return flush_if_full();
   }
   Status finish() {
-    pass_on();
+    flush();
     return status_;
   }
 
  private:
-  Parts& passed_on() {
-    if (bytes_.size() >= part_bytes) pass_on();
+  PartBuffer& flush_if_full() {
+    if (bytes_.size() >= part_bytes) flush();
     return *this;
   }
-  void pass_on() {
-    if (status_.ok() && !bytes_.empty()) status_ = take_(bytes_);
+  void flush() {
+    if (status_.ok() && !bytes_.empty()) status_ = sink_(bytes_);
     bytes_.clear();
   }
 
-  const TakeBytes& take_;
+  const ByteSink& sink_;
   std::string bytes_;
   Status status_;
 };
@@ -55,7 +57,7 @@ struct Counts {
   std::size_t vertices = 0, triangles = 0;
 };
 
-Counts counts_of(const std::vector<NamedMesh>& meshes) {
+Counts count_elements(const std::vector<NamedMesh>& meshes) {
   Counts counts;
   for (const NamedMesh& part : meshes) {
     counts.vertices += part.mesh.vertices_m.size();
@@ -64,12 +66,12 @@ Counts counts_of(const std::vector<NamedMesh>& meshes) {
   return counts;
 }
 
-Status write_stl(const std::vector<NamedMesh>& meshes, double unit_m, const TakeBytes& take) {
-  Parts parts(take);
+Status write_stl(const std::vector<NamedMesh>& meshes, double unit_m, const ByteSink& sink) {
+  PartBuffer parts(sink);
   std::array<char, 80> head{};
   const std::string_view words = "binary STL by Spoonbill";
   std::memcpy(head.data(), words.data(), words.size());
-  parts.raw(head).raw(static_cast<std::uint32_t>(counts_of(meshes).triangles));
+  parts.raw(head).raw(static_cast<std::uint32_t>(count_elements(meshes).triangles));
   const auto add = [&](const Vector3& vector) {
     for (int axis = 0; axis < 3; ++axis) parts.raw(static_cast<float>(vector[axis]));
   };
@@ -86,10 +88,10 @@ Status write_stl(const std::vector<NamedMesh>& meshes, double unit_m, const Take
   return parts.finish();
 }
 
-Status write_obj(const std::vector<NamedMesh>& meshes, double unit_m, const TakeBytes& take) {
-  Parts parts(take);
+Status write_obj(const std::vector<NamedMesh>& meshes, double unit_m, const ByteSink& sink) {
+  PartBuffer parts(sink);
   parts.text("# by Spoonbill\n");
-  std::size_t before = 1;  // vertices count from 1 through the whole file
+  std::size_t first = 1;  // index of the mesh's first vertex; vertices count from 1 through the whole file
   for (const NamedMesh& part : meshes) {
     parts.text("o ").text(part.name).text("\n");
     for (const Vector3& vertex : part.mesh.vertices_m) {
@@ -99,17 +101,17 @@ Status write_obj(const std::vector<NamedMesh>& meshes, double unit_m, const Take
     }
     for (const TriangleCorners& corners : part.mesh.triangles) {
       parts.text("f");
-      for (const std::uint32_t corner : corners) parts.text(" ").text(std::to_string(before + corner));
+      for (const std::uint32_t corner : corners) parts.text(" ").text(std::to_string(first + corner));
       parts.text("\n");
     }
-    before += part.mesh.vertices_m.size();
+    first += part.mesh.vertices_m.size();
   }
   return parts.finish();
 }
 
-Status write_ply(const std::vector<NamedMesh>& meshes, double unit_m, const TakeBytes& take) {
-  Parts parts(take);
-  const Counts counts = counts_of(meshes);
+Status write_ply(const std::vector<NamedMesh>& meshes, double unit_m, const ByteSink& sink) {
+  PartBuffer parts(sink);
+  const Counts counts = count_elements(meshes);
   parts.text("ply\nformat binary_little_endian 1.0\ncomment by Spoonbill\nelement vertex ")
       .text(std::to_string(counts.vertices))
       .text("\nproperty double x\nproperty double y\nproperty double z\nelement face ")
@@ -120,37 +122,206 @@ Status write_ply(const std::vector<NamedMesh>& meshes, double unit_m, const Take
       for (int axis = 0; axis < 3; ++axis) parts.raw(vertex[axis] / unit_m);
     }
   }
-  std::size_t before = 0;
+  std::size_t first = 0;
   for (const NamedMesh& part : meshes) {
     for (const TriangleCorners& corners : part.mesh.triangles) {
       parts.raw(std::uint8_t{3});
-      for (const std::uint32_t corner : corners) parts.raw(static_cast<std::int32_t>(before + corner));
+      for (const std::uint32_t corner : corners) parts.raw(static_cast<std::int32_t>(first + corner));
     }
-    before += part.mesh.vertices_m.size();
+    first += part.mesh.vertices_m.size();
   }
   return parts.finish();
+}
+
+const char* const content_types =
+    R"(<?xml version="1.0" encoding="UTF-8"?>
+<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
+<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
+<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>
+</Types>
+)";
+
+const char* const relationships =
+    R"(<?xml version="1.0" encoding="UTF-8"?>
+<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
+<Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
+</Relationships>
+)";
+
+std::string escape_attribute(const std::string& text) {
+  std::string escaped;
+  for (const char character : text) {
+    switch (character) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += character;
+    }
+  }
+  return escaped;
+}
+
+// Poll of whether the sink wants to continue. The first error is stored.
+class StopCheck {
+ public:
+  explicit StopCheck(const ByteSink& sink) : sink_(sink) {}
+
+  bool may_continue() {
+    if (status_.ok()) status_ = sink_({});
+    return status_.ok();
+  }
+  // Asks the sink for every 16384th element only.
+  bool may_continue_at(std::size_t number) {
+    constexpr std::size_t interval = 1 << 14;
+    return number % interval == 0 ? may_continue() : status_.ok();
+  }
+  const Status& status() const { return status_; }
+
+ private:
+  const ByteSink& sink_;
+  Status status_;
+};
+
+void add_object(const NamedMesh& part, std::size_t id, std::string& xml, StopCheck& stop_check) {
+  constexpr double per_metre = 1e3;
+  xml += "<object id=\"" + std::to_string(id) +
+         (part.closed ? "\" type=\"model\" name=\"" : "\" type=\"surface\" name=\"") +
+         escape_attribute(part.name) + "\"><mesh><vertices>\n";
+  std::size_t written = 0;
+  for (const Vector3& vertex : part.mesh.vertices_m) {
+    if (!stop_check.may_continue_at(written++)) return;
+    xml += "<vertex x=\"" + number_text(per_metre * vertex.x()) + "\" y=\"" +
+           number_text(per_metre * vertex.y()) + "\" z=\"" + number_text(per_metre * vertex.z()) + "\"/>\n";
+  }
+  xml += "</vertices><triangles>\n";
+  for (const TriangleCorners& corners : part.mesh.triangles) {
+    if (!stop_check.may_continue_at(written++)) return;
+    xml += "<triangle v1=\"" + std::to_string(corners[0]) + "\" v2=\"" + std::to_string(corners[1]) +
+           "\" v3=\"" + std::to_string(corners[2]) + "\"/>\n";
+  }
+  xml += "</triangles></mesh></object>\n";
+}
+
+std::string model_xml(const std::vector<NamedMesh>& meshes, StopCheck& stop_check) {
+  std::string xml =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xml:lang=\"en-US\" "
+      "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n<resources>\n";
+  for (std::size_t k = 0; k < meshes.size(); ++k) add_object(meshes[k], k + 1, xml, stop_check);
+  xml += "</resources>\n<build>\n";
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    xml += "<item objectid=\"" + std::to_string(k + 1) + "\"/>\n";
+  }
+  return xml + "</build>\n</model>\n";
+}
+
+// Zip archive in memory.
+class Archive {
+ public:
+  Archive() {
+    zip_error_t error;
+    zip_error_init(&error);
+    source_ = zip_source_buffer_create(nullptr, 0, 0, &error);
+    if (source_ != nullptr) archive_ = zip_open_from_source(source_, ZIP_TRUNCATE, &error);
+    if (archive_ != nullptr) {
+      zip_source_keep(source_);
+    } else if (source_ != nullptr) {
+      zip_source_free(source_);
+      source_ = nullptr;
+    }
+    zip_error_fini(&error);
+  }
+  Archive(const Archive&) = delete;
+  Archive& operator=(const Archive&) = delete;
+  ~Archive() {
+    if (archive_ != nullptr) zip_discard(archive_);
+    if (source_ != nullptr) zip_source_free(source_);
+  }
+
+  // `text` must outlive pack().
+  bool add(const char* name, const std::string& text) {
+    if (archive_ == nullptr) return false;
+    zip_source_t* content = zip_source_buffer(archive_, text.data(), text.size(), 0);
+    if (content == nullptr) return false;
+    if (zip_file_add(archive_, name, content, ZIP_FL_ENC_UTF_8) >= 0) return true;
+    zip_source_free(content);
+    return false;
+  }
+
+  // Compresses the files. Returns false after an error; the archive is unusable then.
+  bool pack(StopCheck& stop_check) {
+    if (archive_ == nullptr) return false;
+    const auto stops = [](zip_t*, void* state) {
+      return static_cast<StopCheck*>(state)->may_continue() ? 0 : 1;
+    };
+    zip_register_cancel_callback_with_state(archive_, stops, nullptr, &stop_check);
+    if (zip_close(archive_) != 0) return false;
+    archive_ = nullptr;
+    // A stop that the last call of the callback reports has no effect on zip_close().
+    return stop_check.status().ok();
+  }
+
+  // Passes the bytes of the packed archive on.
+  Status send_to(const ByteSink& sink) {
+    if (zip_source_open(source_) != 0) return Error{ErrorCode::unwritable, "cannot be packed"};
+    std::string part(std::size_t{1} << 20, '\0');
+    Status status;
+    for (;;) {
+      const zip_int64_t count = zip_source_read(source_, part.data(), part.size());
+      if (count < 0) status = Error{ErrorCode::unwritable, "cannot be packed"};
+      if (count <= 0) break;
+      status = sink(std::string_view(part).substr(0, static_cast<std::size_t>(count)));
+      if (!status.ok()) break;
+    }
+    zip_source_close(source_);
+    return status;
+  }
+
+ private:
+  zip_source_t* source_ = nullptr;
+  zip_t* archive_ = nullptr;
+};
+
+Status write_three_mf(const std::vector<NamedMesh>& meshes, const ByteSink& sink) {
+  SPOONBILL_ASSERT(static_cast<bool>(sink));
+  StopCheck stop_check(sink);
+  const std::string types = content_types, relations = relationships, model = model_xml(meshes, stop_check);
+  if (!stop_check.status().ok()) return stop_check.status();
+  Archive archive;
+  if (!archive.add("[Content_Types].xml", types) || !archive.add("_rels/.rels", relations) ||
+      !archive.add("3D/3dmodel.model", model) || !archive.pack(stop_check)) {
+    return stop_check.status().ok() ? Error{ErrorCode::unwritable, "cannot be packed"} : stop_check.status();
+  }
+  return archive.send_to(sink);
 }
 
 }  // namespace
 
 Status write_meshes(const std::vector<NamedMesh>& meshes, FileFormat format, double unit_m,
-                    const TakeBytes& take) {
-  SPOONBILL_ASSERT(unit_m > 0.0 && static_cast<bool>(take));
-  const Counts counts = counts_of(meshes);
-  constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
-  if (counts.vertices > most || counts.triangles > most) {
-    return Error{"has more triangles than the format counts; choose a larger chord error"};
+                    const ByteSink& sink) {
+  SPOONBILL_ASSERT(unit_m > 0.0 && static_cast<bool>(sink));
+  const Counts counts = count_elements(meshes);
+  constexpr std::size_t index_limit = std::numeric_limits<std::int32_t>::max();
+  if (counts.vertices > index_limit || counts.triangles > index_limit) {
+    return Error{ErrorCode::too_many,
+                 "has more triangles than the format counts; choose a larger chord error"};
   }
   SPOONBILL_ASSERT(is_written_mesh(format));
   switch (format) {
     case FileFormat::stl:
-      return write_stl(meshes, unit_m, take);
+      return write_stl(meshes, unit_m, sink);
     case FileFormat::obj:
-      return write_obj(meshes, unit_m, take);
+      return write_obj(meshes, unit_m, sink);
     case FileFormat::ply:
-      return write_ply(meshes, unit_m, take);
+      return write_ply(meshes, unit_m, sink);
     default:
-      return write_three_mf(meshes, take);
+      return write_three_mf(meshes, sink);
   }
 }
 

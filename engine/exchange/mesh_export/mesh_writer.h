@@ -1,7 +1,6 @@
-// Triangle meshes to files of STL, OBJ, PLY and 3MF, in a unit of choice.
+// Writer of triangle meshes to STL, OBJ, PLY and 3MF.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -16,18 +15,19 @@ namespace spoonbill {
 struct NamedMesh {
   std::string name;
   TriangleMesh mesh;
-  bool closed = true;  // 3MF tells solids from sheets
+  bool closed = true;  // 3MF distinguishes solids from sheets
 };
 
-// What takes a file's bytes, part after part. An empty part only asks whether to go on, between steps that
-// have nothing to write yet.
-using TakeBytes = std::function<Status(std::string_view)>;
+// Receiver of a file's bytes, part by part. An empty part asks whether to continue, between steps that have
+// nothing to write yet; an error stops the writer.
+using ByteSink = std::function<Status(std::string_view)>;
 
-// STL binary, in single precision as the format has it; OBJ as text with every digit, an object for each
-// mesh; PLY binary in double precision, one after the other; 3MF as a zip with an object for each mesh,
-// always in millimetres. `format` must be one of these. `unit_m` is the length of one of the file's numbers.
-// Refused: more triangles than the format's indices count; what take() refuses.
+// Writes meshes to a file. STL is binary in single precision, as the format requires; OBJ is text with all
+// digits and an object for each mesh; PLY is binary in double precision, all meshes in one; 3MF (3D
+// Manufacturing Format, core specification 1.3) is a zip with an object for each mesh, always in millimetres.
+// `format` must be one of these. `unit_m` is the length of one of the file's numbers. Refused: more triangles
+// than the format's indices count, what libzip cannot pack, and errors of the sink.
 Status write_meshes(const std::vector<NamedMesh>& meshes, FileFormat format, double unit_m,
-                    const TakeBytes& take);
+                    const ByteSink& sink);
 
 }  // namespace spoonbill

@@ -3,7 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <numeric>
+#include <set>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -13,23 +19,186 @@
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/collision/levels/surface_levels.h"
-#include "engine/exchange/mesh_export/slivers.h"
 #include "engine/inspection/surface_check.h"
 
 namespace spoonbill {
 namespace {
 
-// What a file rounds away of coordinates.
-constexpr double coincidence_m = 1e-9;
-// Of the chord error, for the bend along one direction; the twist takes what is left.
-constexpr double share_of_a_direction = 0.4;
-// Of the chord error, what cells have at least where the edges of loops take the rest.
-constexpr double least_share_of_cells = 0.5;
+// Height below which a triangle is a sliver, and distance below which vertices are merged.
+constexpr double smallest_height_m = 1e-9;
+constexpr std::size_t no_triangle = std::numeric_limits<std::size_t>::max();
 
-// Into how many cells each polynomial piece is cut.
+bool is_degenerate(const TriangleCorners& corners) {
+  return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
+}
+
+double length_m(const TriangleMesh& mesh, std::uint32_t a, std::uint32_t b) {
+  return (mesh.vertices_m[a] - mesh.vertices_m[b]).norm();
+}
+
+bool is_sliver(const TriangleMesh& mesh, const TriangleCorners& corners) {
+  const Vector3 &a = mesh.vertices_m[corners[0]], &b = mesh.vertices_m[corners[1]],
+                &c = mesh.vertices_m[corners[2]];
+  const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  return (b - a).cross(c - a).norm() <= smallest_height_m * longest;
+}
+
+// Rotates the corners so that the first two are the ends of the longest edge.
+TriangleCorners rotate_longest_first(const TriangleMesh& mesh, TriangleCorners corners) {
+  const double first = length_m(mesh, corners[0], corners[1]),
+               second = length_m(mesh, corners[1], corners[2]),
+               third = length_m(mesh, corners[2], corners[0]);
+  const int turns = first >= second && first >= third ? 0 : second >= third ? 1 : 2;
+  std::rotate(corners.begin(), corners.begin() + turns, corners.end());
+  return corners;
+}
+
+void drop_degenerate(TriangleMesh& mesh) {
+  std::erase_if(mesh.triangles, is_degenerate);
+}
+
+void merge_near_corners(TriangleMesh& mesh) {
+  std::vector<std::uint32_t> representative(mesh.vertices_m.size());
+  std::iota(representative.begin(), representative.end(), 0U);
+  const auto root = [&](std::uint32_t vertex) {
+    while (representative[vertex] != vertex) {
+      vertex = representative[vertex] = representative[representative[vertex]];
+    }
+    return vertex;
+  };
+  for (const TriangleCorners& corners : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = root(corners[k]), b = root(corners[(k + 1) % 3]);
+      if (length_m(mesh, a, b) <= smallest_height_m) representative[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  for (TriangleCorners& corners : mesh.triangles) {
+    for (std::uint32_t& corner : corners) corner = root(corner);
+  }
+  drop_degenerate(mesh);
+}
+
+std::uint32_t find_apex(const TriangleCorners& corners, std::uint32_t from, std::uint32_t to) {
+  for (const std::uint32_t corner : corners) {
+    if (corner != from && corner != to) return corner;
+  }
+  return from;
+}
+
+// Remover of slivers by edge flips.
+class SliverRemover {
+ public:
+  explicit SliverRemover(TriangleMesh& mesh) : mesh_(mesh) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (is_sliver(mesh, mesh.triangles[t])) queue_.push_back(t);
+    }
+    if (queue_.empty()) return;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) add_edges(t);
+  }
+
+  // Flips slivers until none is left, no flip is possible, or the limit is reached. A sliver beside
+  // another one is postponed.
+  void run() {
+    const std::size_t flip_limit = flips_per_sliver * queue_.size();
+    std::size_t idle = 0, flips = 0;
+    while (!queue_.empty() && idle < queue_.size() && flips < flip_limit) {
+      const std::size_t t = queue_.front();
+      queue_.pop_front();
+      if (resolve(t)) {
+        ++flips;
+        idle = 0;
+      } else {
+        queue_.push_back(t);
+        ++idle;
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t flips_per_sliver = 8;
+
+  static std::uint64_t key(std::uint32_t from, std::uint32_t to) { return (std::uint64_t{from} << 32U) | to; }
+  std::size_t owner(std::uint32_t from, std::uint32_t to) const {
+    const auto found = owner_.find(key(from, to));
+    return found == owner_.end() ? no_triangle : found->second;
+  }
+  void add_edges(std::size_t t) {
+    const TriangleCorners& corners = mesh_.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) owner_[key(corners[k], corners[(k + 1) % 3])] = t;
+  }
+  void remove_edges(std::size_t t) {
+    const TriangleCorners& corners = mesh_.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) owner_.erase(key(corners[k], corners[(k + 1) % 3]));
+  }
+  void replace(std::size_t t, const TriangleCorners& corners) {
+    mesh_.triangles[t] = corners;
+    add_edges(t);
+    if (is_sliver(mesh_, corners)) queue_.push_back(t);
+  }
+
+  // Flips the longest edge of a sliver, or removes a sliver at the boundary. Returns false where neither is
+  // possible.
+  bool resolve(std::size_t t) {
+    if (!is_sliver(mesh_, mesh_.triangles[t]) || is_degenerate(mesh_.triangles[t])) return true;
+    const auto [p, q, between] = rotate_longest_first(mesh_, mesh_.triangles[t]);
+    const std::size_t neighbour = owner(q, p);
+    if (neighbour == no_triangle) {
+      remove_edges(t);
+      mesh_.triangles[t] = {p, p, p};
+      return true;
+    }
+    const std::uint32_t apex = find_apex(mesh_.triangles[neighbour], p, q);
+    const bool edge_exists = owner(between, apex) != no_triangle || owner(apex, between) != no_triangle;
+    if (apex == between || edge_exists || is_sliver(mesh_, mesh_.triangles[neighbour])) return false;
+    remove_edges(t);
+    remove_edges(neighbour);
+    replace(t, {between, p, apex});
+    replace(neighbour, {apex, q, between});
+    return true;
+  }
+
+  TriangleMesh& mesh_;
+  std::deque<std::size_t> queue_;
+  std::unordered_map<std::uint64_t, std::size_t> owner_;  // triangle of each directed edge
+};
+
+void drop_unused_vertices(TriangleMesh& mesh) {
+  std::vector<std::uint32_t> new_index(mesh.vertices_m.size(), 0);
+  for (const TriangleCorners& corners : mesh.triangles) {
+    for (const std::uint32_t corner : corners) new_index[corner] = 1;
+  }
+  std::uint32_t count = 0;
+  for (std::size_t v = 0; v < new_index.size(); ++v) {
+    if (new_index[v] == 0) continue;
+    mesh.vertices_m[count] = mesh.vertices_m[v];
+    new_index[v] = count++;
+  }
+  mesh.vertices_m.resize(count);
+  for (TriangleCorners& corners : mesh.triangles) {
+    for (std::uint32_t& corner : corners) corner = new_index[corner];
+  }
+}
+
+// Removes triangles lower than a nanometre, which trim loops leave: near corners are merged, other slivers
+// give their corner to the neighbour across their longest edge, so that no gap opens.
+void remove_slivers(TriangleMesh& mesh) {
+  merge_near_corners(mesh);
+  SliverRemover(mesh).run();
+  drop_degenerate(mesh);
+  drop_unused_vertices(mesh);
+}
+
+// Distance below which coordinates are equal after rounding in a file.
+constexpr double coincidence_m = 1e-9;
+// Fraction of the chord error for the bend along one direction; the rest is for the twist.
+constexpr double direction_fraction = 0.4;
+// Smallest fraction of the chord error that is left to cells where the edges of loops use the rest.
+constexpr double smallest_cell_fraction = 0.5;
+
+// Number of cells of each polynomial piece of one direction.
 using Cuts = std::vector<int>;
 
-std::vector<double> cut(const std::vector<double>& pieces, const Cuts& cuts) {
+std::vector<double> subdivide(const std::vector<double>& pieces, const Cuts& cuts) {
   std::vector<double> parameters;
   for (std::size_t k = 0; k < cuts.size(); ++k) {
     for (int i = 0; i < cuts[k]; ++i) {
@@ -52,28 +221,28 @@ struct Cells {
   }
 };
 
-int cuts_for(double bulge, double allowed) {
+int count_cuts(double bulge, double allowed) {
   return std::max(1, static_cast<int>(std::min(std::ceil(std::sqrt(bulge / allowed)), 1e6)));
 }
 
-Cells first_cells(const Surface& surface, const SurfaceBounds& bounds, double chord_m) {
+Cells initial_cells(const Surface& surface, const SurfaceBounds& bounds, double chord_m) {
   Cells cells{surface.u.breakpoints(), surface.v.breakpoints(), {}, {}};
   cells.u_cuts.assign(static_cast<std::size_t>(bounds.elements_u()), 1);
   cells.v_cuts.assign(static_cast<std::size_t>(bounds.elements_v()), 1);
-  const double allowed = share_of_a_direction * chord_m;
+  const double allowed = direction_fraction * chord_m;
   for (int a = 0; a < bounds.elements_u(); ++a) {
     for (int b = 0; b < bounds.elements_v(); ++b) {
       const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
       const double u_length = cells.u_pieces[i + 1] - cells.u_pieces[i];
       const double v_length = cells.v_pieces[j + 1] - cells.v_pieces[j];
-      cells.u_cuts[i] = std::max(cells.u_cuts[i], cuts_for(bounds.bulge(a, b, u_length, 0.0), allowed));
-      cells.v_cuts[j] = std::max(cells.v_cuts[j], cuts_for(bounds.bulge(a, b, 0.0, v_length), allowed));
+      cells.u_cuts[i] = std::max(cells.u_cuts[i], count_cuts(bounds.bulge(a, b, u_length, 0.0), allowed));
+      cells.v_cuts[j] = std::max(cells.v_cuts[j], count_cuts(bounds.bulge(a, b, 0.0, v_length), allowed));
     }
   }
   return cells;
 }
 
-// The points of a grid of cells, and what its triangles leave of the surface.
+// Grid of cells and the points of the surface at its corners.
 struct Sheet {
   Grid grid;
   GridSamples<double> samples;
@@ -84,9 +253,9 @@ struct Sheet {
   }
 };
 
-Result<Sheet> sheet_of(const Surface& surface, const Cells& cells) {
-  auto grid =
-      make_grid(surface.u, surface.v, cut(cells.u_pieces, cells.u_cuts), cut(cells.v_pieces, cells.v_cuts));
+Result<Sheet> sample_sheet(const Surface& surface, const Cells& cells) {
+  auto grid = make_grid(surface.u, surface.v, subdivide(cells.u_pieces, cells.u_cuts),
+                        subdivide(cells.v_pieces, cells.v_cuts));
   if (!grid) return grid.error();
   Sheet sheet{std::move(grid).value(), {}};
   sheet.samples.resize(sheet.grid.u.parameters.size() * sheet.grid.v.parameters.size());
@@ -95,9 +264,9 @@ Result<Sheet> sheet_of(const Surface& surface, const Cells& cells) {
   return sheet;
 }
 
-// Of each polynomial piece, the largest error of its cells; of those that come after a stop, none.
-Eigen::MatrixXd errors_of(const Sheet& sheet, const SurfaceBounds& bounds, const Cells& cells,
-                          const Progress& progress) {
+// Returns the largest error of the cells of each polynomial piece, in metres. After a stop the rest is 0.
+Eigen::MatrixXd measure_errors(const Sheet& sheet, const SurfaceBounds& bounds, const Cells& cells,
+                               const Progress& progress) {
   Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(bounds.elements_u(), bounds.elements_v());
   std::size_t i = 0;
   for (int a = 0; a < bounds.elements_u(); ++a) {
@@ -132,7 +301,7 @@ void refine(const Eigen::MatrixXd& errors, double chord_m, Cells& cells) {
   }
 }
 
-// The vertices of a sheet: those of a seam or a pole are one, as find_closing() has it.
+// Map from the corners of a sheet to vertices: the corners at a seam or a pole become one.
 class Welding {
  public:
   Welding(const Sheet& sheet, const Surface& surface)
@@ -150,7 +319,7 @@ class Welding {
     return (u_closed_ || (first_row_ && last_row_)) && (v_closed_ || (first_column_ && last_column_));
   }
 
-  // The place in the grid of the vertex that stands for (i, j).
+  // Returns the index within the grid of the vertex that replaces (i, j).
   std::size_t vertex(std::size_t i, std::size_t j) const {
     if (u_closed_ && i == rows_ - 1) i = 0;
     if (v_closed_ && j == columns_ - 1) j = 0;
@@ -159,7 +328,7 @@ class Welding {
     return i * columns_ + j;
   }
 
-  // How far a point is from the vertex that stands for it; 0 where that is what a file rounds away.
+  // Returns the largest distance of a corner from its vertex; 0 where a file rounds it away.
   double largest_move_m() const {
     double largest_m = 0.0;
     for (std::size_t i = 0; i < rows_; ++i) {
@@ -184,14 +353,14 @@ class Welding {
   bool first_row_ = false, last_row_ = false, first_column_ = false, last_column_ = false;
 };
 
-using Places = std::array<std::size_t, 3>;
+using GridTriangle = std::array<std::size_t, 3>;
 
-void add_triangle(std::size_t p, std::size_t q, std::size_t r, std::vector<Places>& triangles) {
+void add_triangle(std::size_t p, std::size_t q, std::size_t r, std::vector<GridTriangle>& triangles) {
   if (p != q && q != r && r != p) triangles.push_back({p, q, r});
 }
 
 void add_cell(const Sheet& sheet, const Welding& welding, std::size_t i, std::size_t j,
-              std::vector<Places>& triangles) {
+              std::vector<GridTriangle>& triangles) {
   const std::size_t a = welding.vertex(i, j), b = welding.vertex(i + 1, j), c = welding.vertex(i + 1, j + 1),
                     d = welding.vertex(i, j + 1);
   const double rising = (sheet.point(i, j) - sheet.point(i + 1, j + 1)).squaredNorm();
@@ -205,8 +374,8 @@ void add_cell(const Sheet& sheet, const Welding& welding, std::size_t i, std::si
   }
 }
 
-std::vector<Places> whole_cells(const Sheet& sheet, const Welding& welding) {
-  std::vector<Places> triangles;
+std::vector<GridTriangle> triangulate_cells(const Sheet& sheet, const Welding& welding) {
+  std::vector<GridTriangle> triangles;
   for (std::size_t i = 0; i + 1 < sheet.grid.u.parameters.size(); ++i) {
     for (std::size_t j = 0; j + 1 < sheet.grid.v.parameters.size(); ++j) {
       add_cell(sheet, welding, i, j, triangles);
@@ -215,30 +384,31 @@ std::vector<Places> whole_cells(const Sheet& sheet, const Welding& welding) {
   return triangles;
 }
 
-// Triangles between places, of which those of the sheet come first and `more` follow.
-TriangleMesh mesh_of(const Sheet& sheet, const std::vector<Vector3>& more,
-                     const std::vector<Places>& triangles) {
+// Returns the mesh of triangles between grid points; indices beyond those of the sheet are into `more`.
+TriangleMesh make_mesh(const Sheet& sheet, const std::vector<Vector3>& more,
+                       const std::vector<GridTriangle>& triangles) {
   const std::size_t columns = sheet.grid.v.parameters.size(), samples = sheet.samples.x.size();
   constexpr std::uint32_t none = ~std::uint32_t{0};
   std::vector<std::uint32_t> index(samples + more.size(), none);
   TriangleMesh mesh;
-  for (const Places& places : triangles) {
+  for (const GridTriangle& corners_in_grid : triangles) {
     TriangleCorners corners{};
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t place = places[k];
-      if (index[place] == none) {
-        index[place] = static_cast<std::uint32_t>(mesh.vertices_m.size());
-        mesh.vertices_m.push_back(place < samples ? sheet.point(place / columns, place % columns)
-                                                  : more[place - samples]);
+      const std::size_t point = corners_in_grid[k];
+      if (index[point] == none) {
+        index[point] = static_cast<std::uint32_t>(mesh.vertices_m.size());
+        mesh.vertices_m.push_back(point < samples ? sheet.point(point / columns, point % columns)
+                                                  : more[point - samples]);
       }
-      corners[k] = index[place];
+      corners[k] = index[point];
     }
     mesh.triangles.push_back(corners);
   }
   return mesh;
 }
 
-TriangleMesh kept_mesh(const Sheet& sheet, const Welding& welding, const TrimmedArea& area) {
+// Returns the triangles of the part that the trim loops keep.
+TriangleMesh make_trimmed_mesh(const Sheet& sheet, const Welding& welding, const TrimmedArea& area) {
   const std::size_t columns = sheet.grid.v.parameters.size(), samples = sheet.samples.x.size();
   const TrimmedGrid cut = trim_grid(sheet.grid.u, sheet.grid.v, area);
   std::vector<Vector3> more;
@@ -249,33 +419,35 @@ TriangleMesh kept_mesh(const Sheet& sheet, const Welding& welding, const Trimmed
     }
     more.push_back(point);
   }
-  const auto place = [&](std::size_t number) {
+  const auto vertex_index = [&](std::size_t number) {
     return number < samples ? welding.vertex(number / columns, number % columns) : number;
   };
-  std::vector<Places> triangles;
+  std::vector<GridTriangle> triangles;
   for (const auto& corners : cut.triangles) {
-    add_triangle(place(corners[0]), place(corners[1]), place(corners[2]), triangles);
+    add_triangle(vertex_index(corners[0]), vertex_index(corners[1]), vertex_index(corners[2]), triangles);
   }
-  return mesh_of(sheet, more, triangles);
+  return make_mesh(sheet, more, triangles);
 }
 
-// How far the polygons that stand for loops can be from them.
+// Returns the bound of the distance between loops and the polygons that replace them.
 double trim_edge_error_m(const Surface& surface, const std::vector<TrimLoop>& trims) {
-  double share = 0.0;
-  for (const TrimLoop& loop : trims) share = std::max(share, polygon_error_fraction(loop, surface.u, surface.v));
-  return share * stretch_bound_m(surface);
+  double fraction = 0.0;
+  for (const TrimLoop& loop : trims) {
+    fraction = std::max(fraction, polygon_error_fraction(loop, surface.u, surface.v));
+  }
+  return fraction * stretch_bound_m(surface);
 }
 
-Result<Tessellation> finished(const Sheet& sheet, const Surface& surface, const std::vector<TrimLoop>& trims,
-                              double chord_error_m) {
+Result<Tessellation> make_tessellation(const Sheet& sheet, const Surface& surface,
+                                       const std::vector<TrimLoop>& trims, double chord_error_m) {
   const Welding welding(sheet, surface);
-  TriangleMesh whole = mesh_of(sheet, {}, whole_cells(sheet, welding));
+  TriangleMesh whole = make_mesh(sheet, {}, triangulate_cells(sheet, welding));
   const bool is_inside_out = welding.closed() && enclosed_volume_m3(whole) < 0.0;
   Tessellation result{std::move(whole), welding.closed(), chord_error_m + welding.largest_move_m()};
   if (!trims.empty()) {
     const auto area = TrimmedArea::make(surface.u, surface.v, trims);
     if (!area) return area.error();
-    result.mesh = kept_mesh(sheet, welding, area.value());
+    result.mesh = make_trimmed_mesh(sheet, welding, area.value());
     remove_slivers(result.mesh);
     result.closed = false;
   }
@@ -285,28 +457,59 @@ Result<Tessellation> finished(const Sheet& sheet, const Surface& surface, const 
   return result;
 }
 
+// Largest fraction of the area whose triangles may turn over; slivers do by rounding.
+constexpr double turned_fraction = 1e-3;
+
+Vector3 twice_area(const std::vector<Vector3>& points_m, const TriangleCorners& corners) {
+  return (points_m[corners[1]] - points_m[corners[0]]).cross(points_m[corners[2]] - points_m[corners[0]]);
+}
+
+// Returns the normals of vertices, weighted by area because slivers along a trim have no reliable normal.
+std::vector<Vector3> vertex_normals(const TriangleMesh& mesh) {
+  std::vector<Vector3> normals(mesh.vertices_m.size(), Vector3::Zero());
+  for (const TriangleCorners& corners : mesh.triangles) {
+    const Vector3 area = twice_area(mesh.vertices_m, corners);
+    for (const std::uint32_t corner : corners) normals[corner] += area;
+  }
+  for (Vector3& normal : normals) normal.stableNormalize();
+  return normals;
+}
+
+// Returns the directed edges of triangles without a triangle on the other side.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> boundary_edges(const TriangleMesh& mesh) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> open;
+  for (const TriangleCorners& corners : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = corners[k], to = corners[(k + 1) % 3];
+      if (open.erase({to, from}) == 0) open.insert({from, to});
+    }
+  }
+  return {open.begin(), open.end()};
+}
+
 }  // namespace
 
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
                                 std::size_t triangle_limit, const Progress& progress) {
   SPOONBILL_ASSERT(chord_m > 0.0);
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
-  const double edges_m = trim_edge_error_m(surface, trims);
-  const double allowed_m = std::max(chord_m - edges_m, least_share_of_cells * chord_m);
+  const double edge_error_m = trim_edge_error_m(surface, trims);
+  const double allowed_m = std::max(chord_m - edge_error_m, smallest_cell_fraction * chord_m);
   SurfaceBounds bounds(surface.u, surface.v);
   bounds.update(surface.net);
-  Cells cells = first_cells(surface, bounds, allowed_m);
+  Cells cells = initial_cells(surface, bounds, allowed_m);
   for (;;) {
     if (cells.triangles() > triangle_limit) {
-      return Error{"a chord error of " + number_text(1e3 * chord_m) + " mm would take more than " +
-                   std::to_string(triangle_limit) + " triangles; choose a larger --chord"};
+      return Error{ErrorCode::too_many, "a chord error of " + number_text(1e3 * chord_m) +
+                                            " mm needs more than " + std::to_string(triangle_limit) +
+                                            " triangles; choose a larger --chord"};
     }
-    const auto sheet = sheet_of(surface, cells);
+    const auto sheet = sample_sheet(surface, cells);
     if (!sheet) return sheet.error();
-    const Eigen::MatrixXd errors = errors_of(sheet.value(), bounds, cells, progress);
+    const Eigen::MatrixXd errors = measure_errors(sheet.value(), bounds, cells, progress);
     if (!progress.report(0.0)) return Progress::stopped();
     if (const double largest = errors.maxCoeff(); largest <= allowed_m) {
-      return finished(sheet.value(), surface, trims, largest + edges_m);
+      return make_tessellation(sheet.value(), surface, trims, largest + edge_error_m);
     }
     refine(errors, allowed_m, cells);
   }
@@ -322,6 +525,38 @@ double enclosed_volume_m3(const TriangleMesh& mesh) {
     sum += a.dot(b.cross(c));
   }
   return sum / 6.0;
+}
+
+Result<TriangleMesh> thicken_mesh(const TriangleMesh& outer, double thickness_m) {
+  SPOONBILL_ASSERT(thickness_m > 0.0);
+  const auto count = static_cast<std::uint32_t>(outer.vertices_m.size());
+  TriangleMesh shell = outer;
+  const std::vector<Vector3> normals = vertex_normals(outer);
+  for (std::uint32_t v = 0; v < count; ++v) {
+    shell.vertices_m.emplace_back(outer.vertices_m[v] - thickness_m * normals[v]);
+  }
+  double area = 0.0, turned_area = 0.0;
+  Vector3 turned_m = Vector3::Zero();
+  for (const TriangleCorners& corners : outer.triangles) {
+    const TriangleCorners inner = {corners[0] + count, corners[2] + count, corners[1] + count};
+    const Vector3 normal = twice_area(shell.vertices_m, corners);
+    area += normal.norm();
+    if (!(twice_area(shell.vertices_m, inner).dot(normal) < 0.0)) {
+      if (turned_area == 0.0) turned_m = outer.vertices_m[corners[0]];
+      turned_area += normal.norm();
+    }
+    shell.triangles.push_back(inner);
+  }
+  if (turned_area > turned_fraction * area) {
+    return Error{ErrorCode::self_intersecting, "a shell of " + number_text(1e3 * thickness_m) +
+                                                   " mm is thicker than the radius of curvature at " +
+                                                   position_text(turned_m)};
+  }
+  for (const auto& [from, to] : boundary_edges(outer)) {
+    shell.triangles.push_back({to, from, from + count});
+    shell.triangles.push_back({to, from + count, to + count});
+  }
+  return shell;
 }
 
 }  // namespace spoonbill

@@ -1,4 +1,5 @@
-// Surfaces as triangles, none of which is farther from its surface than a chord error.
+// Tessellation of surfaces within a chord error, and shells and volumes of the meshes. Pure functions,
+// outside the tick; any thread.
 #pragma once
 
 #include <cstddef>
@@ -14,30 +15,38 @@
 namespace spoonbill {
 
 struct Tessellation {
-  // Seams and poles are welded, what find_closing() calls so. Normals are outward where every side of the
-  // surface is a seam or a pole.
+  // Seams and poles are welded where they are within closing_tolerance_m. Normals are outward where every
+  // side of the surface is a seam or a pole.
   TriangleMesh mesh;
-  bool closed = false;  // it is so, and whole
-  // No point of the surface is farther from the point of its triangle at the same parameters, nor an edge
-  // that a loop makes from the loop. What welding moves, at most closing_tolerance_m, comes on top of what
-  // was asked for, and so do edges of loops of more than half of it.
+  bool closed = false;  // every side is a seam or a pole, and no trim loop cuts the surface
+  // Largest distance of a point of the surface from the point of its triangle at the same parameters, and of
+  // a trim loop from its edges. Welding adds at most closing_tolerance_m to the requested error; edges of
+  // loops add theirs where it is more than half of the request.
   double chord_error_m = 0.0;
 };
 
 inline constexpr Range<double> chord_range_m{1e-7, 0.1};
 inline constexpr std::size_t exported_triangle_limit = 10'000'000;
 
-// A grid over the polynomial pieces, finer where the surface bends. A cell of sides h_u and h_v lies within
-// (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of the bilinear patch through its corners (surface_bounds.h), and that
-// within |P00 - P10 - P01 + P11| / 4 of its triangles, those that trim loops cut too, whose corners lie on
-// the patch. An edge that a loop makes is that of its polygon, within polygon_error_fraction() of the domain
-// of the loop, which the surface stretches by no more than its first derivatives. Refused: more triangles
-// than the limit, loops that bound nothing; a request to stop.
+// Tessellates the part of a surface that the trim loops keep, on a grid over its polynomial pieces that is
+// finer where it bends. A cell of sides h_u and h_v is within (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of the
+// bilinear patch through its corners (surface_bounds.h), and the patch within |P00 - P10 - P01 + P11| / 4 of
+// its triangles; both hold for cells that loops cut. A loop's polygon is within polygon_error_fraction() of the
+// domain of the loop, which the surface stretches by at most its first derivatives. Refused: more triangles
+// than the limit, loops that bound no area, a request to stop.
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
                                 std::size_t triangle_limit = exported_triangle_limit,
                                 const Progress& progress = {});
 
-// By the divergence theorem; of a closed mesh, negative where its normals point inward.
+// Returns the volume that a closed mesh encloses, by the divergence theorem; negative where normals point
+// inward.
 double enclosed_volume_m3(const TriangleMesh& mesh);
+
+// Returns a shell: the outer mesh, a copy of it `thickness_m` (above 0) behind along the vertex normals, and
+// walls between the boundary edges of both. A vertex normal is the area-weighted mean of its triangles'. The
+// shell is closed where no edge of the outer mesh has more than two triangles. On a face of radius r the
+// distance between both is the thickness to about the square of a triangle's side over r. Refused: a shell
+// thicker than the radius of curvature, whose inner triangles turn over; the message gives the position.
+Result<TriangleMesh> thicken_mesh(const TriangleMesh& outer, double thickness_m);
 
 }  // namespace spoonbill

@@ -30,7 +30,7 @@ std::string_view without_byte_order_mark(std::string_view text) {
   return text;
 }
 
-std::string_view take_line(std::string_view& text) {
+std::string_view extract_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   std::string_view line = text.substr(0, end);
   text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
@@ -38,9 +38,10 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-std::string_view take_word(std::string_view& text, std::string_view marks) {
-  const auto is_separator = [&](char letter) {
-    return blanks.find(letter) != std::string_view::npos || marks.find(letter) != std::string_view::npos;
+std::string_view extract_word(std::string_view& text, std::string_view separators) {
+  const auto is_separator = [&](char character) {
+    return blanks.find(character) != std::string_view::npos ||
+           separators.find(character) != std::string_view::npos;
   };
   const char* begin = std::find_if_not(text.data(), text.data() + text.size(), is_separator);
   const char* end = std::find_if(begin, text.data() + text.size(), is_separator);
@@ -48,13 +49,13 @@ std::string_view take_word(std::string_view& text, std::string_view marks) {
   return {begin, static_cast<std::size_t>(end - begin)};
 }
 
-std::optional<double> number_of(std::string_view word) {
+std::optional<double> parse_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double number = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   if (end != word.data() + word.size() || word.empty()) return {};
   if (error == std::errc::result_out_of_range) {
-    // Too small counts as zero; too large shows its exponent.
+    // Numbers that are too small become zero, numbers that are too large infinity.
     return word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos
                ? 0.0
                : std::numeric_limits<double>::infinity();
@@ -62,14 +63,14 @@ std::optional<double> number_of(std::string_view word) {
   return error == std::errc() ? std::optional(number) : std::nullopt;
 }
 
-std::optional<std::uint64_t> count_of(std::string_view word) {
+std::optional<std::uint64_t> parse_count(std::string_view word) {
   std::uint64_t count = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
   if (error != std::errc() || end != word.data() + word.size()) return {};
   return count;
 }
 
-std::size_t bytes_of(NumberType type) {
+std::size_t byte_count(NumberType type) {
   switch (type) {
     case NumberType::int8:
     case NumberType::uint8:

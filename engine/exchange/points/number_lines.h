@@ -1,4 +1,4 @@
-// Lines of numbers in a text, and numbers of any type in bytes.
+// Reading of words and numbers from text, and of numbers of any type from bytes.
 #pragma once
 
 #include <array>
@@ -9,24 +9,26 @@
 
 namespace spoonbill {
 
-// Some spreadsheets begin a text of UTF-8 with a mark that says nothing.
+// Returns the text without the byte order mark that some spreadsheets write at its beginning.
 std::string_view without_byte_order_mark(std::string_view text);
 
-// The next line, without its end, taken off the front of the text.
-std::string_view take_line(std::string_view& text);
+// Removes the next line from the front of the text and returns it, without its line end.
+std::string_view extract_line(std::string_view& text);
 
-// The next word between blanks, and any of the marks, taken off the front; empty at the end.
-std::string_view take_word(std::string_view& text, std::string_view marks = {});
+// Removes the next word from the front of the text and returns it; empty at the end. Words are separated by
+// blanks and any of the separators.
+std::string_view extract_word(std::string_view& text, std::string_view separators = {});
 
-// "1.5", "-2e3", "nan", "inf"; nothing for a word that is no number.
-std::optional<double> number_of(std::string_view word);
-std::optional<std::uint64_t> count_of(std::string_view word);
+// Parses "1.5", "-2e3", "nan" or "inf"; nullopt for a word that is no number.
+std::optional<double> parse_number(std::string_view word);
+std::optional<std::uint64_t> parse_count(std::string_view word);
 
-// The types of numbers that PLY and PCD know.
+// Types of numbers in PLY and PCD files.
 enum class NumberType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
-std::size_t bytes_of(NumberType type);
+std::size_t byte_count(NumberType type);
 
-// The number at the bytes, which must hold it.
+// Returns the number that starts at `bytes`, where byte_count(type) bytes must be readable. `swapped`
+// reverses the byte order.
 double number_at(const char* bytes, NumberType type, bool swapped);
 
 }  // namespace spoonbill

@@ -16,7 +16,7 @@ constexpr std::size_t header_bytes_limit = 65536;
 struct Property {
   std::string_view name;
   NumberType type = NumberType::float32;
-  std::optional<NumberType> list_count = {};  // of a list, the type of its length
+  std::optional<NumberType> list_count = {};  // type of the length, for lists only
 };
 
 struct Element {
@@ -33,7 +33,7 @@ struct Header {
   std::string_view body;
 };
 
-std::optional<NumberType> type_of(std::string_view name) {
+std::optional<NumberType> find_type(std::string_view name) {
   static constexpr std::array<std::pair<std::string_view, NumberType>, 16> names{
       {{"char", NumberType::int8},
        {"int8", NumberType::int8},
@@ -57,32 +57,33 @@ std::optional<NumberType> type_of(std::string_view name) {
   return {};
 }
 
-Error damaged_line(std::string_view line) {
-  return Error{"its header has a line that is no PLY: '" + std::string(line.substr(0, 60)) + "'"};
+Error line_error(std::string_view line) {
+  return Error{ErrorCode::malformed,
+               "its header has a line that is no PLY: '" + std::string(line.substr(0, 60)) + "'"};
 }
 
 Status read_property(std::string_view rest, std::string_view line, std::vector<Element>& elements) {
-  if (elements.empty()) return damaged_line(line);
+  if (elements.empty()) return line_error(line);
   Property property;
-  std::string_view word = take_word(rest);
+  std::string_view word = extract_word(rest);
   if (word == "list") {
-    property.list_count = type_of(take_word(rest));
-    if (!property.list_count) return damaged_line(line);
-    word = take_word(rest);
+    property.list_count = find_type(extract_word(rest));
+    if (!property.list_count) return line_error(line);
+    word = extract_word(rest);
   }
-  const auto type = type_of(word);
-  if (!type) return damaged_line(line);
+  const auto type = find_type(word);
+  if (!type) return line_error(line);
   property.type = *type;
-  property.name = take_word(rest);
+  property.name = extract_word(rest);
   elements.back().properties.push_back(property);
   return {};
 }
 
 Status read_line(std::string_view line, Header& header) {
   std::string_view rest = line;
-  const std::string_view keyword = take_word(rest);
+  const std::string_view keyword = extract_word(rest);
   if (keyword == "format") {
-    const std::string_view name = take_word(rest);
+    const std::string_view name = extract_word(rest);
     if (name == "ascii") header.format = Format::text;
     if (name == "binary_little_endian") header.format = Format::little;
     if (name == "binary_big_endian") header.format = Format::big;
@@ -90,31 +91,33 @@ Status read_line(std::string_view line, Header& header) {
   }
   if (keyword == "property") return read_property(rest, line, header.elements);
   if (keyword != "element") return {};
-  const std::string_view name = take_word(rest);
-  const auto rows = count_of(take_word(rest));
-  if (!rows) return damaged_line(line);
+  const std::string_view name = extract_word(rest);
+  const auto rows = parse_count(extract_word(rest));
+  if (!rows) return line_error(line);
   header.elements.push_back({name, *rows});
   return {};
 }
 
-Result<Header> header_of(std::string_view bytes) {
+Result<Header> read_header(std::string_view bytes) {
   Header header;
   std::string_view rest = bytes;
-  if (take_line(rest) != "ply") return Error{"does not begin with the word ply; it is no PLY file"};
+  if (extract_line(rest) != "ply") {
+    return Error{ErrorCode::malformed, "does not begin with the word ply; it is no PLY file"};
+  }
   while (!rest.empty() && bytes.size() - rest.size() < header_bytes_limit) {
-    const std::string_view line = take_line(rest);
+    const std::string_view line = extract_line(rest);
     if (line == "end_header") {
       header.body = rest;
-      if (!header.format) return Error{"its header names no format that is known"};
+      if (!header.format) return Error{ErrorCode::unsupported, "its header names no known format"};
       return header;
     }
     if (Status read = read_line(line, header); !read) return read.error();
   }
-  return Error{"its header has no end within 64 KiB; it is cut or no PLY file"};
+  return Error{ErrorCode::malformed, "its header has no end within 64 KiB; it is cut or no PLY file"};
 }
 
-// Where x, y, z, nx, ny, nz stand among the properties; -1 for those that are not there.
-std::array<int, 6> columns_of(const Element& element) {
+// Returns the indices of the properties x, y, z, nx, ny and nz; -1 for missing ones.
+std::array<int, 6> find_coordinate_columns(const Element& element) {
   static constexpr std::array<std::string_view, 6> names{"x", "y", "z", "nx", "ny", "nz"};
   std::array<int, 6> columns;
   columns.fill(-1);
@@ -128,40 +131,40 @@ std::array<int, 6> columns_of(const Element& element) {
   return columns;
 }
 
-// Takes the numbers of a file one by one.
-class Numbers {
+// Reader of the numbers of a body, one by one. read() returns false at the end or where there is no number.
+class NumberReader {
  public:
-  Numbers(std::string_view body, Format format)
+  NumberReader(std::string_view body, Format format)
       : rest_(body),
         is_text_(format == Format::text),
         swapped_((format == Format::big) == (std::endian::native == std::endian::little)) {}
 
-  bool take(NumberType type, double& number) {
+  bool read(NumberType type, double& number) {
     if (is_text_) {
-      word_ = take_word(rest_);
-      const auto read = number_of(word_);
-      number = read.value_or(0.0);
-      return read.has_value();
+      word_ = extract_word(rest_);
+      const auto parsed = parse_number(word_);
+      number = parsed.value_or(0.0);
+      return parsed.has_value();
     }
-    const std::size_t size = bytes_of(type);
+    const std::size_t size = byte_count(type);
     if (rest_.size() < size) return false;
     number = number_at(rest_.data(), type, swapped_);
     rest_.remove_prefix(size);
     return true;
   }
 
-  bool take(const Property& property, double& number) {
-    if (!property.list_count) return take(property.type, number);
+  bool read(const Property& property, double& number) {
+    if (!property.list_count) return read(property.type, number);
     double length = 0.0;
-    if (!take(*property.list_count, length) || !(length >= 0.0 && length <= 1e9)) return false;
-    for (auto left = static_cast<std::uint64_t>(length); left > 0; --left) {
-      if (!take(property.type, number)) return false;
+    if (!read(*property.list_count, length) || !(length >= 0.0 && length <= 1e9)) return false;
+    for (auto remaining = static_cast<std::uint64_t>(length); remaining > 0; --remaining) {
+      if (!read(property.type, number)) return false;
     }
     return true;
   }
 
-  std::size_t left() const { return rest_.size(); }
-  // The word of a text that was taken last.
+  std::size_t remaining_bytes() const { return rest_.size(); }
+  // The last word that was read from text.
   std::string_view word() const { return word_; }
 
  private:
@@ -169,65 +172,68 @@ class Numbers {
   bool is_text_, swapped_;
 };
 
-Error ends_early(const Element& element, std::uint64_t row, std::string_view word = {}) {
-  const std::string place =
+Error truncated_error(const Element& element, std::uint64_t row, std::string_view word = {}) {
+  const std::string row_name =
       excerpt(element.name) + " " + std::to_string(row + 1) + " of " + std::to_string(element.rows);
   if (word.find(',') != std::string_view::npos) {
-    return Error{place + " has '" + excerpt(word) + "', a number with a comma; write decimal points"};
+    return Error{ErrorCode::malformed,
+                 row_name + " has '" + excerpt(word) + "', a number with a comma; write decimal points"};
   }
-  return Error{"it ends or is no number within " + place + "; it is cut or damaged"};
+  return Error{ErrorCode::malformed, "it ends or is no number within " + row_name + "; it is cut or damaged"};
 }
 
-Status skip_element(Numbers& numbers, const Element& element) {
+Status skip_element(NumberReader& numbers, const Element& element) {
   double ignored = 0.0;
-  // Rows without properties take no bytes, however many are promised.
+  // Rows without properties need no bytes, however many are promised.
   for (std::uint64_t row = 0; row < element.rows && !element.properties.empty(); ++row) {
     for (const Property& property : element.properties) {
-      if (!numbers.take(property, ignored)) return ends_early(element, row, numbers.word());
+      if (!numbers.read(property, ignored)) return truncated_error(element, row, numbers.word());
     }
   }
   return {};
 }
 
-Result<PointCloud> read_vertices(Numbers& numbers, const Element& element) {
-  const std::array<int, 6> columns = columns_of(element);
-  if (std::min({columns[0], columns[1], columns[2]}) < 0) return Error{"its vertices have no x, y and z"};
-  const bool with_normals = std::min({columns[3], columns[4], columns[5]}) >= 0;
-  PointGatherer gatherer;
-  // A number takes a byte at least: a header cannot ask for more memory than its file has.
-  if (element.rows <= point_limit && element.rows * element.properties.size() > numbers.left()) {
-    return ends_early(element, numbers.left() / element.properties.size());
+Result<PointCloud> read_vertices(NumberReader& numbers, const Element& element) {
+  const std::array<int, 6> columns = find_coordinate_columns(element);
+  if (std::min({columns[0], columns[1], columns[2]}) < 0) {
+    return Error{ErrorCode::missing, "its vertices have no x, y and z"};
   }
-  if (Status expected = gatherer.expect(element.rows, with_normals); !expected) return expected.error();
+  const bool with_normals = std::min({columns[3], columns[4], columns[5]}) >= 0;
+  PointCollector collector;
+  // A number needs at least a byte, so a header cannot request more memory than its file has.
+  if (element.rows <= point_limit && element.rows * element.properties.size() > numbers.remaining_bytes()) {
+    return truncated_error(element, numbers.remaining_bytes() / element.properties.size());
+  }
+  if (Status begun = collector.begin(element.rows, with_normals); !begun) return begun.error();
   std::vector<double> row(element.properties.size());
   for (std::uint64_t r = 0; r < element.rows; ++r) {
     for (std::size_t p = 0; p < row.size(); ++p) {
-      if (!numbers.take(element.properties[p], row[p])) return ends_early(element, r, numbers.word());
+      if (!numbers.read(element.properties[p], row[p])) return truncated_error(element, r, numbers.word());
     }
     const Vector3 normal =
         with_normals ? Vector3(row[columns[3]], row[columns[4]], row[columns[5]]) : Vector3::Zero();
-    if (Status added = gatherer.add({row[columns[0]], row[columns[1]], row[columns[2]]}, normal); !added) {
+    if (Status added = collector.add({row[columns[0]], row[columns[1]], row[columns[2]]}, normal); !added) {
       return added.error();
     }
   }
-  return std::move(gatherer).done();
+  return std::move(collector).finish();
 }
 
 }  // namespace
 
-Result<PointCloud> ply_points(std::string_view bytes) {
-  const auto header = header_of(bytes);
+Result<PointCloud> parse_ply_points(std::string_view bytes) {
+  const auto header = read_header(bytes);
   if (!header) return header.error();
-  Numbers numbers(header->body, *header->format);
+  NumberReader numbers(header->body, *header->format);
   for (const Element& element : header->elements) {
     if (element.name == "vertex") return read_vertices(numbers, element);
     if (Status skipped = skip_element(numbers, element); !skipped) return skipped.error();
   }
-  return Error{"its header names no vertices"};
+  return Error{ErrorCode::missing, "its header names no vertices"};
 }
 
 std::uint64_t ply_face_count(std::string_view bytes) {
-  const auto header = header_of(bytes);
+  const auto header = read_header(bytes);
   if (!header) return 0;
   for (const Element& element : header->elements) {
     if (element.name == "face") return element.rows;

@@ -1,7 +1,9 @@
-// Points as scanners write them, and what their files share.
+// Point clouds as scanners write them, and the readers of their files. Errors of the parse_ functions say
+// what is wrong, without the file's name.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -12,28 +14,30 @@
 
 namespace spoonbill {
 
-// As many as are read of one file.
+// Largest number of points that is read from a file.
 inline constexpr std::size_t point_limit = 5'000'000;
-// Of a file of them: five million lines of numbers with colours and normals.
+// Largest file of points, in bytes: five million lines of numbers with colours and normals.
 inline constexpr std::size_t point_file_bytes_limit = std::size_t{1} << 30;
 
 struct PointCloud {
   std::vector<Vector3> points;   // in the file's own unit
-  std::vector<Vector3> normals;  // as many, as they stand in the file; or none
-  std::size_t skipped = 0;       // points of which a coordinate is no number, as depth cameras give them
+  std::vector<Vector3> normals;  // one a point, of any length, or none at all
+  std::size_t skipped = 0;       // points with a coordinate that is NaN, as depth cameras write them
 };
 
-// Takes points one by one. The Errors of readers say what is wrong, without the file's name.
-class PointGatherer {
+// Builder of a cloud from single points, used by the readers. Call begin(), add() for each point, and
+// finish().
+class PointCollector {
  public:
-  // Refused: more points than the limit.
-  Status expect(std::uint64_t count, bool with_normals);
+  // Reserves memory for `count` points. Refused: more points than the limit.
+  Status begin(std::uint64_t count, bool with_normals);
 
-  // What is NaN is skipped and counted. Refused: infinities, more points than the limit.
+  // Appends a point; one with a NaN is skipped and counted. Refused: infinite coordinates, more points than
+  // the limit.
   Status add(const Vector3& point, const Vector3& normal);
 
-  // Refused: no point at all.
-  Result<PointCloud> done() &&;
+  // Returns the cloud. Refused: no point at all.
+  Result<PointCloud> finish() &&;
 
  private:
   PointCloud cloud_;
@@ -41,28 +45,29 @@ class PointGatherer {
   bool with_normals_ = false;
 };
 
-// A PLY file's vertices: text or binary of either byte order; x, y, z and perhaps nx, ny, nz of any type.
-// Faces are passed over. Refused: no such vertices, a file that ends before its last one.
-Result<PointCloud> ply_points(std::string_view bytes);
-// How many faces the header of a PLY file promises; 0 where there is no such header.
+// Reads the vertices of a PLY file, text or binary of either byte order: x, y, z and optionally nx, ny, nz of
+// any type. Faces are ignored. Refused: missing vertices, a file that ends before its last vertex.
+Result<PointCloud> parse_ply_points(std::string_view bytes);
+// Returns the number of faces that the header of a PLY file promises; 0 without such a header.
 std::uint64_t ply_face_count(std::string_view bytes);
 
-// A PCD file's points (version 0.5 to 0.7): text, binary, or binary compressed; normal_x, normal_y, normal_z
-// are its normals.
-Result<PointCloud> pcd_points(std::string_view bytes);
+// Reads the points of a PCD file (version 0.5 to 0.7): text, binary, or binary compressed. The fields
+// normal_x, normal_y and normal_z are its normals.
+Result<PointCloud> parse_pcd_points(std::string_view bytes);
 
-// A point a line: x, y, z between blanks, commas or semicolons; then, where three further columns have the
-// length 1 throughout, a normal. Between semicolons "12,5" is a number with a decimal comma. Other columns
-// are passed over, as are comments (#, //), a byte order mark, and before the first point one line of words
-// or of one number, the count. Refused: commas within words between blanks, which may part numbers or be
+// Reads one point a line: x, y, z separated by blanks, commas or semicolons, followed by a normal where three
+// further columns have length 1 in all lines. Between semicolons "12,5" is a number with a decimal comma.
+// Ignored: other columns, comments (#, //), a byte order mark, and before the first point one line of words
+// or of one number, the count. Refused: commas within words between blanks, which may separate numbers or be
 // decimal.
-Result<PointCloud> text_points(std::string_view bytes);
+Result<PointCloud> parse_text_points(std::string_view bytes);
 
-// The `v` lines of an OBJ file, whose `vn` lines are normals where there are as many.
-Result<PointCloud> obj_points(std::string_view bytes);
+// Reads the `v` lines of an OBJ file; its `vn` lines are normals where there are as many.
+Result<PointCloud> parse_obj_points(std::string_view bytes);
 bool obj_has_faces(std::string_view bytes);
 
-// By the ending of the name. Each Error names the file.
+// Reads a file's content with the reader that the ending of its name selects, text by default. Errors name
+// the file.
 Result<PointCloud> points_of(std::string_view bytes, const std::filesystem::path& file);
 
 }  // namespace spoonbill

@@ -1,6 +1,9 @@
-#include "engine/exchange/cad_solid_stream.h"
-
 #include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "engine/exchange/cad_stream.h"
+#include "engine/exchange/frame_stream.h"
 
 namespace spoonbill {
 namespace {
@@ -52,6 +55,24 @@ TEST(CadSolidStream, RefusesWhatIsNoSolid) {
   CadSolid nowhere = tetrahedron();
   nowhere.places.clear();
   EXPECT_FALSE(cad_solid_from_bytes(cad_solid_to_bytes(nowhere), surfaces, "part.json"));
+}
+
+TEST(FrameStream, AFailureCarriesItsCode) {
+  const auto pass_on = [](const auto& failure) {
+    std::stringstream stream;
+    write_failure(stream, failure);
+    const auto frame = read_frame([&](void* to, std::size_t bytes) {
+      return static_cast<bool>(stream.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)));
+    });
+    EXPECT_TRUE(frame && frame->kind == FrameKind::failure);
+    return parse_failure(frame ? frame->content : std::string());
+  };
+  const Error coded = pass_on(Error{ErrorCode::malformed, "is no STEP file"});
+  EXPECT_EQ(coded.code, ErrorCode::malformed);
+  EXPECT_EQ(coded.message, "is no STEP file");
+  const Error plain = pass_on(std::string("#1000000 is no code"));
+  EXPECT_EQ(plain.code, ErrorCode::process_failed);
+  EXPECT_EQ(plain.message, "#1000000 is no code");
 }
 
 }  // namespace

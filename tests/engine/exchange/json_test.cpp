@@ -10,6 +10,12 @@ std::string refusal(std::string_view text) {
   return json.ok() ? "accepted" : json.error().message;
 }
 
+ErrorCode refusal_code(std::string_view text) {
+  const auto json = parse_json(text, "x.json");
+  EXPECT_FALSE(json.ok()) << text.substr(0, 40);
+  return json.ok() ? ErrorCode::internal : json.error().code;
+}
+
 TEST(Json, SaysWhereTheTextIsWrong) {
   EXPECT_EQ(refusal("{\"a\": 1,\n \"b\": nan}"),
             "x.json: line 2, column 8: parsing value - invalid literal; last read: '\"b\": na'");
@@ -38,19 +44,20 @@ TEST(Json, RefusesWhatFollowsAZeroByte) {
 TEST(Json, RefusesAFieldGivenTwice) {
   EXPECT_EQ(refusal("{\"a\": 1, \"b\": {\"c\": 1, \"c\": 2}}"),
             "x.json: column 26: field \"c\" is given twice");
+  EXPECT_EQ(refusal_code("{\"a\": 1, \"a\": 2}"), ErrorCode::duplicate);
 }
 
 TEST(Json, LimitsNestingAndSize) {
   EXPECT_EQ(refusal(std::string(64, '[') + std::string(64, ']')), "accepted");
   EXPECT_EQ(refusal(std::string(65, '[') + std::string(65, ']')),
             "x.json: column 65: nested deeper than 64 levels");
-  EXPECT_NE(refusal(std::string(5'000'000, '[')).find("nested deeper"), std::string::npos);
+  EXPECT_EQ(refusal_code(std::string(5'000'000, '[')), ErrorCode::too_many);
   std::string many = "[0";
   for (int i = 0; i < 6'000'000; ++i) many += ",0";
-  EXPECT_NE(refusal(many + "]").find("more than 6000000 values"), std::string::npos);
+  EXPECT_EQ(refusal_code(many + "]"), ErrorCode::too_many);
   std::string wide = "{\"f\":0";
   for (int i = 0; i < 1'000; ++i) wide += ",\"f" + std::to_string(i) + "\":0";
-  EXPECT_NE(refusal(wide + "}").find("more than 1000 fields"), std::string::npos);
+  EXPECT_EQ(refusal_code(wide + "}"), ErrorCode::too_many);
 }
 
 TEST(Json, WritesPagesThatReadBack) {

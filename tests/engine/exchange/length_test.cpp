@@ -1,10 +1,10 @@
-#include "engine/exchange/length.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cmath>
 #include <random>
+
+#include "engine/exchange/json.h"
 
 namespace spoonbill {
 namespace {

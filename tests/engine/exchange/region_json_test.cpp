@@ -1,11 +1,10 @@
 // Regions of a body in a document.
-#include "engine/exchange/region_json.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "engine/exchange/document.h"
+#include "engine/exchange/scene_json.h"
 #include "tests/engine/exchange/sample_document.h"
 
 namespace spoonbill {

@@ -101,7 +101,7 @@ TEST(ToolJson, NamesWhatIsWrong) {
                                     {"vertices_mm", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
                                     {"triangles", {{0, 1, 3}}}};
             }),
-            "sample.json: tool.solid.triangles[0] must be 3 places in vertices_mm, from 0");
+            "sample.json: tool.solid.triangles[0] must be 3 indices into vertices_mm, from 0");
   EXPECT_EQ(refusal([](Json& j) {
               j["tool"]["solid"] = {{"shape", "mesh"},
                                     {"vertices_mm", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}},

@@ -59,13 +59,13 @@ TEST(TrimJson, RefusesWhatIsNoLoop) {
                 "[0] a trim loop runs from u = 0.125 to 3.5, outside the surface's domain of 0 to 3; bring "
                 "it inside");
   EXPECT_EQ(refusal([](Json& trims) { trims.push_back(trims[0]); }),
-            place + " do not fit: trim loop 0 coincides with another; remove one of them");
+            place + " are invalid: trim loop 0 coincides with another; remove one of them");
   EXPECT_EQ(refusal([](Json& trims) {
               Json& points = trims[1]["control_points_uv"];
               std::reverse(points.begin(), points.end());
             }),
             place +
-                " do not fit: trim loop 1 and trim loop 0 keep different parts; outer loops must run "
+                " are invalid: trim loop 1 and trim loop 0 keep different parts; outer loops must run "
                 "counter-clockwise and holes clockwise");
   EXPECT_EQ(refusal([](Json& trims) { trims = 1; }), place + " is 1, must be a list of 0 to 1000");
 }

@@ -59,13 +59,13 @@ void expect_refusal(const Result<PointCloud>& cloud, const std::string& reason) 
 TEST(PlyPoints, TextAndBothByteOrders) {
   const std::string text =
       ply_header("ascii", "2") + "2 7 8\n200 1.5 -2.25 3 0 0 1\n200 2.5 -2.25 3e0 0 0 1\n";
-  expect_two_points(ply_points(text), true);
-  expect_two_points(ply_points(binary_ply_points(false)), true);
-  expect_two_points(ply_points(binary_ply_points(true)), true);
+  expect_two_points(parse_ply_points(text), true);
+  expect_two_points(parse_ply_points(binary_ply_points(false)), true);
+  expect_two_points(parse_ply_points(binary_ply_points(true)), true);
 }
 
 TEST(PlyPoints, SkipsAndCountsWhatIsNoNumber) {
-  const auto cloud = ply_points(
+  const auto cloud = parse_ply_points(
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
       "end_header\n1 2 3\nnan 2 3\n4 5 6\n");
   ASSERT_TRUE(cloud) << cloud.error().message;
@@ -74,35 +74,35 @@ TEST(PlyPoints, SkipsAndCountsWhatIsNoNumber) {
 }
 
 TEST(PlyPoints, RefusesEachDamageWithItsReason) {
-  expect_refusal(ply_points("solid thing"), "no PLY file");
-  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 3\n"), "no end");
-  expect_refusal(ply_points(ply_header("ascii", "4000000000")), "cut or damaged");
-  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\n"
+  expect_refusal(parse_ply_points("solid thing"), "no PLY file");
+  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 3\n"), "no end");
+  expect_refusal(parse_ply_points(ply_header("ascii", "4000000000")), "cut or damaged");
+  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\n"
                             "property float y\nproperty float z\nend_header\n1 2 3\n"),
                  "more than the 5000000");
-  expect_refusal(ply_points("ply\nformat binary_little_endian 1.0\nelement vertex 4999999\nproperty float x\n"
+  expect_refusal(parse_ply_points("ply\nformat binary_little_endian 1.0\nelement vertex 4999999\nproperty float x\n"
                             "property float y\nproperty float z\nend_header\n1 2 3\n"),
                  "cut or damaged");
-  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
                             "property float z\nend_header\n"),
                  "has no points");
-  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                             "end_header\n1 2\n"),
                  "no x, y and z");
-  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                             "property float z\nend_header\nnan nan nan\n"),
                  "no number");
-  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                             "property float z\nend_header\n1 inf 2\n"),
                  "infinity");
   const std::string whole = binary_ply_points(false);
-  expect_refusal(ply_points(std::string_view(whole).substr(0, whole.size() - 1)), "cut or damaged");
+  expect_refusal(parse_ply_points(std::string_view(whole).substr(0, whole.size() - 1)), "cut or damaged");
 }
 
 const std::string pcd_fields = "VERSION .7\nFIELDS x y z rgb\nSIZE 8 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\n";
 
 TEST(PcdPoints, TextBinaryAndCompressed) {
-  expect_two_points(pcd_points("# .PCD v.6\n" + pcd_fields +
+  expect_two_points(parse_pcd_points("# .PCD v.6\n" + pcd_fields +
                                "WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n1.5 -2.25 3 9\n2.5 -2.25 3 9\n"),
                     false);
   std::string rows = pcd_fields + "WIDTH 1\nHEIGHT 2\nDATA binary\n";
@@ -112,7 +112,7 @@ TEST(PcdPoints, TextBinaryAndCompressed) {
     put(rows, 3.0F);
     put(rows, std::uint32_t{9});
   }
-  expect_two_points(pcd_points(rows), false);
+  expect_two_points(parse_pcd_points(rows), false);
   std::string columns;
   for (const double value : {1.5, 2.5}) put(columns, value);
   for (const float value : {-2.25F, -2.25F, 3.0F, 3.0F}) put(columns, value);
@@ -127,64 +127,64 @@ TEST(PcdPoints, TextBinaryAndCompressed) {
   std::string file = pcd_fields + "WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA binary_compressed\n";
   put(file, static_cast<std::uint32_t>(packed.size()));
   put(file, static_cast<std::uint32_t>(columns.size()));
-  expect_two_points(pcd_points(file + packed), false);
-  expect_refusal(pcd_points(file + packed.substr(0, 20)), "length");
+  expect_two_points(parse_pcd_points(file + packed), false);
+  expect_refusal(parse_pcd_points(file + packed.substr(0, 20)), "length");
   std::string broken = packed;
   broken[0] = static_cast<char>(0xff);  // a reference to before the beginning
-  expect_refusal(pcd_points(file + broken), "unpacked");
+  expect_refusal(parse_pcd_points(file + broken), "unpacked");
 }
 
 TEST(PcdPoints, RefusesEachDamageWithItsReason) {
-  expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4 4\n"), "no DATA");
-  expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"), "as many");
-  expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 3 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
+  expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\n"), "no DATA");
+  expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"), "as many");
+  expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 3 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
                  "field y");
-  expect_refusal(pcd_points("FIELDS x y w\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
+  expect_refusal(parse_pcd_points("FIELDS x y w\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
                  "no x, y and z");
   for (const char* data : {"ascii", "binary", "binary_compressed"}) {
-    expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 4000000000\nDATA " +
+    expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 4000000000\nDATA " +
                               std::string(data) + "\n1 2 3\n"),
                    "more than the 5000000");
-    expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 4999999\nDATA " +
+    expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 4999999\nDATA " +
                               std::string(data) + "\n1 2 3 4 5 6 7 8 9\n"),
                    "cut or damaged");
   }
-  expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 six\n"),
+  expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 six\n"),
                  "point 2 of 2");
-  expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA zipped\n"), "zipped");
+  expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA zipped\n"), "zipped");
 }
 
 TEST(TextPoints, BlanksCommasHeadersAndNormals) {
-  expect_two_points(text_points("1.5 -2.25 3\n2.5 -2.25 3\n"), false);
-  expect_two_points(text_points("2\n1.5 -2.25 3 255 0 7\n\n2.5 -2.25 3 255 0 7\n"), false);
-  expect_two_points(text_points("x, y, z\r\n1.5, -2.25, 3\r\n# a word\r\n2.5, -2.25, 3\r\n"), false);
-  expect_two_points(text_points("1.5;-2.25;3;0;0;1\n2.5;-2.25;3;0;0;1"), true);
+  expect_two_points(parse_text_points("1.5 -2.25 3\n2.5 -2.25 3\n"), false);
+  expect_two_points(parse_text_points("2\n1.5 -2.25 3 255 0 7\n\n2.5 -2.25 3 255 0 7\n"), false);
+  expect_two_points(parse_text_points("x, y, z\r\n1.5, -2.25, 3\r\n# a word\r\n2.5, -2.25, 3\r\n"), false);
+  expect_two_points(parse_text_points("1.5;-2.25;3;0;0;1\n2.5;-2.25;3;0;0;1"), true);
 }
 
 TEST(TextPoints, AHeadingStandsAnywhereBeforeTheFirstPoint) {
-  expect_two_points(text_points("# by a scanner\n\nx,y,z\n1.5,-2.25,3\n2.5,-2.25,3\n"), false);
-  expect_two_points(text_points("// by a scanner\n2\n1.5 -2.25 3\n2.5 -2.25 3\n"), false);
-  expect_refusal(text_points("# by a scanner\nx,y,z\n1.5 -2.25 3\nx,y,z\n2.5 -2.25 3\n"), "line 4");
+  expect_two_points(parse_text_points("# by a scanner\n\nx,y,z\n1.5,-2.25,3\n2.5,-2.25,3\n"), false);
+  expect_two_points(parse_text_points("// by a scanner\n2\n1.5 -2.25 3\n2.5 -2.25 3\n"), false);
+  expect_refusal(parse_text_points("# by a scanner\nx,y,z\n1.5 -2.25 3\nx,y,z\n2.5 -2.25 3\n"), "line 4");
 }
 
 TEST(TextPoints, AByteOrderMarkHidesNoPoint) {
   const std::string mark = "\xEF\xBB\xBF";
-  expect_two_points(text_points(mark + "1.5 -2.25 3\n2.5 -2.25 3\n"), false);
-  expect_two_points(text_points(mark + "x y z\n1.5 -2.25 3\n2.5 -2.25 3\n"), false);
-  expect_two_points(text_points(mark + "# by a scanner\nx y z\n1.5 -2.25 3\n2.5 -2.25 3\n"), false);
-  expect_two_points(obj_points(mark + "v 1.5 -2.25 3\nv 2.5 -2.25 3\n"), false);
+  expect_two_points(parse_text_points(mark + "1.5 -2.25 3\n2.5 -2.25 3\n"), false);
+  expect_two_points(parse_text_points(mark + "x y z\n1.5 -2.25 3\n2.5 -2.25 3\n"), false);
+  expect_two_points(parse_text_points(mark + "# by a scanner\nx y z\n1.5 -2.25 3\n2.5 -2.25 3\n"), false);
+  expect_two_points(parse_obj_points(mark + "v 1.5 -2.25 3\nv 2.5 -2.25 3\n"), false);
 }
 
 TEST(TextPoints, DecimalCommasStandBetweenSemicolons) {
-  expect_two_points(text_points("x;y;z\n1,5;-2,25;3,0\n2,5;-2,25;3\n"), false);
-  expect_two_points(text_points("1,5; -2,25; 3,0;\r\n2,5 ; -2,25 ; 3e0 ;\r\n"), false);
-  expect_two_points(text_points("1,5;-2,25;3,0;0,0;0,0;1,0\n2,5;-2,25;3,0;0;0;1\n"), true);
+  expect_two_points(parse_text_points("x;y;z\n1,5;-2,25;3,0\n2,5;-2,25;3\n"), false);
+  expect_two_points(parse_text_points("1,5; -2,25; 3,0;\r\n2,5 ; -2,25 ; 3e0 ;\r\n"), false);
+  expect_two_points(parse_text_points("1,5;-2,25;3,0;0,0;0,0;1,0\n2,5;-2,25;3,0;0;0;1\n"), true);
 }
 
 TEST(TextPoints, CommasThatPartNumbersStay) {
   for (const char* text : {"1.5,-2.25,3\n2.5,-2.25,3\n", "1.5, -2.25, 3 \n2.5 ,-2.25 ,3\n",
                            "1.5,-2.25,3;\n2.5,-2.25,3;\n", "1.5,\t-2.25,\t3,\n 2.5 , -2.25 , 3 , \n"}) {
-    expect_two_points(text_points(text), false);
+    expect_two_points(parse_text_points(text), false);
   }
 }
 
@@ -192,32 +192,32 @@ TEST(TextPoints, CommasThatPartNumbersStay) {
 TEST(TextPoints, RefusesCommasThatMayPartNumbersOrNot) {
   for (const char* line : {"12,345 67,890 1,234", "12,345\t67,890\t1,234", "12,345, 67,890, 1,234",
                            "1,234.5;2.5;3.5", "1,2,3;4,5,6;7,8,9", "0,5;1.5;2"}) {
-    expect_refusal(text_points(std::string("1 2 3\n") + line + "\n"), "line 2 has commas");
-    expect_refusal(text_points(std::string(line) + "\n"), "line 1 has commas");
+    expect_refusal(parse_text_points(std::string("1 2 3\n") + line + "\n"), "line 2 has commas");
+    expect_refusal(parse_text_points(std::string(line) + "\n"), "line 1 has commas");
   }
-  expect_refusal(obj_points("v 12,345 67,890 1,234\n"), "line 1 is no point");
-  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+  expect_refusal(parse_obj_points("v 12,345 67,890 1,234\n"), "line 1 is no point");
+  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                             "property float z\nend_header\n1,5 2,5 3,5\n"),
                  "vertex 1 of 1 has '1,5', a number with a comma");
-  expect_refusal(pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1,5 2,5 3,5\n"),
+  expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1,5 2,5 3,5\n"),
                  "point 1 has '1,5', a number with a comma");
 }
 
 TEST(TextPoints, RefusesEachDamageWithItsReason) {
-  expect_refusal(text_points(""), "has no points");
-  expect_refusal(text_points("1 2 3\n4 5\n"), "line 2");
-  expect_refusal(text_points("1 2 3\n4 5 6 7\n"), "line 2");
-  expect_refusal(text_points("1 2 3\n4 5 seven\n"), "line 2");
-  expect_refusal(text_points("a story\nof no\npoints\n"), "line 2");
-  expect_refusal(text_points("nan nan nan\n"), "no number");
-  expect_refusal(text_points("1 2 1e999\n"), "infinity");
+  expect_refusal(parse_text_points(""), "has no points");
+  expect_refusal(parse_text_points("1 2 3\n4 5\n"), "line 2");
+  expect_refusal(parse_text_points("1 2 3\n4 5 6 7\n"), "line 2");
+  expect_refusal(parse_text_points("1 2 3\n4 5 seven\n"), "line 2");
+  expect_refusal(parse_text_points("a story\nof no\npoints\n"), "line 2");
+  expect_refusal(parse_text_points("nan nan nan\n"), "no number");
+  expect_refusal(parse_text_points("1 2 1e999\n"), "infinity");
 }
 
 TEST(ObjPoints, TakesVerticesAndKnowsFaces) {
-  expect_two_points(obj_points("# cloud\nv 1.5 -2.25 3\nvn 0 0 1\nv 2.5 -2.25 3\nvn 0 0 1\n"), true);
+  expect_two_points(parse_obj_points("# cloud\nv 1.5 -2.25 3\nvn 0 0 1\nv 2.5 -2.25 3\nvn 0 0 1\n"), true);
   EXPECT_FALSE(obj_has_faces("v 1 2 3\nvn 0 0 1\n"));
   EXPECT_TRUE(obj_has_faces("v 1 2 3\nv 1 2 4\nv 2 2 3\nf 1 2 3\n"));
-  expect_refusal(obj_points("v 1 2\n"), "line 1");
+  expect_refusal(parse_obj_points("v 1 2\n"), "line 1");
 }
 
 // Whatever bytes: an answer, and an Error of one line.
@@ -241,7 +241,7 @@ TEST(PointFiles, AnyBytesGiveAnAnswer) {
       }
       if (bytes.empty()) bytes = "p";
     }
-    for (const auto& cloud : {ply_points(bytes), pcd_points(bytes), text_points(bytes), obj_points(bytes)}) {
+    for (const auto& cloud : {parse_ply_points(bytes), parse_pcd_points(bytes), parse_text_points(bytes), parse_obj_points(bytes)}) {
       if (cloud) {
         EXPECT_FALSE(cloud->points.empty());
       } else {

@@ -1,7 +1,6 @@
 // Readers of our own JSON forms.
 #include <sstream>
 
-#include "engine/exchange/cad_solid_stream.h"
 #include "engine/exchange/cad_stream.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/frame_stream.h"

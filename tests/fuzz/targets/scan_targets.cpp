@@ -6,9 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "engine/exchange/ply_check.h"
+#include "engine/exchange/mesh_import.h"
 #include "engine/exchange/points/point_cloud.h"
-#include "engine/exchange/text_mesh_check.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/targets/targets.h"
 
@@ -40,13 +39,13 @@ void take_points(std::string_view bytes) {
   const std::string_view rest = bytes.substr(1);
   switch (bytes[0] % 4) {
     case 0:
-      return take_cloud(ply_points(rest), bytes.size());
+      return take_cloud(parse_ply_points(rest), bytes.size());
     case 1:
-      return take_cloud(pcd_points(rest), bytes.size());
+      return take_cloud(parse_pcd_points(rest), bytes.size());
     case 2:
-      return take_cloud(text_points(rest), bytes.size());
+      return take_cloud(parse_text_points(rest), bytes.size());
     default:
-      return take_cloud(obj_points(rest), bytes.size());
+      return take_cloud(parse_obj_points(rest), bytes.size());
   }
 }
 

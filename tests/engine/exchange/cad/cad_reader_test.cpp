@@ -1,6 +1,4 @@
 // Assemblies, names and units of files that OpenCASCADE writes.
-#include "engine/exchange/cad/cad_reader.h"
-
 #include <gtest/gtest.h>
 
 #include <BRepBuilderAPI_MakeFace.hxx>
@@ -24,7 +22,7 @@
 #include <numbers>
 
 #include "engine/bspline/grid.h"
-#include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad/cad.h"
 #include "tests/engine/exchange/sample_document.h"
 
 namespace spoonbill {
@@ -64,7 +62,7 @@ class CadReader : public testing::Test {
   }
 
   std::filesystem::path box_in(const char* unit, const char* name) const {
-    choose_unit(unit);
+    set_file_unit(unit);
     const auto file = folder_.path() / name;
     const TopoDS_Shape box = BRepPrimAPI_MakeBox(30, 20, 10).Shape();
     if (file.extension() == ".igs") {
@@ -76,7 +74,7 @@ class CadReader : public testing::Test {
       writer.Transfer(box, STEPControl_AsIs);
       writer.Write(file.c_str());
     }
-    choose_unit("mm");
+    set_file_unit("mm");
     return file;
   }
 
@@ -249,7 +247,8 @@ TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   ASSERT_TRUE(std::filesystem::exists(folder_.path() / text.substr(name, text.find('\'', name) - name)));
   const auto found = read_cad(file, {}, [](const CadSurface&) { FAIL() << "a surface of another file"; });
   ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().message, "holds no surface but names other files; export all as one");
+  EXPECT_EQ(found.error().code, ErrorCode::missing);
+  EXPECT_EQ(found.error().message, "contains no surface but names other files; export all as one");
 }
 
 // Which OpenCASCADE calls by the number that it counts the use with.
@@ -315,7 +314,7 @@ TEST_F(CadReader, MoreFacesThanTheLimitAreRefused) {
   reading.face_limit = 5;
   const auto found = read_cad(box_in("mm", "box.step"), reading, [](const CadSurface&) {});
   ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().message, "has 6 faces, more than the 5 that are read; export fewer");
+  EXPECT_EQ(found.error().code, ErrorCode::too_many);
 }
 
 TEST_F(CadReader, AToleranceIsKeptAndReported) {

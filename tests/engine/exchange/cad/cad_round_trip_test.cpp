@@ -16,12 +16,10 @@
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/exchange/cad/body_shape.h"
-#include "engine/exchange/cad/cad_reader.h"
-#include "engine/exchange/cad/cad_writer.h"
-#include "engine/exchange/cad/iges_globals.h"
+#include "engine/exchange/cad/cad.h"
+#include "engine/exchange/cad/iges_file.h"
 #include "engine/exchange/cad/occt_surface.h"
-#include "engine/exchange/cad/session.h"
-#include "engine/exchange/cad_names.h"
+#include "engine/exchange/cad_model.h"
 #include "engine/exchange/cad_stream.h"
 #include "engine/inspection/surface_check.h"
 #include "tests/engine/bspline/tube.h"
@@ -208,7 +206,7 @@ TEST_F(CadRoundTrip, IgesFilesTellTheirLargestCoordinate) {
       CadModel model;
       model.surfaces.push_back(known.surface);
       const auto file = write(model, {FileFormat::iges, StepSchema::ap214, unit});
-      const auto parameters = iges_global_parameters(file);
+      const auto parameters = read_iges_global_parameters(file);
       ASSERT_GT(parameters.size(), 19u);
       double largest_m = 0.0, largest_control_m = 0.0;
       const Surface& surface = known.surface.surface;
@@ -242,7 +240,7 @@ TEST_F(CadRoundTrip, FilesSayTheProgramAndNotThePerson) {
   }
   const std::string text = write_cad(model, {FileFormat::iges, StepSchema::ap214, "mm"})->text;
   // The parameters 21, the author, and 22, the organization.
-  const auto parameters = iges_global_parameters(folder_.write("named.igs", text));
+  const auto parameters = read_iges_global_parameters(folder_.write("named.igs", text));
   ASSERT_GT(parameters.size(), 22u);
   EXPECT_EQ(parameters[20], "");
   EXPECT_EQ(parameters[21], "");
@@ -282,10 +280,10 @@ TEST(CadStream, SurfacesComeBackToTheBit) {
 }
 
 TEST(CadNames, SharedOnesAreNumberedAndNoTwoEqual) {
-  EXPECT_EQ(told_apart({"a", "b", "", "a", ""}, "x"),
+  EXPECT_EQ(make_names_unique({"a", "b", "", "a", ""}, "x"),
             (std::vector<std::string>{"a 1", "b", "x 1", "a 2", "x 2"}));
-  EXPECT_EQ(told_apart({"a", "a", "a 1"}, "x"), (std::vector<std::string>{"a 2", "a 3", "a 1"}));
-  const auto apart = told_apart(std::vector<std::string>(11, std::string(300, 'n')), "x");
+  EXPECT_EQ(make_names_unique({"a", "a", "a 1"}, "x"), (std::vector<std::string>{"a 2", "a 3", "a 1"}));
+  const auto apart = make_names_unique(std::vector<std::string>(11, std::string(300, 'n')), "x");
   for (const std::string& name : apart) EXPECT_LE(name.size(), 200u);
   EXPECT_NE(apart[0], apart[10]);
 }

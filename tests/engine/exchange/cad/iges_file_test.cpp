@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/exchange/cad/cad_reader.h"
-#include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad/cad.h"
 #include "tests/engine/exchange/sample_document.h"
 
 namespace spoonbill {
@@ -107,7 +106,7 @@ class IgesFile : public testing::Test {
   }
 
   std::string box() const {
-    choose_unit("mm");
+    set_file_unit("mm");
     const auto file = folder_.path() / "box.igs";
     IGESControl_Writer writer;
     EXPECT_TRUE(writer.AddShape(BRepPrimAPI_MakeBox(30, 20, 10).Shape()));
@@ -213,7 +212,7 @@ TEST_F(IgesFile, WhatIsFarAwayIsLeftOut) {
   const Found found = read(iges_text({{128, sheet_at(0)}, {128, sheet_at(200000)}}));
   EXPECT_EQ(found.surfaces.size(), 1u);
   ASSERT_EQ(found.model.notes.size(), 1u);
-  EXPECT_NE(found.model.notes[0].find("is left out: lies more than 100 m from the origin"), std::string::npos)
+  EXPECT_NE(found.model.notes[0].find("is skipped: is more than 100 m from the origin"), std::string::npos)
       << found.model.notes[0];
 }
 

@@ -22,8 +22,7 @@
 
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/trimmed_area.h"
-#include "engine/exchange/cad/cad_reader.h"
-#include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad/cad.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"
 #include "tests/engine/exchange/cad/kept_part.h"
 #include "tests/engine/exchange/sample_document.h"
@@ -125,7 +124,7 @@ class OcctShapes : public testing::TestWithParam<FileFormat> {
   static void SetUpTestSuite() { prepare_occt(); }
 
   std::filesystem::path write(const TopoDS_Shape& shape) const {
-    choose_unit("mm");
+    set_file_unit("mm");
     if (GetParam() == FileFormat::step) {
       const auto file = folder_.path() / "shape.step";
       STEPControl_Writer writer;

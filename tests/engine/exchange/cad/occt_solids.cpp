@@ -36,8 +36,7 @@
 #include <gp_GTrsf.hxx>
 #include <numbers>
 
-#include "engine/exchange/cad/cad_reader.h"
-#include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad/cad.h"
 #include "tests/engine/exchange/cad/occt_shapes.h"
 
 namespace spoonbill {
@@ -242,7 +241,7 @@ TopoDS_Shape drilled_box() {
 }
 
 CadModel read_through_step(const TopoDS_Shape& shape, const std::filesystem::path& folder) {
-  choose_unit("mm");
+  set_file_unit("mm");
   const auto file = folder / "in.step";
   STEPControl_Writer writer;
   EXPECT_EQ(writer.Transfer(shape, STEPControl_AsIs), IFSelect_RetDone);

@@ -10,8 +10,7 @@
 #include <TopExp_Explorer.hxx>
 #include <cmath>
 
-#include "engine/exchange/cad/cad_writer.h"
-#include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad/cad.h"
 #include "tests/engine/exchange/cad/occt_shapes.h"
 #include "tests/engine/exchange/sample_document.h"
 

@@ -7,8 +7,7 @@
 
 #include "engine/base/text.h"
 #include "engine/bspline/evaluate.h"
-#include "engine/exchange/cad/cad_writer.h"
-#include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad/cad.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"
 #include "tests/engine/exchange/sample_document.h"
 

@@ -10,9 +10,7 @@
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/exchange/cad/body_shape.h"
-#include "engine/exchange/cad/cad_reader.h"
-#include "engine/exchange/cad/cad_writer.h"
-#include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad/cad.h"
 #include "engine/exchange/cad_stream.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/bspline/tube.h"
@@ -163,7 +161,7 @@ TEST(BodyShape, FacesOfWhatWouldCloseAreTurnedOutwards) {
   for (const Surface& tube : {ellipsoid_tube(10, 10), reversed(ellipsoid_tube(10, 10), Direction::u)}) {
     CadSurface part = named("tube", tube);
     add_circle(part, 0.5, 0.5, 0.1, true);
-    const auto body = body_shape(part);
+    const auto body = build_body_shape(part);
     ASSERT_TRUE(body) << body.error().message;
     GProp_GProps properties;
     BRepGProp::VolumeProperties(body->shape, properties, 1e-3);
@@ -175,7 +173,7 @@ TEST(BodyShape, FacesOfWhatWouldCloseAreTurnedOutwards) {
 TEST(BodyShape, FacesOfOneSurfaceAreOneShell) {
   for (const CadSurface& part : trimmed_surfaces()) {
     SCOPED_TRACE(part.name);
-    const auto body = body_shape(part);
+    const auto body = build_body_shape(part);
     ASSERT_TRUE(body) << body.error().message;
     int shells = 0;
     for (TopExp_Explorer each(body->shape, TopAbs_SHELL); each.More(); each.Next()) ++shells;

@@ -10,8 +10,7 @@
 #include <STEPControl_Writer.hxx>
 #include <gp_Ax2.hxx>
 
-#include "engine/exchange/cad/cad_reader.h"
-#include "engine/exchange/cad/session.h"
+#include "engine/exchange/cad/cad.h"
 #include "engine/inspection/surface_check.h"
 #include "engine/inspection/mass_properties.h"
 #include "engine/merging/merge.h"
@@ -30,7 +29,7 @@ double volume_m3(const TopoDS_Shape& shape) {
 std::vector<Surface> whole_faces_of(const TopoDS_Shape& shape) {
   const TemporaryFolder folder;
   prepare_occt();
-  choose_unit("mm");
+  set_file_unit("mm");
   const auto file = folder.path() / "part.step";
   STEPControl_Writer writer;
   EXPECT_EQ(writer.Transfer(shape, STEPControl_AsIs), IFSelect_RetDone);

@@ -115,9 +115,12 @@ TEST_F(MeshWriter, ThreeMfHoldsAModelInMillimetres) {
 
 TEST_F(MeshWriter, ARefusalOfTheTakerEndsIt) {
   for (const FileFormat format : {FileFormat::stl, FileFormat::obj, FileFormat::ply, FileFormat::three_mf}) {
-    const Status written = write_meshes({tube("one", {0, 0, 0})}, format, 1.0,
-                                        [](std::string_view) -> Status { return Error{"disk full"}; });
+    const Status written =
+        write_meshes({tube("one", {0, 0, 0})}, format, 1.0, [](std::string_view) -> Status {
+          return Error{ErrorCode::unwritable, "disk full"};
+        });
     ASSERT_FALSE(written.ok());
+    EXPECT_EQ(written.error().code, ErrorCode::unwritable);
     EXPECT_EQ(written.error().message, "disk full");
   }
 }
@@ -141,10 +144,10 @@ TEST_F(MeshWriter, ThreeMfAsksWhetherToGoOn) {
           EXPECT_TRUE(bytes.empty());
           EXPECT_GT(left, 0);
           if (--left > 0) return {};
-          return Error{"stopped"};
+          return Error{ErrorCode::cancelled, "stopped"};
         });
     ASSERT_FALSE(stopped.ok());
-    EXPECT_EQ(stopped.error().message, "stopped");
+    EXPECT_EQ(stopped.error().code, ErrorCode::cancelled);
   }
 }
 

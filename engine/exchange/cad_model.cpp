@@ -1,4 +1,4 @@
-#include "engine/exchange/cad_names.h"
+#include "engine/exchange/cad_model.h"
 
 #include <algorithm>
 #include <map>
@@ -10,11 +10,11 @@
 namespace spoonbill {
 namespace {
 
-// Bytes that leave room for a number.
-constexpr std::size_t longest_shared_name = longest_cad_name - 10;
+// Longest name in bytes that leaves room for a number.
+constexpr std::size_t shared_name_bytes_limit = cad_name_bytes_limit - 10;
 
-// How many bytes of UTF-8 begin at `start`; 0 where none do.
-std::size_t letter_bytes(const std::string& text, std::size_t start) {
+// Returns the length of the UTF-8 character at `start` in bytes; 0 where there is none.
+std::size_t character_bytes(const std::string& text, std::size_t start) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
   const unsigned first = byte(start);
   const std::size_t count = first < 0x80                     ? 1
@@ -26,7 +26,7 @@ std::size_t letter_bytes(const std::string& text, std::size_t start) {
   for (std::size_t k = start + 1; k < start + count; ++k) {
     if ((byte(k) & 0xc0) != 0x80) return 0;
   }
-  // Overlong forms, surrogates, beyond Unicode.
+  // Overlong forms, surrogates and codes beyond Unicode are not UTF-8.
   const unsigned second = count > 2 ? byte(start + 1) : 0x80;
   if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
       (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f)) {
@@ -35,49 +35,50 @@ std::size_t letter_bytes(const std::string& text, std::size_t start) {
   return count;
 }
 
-// U+0080 to U+009F, which terminals obey.
+// Returns true for U+0080 to U+009F, which terminals interpret as control codes.
 bool is_control(std::string_view letter) {
   return letter.size() == 2 && letter[0] == '\xc2' && letter[1] < '\xa0';
 }
 
 }  // namespace
 
-std::string clean_cad_name(const std::string& name, const std::string& instead, std::size_t longest) {
-  SPOONBILL_ASSERT(longest > 0);
+std::string clean_cad_name(const std::string& name, const std::string& fallback, std::size_t bytes_limit) {
+  SPOONBILL_ASSERT(bytes_limit > 0);
   std::string clean;
   for (std::size_t k = 0; k < name.size();) {
-    const std::size_t count = letter_bytes(name, k);
-    const bool shown =
+    const std::size_t count = character_bytes(name, k);
+    const bool is_printable =
         count > 1 ? !is_control(name.substr(k, count)) : count == 1 && name[k] >= ' ' && name[k] != '\x7f';
-    if (clean.size() + std::max<std::size_t>(count, 1) > longest) break;
-    clean += shown ? name.substr(k, count) : std::string(1, ' ');
+    if (clean.size() + std::max<std::size_t>(count, 1) > bytes_limit) break;
+    clean += is_printable ? name.substr(k, count) : std::string(1, ' ');
     k += std::max<std::size_t>(count, 1);
   }
   const std::size_t first = clean.find_first_not_of(' ');
-  if (first == std::string::npos) return instead;
+  if (first == std::string::npos) return fallback;
   return clean.substr(first, clean.find_last_not_of(' ') - first + 1);
 }
 
-std::vector<std::string> told_apart(const std::vector<std::string>& names, const std::string& instead) {
-  std::vector<std::string> apart;
+std::vector<std::string> make_names_unique(const std::vector<std::string>& names,
+                                           const std::string& fallback) {
+  std::vector<std::string> unique;
   std::map<std::string, int> uses;
   for (const std::string& name : names) {
-    apart.push_back(clean_cad_name(name.substr(0, longest_shared_name), instead));
-    ++uses[apart.back()];
+    unique.push_back(clean_cad_name(name.substr(0, shared_name_bytes_limit), fallback));
+    ++uses[unique.back()];
   }
-  std::set<std::string> taken;
-  for (const auto& [name, times] : uses) taken.insert(name);
-  std::map<std::string, int> given;
-  for (std::string& name : apart) {
+  std::set<std::string> used;
+  for (const auto& [name, times] : uses) used.insert(name);
+  std::map<std::string, int> last_numbers;
+  for (std::string& name : unique) {
     if (uses[name] == 1) continue;
     std::string numbered;
     do {
-      numbered = name + " " + std::to_string(++given[name]);
-    } while (taken.contains(numbered));
-    taken.insert(numbered);
+      numbered = name + " " + std::to_string(++last_numbers[name]);
+    } while (used.contains(numbered));
+    used.insert(numbered);
     name = numbered;
   }
-  return apart;
+  return unique;
 }
 
 }  // namespace spoonbill

@@ -1,0 +1,45 @@
+// Facts about a CAD file that OpenCASCADE does not report: its unit, lost entities, ignored placements, other
+// files.
+#pragma once
+
+#include <IGESData_IGESModel.hxx>
+#include <StepData_StepModel.hxx>
+#include <XSControl_WorkSession.hxx>
+#include <filesystem>
+#include <string>
+
+#include "engine/exchange/cad_model.h"
+
+namespace spoonbill {
+
+// Unit of length of a file.
+struct FileUnit {
+  std::string name;          // "mm", "inch", or as the file names it
+  double millimetres = 1.0;  // length that OpenCASCADE assumed for one unit
+  bool declared = false;
+};
+
+FileUnit find_unit(const opencascade::handle<StepData_StepModel>& model);
+// Sets the unit of the model to millimetres where it is invalid: OpenCASCADE would convert nothing.
+FileUnit find_unit(const opencascade::handle<IGESData_IGESModel>& model, const std::filesystem::path& file);
+
+// Numbers of entities that OpenCASCADE omits although it reports success.
+struct LossCount {
+  int faces = 0, lost_faces = 0;          // faces of the file, and those of them that became no shape
+  int instances = 0, lost_instances = 0;  // placed copies of parts of an IGES file
+  int unread = 0;                         // IGES entities that could not be parsed or have no type
+};
+
+// Counts losses after the transfer.
+LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session, FileFormat format);
+
+// Count placements that OpenCASCADE ignores because they do more than translate and rotate: in STEP those
+// that scale or mirror, in IGES those that change angles.
+int count_unread_placements(const opencascade::handle<StepData_StepModel>& model);
+int count_unread_placements(const opencascade::handle<IGESData_IGESModel>& model);
+
+// Removes the names of other files, which OpenCASCADE would open even if they were a pipe or a device, and
+// returns their number.
+int remove_external_files(const opencascade::handle<StepData_StepModel>& model);
+
+}  // namespace spoonbill
