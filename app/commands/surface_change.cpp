@@ -11,7 +11,6 @@
 #include "engine/base/text.h"
 #include "engine/bspline/change_knots.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/merging/seam.h"
 #include "engine/merging/tube_ends.h"
 
 namespace spoonbill {
@@ -179,7 +178,7 @@ Result<ChangedSurfaces> move_seam(const Surface& surface, const AskedChange& ask
 Result<ChangedSurfaces> close_around(const Surface& surface, const AskedChange& asked,
                                      const Allowed& allowed) {
   auto closed =
-      closed_around(surface, asked.direction, asked.continuity, allowed.tolerance_m, allowed.progress);
+      close_around(surface, asked.direction, asked.continuity, allowed.tolerance_m, allowed.progress);
   if (!closed) return closed.error();
   return ChangedSurfaces{{std::move(closed->surface)}, {}, closed->deviation_m, true};
 }
@@ -188,13 +187,13 @@ Result<ChangedSurfaces> cap(const Surface& surface, const AskedChange& asked, co
   JoinRequest request;
   request.tolerance_m = allowed.tolerance_m;
   request.progress = allowed.progress;
-  auto capped = with_cap(surface, asked.side, asked.height_m, request);
+  auto capped = add_cap(surface, asked.side, asked.height_m, request);
   if (!capped) return capped.error();
   return ChangedSurfaces{{std::move(capped->surface)}, {}, capped->deviation_m, false};
 }
 
 Result<ChangedSurfaces> open_end(const Surface& surface, const AskedChange& asked, const Allowed&) {
-  return exactly(opened_pole(surface, asked.side, HUGE_VAL), false);
+  return exactly(open_pole(surface, asked.side, HUGE_VAL), false);
 }
 
 TrimLoop reverse_trim(const Surface& surface, const AskedChange& asked, const TrimLoop& loop) {

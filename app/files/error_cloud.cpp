@@ -30,15 +30,15 @@ std::string header(std::size_t points, double full_m) {
 
 Status write_error_cloud(const ScanFit& fit, double full_m, const std::filesystem::path& file) {
   std::size_t count = 0;
-  for (const FittedBody& body : fit.bodies) count += body.errors.places_m.size();
+  for (const FittedBody& body : fit.bodies) count += body.errors.positions_m.size();
   auto out = OutputFile::create(file);
   if (!out) return out.error();
   if (Status written = out->write(header(count, full_m)); !written) return written;
   std::string bytes;
   for (const FittedBody& body : fit.bodies) {
     bytes.clear();
-    for (std::size_t p = 0; p < body.errors.places_m.size(); ++p) {
-      for (int axis = 0; axis < 3; ++axis) append_float(bytes, body.errors.places_m[p][axis]);
+    for (std::size_t p = 0; p < body.errors.positions_m.size(); ++p) {
+      for (int axis = 0; axis < 3; ++axis) append_float(bytes, body.errors.positions_m[p][axis]);
       append_float(bytes, 1e3 * body.errors.distance_m[p]);
       for (const std::uint8_t value : colour_at(body.errors.distance_m[p] / full_m)) {
         bytes.push_back(static_cast<char>(value));

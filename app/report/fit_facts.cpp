@@ -45,7 +45,7 @@ void add_body(FactSheet& facts, const FittedBody& body, Json& list) {
     facts.add("  With strays", deviation_text(body.errors.all_to_surface), "", nullptr);
   }
   facts.add("  Surface to scan",
-            deviation_text(body.errors.surface_to_data) + "; " + percent_text(body.errors.unseen_share) +
+            deviation_text(body.errors.surface_to_data) + "; " + percent_text(body.errors.unseen_fraction) +
                 " of it was not scanned",
             "", nullptr);
   facts.add("  Folds",
@@ -66,7 +66,7 @@ void add_body(FactSheet& facts, const FittedBody& body, Json& list) {
                   {"data_to_surface", deviation_json(body.errors.data_to_surface)},
                   {"strays_too_to_surface", deviation_json(body.errors.all_to_surface)},
                   {"surface_to_data", deviation_json(body.errors.surface_to_data)},
-                  {"unseen_share", body.errors.unseen_share},
+                  {"unseen_share", body.errors.unseen_fraction},
                   {"folds", body.folds.folds},
                   {"fold_samples", body.folds.samples},
                   {"cusps", body.folds.cusps}});
@@ -87,7 +87,7 @@ Deviation deviation_of_all(const ScanFit& fit) {
       if (!body.errors.is_stray[p]) distances.push_back(body.errors.distance_m[p]);
     }
   }
-  return deviation_of(std::move(distances));
+  return compute_deviation(std::move(distances));
 }
 
 void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit) {
@@ -166,8 +166,8 @@ std::vector<std::string> shortcoming_remarks(const ScanFit& fit, double toleranc
                         " samples; try fewer control points or another --kind");
     }
   }
-  if (fit.turned_normals > 0) {
-    remarks.push_back("the normals of " + count_text(fit.turned_normals, "point", "points") +
+  if (fit.flipped_normals > 0) {
+    remarks.push_back("the normals of " + count_text(fit.flipped_normals, "point", "points") +
                       " faced the other way than those beside them, and were turned");
   }
   for (const UnfittedIsland& island : fit.unfitted) remarks.push_back(unfitted_text(island));

@@ -1,4 +1,4 @@
-// One body over the gaps between islands.
+// Bridges that join the connected components of a scan into one closed body.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace spoonbill {
 
-// Spans the holes of each island, opens each where it comes nearest to the others, and spans the gaps by
-// straight tubes of nodes. The first island is the largest; each further one joins whichever is nearest to
-// it. What is open besides is capped. Refused: an island too small to open.
-Result<FitPoints> bridged(std::vector<FitPoints> islands);
+// Joins all components into one. Holes are spanned, each component is opened where it is nearest to the
+// others, and straight tubes of nodes span the gaps. The first component must be the largest; each of the
+// others joins whichever is nearest. Other open ends are capped. Fails if a component is too small to open.
+Result<FitPoints> bridge_islands(std::vector<FitPoints> islands);
 
-// How many of the islands are sheets or tubes that are open elsewhere than where they face each other:
-// bridged, they are capped there.
-std::size_t open_beside_gaps(const std::vector<FitPoints>& islands);
+// Returns the number of sheets and open tubes that have an open end away from the gaps. bridge_islands() caps
+// such ends.
+std::size_t count_open_islands(const std::vector<FitPoints>& islands);
 
 }  // namespace spoonbill

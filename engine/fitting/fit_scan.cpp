@@ -8,16 +8,15 @@
 #include "engine/base/geometry.h"
 #include "engine/fitting/bridging.h"
 #include "engine/fitting/islands.h"
-#include "engine/fitting/profile_map.h"
-#include "engine/fitting/shape_start.h"
+#include "engine/fitting/parameterisation.h"
 
 namespace spoonbill {
 namespace {
 
-// An island has 30 nodes at least, and a node of a cloud three points.
+// A component needs 30 nodes, and each node of a cloud three points.
 constexpr std::size_t least_cloud_points = 90;
 
-Result<FittedBody> fit_from(FitPoints island, const Parameterisation& start, FitSettings settings,
+Result<FittedBody> fit_body(FitPoints island, const Parameterisation& start, FitSettings settings,
                             const Progress& progress) {
   settings.progress = progress;
   auto fit = fit_surface(island, start, settings);
@@ -32,38 +31,38 @@ Result<FittedBody> fit_from(FitPoints island, const Parameterisation& start, Fit
   return body;
 }
 
-// A wall that is truly there brings its two faces much nearer than a surface in their middle.
-bool nearer_as_wall(const FittedBody& wall, const FittedBody& face) {
-  constexpr double share = 0.8;
-  return wall.errors.data_to_surface.p95_m < share * face.errors.data_to_surface.p95_m;
+// A real wall brings its two faces much closer to the data than a single surface between them does.
+bool is_closer_as_wall(const FittedBody& wall, const FittedBody& face) {
+  constexpr double fraction = 0.8;
+  return wall.errors.data_to_surface.p95_m < fraction * face.errors.data_to_surface.p95_m;
 }
 
 Result<FittedBody> fit_from_profile(FitPoints island, Parameterisation start, const FitSettings& settings,
                                     const Progress& progress) {
-  start.uv = take_points_as_nodes(island, start.uv);
-  return fit_from(std::move(island), start, settings, progress);
+  start.uv = use_points_as_nodes(island, start.uv);
+  return fit_body(std::move(island), start, settings, progress);
 }
 
 Result<FittedBody> fit_from_kind(FitPoints island, const FitRequest& request, const Progress& progress) {
   if (request.islands == IslandChoice::bridge && island.spanning_nodes > 0 &&
       request.kind.value_or(ShapeKind::closed) != ShapeKind::closed) {
-    return Error{"bridged islands make a closed body; leave --kind out"};
+    return Error(ErrorCode::inconsistent, "bridged islands make a closed body; leave --kind out", "kind");
   }
-  const auto start = first_parameters(island, request.kind.value_or(kind_of_shape(island)));
+  const auto start = initial_parameterisation(island, request.kind.value_or(classify_shape(island)));
   if (!start) return start.error();
-  return fit_from(std::move(island), start.value(), request.settings, progress);
+  return fit_body(std::move(island), start.value(), request.settings, progress);
 }
 
 Result<FittedBody> fit_island(FitPoints island, const FitRequest& request, const Progress& progress) {
   const bool may_be_closed = request.kind.value_or(ShapeKind::closed) == ShapeKind::closed;
   if (may_be_closed && !island.scan.has_normals()) {
-    if (auto map = profile_map(island.scan.points_m)) {
+    if (auto map = map_profile(island.scan.points_m)) {
       const bool is_doubtful = map->may_be_one_face && !request.kind;
       auto wall = fit_from_profile(island, std::move(map->start), request.settings, progress);
       if (!is_doubtful) return wall;
       auto face = fit_from_kind(std::move(island), request, progress);
       if (!wall) return face;
-      return face && !nearer_as_wall(wall.value(), face.value()) ? std::move(face) : std::move(wall);
+      return face && !is_closer_as_wall(wall.value(), face.value()) ? std::move(face) : std::move(wall);
     }
   }
   return fit_from_kind(std::move(island), request, progress);
@@ -71,8 +70,8 @@ Result<FittedBody> fit_island(FitPoints island, const FitRequest& request, const
 
 Status choose_islands(std::vector<FitPoints>& islands, IslandChoice choice, ScanFit& result) {
   if (choice == IslandChoice::bridge && islands.size() > 1) {
-    result.open_bridged = open_beside_gaps(islands);
-    auto whole = bridged(std::move(islands));
+    result.open_bridged = count_open_islands(islands);
+    auto whole = bridge_islands(std::move(islands));
     if (!whole) return whole.error();
     islands.clear();
     islands.push_back(std::move(whole).value());
@@ -109,8 +108,9 @@ Status fit_islands(std::vector<FitPoints> islands, const FitRequest& request, Sc
     result.unfitted.push_back(std::move(unfitted));
   }
   if (!result.bodies.empty()) return {};
-  return Error{"none of its " + std::to_string(islands.size()) +
-               " islands can be fitted; of the largest: " + result.unfitted.front().why};
+  return Error(ErrorCode::not_converged,
+               "none of its " + std::to_string(islands.size()) +
+                   " islands can be fitted; the largest: " + result.unfitted.front().why);
 }
 
 }  // namespace
@@ -120,8 +120,9 @@ Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
                                      [](const Vector3& at) { return at.allFinite(); }));
   SPOONBILL_ASSERT(!scan.has_normals() || scan.normals.size() == scan.points_m.size());
   if (scan.triangles.empty() && scan.points_m.size() < least_cloud_points) {
-    return Error{"has too few points for a fit: " + std::to_string(scan.points_m.size()) + " of at least " +
-                 std::to_string(least_cloud_points) + "; a closed shape takes some 200"};
+    return Error(ErrorCode::too_few, "has too few points for a fit: " + std::to_string(scan.points_m.size()) +
+                                         ", needs at least " + std::to_string(least_cloud_points) +
+                                         ", and about 200 for a closed shape");
   }
   auto points = make_fit_points(std::move(scan));
   if (!points) return points.error();
@@ -130,10 +131,11 @@ Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
   result.islands = islands.islands.size();
   result.joined = points->joined;
   result.outliers = points->outliers;
-  result.turned_normals = points->turned_normals;
+  result.flipped_normals = points->flipped_normals;
   result.dust = islands.dust_points;
   if (islands.islands.empty()) {
-    return Error{"its points hang together nowhere; they are too few or too noisy"};
+    return Error(ErrorCode::degenerate,
+                 "its points form no connected surface; they are too few or too noisy");
   }
   if (Status chosen = choose_islands(islands.islands, request.islands, result); !chosen) {
     return chosen.error();

@@ -1,4 +1,4 @@
-// B-spline surfaces of a scan: from points or triangles to one surface for each island, with its errors.
+// Fits B-spline surfaces to a scan: one surface for each connected component, with its errors.
 #pragma once
 
 #include <optional>
@@ -6,19 +6,20 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/fitting/fit_errors.h"
+#include "engine/fitting/fit_quality.h"
 #include "engine/fitting/fit_surface.h"
 #include "engine/fitting/parameterisation.h"
 #include "engine/fitting/scan.h"
 
 namespace spoonbill {
 
-// Of a scan in several islands: only the largest, one closed body over the gaps, or each a body.
+// Treatment of a scan with several connected components: fit the largest only, bridge all into one closed
+// body, or fit each.
 enum class IslandChoice { largest, bridge, all };
 
 struct FitRequest {
   FitSettings settings;
-  std::optional<ShapeKind> kind;  // found where none is asked for
+  std::optional<ShapeKind> kind;  // default: detected
   IslandChoice islands = IslandChoice::largest;
 };
 
@@ -27,32 +28,33 @@ struct FittedBody {
   ShapeKind kind = ShapeKind::closed;
   FitErrors errors;
   FoldCheck folds;
-  std::vector<Vector3> points_m;  // those given that belong to it
+  std::vector<Vector3> points_m;  // given points that belong to the body
   Vector3 size_m = Vector3::Zero();
 };
 
-// An island of several that no surface could be laid out on.
+// Connected component that could not be fitted while others could.
 struct UnfittedIsland {
   std::size_t points = 0;
-  Vector3 size_m = Vector3::Zero(), centre_m = Vector3::Zero();  // of the box around it
+  Vector3 size_m = Vector3::Zero(), centre_m = Vector3::Zero();  // size and centre of its bounding box
   std::string why;
 };
 
 struct ScanFit {
-  std::vector<FittedBody> bodies;        // the largest first
-  std::size_t islands = 0;               // found, whatever was fitted of them
-  std::vector<UnfittedIsland> unfitted;  // where all were asked for; the largest first
-  std::size_t open_bridged = 0;          // islands bridged that were open elsewhere than at gaps, now capped
-  // Points left out: where another is, apart, in specks, on islands that are none of the bodies.
+  std::vector<FittedBody> bodies;        // largest first
+  std::size_t islands = 0;               // number of connected components found
+  std::vector<UnfittedIsland> unfitted;  // largest first; only with IslandChoice::all
+  std::size_t open_bridged = 0;  // bridged components with open ends away from the gaps, which were capped
+  // Points left out: duplicates, outliers, points of tiny components, points of components that were not
+  // fitted.
   std::size_t joined = 0, outliers = 0, dust = 0, other_islands = 0;
-  // Points of a cloud whose normals faced otherwise than those beside them and were turned, as where all face
-  // the scanner; zero where they agreed.
-  std::size_t turned_normals = 0;
+  // Cloud points whose normals were flipped to agree with their neighbours, as needed when all normals face
+  // the scanner.
+  std::size_t flipped_normals = 0;
 };
 
-// The scan's points must be finite. Refused, with what to try instead: too few points (of a cloud fewer than
-// 90), a shape that cannot be laid out as the kind asked for (of several islands, where all are asked for:
-// none of which can), islands that cannot be bridged.
+// Fits a scan with finite points. Fails, with advice, on too few points (a cloud needs at least 90) and on a
+// shape that cannot be parameterised as the requested kind. Fails also if components cannot be bridged, or on
+// a request to stop. With IslandChoice::all, single failures are listed in `unfitted`.
 Result<ScanFit> fit_scan(Scan scan, const FitRequest& request);
 
 }  // namespace spoonbill

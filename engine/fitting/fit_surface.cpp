@@ -6,41 +6,140 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "engine/base/assert.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/fitting/closest_parameters.h"
-#include "engine/fitting/estimated_normals.h"
-#include "engine/fitting/nearest_points.h"
-#include "engine/fitting/outer_side.h"
-#include "engine/fitting/refine_knots.h"
-#include "engine/fitting/surface_fitter.h"
+#include "engine/fitting/fit_quality.h"
+#include "engine/fitting/normals.h"
+#include "engine/fitting/point_sets.h"
+#include "engine/fitting/scattered_fit.h"
 #include "engine/inspection/mass_properties.h"
 
 namespace spoonbill {
 namespace {
+
+inline constexpr int projection_steps = 3;
+// Lower bound of the fairness; lets surfaces follow data without noise.
+inline constexpr double least_fairness = 3e-4;
+
+// Data of one fitting stage: the nodes first, then all points.
+struct FittedData {
+  std::span<const Vector3> points_m;
+  std::span<const double> weights;
+  std::span<const Vector3> normals;  // empty, or one for each point, zero where unknown
+  std::vector<Vector2> uv;
+  std::vector<double> distance_m;
+  std::vector<double> trust;
+};
+
+// Returns the 95th percentile.
+inline double percentile_95(std::span<const double> distances) {
+  return quantile({distances.begin(), distances.end()}, 0.95);
+}
+
+// Returns a difference of periodic parameters (period 1), wrapped into [-0.5, 0.5].
+inline double wrapped(double difference) {
+  return difference - std::round(difference);
+}
+
+// Ranks fits: those without folds first, then by error, with a surcharge for each fold and cusp.
+struct FitQuality {
+  std::size_t folds, cusps;
+  double error_m;
+
+  bool is_better_than(const FitQuality& other) const {
+    return (folds > 0) != (other.folds > 0) ? folds == 0 : cost() < other.cost();
+  }
+  double cost() const {
+    return error_m * (1.0 + 0.03 * static_cast<double>(folds) + 0.004 * static_cast<double>(cusps));
+  }
+};
+
+class SurfaceFitter {
+ public:
+  // Points keep their parameters if the surface normal at the closest point has a smaller cosine with their
+  // own normal than `least_agreement`. On a thin wall the closest point may be on the other face.
+  SurfaceFitter(const FitPoints& points, const Parameterisation& start, const FitSettings& settings,
+                double least_agreement, double fairness_factor);
+  Result<FittedSurface> run();
+
+ private:
+  // State that unfolding changes, to restart from.
+  struct Folding {
+    Surface surface;
+    FoldCheck folds;
+    std::vector<Vector2> uv;
+    std::vector<double> fairness;
+  };
+
+  bool closed() const { return kind_ == ShapeKind::closed; }
+  bool periodic() const { return kind_ != ShapeKind::sheet; }
+  Status solve(FittedData& data);
+  void add_poles();
+  void project(FittedData& data, bool smooth);
+  bool can_move_to(const FittedData& data, std::size_t point, const Vector2& uv) const;
+  void update_trust(FittedData& data) const;
+  double off_surface_distance(const FittedData& data, std::size_t point) const;
+  void distrust_strays();
+  void smooth_shifts(const std::vector<Vector2>& before, std::vector<Vector2>& uv) const;
+  bool within_tolerance(const FittedData& data) const;
+  bool add_control_points();
+  bool has_inward_normals() const;
+  Status orient_outwards();
+  Status node_rounds();
+  Status point_rounds();
+  const std::vector<bool>& faulty_spans() const;
+  void stiffen_faulty_spans();
+  void relax_faulty_spans(int rounds);
+  bool is_in_faulty_span(const Vector2& uv) const;
+  Vector2 clamp_to_domain(Vector2 uv) const;
+  double percentile_error() const;
+  Status unfold();
+  Status unfold(int relaxation);
+  void restore(const Folding& folding);
+  void set_fairness(double fairness, const FittedData& data);
+  Status choose_fairness(const FittedData& data);
+  bool report(double fraction) const { return settings_->progress.report(fraction); }
+  FittedSurface result();
+
+  const FitPoints* points_;
+  const FitSettings* settings_;
+  ShapeKind kind_;
+  double least_agreement_, fairness_factor_, chosen_fairness_;
+  SurfaceStructure structure_;
+  std::vector<double> fairness_;  // one for each pair of spans, u-major
+  std::vector<double> node_weights_, all_weights_;
+  std::vector<Vector3> all_points_m_, all_normals_;
+  FittedData nodes_, all_;
+  std::vector<std::pair<Vector3, double>> poles_;  // position and v of each pole
+  Surface surface_;
+  FoldCheck folds_;
+  std::vector<double> u_breaks_, v_breaks_;  // breakpoints of the final knots
+};
 
 constexpr int degree = 3;
 constexpr int first_controls = 10;
 constexpr double growth = 1.35;
 constexpr double first_fairness = 1e-2;
 constexpr int point_round_count = 3;
-// Of a node that spans a hole, against the others': it is a guess.
+// Weight of a node that spans a hole, relative to the mean: its position is a guess.
 constexpr double spanning_weight = 0.15;
-constexpr double pole_weight = 0.5;  // of a pole, in spans' worth of points
+constexpr double pole_weight = 0.5;  // weight of a pole, relative to one span's points
 
 const ClosestPoint& nearer(const ClosestPoint& one, const ClosestPoint& other) {
   return other.distance_m < one.distance_m ? other : one;
 }
 
-// The distance within which 95 % of the points given are, strays left out.
-double usual_error(const FittedSurface& fitted, const FitPoints& points) {
+// Returns the 95th percentile of the given points' distances, without strays.
+double percentile_error(const FittedSurface& fitted, const FitPoints& points) {
   std::vector<double> distances;
-  for (const std::uint32_t point : points.stands_for) {
+  for (const std::uint32_t point : points.representative) {
     if (point != no_point && fitted.trust[point] > 0.0) distances.push_back(fitted.distance_m[point]);
   }
-  return ninety_fifth(distances);
+  return percentile_95(distances);
 }
 
 KnotVector first_knots(bool is_periodic, int count) {
@@ -48,7 +147,7 @@ KnotVector first_knots(bool is_periodic, int count) {
                      : KnotVector::clamped_uniform(degree, std::max(count, degree + 1)).value();
 }
 
-// Over [0, 1], whatever period the uniform knots have.
+// Rescales uniform knots to the domain [0, 1].
 KnotVector over_unit(const KnotVector& knots) {
   std::vector<double> scaled = knots.knots();
   const double start = knots.domain_start(), length = knots.domain_end() - start;
@@ -56,8 +155,6 @@ KnotVector over_unit(const KnotVector& knots) {
   return knots.is_periodic() ? KnotVector::periodic(degree, std::move(scaled)).value()
                              : KnotVector::open(degree, std::move(scaled)).value();
 }
-
-}  // namespace
 
 SurfaceFitter::SurfaceFitter(const FitPoints& points, const Parameterisation& start,
                              const FitSettings& settings, double least_agreement, double fairness_factor)
@@ -72,7 +169,7 @@ SurfaceFitter::SurfaceFitter(const FitPoints& points, const Parameterisation& st
   structure_.pole_at_start = structure_.pole_at_end = closed();
   node_weights_.assign(points.graph.size(), 0.0);
   for (std::size_t p = 0; p < points.weights.size(); ++p) {
-    node_weights_[points.node_of[p]] += points.weights[p];
+    node_weights_[points.node_index[p]] += points.weights[p];
   }
   double mean = 0.0;
   for (const double weight : node_weights_) mean += weight / static_cast<double>(node_weights_.size());
@@ -85,7 +182,7 @@ SurfaceFitter::SurfaceFitter(const FitPoints& points, const Parameterisation& st
             start.uv,
             std::vector<double>(points.graph.size(), 0.0),
             std::vector<double>(points.graph.size(), 1.0)};
-  if (closed()) take_poles();
+  if (closed()) add_poles();
 }
 
 Status SurfaceFitter::solve(FittedData& data) {
@@ -95,8 +192,8 @@ Status SurfaceFitter::solve(FittedData& data) {
   std::vector<Vector2> uv = data.uv;
   const double span_weight =
       std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(fairness_.size());
-  for (const auto& [place, v] : poles_) {
-    points.push_back(place);
+  for (const auto& [position, v] : poles_) {
+    points.push_back(position);
     uv.emplace_back(0.0, v);
     weights.push_back(pole_weight * span_weight);
   }
@@ -106,8 +203,8 @@ Status SurfaceFitter::solve(FittedData& data) {
   return {};
 }
 
-// Where the poles were at first: else the surface may reach beyond the points there.
-void SurfaceFitter::take_poles() {
+// Fixes the poles at their initial positions, so that the surface does not extend beyond the points.
+void SurfaceFitter::add_poles() {
   constexpr double near = 0.02;
   for (const double v : {0.0, 1.0}) {
     Vector3 sum = Vector3::Zero();
@@ -115,7 +212,7 @@ void SurfaceFitter::take_poles() {
     bool exact = false;
     for (std::size_t n = 0; n < nodes_.uv.size(); ++n) {
       const double away = std::abs(nodes_.uv[n].y() - v);
-      if (exact || !(away < near)) continue;  // also NaN
+      if (exact || !(away < near)) continue;  // skips NaN as well
       if (away == 0.0) {
         exact = true;
         sum.setZero();
@@ -141,7 +238,7 @@ void SurfaceFitter::smooth_shifts(const std::vector<Vector2>& before, std::vecto
     if (!known[n]) continue;
     Vector2 sum = shift[n];
     double count = 1.0;
-    for (const std::uint32_t other : points_->graph.of(n)) {
+    for (const std::uint32_t other : points_->graph.adjacent(n)) {
       if (!known[other]) continue;
       sum += shift[other];
       count += 1.0;
@@ -156,8 +253,8 @@ void SurfaceFitter::smooth_shifts(const std::vector<Vector2>& before, std::vecto
   }
 }
 
-// Nodes that span holes may: their normals are guesses.
-bool SurfaceFitter::may_go_to(const FittedData& data, std::size_t point, const Vector2& uv) const {
+// Spanning nodes may always move, since their normals are guesses.
+bool SurfaceFitter::can_move_to(const FittedData& data, std::size_t point, const Vector2& uv) const {
   if (least_agreement_ <= -1.0 || point + points_->spanning_nodes >= data.normals.size()) return true;
   const SurfacePoint at = evaluate(surface_, uv.x(), uv.y());
   const double cosine = at.du.cross(at.dv).normalized().dot(data.normals[point]);
@@ -169,13 +266,13 @@ void SurfaceFitter::project(FittedData& data, bool smooth) {
   const std::vector<Vector2> before = data.uv;
   for (std::size_t p = 0; p < data.uv.size(); ++p) {
     const ClosestPoint found = before[p].hasNaN()
-                                   ? closest.anywhere(data.points_m[p], projection_steps)
-                                   : closest.from(data.points_m[p], before[p], projection_steps);
-    if (before[p].hasNaN() || may_go_to(data, p, found.uv)) {
+                                   ? closest.project(data.points_m[p], projection_steps)
+                                   : closest.project_from(data.points_m[p], before[p], projection_steps);
+    if (before[p].hasNaN() || can_move_to(data, p, found.uv)) {
       data.uv[p] = found.uv;
       data.distance_m[p] = found.distance_m;
     } else {
-      data.distance_m[p] = closest.from(data.points_m[p], before[p], 0).distance_m;
+      data.distance_m[p] = closest.project_from(data.points_m[p], before[p], 0).distance_m;
     }
   }
   if (smooth) smooth_shifts(before, data.uv);
@@ -189,8 +286,8 @@ bool SurfaceFitter::within_tolerance(const FittedData& data) const {
   return true;
 }
 
-// More control points; false where there are enough.
-bool SurfaceFitter::grow() {
+// Inserts knots. Returns false if the counts or the tolerance are reached.
+bool SurfaceFitter::add_control_points() {
   const int u = structure_.u.control_point_count(), v = structure_.v.control_point_count();
   if (u >= settings_->control_u && v >= settings_->control_v) return false;
   if (within_tolerance(nodes_)) return false;
@@ -201,14 +298,14 @@ bool SurfaceFitter::grow() {
   for (std::size_t n = 0; n < squares.size(); ++n) {
     squares[n] = nodes_.weights[n] * nodes_.trust[n] * nodes_.distance_m[n] * nodes_.distance_m[n];
   }
-  structure_.u = with_knots_for_errors(structure_.u, 0, next(u, settings_->control_u), nodes_.uv, squares);
-  structure_.v = with_knots_for_errors(structure_.v, 1, next(v, settings_->control_v), nodes_.uv, squares);
+  structure_.u = refine_knots(structure_.u, 0, next(u, settings_->control_u), nodes_.uv, squares);
+  structure_.v = refine_knots(structure_.v, 1, next(v, settings_->control_v), nodes_.uv, squares);
   return true;
 }
 
-// Against the normals of what was scanned (those of nodes that span holes may face either way) or, without
-// them, against the inside of a closed shape, or the side of an open one that is taken to be out.
-bool SurfaceFitter::faces_inwards() const {
+// Compares with the scan's normals, without those of spanning nodes. Without any, uses the enclosed volume of
+// a closed shape, or the orientation rule for open ones.
+bool SurfaceFitter::has_inward_normals() const {
   double along = 0.0;
   for (std::size_t n = 0; n + points_->spanning_nodes < nodes_.uv.size(); ++n) {
     if (nodes_.uv[n].hasNaN()) continue;
@@ -217,11 +314,11 @@ bool SurfaceFitter::faces_inwards() const {
     if (normal.allFinite()) along += normal.dot(points_->node_normals[n]);
   }
   if (along != 0.0) return along < 0.0;
-  return closed() ? compute_enclosed_mass(surface_).volume_m3 < 0.0 : faces_inner_side(surface_);
+  return closed() ? compute_enclosed_mass(surface_).volume_m3 < 0.0 : is_inside_out(surface_);
 }
 
-// The first rounds of a thin wall may enclose less than nothing.
-Status SurfaceFitter::face_outwards() {
+// Early rounds of a thin wall can enclose a negative volume.
+Status SurfaceFitter::orient_outwards() {
   if (!closed() || compute_enclosed_mass(surface_).volume_m3 >= 0.0) return {};
   surface_ = reversed(surface_, Direction::u);
   for (Vector2& uv : all_.uv) uv.x() = 1.0 - uv.x();
@@ -232,7 +329,7 @@ Status SurfaceFitter::face_outwards() {
 Status SurfaceFitter::node_rounds() {
   set_fairness(first_fairness, nodes_);
   if (Status solved = solve(nodes_); !solved) return solved;
-  if (faces_inwards()) {
+  if (has_inward_normals()) {
     for (Vector2& uv : nodes_.uv) uv.x() = 1.0 - uv.x();
   }
   double fairness = first_fairness;
@@ -242,12 +339,13 @@ Status SurfaceFitter::node_rounds() {
       set_fairness(fairness, nodes_);
       if (Status solved = solve(nodes_); !solved) return solved;
       project(nodes_, true);
-      if (stage > 0) take_trust(nodes_);
+      if (stage > 0) update_trust(nodes_);
       fairness = std::max(fairness_factor_ * least_fairness, 0.6 * fairness);
     }
     ++stage;
-    if (!report(0.1 * std::min(stage, 6))) return Error{"stopped before the fit was done"};
-  } while (grow());
+    if (!report(0.1 * std::min(stage, 6)))
+      return Error(ErrorCode::cancelled, "stopped before the fit was done");
+  } while (add_control_points());
   return {};
 }
 
@@ -257,7 +355,7 @@ Status SurfaceFitter::point_rounds() {
   all_weights_ = points_->weights;
   double mean = 0.0;
   for (const double weight : all_weights_) mean += weight / static_cast<double>(all_weights_.size());
-  for (const std::uint32_t node : points_->node_of) all_.uv.push_back(nodes_.uv[node]);
+  for (const std::uint32_t node : points_->node_index) all_.uv.push_back(nodes_.uv[node]);
   for (std::size_t n = node_count - spanning; n < node_count; ++n) {
     all_points_m_.push_back(points_->graph.points_m[n]);
     all_weights_.push_back(spanning_weight * mean);
@@ -276,20 +374,21 @@ Status SurfaceFitter::point_rounds() {
   all_.trust.assign(all_.uv.size(), 1.0);
   for (int round = 0; round < point_round_count; ++round) {
     project(all_, false);
-    take_trust(all_);
+    update_trust(all_);
     if (round > 0) distrust_strays();
     if (round == 0) {
       if (Status chosen = choose_fairness(all_); !chosen) return chosen;
     }
     set_fairness(chosen_fairness_, all_);
     if (Status solved = solve(all_); !solved) return solved;
-    if (!report(0.7 + 0.05 * round)) return Error{"stopped before the fit was done"};
+    if (!report(0.7 + 0.05 * round)) return Error(ErrorCode::cancelled, "stopped before the fit was done");
   }
   return {};
 }
 
-// What was held in place, or slid to a place that is nearest only about itself, is measured from anywhere.
-// Estimated normals tell of folds, but do not lead what mends them: on thin walls some are of the other face.
+// Distances are measured from any start, since points may have been held back or caught in a local minimum.
+// Normals estimated for clouds only count folds; on thin walls some belong to the other face, so they do not
+// steer the fit.
 FittedSurface SurfaceFitter::result() {
   const std::size_t count = points_->scan.points_m.size();
   all_.uv.resize(count);
@@ -297,13 +396,13 @@ FittedSurface SurfaceFitter::result() {
   all_.trust.resize(count);
   const ClosestParameters closest(surface_);
   for (std::size_t p = 0; p < all_.uv.size(); ++p) {
-    const ClosestPoint found = nearer(closest.from(all_.points_m[p], all_.uv[p], projection_steps),
-                                      closest.anywhere(all_.points_m[p], projection_steps));
+    const ClosestPoint found = nearer(closest.project_from(all_.points_m[p], all_.uv[p], projection_steps),
+                                      closest.project(all_.points_m[p], projection_steps));
     all_.uv[p] = found.uv;
     all_.distance_m[p] = found.distance_m;
   }
   if (all_normals_.empty()) {
-    const std::vector<Vector3> estimated = estimated_normals(*points_, surface_, all_.uv);
+    const std::vector<Vector3> estimated = estimate_normals(*points_, surface_, all_.uv);
     folds_ = check_folds(surface_, {all_.uv, estimated, true});
   }
   return {std::move(surface_), std::move(all_.uv), std::move(all_.distance_m), std::move(all_.trust),
@@ -312,34 +411,349 @@ FittedSurface SurfaceFitter::result() {
 
 Result<FittedSurface> SurfaceFitter::run() {
   for (const auto step : {&SurfaceFitter::node_rounds, &SurfaceFitter::point_rounds, &SurfaceFitter::unfold,
-                          &SurfaceFitter::face_outwards}) {
+                          &SurfaceFitter::orient_outwards}) {
     if (Status done = (this->*step)(); !done) return done.error();
   }
   return result();
 }
 
-// Which agreement of normals serves best differs from scan to scan: a firm one holds points in folds of the
-// first parameters, a loose one lets them slip to the other face. Where all fold or are far off, so does
-// which fairness.
+// Spans with less than `seen_fraction` of the mean weight are stiffened by up to `unseen_fairness`.
+constexpr double seen_fraction = 0.3, unseen_fairness = 3.0;
+constexpr std::size_t pole_columns = 3;
+constexpr double least_pole_size = 0.02;
+
+// candidates in units of the least fairness
+constexpr std::array fairness_factors{1.0, 3.0, 10.0, 30.0, 100.0, 300.0};
+// About every fourth point is held out of the fit for cross-validation.
+constexpr std::size_t held_out_stride = 4;
+// A larger fairness is chosen if its held-out error is within this ratio of the least.
+constexpr double most_error_ratio = 1.03;
+
+// Sets the fairness of all spans; those with few data get up to `unseen_fairness` times more.
+void SurfaceFitter::set_fairness(double fairness, const FittedData& data) {
+  const std::size_t u_spans = span_count(structure_.u), v_spans = span_count(structure_.v);
+  std::vector<double> weight(u_spans * v_spans, 0.0);
+  const std::vector<double> u_breaks = structure_.u.breakpoints(), v_breaks = structure_.v.breakpoints();
+  const auto find_span = [](const std::vector<double>& breaks, double at) {
+    const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, at);
+    return static_cast<std::size_t>(above - breaks.begin()) - 1;
+  };
+  double mean = 0.0;
+  for (std::size_t p = 0; p + points_->spanning_nodes < data.uv.size(); ++p) {
+    if (data.uv[p].hasNaN()) continue;
+    const std::size_t span = find_span(u_breaks, structure_.u.into_domain(data.uv[p].x())) * v_spans +
+                             find_span(v_breaks, structure_.v.into_domain(data.uv[p].y()));
+    weight[span] += data.weights[p];
+    mean += data.weights[p] / static_cast<double>(weight.size());
+  }
+  fairness_.resize(weight.size());
+  for (std::size_t t = 0; t < v_spans; ++t) {
+    double column = 0.0;
+    for (std::size_t s = 0; s < u_spans; ++s) {
+      column += weight[s * v_spans + t] / static_cast<double>(u_spans);
+    }
+    // Spans about a pole are small, with few points to counter their stiffness.
+    const bool is_at_pole = closed() && std::min(t, v_spans - 1 - t) < pole_columns;
+    const double size = is_at_pole ? std::clamp(column / mean, least_pole_size, 1.0) : 1.0;
+    for (std::size_t s = 0; s < u_spans; ++s) {
+      const double seen = std::min(1.0, weight[s * v_spans + t] / (seen_fraction * size * mean));
+      fairness_[s * v_spans + t] = fairness * size * std::pow(unseen_fairness, 1.0 - seen);
+    }
+  }
+}
+
+// Chooses the largest fairness that predicts held-out points nearly as well as the best: noise is
+// unpredictable, shape is not (cross-validation, Craven and Wahba 1979).
+Status SurfaceFitter::choose_fairness(const FittedData& data) {
+  set_fairness(least_fairness, data);
+  std::vector<double> weights(data.weights.begin(), data.weights.end());
+  std::vector<std::size_t> held_out;
+  for (std::size_t p = 0; p < weights.size(); ++p) {
+    weights[p] *= data.trust[p];
+    if (data.uv[p].hasNaN() || weights[p] == 0.0) continue;
+    if ((p * 2654435761U >> 7) % held_out_stride != 0) continue;  // hashed, since scans run along lines
+    if (p + points_->spanning_nodes < weights.size()) held_out.push_back(p);
+  }
+  std::vector<double> fit_weights = weights;
+  for (const std::size_t p : held_out) fit_weights[p] = 0.0;
+  const auto surfaces =
+      fit_scattered_family(structure_, {data.points_m, data.uv, fit_weights}, fairness_, fairness_factors);
+  if (!surfaces) return surfaces.error();
+  std::array<double, fairness_factors.size()> errors{};
+  for (std::size_t k = 0; k < fairness_factors.size(); ++k) {
+    const Surface& surface = surfaces.value()[k];
+    for (const std::size_t p : held_out) {
+      const SurfacePoint at = evaluate(surface, data.uv[p].x(), data.uv[p].y());
+      const double off = at.du.cross(at.dv).normalized().dot(data.points_m[p] - at.position_m);
+      if (std::isfinite(off)) errors[k] += weights[p] * std::abs(off);
+    }
+  }
+  const double least = *std::min_element(errors.begin(), errors.end());
+  std::size_t best = fairness_factors.size() - 1;
+  while (errors[best] > most_error_ratio * least) --best;
+  chosen_fairness_ = fairness_factor_ * least_fairness * fairness_factors[best];
+  return {};
+}
+
+constexpr double huber_deviations = 3.0;
+constexpr double stray_deviations = 5.0, most_strays = 0.15;
+constexpr std::size_t stray_neighbours = 15;
+// Smallest stray distance, as a fraction of the size, however exact the other points are.
+constexpr double least_stray_fraction = 3e-4;
+
+// Distance beyond an open edge over which points still pull it outwards, as a fraction of the size.
+constexpr double edge_fraction = 0.02;
+
+// Reduces the weight of points farther off than nearly all others, but of no more than one in twenty: in
+// early rounds the surface is wrong, not the points.
+void SurfaceFitter::update_trust(FittedData& data) const {
+  std::vector<double> sorted(data.distance_m.begin(),
+                             data.distance_m.end() - static_cast<std::ptrdiff_t>(points_->spanning_nodes));
+  const auto at = [&](double fraction) {
+    const auto rank =
+        sorted.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(sorted.size() - 1));
+    std::nth_element(sorted.begin(), rank, sorted.end());
+    return *rank;
+  };
+  const double reach = std::max(
+      {huber_deviations * 1.4826 * at(0.5), at(0.95), 1e-9 * bounding_diagonal_m(points_->scan.points_m)});
+  for (std::size_t p = 0; p < data.trust.size(); ++p) {
+    const double distance = data.distance_m[p] <= reach ? data.distance_m[p] : off_surface_distance(data, p);
+    data.trust[p] = distance <= reach ? 1.0 : reach / distance;
+  }
+}
+
+// Returns the distance from the tangent plane for points slightly beyond an open edge, which must extend
+// towards them; otherwise the full distance.
+double SurfaceFitter::off_surface_distance(const FittedData& data, std::size_t point) const {
+  const Vector2& uv = data.uv[point];
+  const auto is_end = [](double parameter) { return parameter <= 0.0 || parameter >= 1.0; };
+  const bool at_edge = !closed() && (is_end(uv.y()) || (!periodic() && is_end(uv.x())));
+  if (!at_edge || data.distance_m[point] > edge_fraction * bounding_diagonal_m(points_->scan.points_m)) {
+    return data.distance_m[point];
+  }
+  const SurfacePoint at = evaluate(surface_, uv.x(), uv.y());
+  return std::abs(at.du.cross(at.dv).normalized().dot(data.points_m[point] - at.position_m));
+}
+
+// Sets the trust of strays in a cloud to 0: points whose height differs from that of their neighbours in (u,
+// v). A wrong surface would be off by the same height for all of them.
+void SurfaceFitter::distrust_strays() {
+  if (points_->is_mesh) return;
+  const Vector2 scale(static_cast<double>(span_count(structure_.u)),
+                      static_cast<double>(span_count(structure_.v)));
+  const std::size_t count = points_->scan.points_m.size();
+  std::vector<Vector3> positions;
+  std::vector<double> heights;
+  for (std::size_t p = 0; p < count; ++p) {
+    const SurfacePoint at = evaluate(surface_, all_.uv[p].x(), all_.uv[p].y());
+    const Vector3 normal = at.du.cross(at.dv).normalized();
+    positions.emplace_back(all_.uv[p].x() * scale.x(), all_.uv[p].y() * scale.y(), 0.0);
+    heights.push_back(normal.dot(all_.points_m[p] - at.position_m));
+  }
+  const NearestPoints nearest(positions);
+  std::vector<NearestPoints::Neighbour> found;
+  std::vector<double> near, off(count);
+  for (std::size_t p = 0; p < count; ++p) {
+    nearest.nearest(positions[p], stray_neighbours, found);
+    near.clear();
+    for (const NearestPoints::Neighbour& other : found) near.push_back(heights[other.index]);
+    const auto median = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
+    std::nth_element(near.begin(), median, near.end());
+    off[p] = std::abs(heights[p] - *median);
+  }
+  std::vector<double> sorted = off;
+  const auto median = sorted.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(sorted.begin(), median, sorted.end());
+  const double reach = std::max(stray_deviations * 1.4826 * *median,
+                                least_stray_fraction * bounding_diagonal_m(points_->scan.points_m));
+  const auto strays = std::count_if(off.begin(), off.end(), [&](double height) { return height > reach; });
+  // A larger number means that the surface cannot follow the data.
+  if (static_cast<double>(strays) > most_strays * static_cast<double>(count)) return;
+  for (std::size_t p = 0; p < count; ++p) {
+    if (off[p] > reach) all_.trust[p] = 0.0;
+  }
+}
+
+constexpr int fold_rounds = 30, cusp_rounds = 60;
+// Rounds of relaxation to try. Relaxing untangles crossed parameters, but displaces those that do not cross.
+constexpr std::array relaxation_rounds{10, 0};
+constexpr double most_fairness = 10.0;
+// Largest allowed error growth from removing cusps, relative to the surface without folds.
+constexpr double most_smoothing_ratio = 1.2;
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+// Cusps are the smaller fault and are treated only without folds.
+const std::vector<bool>& SurfaceFitter::faulty_spans() const {
+  return folds_.folds > 0 ? folds_.span_folds : folds_.span_cusps;
+}
+
+void SurfaceFitter::stiffen_faulty_spans() {
+  const auto u_spans = static_cast<int>(span_count(structure_.u));
+  const auto v_spans = static_cast<int>(span_count(structure_.v));
+  for (int s = 0; s < u_spans; ++s) {
+    for (int t = 0; t < v_spans; ++t) {
+      if (!faulty_spans()[static_cast<std::size_t>(s * v_spans + t)]) continue;
+      for (int ds = -1; ds <= 1; ++ds) {
+        for (int dt = -1; dt <= 1; ++dt) {
+          const int row = periodic() ? (s + ds + u_spans) % u_spans : s + ds, column = t + dt;
+          if (row < 0 || row >= u_spans || column < 0 || column >= v_spans) continue;
+          double& fairness = fairness_[static_cast<std::size_t>(row * v_spans + column)];
+          fairness = std::min(most_fairness, fairness * (ds == 0 && dt == 0 ? 4.0 : 2.0));
+        }
+      }
+    }
+  }
+}
+
+// Moves the parameters of nodes in faulty spans towards the mean of their neighbours, as in a harmonic map,
+// where none cross.
+void SurfaceFitter::relax_faulty_spans(int rounds) {
+  const PointGraph& graph = points_->graph;
+  const std::size_t count = points_->scan.points_m.size(), spanning = points_->spanning_nodes;
+  std::vector<std::vector<std::uint32_t>> node_points(graph.size());
+  for (std::uint32_t p = 0; p < count; ++p) node_points[points_->node_index[p]].push_back(p);
+  for (std::uint32_t k = 0; k < spanning; ++k) {
+    node_points[graph.size() - spanning + k].push_back(static_cast<std::uint32_t>(count) + k);
+  }
+  // A node's parameters are those of its first point.
+  const auto first_point = [&](std::uint32_t node) {
+    return node_points[node].empty() ? no_point : node_points[node].front();
+  };
+  std::vector<std::uint32_t> folded;
+  for (std::uint32_t n = 0; n < graph.size(); ++n) {
+    if (first_point(n) != no_point && is_in_faulty_span(all_.uv[first_point(n)])) folded.push_back(n);
+  }
+  for (int round = 0; round < rounds; ++round) {
+    for (const std::uint32_t n : folded) {
+      const Vector2 before = all_.uv[first_point(n)];
+      Vector2 shift = Vector2::Zero();
+      double near = 0.0;
+      for (const std::uint32_t other : graph.adjacent(n)) {
+        if (first_point(other) == no_point) continue;
+        Vector2 offset = all_.uv[first_point(other)] - before;
+        if (periodic()) offset.x() = wrapped(offset.x());
+        shift += offset;
+        near += 1.0;
+      }
+      if (near == 0.0) continue;
+      for (const std::uint32_t p : node_points[n])
+        all_.uv[p] = clamp_to_domain(all_.uv[p] + 0.7 / near * shift);
+    }
+  }
+}
+
+bool SurfaceFitter::is_in_faulty_span(const Vector2& uv) const {
+  const auto find_span = [](const std::vector<double>& breaks, double at) {
+    const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, at);
+    return static_cast<std::size_t>(above - breaks.begin()) - 1;
+  };
+  const std::vector<double>&u = u_breaks_, &v = v_breaks_;
+  const std::size_t columns = v.size() - 1, rows = u.size() - 1;
+  const std::size_t row = find_span(u, uv.x()), column = find_span(v, uv.y());
+  for (std::size_t s = row + rows - 1; s <= row + rows + 1; ++s) {
+    for (std::size_t t = column == 0 ? 0 : column - 1; t <= std::min(columns - 1, column + 1); ++t) {
+      if (faulty_spans()[s % rows * columns + t]) return true;
+    }
+  }
+  return false;
+}
+
+// Wraps u if periodic; clamps everything else to [0, 1].
+Vector2 SurfaceFitter::clamp_to_domain(Vector2 uv) const {
+  uv.y() = std::clamp(uv.y(), 0.0, 1.0);
+  uv.x() = periodic() ? uv.x() - std::floor(uv.x()) : std::clamp(uv.x(), 0.0, 1.0);
+  return uv;
+}
+
+double SurfaceFitter::percentile_error() const {
+  return percentile_95(std::span(all_.distance_m).first(points_->scan.points_m.size()));
+}
+
+Status SurfaceFitter::unfold() {
+  u_breaks_ = structure_.u.breakpoints();
+  v_breaks_ = structure_.v.breakpoints();
+  project(all_, false);
+  folds_ = check_folds(surface_, {all_.uv, all_normals_});
+  const Folding folded{surface_, folds_, all_.uv, fairness_};
+  std::optional<Folding> best;
+  FitQuality best_quality{};
+  for (const int relaxation : relaxation_rounds) {
+    restore(folded);
+    if (Status done = unfold(relaxation); !done) return done;
+    project(all_, false);
+    const FitQuality quality{folds_.folds, folds_.cusps, percentile_error()};
+    if (!best || quality.is_better_than(best_quality)) {
+      best = Folding{surface_, folds_, all_.uv, fairness_};
+      best_quality = quality;
+    }
+    if (folds_.is_clean()) break;
+  }
+  restore(*best);
+  return {};
+}
+
+void SurfaceFitter::restore(const Folding& folding) {
+  surface_ = folding.surface;
+  folds_ = folding.folds;
+  all_.uv = folding.uv;
+  fairness_ = folding.fairness;
+}
+
+Status SurfaceFitter::unfold(int relaxation) {
+  Surface least_folded = surface_;
+  FoldCheck least = folds_;
+  std::vector<Vector2> least_uv = all_.uv;
+  double error_limit = least.folds > 0 ? unlimited : most_smoothing_ratio * percentile_error();
+  const auto rounds = [&] { return least.folds > 0 ? fold_rounds : least.cusps > 0 ? cusp_rounds : 0; };
+  for (int round = 0; round < rounds(); ++round) {
+    stiffen_faulty_spans();
+    relax_faulty_spans(relaxation);
+    if (Status solved = solve(all_); !solved) return solved;
+    if (round % 2 == 1) project(all_, false);
+    folds_ = check_folds(surface_, {all_.uv, all_normals_});
+    if (folds_.is_better_than(least)) {
+      if (folds_.folds == 0) {
+        project(all_, false);
+        if (least.folds > 0) error_limit = most_smoothing_ratio * percentile_error();
+        if (percentile_error() > error_limit) break;
+      }
+      least_folded = surface_;
+      least = folds_;
+      least_uv = all_.uv;
+    }
+    if (!report(0.9)) return Error(ErrorCode::cancelled, "stopped before the fit was done");
+  }
+  surface_ = std::move(least_folded);
+  folds_ = std::move(least);
+  all_.uv = std::move(least_uv);
+  return {};
+}
+
+}  // namespace
+
+// The best agreement of normals differs from scan to scan. A strict one keeps points in folds of the initial
+// parameters; a loose one lets them slip to the other face. If all results fold or are far off, a larger
+// fairness is tried.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings) {
   SPOONBILL_ASSERT(start.uv.size() == points.graph.size());
   SPOONBILL_ASSERT(settings.tolerance_m >= 0.0);
   struct Trial {
     double agreement, fairness_factor;
-    std::size_t cusps;   // no more trials where there are no more of them, no folds,
-    double error_share;  // and the error is below this share of the size
+    std::size_t cusps;      // accept with at most this many cusps, no folds,
+    double error_fraction;  // and an error below this fraction of the size
   };
   constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
   constexpr std::array trials{Trial{0.0, 1.0, 0, 0.005}, Trial{-0.3, 1.0, 0, 0.005},
                               Trial{-1.0, 1.0, any, 0.01}, Trial{0.0, 4.0, any, 0.01},
                               Trial{-1.0, 4.0, any, 0.01}};
-  const double size_m = size_of(points.scan.points_m);
+  const double size_m = bounding_diagonal_m(points.scan.points_m);
   FitSettings watched = settings;
-  double told = 0.0;
+  double reported = 0.0;
   watched.progress = Progress([&](double fraction) {
-    told = std::max(told, fraction);
-    return settings.progress.report(told);
+    reported = std::max(reported, fraction);
+    return settings.progress.report(reported);
   });
   std::optional<FittedSurface> best;
   FitQuality quality{};
@@ -347,12 +761,13 @@ Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisatio
     if (trial.agreement != 0.0 && points.scan.normals.empty()) continue;
     auto fitted = SurfaceFitter(points, start, watched, trial.agreement, trial.fairness_factor).run();
     if (!fitted) return fitted.error();
-    const FitQuality found{fitted->folds.folds, fitted->folds.cusps, usual_error(fitted.value(), points)};
-    if (!best || found.better_than(quality)) {
+    const FitQuality found{fitted->folds.folds, fitted->folds.cusps,
+                           percentile_error(fitted.value(), points)};
+    if (!best || found.is_better_than(quality)) {
       best = std::move(fitted).value();
       quality = found;
     }
-    const bool is_near = quality.error_m < trial.error_share * size_m;
+    const bool is_near = quality.error_m < trial.error_fraction * size_m;
     if (quality.folds == 0 && quality.cusps <= trial.cusps && is_near) break;
   }
   return *std::move(best);

@@ -1,4 +1,4 @@
-// A surface fitted to points, from first parameters to the last control point.
+// Fits a cubic B-spline surface to prepared points.
 #pragma once
 
 #include <functional>
@@ -6,32 +6,35 @@
 
 #include "engine/base/progress.h"
 #include "engine/fitting/fit_points.h"
-#include "engine/fitting/folds.h"
+#include "engine/fitting/fit_quality.h"
 #include "engine/fitting/parameterisation.h"
 #include "engine/fitting/scattered_fit.h"
 
 namespace spoonbill {
 
 struct FitSettings {
-  int control_u = 24, control_v = 24;  // as many control points at most
-  double tolerance_m = 0.0;            // no more of them once all but outliers lie within; 0: all of them
-  Progress progress = {};              // stops the fit, which is then an error
+  int control_u = 24, control_v = 24;  // upper bounds of the control point counts
+  // stops adding control points once all but outliers are within; 0: use all of them
+  double tolerance_m = 0.0;
+  Progress progress = {};  // a stop request makes the fit fail
 };
 
 struct FittedSurface {
   Surface surface;
   std::vector<Vector2> uv;         // of each point
   std::vector<double> distance_m;  // of each point
-  std::vector<double> trust;       // of each point, 1 to 0: what is far off weighs less, a stray nothing
+  // weight factor of each point, from 1 down to 0: reduce_degree where far off, 0 for strays
+  std::vector<double> trust;
   FoldCheck folds;
 };
 
-// Cubic. `start` gives the nodes their first parameters. Alternates least squares with new parameters by the
-// closest points, from few control points to many, knots where errors are; outliers weigh less (Huber 1964).
-// The fairness is the most that points left out of a fit bear; where the surface folds it is raised until it
-// does not, or no further. Of several ways to hold points to their face of a thin wall the best is taken.
-// Closed shapes get outward normals, open ones those of the scan; of a scan without them they face away from
-// a tube's axis and a sheet's hollow side, or towards +z.
+// Fits a cubic surface. `start` holds the initial parameters of the nodes.
+// Alternates least squares with closest-point parameters, from few control points to many; knots are added
+// where errors are large, and outliers weigh less (Huber 1964). The fairness is the largest that
+// cross-validation permits, raised further where the surface folds. On thin walls several rules for keeping
+// points on their face are tried, and the best result is returned. Normals point out of closed shapes. Open
+// shapes follow the scan's normals; without any they point away from a tube's axis, from a sheet's hollow
+// side, or to +z.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings);
 

@@ -1,17 +1,27 @@
-// The islands of a scan: parts that nothing joins.
+// Connected components of a scan, and the gaps that separate them.
 #pragma once
 
 #include <vector>
 
 #include "engine/fitting/fit_points.h"
+#include "engine/fitting/point_sets.h"
+#include "engine/fitting/scan.h"
 
 namespace spoonbill {
 
-// What is less than this share of the largest island, or has fewer nodes, is dust.
-inline constexpr double dust_share = 0.02;
+// Removes the pairs that bridge a gap between bodies and returns the others. `groups` assigns `points_m` to
+// the nodes. A gap has no points within three times the widest step between the points of either node. It
+// faces both surfaces, unlike an unseen stripe of one surface, and separates bodies that are larger than
+// dust.
+std::vector<NodePair> remove_gap_pairs(const std::vector<Vector3>& points_m, const VoxelGroups& groups,
+                                       const std::vector<Vector3>& nodes_m, std::vector<NodePair> pairs);
+
+// Dust: components below this fraction of the largest one's weight, or with fewer nodes.
+inline constexpr double dust_fraction = 0.02;
 inline constexpr std::size_t least_island_nodes = 30;
 
-// Each with points, nodes and rims of its own, the largest first. Dust is left out and counted.
+// Connected components with their own points, nodes and boundary loops, largest first. Dust is dropped and
+// counted.
 struct Islands {
   std::vector<FitPoints> islands;
   std::size_t dust_points = 0;

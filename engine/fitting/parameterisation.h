@@ -1,10 +1,14 @@
-// Where points lie in the (u, v) square of a surface that is still to be fitted to them.
+// Initial parameters of points in the (u, v) square of a surface that is yet to be fitted.
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "engine/base/geometry.h"
+#include "engine/base/result.h"
+#include "engine/fitting/fit_points.h"
+#include "engine/fitting/scan.h"
 
 namespace spoonbill {
 
@@ -14,11 +18,33 @@ constexpr std::string_view name_of(ShapeKind kind) {
   return kind == ShapeKind::sheet ? "sheet" : kind == ShapeKind::tube ? "tube" : "closed";
 }
 
-// A sheet is open both ways, a tube periodic in u with open ends, a closed shape periodic in u with a pole at
-// both ends of v.
+// Parameters of points. A sheet is open in u and v. A tube is periodic in u with open ends. A closed shape is
+// periodic in u with a pole at both ends of v.
 struct Parameterisation {
   ShapeKind kind = ShapeKind::sheet;
-  std::vector<Vector2> uv;  // of each point, within 0..1; NaN for those that have none yet
+  std::vector<Vector2> uv;  // of each point, in [0, 1]; NaN where unknown
 };
+
+// Detects the kind of shape from its boundary loops. A loop around much of the area makes a sheet, two loops
+// as long as the girth make a tube, smaller loops are holes of a closed shape.
+ShapeKind classify_shape(const FitPoints& island);
+
+// Adds nodes over all holes and open ends, and clears the boundary loops.
+void span_all_holes(FitPoints& island);
+
+// Spans the holes with added nodes and computes (u, v) for all nodes. Poles of a closed shape are on its axis
+// if it is round about one, otherwise as far apart as possible. Fails if the shape cannot be laid out as
+// `kind`.
+Result<Parameterisation> initial_parameterisation(FitPoints& island, ShapeKind kind);
+
+// Parameterisation of a thin wall about an axis, such as a bowl, cup or plate. Its two faces may be closer
+// than neighbouring points, but all points together draw its profile clearly. The angle about the axis gives
+// u; the profile's outline, from the axis over the rim back to the axis, gives v. Empty if the points are not
+// round about an axis, have no such outline, or are no thin wall with two faces.
+struct ProfileMap {
+  Parameterisation start;
+  bool may_be_one_face;  // a single face whose noise may look like a wall
+};
+std::optional<ProfileMap> map_profile(const std::vector<Vector3>& points_m);
 
 }  // namespace spoonbill

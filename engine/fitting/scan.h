@@ -1,6 +1,8 @@
-// What a scanner gives: points, perhaps with normals, perhaps with triangles between them.
+// Raw scans: points with optional normals and triangles, their voxels, outliers, spikes and long edges.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "engine/base/geometry.h"
@@ -10,13 +12,47 @@ namespace spoonbill {
 
 struct Scan {
   std::vector<Vector3> points_m;
-  std::vector<Vector3> normals;  // as many, unit and outwards where they are not zero; or none
+  std::vector<Vector3> normals;  // empty, or one for each point: unit outward, or zero where unknown
   std::vector<TriangleCorners> triangles;
 
   bool has_normals() const { return !normals.empty(); }
 };
 
-// Of all points; zero without any.
-double size_of(const std::vector<Vector3>& points_m);
+// Returns the diagonal of the bounding box, 0 without points.
+double bounding_diagonal_m(const std::vector<Vector3>& points_m);
+
+struct VoxelGroups {
+  std::vector<std::uint32_t> group_index;  // of each point
+  std::size_t count = 0;
+};
+
+// Groups the points of each cubic cell. Normals that point along different half axes make separate groups, so
+// the two faces of a thin wall stay apart.
+VoxelGroups group_by_voxels(const Scan& scan, double side_m);
+
+// Returns a cell side that gives about `groups` groups: within 10 % where possible, never more than 25 %
+// above.
+double voxel_side_for(const Scan& scan, std::size_t groups);
+
+// Returns the mean position and mean unit normal of each group.
+Scan average_groups(const Scan& scan, const VoxelGroups& groups);
+
+// Flags points that are much farther from their neighbours than usual. The number of given points that each
+// one represents is in `counts`: 1, or those of its voxel in a thinned cloud. Usual values are weighted by
+// counts, as most given points are on the surface. A thinned point that represents far fewer points than
+// usual is an outlier too. Sparse points on a plane with their neighbours, like most around them, are surface
+// and are not flagged.
+std::vector<bool> find_outliers(const std::vector<Vector3>& points_m, const std::vector<double>& counts);
+
+// Moves the tip of each spike into the centre of its ring of vertices and returns the tips; the connectivity
+// stays. A spike's edges are all much longer than usual, its height is at least four ring radii, and the
+// surface continues flat around its ring. A cone's tip counts only if it is as slender, a single fan of
+// triangles, on a plate.
+std::vector<std::uint32_t> level_spikes(Scan& mesh);
+
+// Halves edges until none is longer than `longest_m` or the triangle limit is reached. Both triangles of an
+// edge are split, so no gap opens. Existing points keep their positions; added ones follow.
+void split_long_edges(std::vector<Vector3>& points_m, std::vector<TriangleCorners>& triangles,
+                      double longest_m, std::size_t triangle_limit);
 
 }  // namespace spoonbill

@@ -2,10 +2,13 @@
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "engine/base/assert.h"
 #include "engine/bspline/basis.h"
@@ -14,15 +17,15 @@
 namespace spoonbill {
 namespace {
 
-// Of a span's worth of points: u may run around a pole a little unevenly.
-constexpr double smooth_pole_share = 0.1;
-// Of a span's worth of points: how firmly rings are held round, next to the pole; less by the cube of the
-// spans from it, for what is no ellipse grows with the cube of the distance on a smooth surface.
-constexpr double round_pole_share = 0.003;
+// Weight of a smooth pole in spans' worth of points; low, since u may run unevenly around a pole.
+constexpr double smooth_pole_fraction = 0.1;
+// Weight of round rings next to a pole, in spans' worth of points. It falls with the cube of the distance, as
+// deviations from an ellipse grow with that cube on a smooth surface.
+constexpr double round_pole_fraction = 0.003;
 constexpr int round_pole_spans = 3;
 
-// Products of each control point's basis function with those of its neighbours to `degree` places away, so
-// that a sum needs no search: entry (control, du + degree, dv + degree).
+// Products of each control point's basis function with those of its neighbours up to `degree` away, so that
+// sums need no search: entry (control, du + degree, dv + degree).
 class NormalEquations {
  public:
   NormalEquations(const SurfaceStructure& structure)
@@ -35,7 +38,7 @@ class NormalEquations {
         products_(static_cast<std::size_t>(rows_) * columns_ * block_),
         right_(static_cast<std::size_t>(rows_) * columns_, Vector3::Zero()) {}
 
-  // One equation: sum of a_k b_l over the net = value, with the weight.
+  // Adds the weighted equation sum a_k b_l over the net = value; null means zero.
   void add(const double* a, const int* rows, const double* b, const int* columns, double weight,
            const Vector3* value) {
     for (int k = 0; k <= pu_; ++k) {
@@ -54,7 +57,7 @@ class NormalEquations {
   }
 
   void set_pole_weight(double weight) { pole_weight_ = weight; }
-  // Adds the equations of another without their right sides, each times the factor.
+  // Adds another system's matrix, scaled, without its right side.
   void add(const NormalEquations& other, double factor) {
     for (std::size_t k = 0; k < products_.size(); ++k) products_[k] += factor * other.products_[k];
   }
@@ -75,7 +78,7 @@ class NormalEquations {
   double pole_weight_ = 0.0;
 };
 
-// The unknown of each control point: those of a pole share one.
+// Returns the unknown of each control point; those of a pole share one.
 std::vector<int> NormalEquations::unknowns(const SurfaceStructure& structure, int& count) const {
   std::vector<int> unknown(right_.size());
   count = 0;
@@ -90,8 +93,8 @@ std::vector<int> NormalEquations::unknowns(const SurfaceStructure& structure, in
   return unknown;
 }
 
-// Around a pole with a tangent plane the derivative by v turns once, so that its mean is zero: the pole is
-// the mean of the ring of control points next to it, each with the integral of its basis function.
+// Around a pole with a tangent plane, the mean of the v derivative is zero. The pole is therefore the mean of
+// the next ring of control points, weighted by the integrals of their basis functions.
 template <class Put>
 void NormalEquations::add_smooth_pole(const SurfaceStructure& structure, const std::vector<int>& unknown,
                                       int pole, int ring, const Put& put) const {
@@ -99,7 +102,7 @@ void NormalEquations::add_smooth_pole(const SurfaceStructure& structure, const s
   const double period = structure.u.domain_end() - structure.u.domain_start();
   std::vector<std::pair<int, double>> terms{{unknown[index(0, pole)], -1.0}};
   for (int i = 0; i < rows_; ++i) terms.emplace_back(unknown[index(i, ring)], 0.0);
-  // extended[k] to extended[k + degree + 1] is where the basis function of the span k + degree, j = 0 lives.
+  // Basis function k of the span k + degree has its support from extended[k] to extended[k + degree + 1].
   for (int k = 0; k < rows_; ++k) {
     const auto first = static_cast<std::size_t>(k), last = first + static_cast<std::size_t>(pu_) + 1;
     const int control = structure.u.control_index(k + pu_, 0);
@@ -132,7 +135,7 @@ Result<Surface> NormalEquations::solve(const SurfaceStructure& structure) const 
           const double value = block[(di + pu_) * width_ + dj + pv_];
           const int other = unknown[index((i + di) % rows_, j + dj)];
           put(unknown[control], other, value);
-          // The other half, which add() leaves out.
+          // the half that add() leaves out
           if (di > 0) put(other, unknown[control], value);
         }
       }
@@ -143,7 +146,8 @@ Result<Surface> NormalEquations::solve(const SurfaceStructure& structure) const 
   Eigen::SparseMatrix<double> matrix(count, count);
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
-  const Error indefinite{"the points do not determine the surface; ask for fewer control points"};
+  const Error indefinite{ErrorCode::degenerate,
+                         "the points do not determine the surface; ask for fewer control points"};
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0.0)) return indefinite;
   const Eigen::MatrixXd solution = factor.solve(right);
   if (!solution.allFinite()) return indefinite;
@@ -162,7 +166,7 @@ double span_weight(const ScatteredData& data, std::size_t spans) {
   return sum / static_cast<double>(spans);
 }
 
-// The derivatives of a direction at two Gauss points of a span, times the span's length to their order.
+// Basis derivatives at the two Gauss points of a span, scaled by the span length to their order.
 struct SpanBasis {
   std::array<PieceBasis::Values, 2> at;
 };
@@ -172,10 +176,10 @@ std::vector<SpanBasis> span_bases(const PieceBasis& basis) {
   const std::vector<double> breaks = basis.knots().breakpoints();
   std::vector<SpanBasis> spans(breaks.size() - 1);
   for (std::size_t s = 0; s < spans.size(); ++s) {
-    const double length = breaks[s + 1] - breaks[s], middle = 0.5 * (breaks[s] + breaks[s + 1]);
+    const double length = breaks[s + 1] - breaks[s], midpoint = 0.5 * (breaks[s] + breaks[s + 1]);
     for (int side = 0; side < 2; ++side) {
       PieceBasis::Values& values = spans[s].at[side];
-      basis.take(middle + (side == 0 ? -gauss : gauss) * length, values);
+      basis.take(midpoint + (side == 0 ? -gauss : gauss) * length, values);
       for (int k = 0; k <= basis.degree(); ++k) {
         values.value[1][k] *= length;
         values.value[2][k] *= length * length;
@@ -208,24 +212,24 @@ void add_fairness(const SurfaceStructure& structure, double weight, std::span<co
   }
 }
 
-// The part of a ring at two Gauss points of each span of u that is no ellipse, see the header: for each, the
-// factors of the control points that it depends on.
+// Returns the non-elliptic part of a ring (see the header) at two Gauss points of each span of u, as factors
+// of the control points.
 std::vector<PieceBasis::Values> ring_bases(const PieceBasis& u_basis) {
   constexpr double turn = 2.0 * std::numbers::pi;
   const std::vector<double> breaks = u_basis.knots().breakpoints();
   std::vector<PieceBasis::Values> rings;
   for (std::size_t s = 0; s + 1 < breaks.size(); ++s) {
     const double length = breaks[s + 1] - breaks[s];
-    const auto at = [&](double share) {
+    const auto at = [&](double fraction) {
       PieceBasis::Values values;
-      u_basis.take(breaks[s] + share * length, values);
+      u_basis.take(breaks[s] + fraction * length, values);
       return values;
     };
-    // Within a span of a cubic the second derivative is linear.
+    // A cubic's second derivative is linear within a span.
     const PieceBasis::Values low = at(0.25), high = at(0.75);
-    for (const double share : {0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)}) {
-      PieceBasis::Values ring = at(share);
-      const double root = std::sqrt(0.5 * length);  // of the Gauss weight
+    for (const double fraction : {0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)}) {
+      PieceBasis::Values ring = at(fraction);
+      const double root = std::sqrt(0.5 * length);  // square root of the Gauss weight
       for (int k = 0; k <= u_basis.degree(); ++k) {
         const double third = (high.value[2][k] - low.value[2][k]) / (0.5 * length);
         ring.value[0][k] = root * (ring.value[1][k] / turn + third / (turn * turn * turn));
@@ -248,7 +252,7 @@ void add_round_poles(const SurfaceStructure& structure, double weight, NormalEqu
       PieceBasis::Values v;
       v_basis.evaluate_values(0.5 * (v_breaks[span] + v_breaks[span + 1]), v);
       const double factor =
-          round_pole_share * weight * static_cast<double>(span_count(structure.u)) / std::pow(t + 1, 3);
+          round_pole_fraction * weight * static_cast<double>(span_count(structure.u)) / std::pow(t + 1, 3);
       for (const PieceBasis::Values& ring : rings) {
         equations.add(ring.value[0].data(), ring.controls, v.value[0].data(), v.controls, factor, nullptr);
       }
@@ -262,14 +266,14 @@ std::size_t span_count(const KnotVector& knots) {
   return knots.breakpoints().size() - 1;
 }
 
-Result<std::vector<Surface>> fit_scattered_at(const SurfaceStructure& structure, const ScatteredData& data,
-                                              std::span<const double> fairness,
-                                              std::span<const double> factors) {
+Result<std::vector<Surface>> fit_scattered_family(const SurfaceStructure& structure,
+                                                  const ScatteredData& data, std::span<const double> fairness,
+                                                  std::span<const double> factors) {
   SPOONBILL_ASSERT(data.uv.size() == data.points_m.size() && data.weights.size() == data.points_m.size());
   SPOONBILL_ASSERT(fairness.size() == span_count(structure.u) * span_count(structure.v));
   const std::size_t spans = span_count(structure.u) * span_count(structure.v);
   const double weight = span_weight(data, spans);
-  if (!(weight > 0.0)) return Error{"no points are left to fit"};
+  if (!(weight > 0.0)) return Error(ErrorCode::too_few, "no points are left to fit");
   NormalEquations distances(structure), stiffness(structure);
   const PieceBasis u_basis(structure.u), v_basis(structure.v);
   PieceBasis::Values u, v;
@@ -281,7 +285,7 @@ Result<std::vector<Surface>> fit_scattered_at(const SurfaceStructure& structure,
                   &data.points_m[p]);
   }
   add_round_poles(structure, weight, distances);
-  distances.set_pole_weight(smooth_pole_share * weight);
+  distances.set_pole_weight(smooth_pole_fraction * weight);
   add_fairness(structure, weight, fairness, stiffness);
   std::vector<Surface> surfaces;
   for (const double factor : factors) {
@@ -299,9 +303,72 @@ Result<Surface> fit_scattered(const SurfaceStructure& structure, const Scattered
   SPOONBILL_ASSERT(data.uv.size() == data.points_m.size() && data.weights.size() == data.points_m.size());
   SPOONBILL_ASSERT(fairness.size() == span_count(structure.u) * span_count(structure.v));
   constexpr std::array as_it_is{1.0};
-  auto surfaces = fit_scattered_at(structure, data, fairness, as_it_is);
+  auto surfaces = fit_scattered_family(structure, data, fairness, as_it_is);
   if (!surfaces) return surfaces.error();
   return std::move(surfaces.value().front());
+}
+
+namespace {
+
+constexpr double evenly_spread_fraction = 0.3;
+
+struct Span {
+  double begin, end;
+  double error;
+};
+
+std::vector<Span> spans_with_errors(const KnotVector& knots, int direction, std::span<const Vector2> uv,
+                                    std::span<const double> weighted_squares) {
+  const std::vector<double> breaks = knots.breakpoints();
+  std::vector<Span> spans;
+  for (std::size_t s = 0; s + 1 < breaks.size(); ++s) spans.push_back({breaks[s], breaks[s + 1], 0.0});
+  for (std::size_t p = 0; p < uv.size(); ++p) {
+    if (uv[p].hasNaN()) continue;
+    const double at = knots.into_domain(uv[p][direction]);
+    const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, at);
+    spans[static_cast<std::size_t>(above - breaks.begin()) - 1].error += weighted_squares[p];
+  }
+  const double sum = std::accumulate(spans.begin(), spans.end(), 0.0,
+                                     [](double total, const Span& span) { return total + span.error; });
+  const double length = breaks.back() - breaks.front();
+  for (Span& span : spans) span.error += evenly_spread_fraction * sum * (span.end - span.begin) / length;
+  return spans;
+}
+
+KnotVector make_knots(const KnotVector& like, const std::vector<Span>& spans) {
+  std::vector<double> knots;
+  knots.reserve(spans.size() + 1);
+  for (const Span& span : spans) knots.push_back(span.begin);
+  knots.push_back(spans.back().end);
+  if (like.is_periodic()) return KnotVector::periodic(like.degree(), std::move(knots)).value();
+  const auto ends = static_cast<std::size_t>(like.degree());
+  knots.insert(knots.begin(), ends, knots.front());
+  knots.insert(knots.end(), ends, knots.back());
+  return KnotVector::open(like.degree(), std::move(knots)).value();
+}
+
+}  // namespace
+
+KnotVector refine_knots(const KnotVector& knots, int direction, int count, std::span<const Vector2> uv,
+                        std::span<const double> weighted_squares) {
+  SPOONBILL_ASSERT(direction == 0 || direction == 1);
+  SPOONBILL_ASSERT(uv.size() == weighted_squares.size());
+  std::vector<Span> spans = spans_with_errors(knots, direction, uv, weighted_squares);
+  const double length = knots.domain_end() - knots.domain_start();
+  for (int missing = count - knots.control_point_count(); missing > 0; --missing) {
+    const double shortest = length / static_cast<double>(8 * spans.size());
+    const auto worth = [&](const Span& span) {
+      return span.end - span.begin < 2.0 * shortest ? -1.0 : span.error;
+    };
+    const auto most = std::max_element(spans.begin(), spans.end(),
+                                       [&](const Span& a, const Span& b) { return worth(a) < worth(b); });
+    // Errors of cubic pieces fall steeply with their length.
+    const Span whole = *most;
+    const double midpoint = 0.5 * (whole.begin + whole.end);
+    *most = {whole.begin, midpoint, 0.25 * whole.error};
+    spans.insert(most + 1, {midpoint, whole.end, 0.25 * whole.error});
+  }
+  return make_knots(knots, spans);
 }
 
 }  // namespace spoonbill

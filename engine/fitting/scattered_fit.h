@@ -1,49 +1,58 @@
-// Least-squares fit of a surface to scattered points whose parameters are known: the blending matrix of all
-// points (Eq. 4 of Pungotra et al. 2013, a row a point), its normal equations kept sparse, and a fairness
-// that decides where there are no points.
+// Sparse least-squares fit of a surface to scattered points with known parameters.
+// The blending matrix has one row per point (Eq. 4 of Pungotra et al. 2013); a fairness term decides where
+// there are no points.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
+#include "engine/bspline/knot_vector.h"
 #include "engine/bspline/surface.h"
-#include "engine/fitting/parameterisation.h"
 
 namespace spoonbill {
 
-// Which surfaces are asked for: the knots, and whether the control points of an end of v are one (a pole).
+// Knots of the surface to fit, and the ends of v whose control points coincide in a pole.
 struct SurfaceStructure {
   KnotVector u, v;
   bool pole_at_start = false, pole_at_end = false;
 };
 
-// Minimises the weighted squares of the distances between points and surface at their parameters, plus the
-// thin-plate energy of every span, measured in its own length:
+// Points to fit, with parameters and weights of the same length. Points with a NaN parameter are skipped.
+//
+// The fit minimises the weighted squared distances at the parameters plus the thin-plate energy of each span:
 //   sum w |S(u, v) - p|^2 + mean(w) sum over spans f (|S_uu| du^2)^2 + 2 (|S_uv| du dv)^2 + (|S_vv| dv^2)^2
-// where mean(w) is the points' weight for each span, du, dv are the span's sides and f its fairness
-// (u-major, one for each pair of spans). The squared conditioning of normal equations is harmless at the
-// accuracy of scans; fairness above 1e-9 keeps them definite. A pole is besides held in the mean of the ring
-// next to it, and the rings about it near ellipses, as on a surface with a tangent plane there: a ring
-//   S = a + b cos 2 pi u + c sin 2 pi u    has    S_u + S_uuu / (2 pi)^2 = 0,
-// and what turns n times around is held by the square of n^3 - n. Points with a NaN parameter are passed
-// over.
+// Here mean(w) is the points' weight per span, du and dv are the span's sides. The fairness f is u-major, one
+// for each pair of spans. Normal equations are accurate enough for scans; f above 1e-9 keeps them definite.
+//
+// Poles are pulled to the mean of the ring next to them, and the rings about them to ellipses, as on a
+// surface with a tangent plane there. An elliptic ring satisfies
+//   S = a + b cos 2 pi u + c sin 2 pi u    and    S_u + S_uuu / (2 pi)^2 = 0.
+// A component that turns n times around is penalised by the square of n^3 - n.
 struct ScatteredData {
   std::span<const Vector3> points_m;
   std::span<const Vector2> uv;
   std::span<const double> weights;
 };
 
-// Refused: no weight at all, a system that is not definite.
+// Fits one surface. Fails if all weights are zero or the system is not definite.
 Result<Surface> fit_scattered(const SurfaceStructure& structure, const ScatteredData& data,
                               std::span<const double> fairness);
 
-// The same with the fairness times each factor, at little more than the cost of one.
-Result<std::vector<Surface>> fit_scattered_at(const SurfaceStructure& structure, const ScatteredData& data,
-                                              std::span<const double> fairness,
-                                              std::span<const double> factors);
+// Fits one surface for each factor on the fairness, at little more than the cost of one.
+Result<std::vector<Surface>> fit_scattered_family(const SurfaceStructure& structure,
+                                                  const ScatteredData& data, std::span<const double> fairness,
+                                                  std::span<const double> factors);
 
-// The spans of a direction: pairs of distinct knots.
+// Returns the number of spans between distinct knots.
 std::size_t span_count(const KnotVector& knots);
+
+// Inserts knots in one direction (0: u, 1: v) until there are `count` control points, each time halving the
+// span with the largest sum of weighted squared errors. Halves get a quarter of the sum each. Part of the
+// mean is added to every span, so uniform errors refine evenly. Spans shorter than a quarter of the mean are
+// not halved.
+KnotVector refine_knots(const KnotVector& knots, int direction, int count, std::span<const Vector2> uv,
+                        std::span<const double> weighted_squares);
 
 }  // namespace spoonbill

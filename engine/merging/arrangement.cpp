@@ -1,58 +1,308 @@
 #include "engine/merging/arrangement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "engine/base/assert.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/merging/patch_edge.h"
 
 namespace spoonbill {
+namespace {
+
+constexpr int open_samples = 33;
+constexpr int ring_samples = 64;
+constexpr int seams_tried = 256;
+
+struct Gaps {
+  double largest = 0.0, mean = 0.0;
+};
+
+Gaps gaps_between(const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
+  Gaps gaps;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const double gap = (a[k] - b[k]).norm();
+    gaps.largest = std::max(gaps.largest, gap);
+    gaps.mean += gap / static_cast<double>(a.size());
+  }
+  return gaps;
+}
+
+// Edge prepared for comparison with several others.
+struct Edge {
+  PatchEdge name;
+  EdgeCurve curve;
+  std::vector<Vector3> points_m;  // open edges: at equal fractions of the length
+  RingFrame frame;                // rings only
+};
+
+Edge prepare_edge(const std::vector<Surface>& patches, PatchEdge name) {
+  Edge edge{name, edge_curve(patches[name.patch], name.side), {}, {}};
+  if (edge.curve.knots.is_periodic()) {
+    edge.frame = ring_frame(patches[name.patch], name.side);
+  } else {
+    edge.points_m = edge_samples(edge.curve, open_samples).points_m;
+  }
+  return edge;
+}
+
+EdgeMatch match_open(const Edge& a, const Edge& b, std::optional<bool> requested) {
+  const std::vector<Vector3>& points_a = a.points_m;
+  std::vector<Vector3> points_b = b.points_m;
+  const Gaps direct = gaps_between(points_a, points_b);
+  std::reverse(points_b.begin(), points_b.end());
+  const Gaps against = gaps_between(points_a, points_b);
+  const bool reversed = requested.value_or(against.mean < direct.mean);
+  const Gaps& gaps = reversed ? against : direct;
+  return {a.name, b.name, reversed, 0.0, gaps.largest, gaps.mean};
+}
+
+// Ring relative to its centre, so that the gap between rings does not affect their fit. The second ring is
+// rotated to face the first.
+class EdgeRing {
+ public:
+  explicit EdgeRing(const Edge& edge) : curve_(edge.curve), centre_(edge.frame.centre_m) {}
+  void turn(const Eigen::Matrix3d& turn) { turn_ = turn; }
+
+  // Returns the parameter at a fraction of the period from `from`, forwards or backwards.
+  double parameter(double from, double fraction, bool backwards) const {
+    const double length = curve_.knots.domain_end() - curve_.knots.domain_start();
+    return from + (backwards ? -fraction : fraction) * length;
+  }
+  double seam() const { return curve_.knots.domain_start(); }
+  Vector3 at(double t) const { return turn_ * (position(curve_, t) - centre_); }
+  Vector3 derivative_at(double t) const { return turn_ * derivative(curve_, t); }
+
+ private:
+  const EdgeCurve& curve_;
+  Vector3 centre_;
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
+};
+
+double misfit(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards) {
+  double sum = 0.0;
+  for (int k = 0; k < ring_samples; ++k) {
+    const double fraction = static_cast<double>(k) / ring_samples;
+    const double parameter_a = a.parameter(a.seam(), fraction, false);
+    sum += (a.at(parameter_a) - b.at(b.parameter(seam, fraction, backwards))).squaredNorm();
+  }
+  return sum;
+}
+
+// Gauss-Newton step of the seam; converges to rounding for identical rings.
+double improve_seam(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards) {
+  double along = 0.0, squared = 0.0;
+  for (int k = 0; k < ring_samples; ++k) {
+    const double fraction = static_cast<double>(k) / ring_samples;
+    const double parameter_b = b.parameter(seam, fraction, backwards);
+    const Vector3 slope = b.derivative_at(parameter_b);
+    const Vector3 offset = a.at(a.parameter(a.seam(), fraction, false)) - b.at(parameter_b);
+    along += offset.dot(slope);
+    squared += slope.squaredNorm();
+  }
+  return squared > 0.0 ? seam + along / squared : seam;
+}
+
+struct RingFit {
+  double seam = 0.0;
+  bool reversed = false;
+  double misfit = std::numeric_limits<double>::infinity();
+};
+
+RingFit fit_best(const EdgeRing& a, const EdgeRing& b, std::optional<bool> requested) {
+  RingFit best;
+  for (const bool backwards : {false, true}) {
+    if (requested.value_or(backwards) != backwards) continue;
+    for (int k = 0; k < seams_tried; ++k) {
+      const double seam = b.parameter(b.seam(), static_cast<double>(k) / seams_tried, false);
+      const double sum = misfit(a, b, seam, backwards);
+      if (sum < best.misfit * (1.0 - 1e-9)) best = {seam, backwards, sum};
+    }
+  }
+  for (int step = 0; step < 30; ++step) {
+    const double seam = improve_seam(a, b, best.seam, best.reversed);
+    const double sum = misfit(a, b, seam, best.reversed);
+    if (sum >= best.misfit) break;
+    best.seam = seam;
+    best.misfit = sum;
+  }
+  return best;
+}
+
+// Coincident rings are compared as they are, which is exact for identical ones; others after a rotation.
+RingFit fit_best_rotated(const Edge& a, const Edge& b, std::optional<bool> requested) {
+  constexpr double coincidence_fraction = 0.02;  // relative to the radius
+  const EdgeRing ring_a(a);
+  EdgeRing ring_b(b);
+  const RingFit unrotated = fit_best(ring_a, ring_b, requested);
+  const double coincidence_m = coincidence_fraction * a.frame.radius_m;
+  const bool coincides = (b.frame.centre_m - a.frame.centre_m).norm() <= coincidence_m &&
+                         unrotated.misfit <= ring_samples * coincidence_m * coincidence_m;
+  if (coincides) return unrotated;
+  const Eigen::Matrix3d turn = rotation_towards(a.frame, b.frame);
+  if (turn.isIdentity(0.0)) return unrotated;
+  ring_b.turn(turn);
+  return fit_best(ring_a, ring_b, requested);
+}
+
+EdgeMatch match_rings(const Edge& a, const Edge& b, std::optional<bool> requested) {
+  const RingFit best = fit_best_rotated(a, b, requested);
+  const double seam = b.curve.knots.into_domain(best.seam);
+  const EdgeRing ring_a(a), ring_b(b);
+  std::vector<Vector3> points_a, points_b;
+  for (int k = 0; k < ring_samples; ++k) {
+    const double fraction = static_cast<double>(k) / ring_samples;
+    points_a.push_back(position(a.curve, ring_a.parameter(ring_a.seam(), fraction, false)));
+    points_b.push_back(position(b.curve, ring_b.parameter(seam, fraction, best.reversed)));
+  }
+  const Gaps gaps = gaps_between(points_a, points_b);
+  return {a.name, b.name, best.reversed, seam, gaps.largest, gaps.mean};
+}
+
+Result<EdgeMatch> match_edge_pair(const Edge& a, const Edge& b, std::optional<bool> reversed) {
+  const bool ring = a.curve.knots.is_periodic();
+  if (ring != b.curve.knots.is_periodic()) {
+    return Error(ErrorCode::mismatch, edge_name(a.name) + " and " + edge_name(b.name) +
+                                          " do not fit: one is a closed ring and the other is not");
+  }
+  return ring ? match_rings(a, b, reversed) : Result(match_open(a, b, reversed));
+}
+
+std::vector<PatchEdge> joinable_edges(const std::vector<Surface>& patches) {
+  std::vector<PatchEdge> edges;
+  for (int p = 0; p < static_cast<int>(patches.size()); ++p) {
+    for (const Side side : all_sides) {
+      if (is_joinable(patches[p], side)) edges.push_back({p, side});
+    }
+  }
+  return edges;
+}
+
+// Connected sets of patches.
+class Groups {
+ public:
+  explicit Groups(std::size_t count) : group_(count) { std::iota(group_.begin(), group_.end(), 0); }
+  bool are_one(int a, int b) const { return group_[a] == group_[b]; }
+  void join(int a, int b) {
+    const int from = group_[b], to = group_[a];
+    for (int& group : group_) group = group == from ? to : group;
+  }
+  int find_loose() const {  // a patch not connected to the first, or -1
+    for (std::size_t p = 0; p < group_.size(); ++p) {
+      if (group_[p] != group_[0]) return static_cast<int>(p);
+    }
+    return -1;
+  }
+
+ private:
+  std::vector<int> group_;
+};
+
+std::vector<EdgeMatch> find_candidates(const std::vector<Surface>& patches) {
+  std::vector<Edge> edges;
+  for (const PatchEdge& name : joinable_edges(patches)) edges.push_back(prepare_edge(patches, name));
+  std::vector<EdgeMatch> found;
+  for (std::size_t a = 0; a < edges.size(); ++a) {
+    for (std::size_t b = a + 1; b < edges.size(); ++b) {
+      if (edges[a].name.patch == edges[b].name.patch) continue;
+      const auto match = match_edge_pair(edges[a], edges[b], std::nullopt);
+      if (match) found.push_back(match.value());
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const EdgeMatch& a, const EdgeMatch& b) { return a.mean_gap_m < b.mean_gap_m; });
+  return found;
+}
+
+bool uses_same_edge(const std::vector<EdgeMatch>& chosen, const EdgeMatch& match) {
+  return std::any_of(chosen.begin(), chosen.end(), [&](const EdgeMatch& other) {
+    return other.a == match.a || other.a == match.b || other.b == match.a || other.b == match.b;
+  });
+}
+
+}  // namespace
+
+std::string edge_name(PatchEdge edge) {
+  return "patch " + std::to_string(edge.patch + 1) + "'s " + side_name(edge.side);
+}
+
+Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b,
+                              std::optional<bool> reversed) {
+  SPOONBILL_ASSERT(a.patch >= 0 && a.patch < static_cast<int>(patches.size()));
+  SPOONBILL_ASSERT(b.patch >= 0 && b.patch < static_cast<int>(patches.size()));
+  return match_edge_pair(prepare_edge(patches, a), prepare_edge(patches, b), reversed);
+}
+
+Result<std::vector<EdgeMatch>> find_edge_matches(const std::vector<Surface>& patches, double together_m) {
+  SPOONBILL_ASSERT(together_m >= 0.0);
+  const std::vector<EdgeMatch> all = find_candidates(patches);
+  std::vector<EdgeMatch> chosen;
+  Groups groups(patches.size());
+  for (const bool touching : {true, false}) {
+    for (const EdgeMatch& match : all) {
+      const bool is_needed =
+          touching ? match.gap_m <= together_m : !groups.are_one(match.a.patch, match.b.patch);
+      if (!is_needed || uses_same_edge(chosen, match)) continue;
+      chosen.push_back(match);
+      groups.join(match.a.patch, match.b.patch);
+    }
+  }
+  if (const int loose = groups.find_loose(); loose >= 0) {
+    return Error(ErrorCode::mismatch,
+                 "patch " + std::to_string(loose + 1) +
+                     " has no edge that fits one of the others; open it there, or name the edges");
+  }
+  return chosen;
+}
 
 namespace {
 
-struct Place {
+struct GridCell {
   int a = 0, b = 0;
   Orientation orientation;
 
-  friend bool operator==(const Place&, const Place&) = default;
+  friend bool operator==(const GridCell&, const GridCell&) = default;
 };
 
 constexpr bool both[] = {false, true};
 
-// The one way to turn a patch so that its side faces a given one and runs along with it.
-std::optional<Orientation> facing(Side side, Side wanted, bool reversed) {
+// Returns the orientation that brings the side to `wanted` with the given direction of its edge.
+std::optional<Orientation> facing(Side side, Side target, bool reversed) {
   for (const bool exchange : both) {
     for (const bool reverse_u : both) {
       for (const bool reverse_v : both) {
         const Orientation orientation{exchange, reverse_u, reverse_v};
-        const TurnedSide result = turned(side, orientation);
-        if (result.side == wanted && result.reversed == reversed) return orientation;
+        const TurnedSide result = turn_side(side, orientation);
+        if (result.side == target && result.reversed == reversed) return orientation;
       }
     }
   }
   return std::nullopt;
 }
 
-Place neighbour(const Place& place, Side own, Side other, bool against) {
-  const TurnedSide here = turned(own, place.orientation);
-  Place there = place;
+GridCell neighbour(const GridCell& cell, Side own, Side other, bool against) {
+  const TurnedSide here = turn_side(own, cell.orientation);
+  GridCell there = cell;
   int& moved = across(here.side) == Direction::u ? there.a : there.b;
   moved += is_start(here.side) ? -1 : 1;
   there.orientation = *facing(other, opposite(here.side), here.reversed != against);
   return there;
 }
 
-std::vector<std::optional<Place>> places_of(std::size_t count, const std::vector<EdgeMatch>& matches) {
-  std::vector<std::optional<Place>> places(count);
-  places[0] = Place{};
+std::vector<std::optional<GridCell>> place_patches(std::size_t count, const std::vector<EdgeMatch>& matches) {
+  std::vector<std::optional<GridCell>> cells(count);
+  cells[0] = GridCell{};
   for (bool more = true; more;) {
     more = false;
     for (const EdgeMatch& match : matches) {
-      auto &a = places[match.a.patch], &b = places[match.b.patch];
+      auto &a = cells[match.a.patch], &b = cells[match.b.patch];
       if (a.has_value() == b.has_value()) continue;
       if (a) {
         b = neighbour(*a, match.a.side, match.b.side, match.reversed);
@@ -62,30 +312,30 @@ std::vector<std::optional<Place>> places_of(std::size_t count, const std::vector
       more = true;
     }
   }
-  return places;
+  return cells;
 }
 
 Error layout_error(int patch, const char* what) {
-  return Error{"patch " + std::to_string(patch + 1) + " " + what +
-               "; merge patches that make a row or a full grid, or name the edges"};
+  return Error(ErrorCode::mismatch, "patch " + std::to_string(patch + 1) + " " + what +
+                                        "; merge patches that make a row or a full grid, or name the edges");
 }
 
-// The matches that do not lead from a patch to where the other one lies: by one they close the grid around,
-// if every row or column has one.
-void sort_mismatches(const std::vector<std::optional<Place>>& places, const std::vector<EdgeMatch>& matches,
-                     Arrangement& arrangement) {
+// Sorts the matches between patches that are not grid neighbours: they close the grid if each row or column
+// has one, otherwise they stay open.
+void sort_closing_matches(const std::vector<std::optional<GridCell>>& cells,
+                          const std::vector<EdgeMatch>& matches, Arrangement& arrangement) {
   arrangement.closing_u.clear();
   arrangement.closing_v.clear();
   arrangement.left_open.clear();
   for (const EdgeMatch& match : matches) {
-    const Place &there = *places[match.b.patch],
-                beside = neighbour(*places[match.a.patch], match.a.side, match.b.side, match.reversed);
-    if (beside == there) continue;
-    const int da = std::abs(beside.a - there.a), db = std::abs(beside.b - there.b);
-    const bool held_alike = beside.orientation == there.orientation;
-    if (held_alike && da == arrangement.rows && db == 0) {
+    const GridCell &there = *cells[match.b.patch],
+                   expected = neighbour(*cells[match.a.patch], match.a.side, match.b.side, match.reversed);
+    if (expected == there) continue;
+    const int da = std::abs(expected.a - there.a), db = std::abs(expected.b - there.b);
+    const bool is_same_orientation = expected.orientation == there.orientation;
+    if (is_same_orientation && da == arrangement.rows && db == 0) {
       arrangement.closing_u.push_back(match);
-    } else if (held_alike && db == arrangement.columns && da == 0) {
+    } else if (is_same_orientation && db == arrangement.columns && da == 0) {
       arrangement.closing_v.push_back(match);
     } else {
       arrangement.left_open.push_back(match);
@@ -100,45 +350,45 @@ void sort_mismatches(const std::vector<std::optional<Place>>& places, const std:
   open_unless_all(arrangement.closing_v, arrangement.rows);
 }
 
-// So that the seam of a ring lies before the first patch, which is at 0.
-bool start_rings_at_first(const Arrangement& arrangement, std::vector<std::optional<Place>>& places) {
-  const auto wrapped = [](int place, int count) { return (place % count + count) % count; };
-  for (std::optional<Place>& place : places) {
-    if (!arrangement.closing_u.empty()) place->a = wrapped(place->a, arrangement.rows);
-    if (!arrangement.closing_v.empty()) place->b = wrapped(place->b, arrangement.columns);
+// Shifts rings so that their seam is before the first patch, which is at 0. Returns true if there are any.
+bool start_rings_at_first(const Arrangement& arrangement, std::vector<std::optional<GridCell>>& cells) {
+  const auto wrapped = [](int cell, int count) { return (cell % count + count) % count; };
+  for (std::optional<GridCell>& cell : cells) {
+    if (!arrangement.closing_u.empty()) cell->a = wrapped(cell->a, arrangement.rows);
+    if (!arrangement.closing_v.empty()) cell->b = wrapped(cell->b, arrangement.columns);
   }
   return !arrangement.closing_u.empty() || !arrangement.closing_v.empty();
 }
 
-Result<Arrangement> with_cells(Arrangement arrangement, const std::vector<std::optional<Place>>& places,
+Result<Arrangement> fill_cells(Arrangement arrangement, const std::vector<std::optional<GridCell>>& cells,
                                int low_a, int low_b) {
-  const std::size_t cells = static_cast<std::size_t>(arrangement.rows) * arrangement.columns;
-  arrangement.patches.assign(cells, -1);
-  arrangement.orientations.resize(cells);
-  for (std::size_t p = 0; p < places.size(); ++p) {
-    const int cell = arrangement.cell(places[p]->a - low_a, places[p]->b - low_b);
+  const std::size_t cell_count = static_cast<std::size_t>(arrangement.rows) * arrangement.columns;
+  arrangement.patches.assign(cell_count, -1);
+  arrangement.orientations.resize(cell_count);
+  for (std::size_t p = 0; p < cells.size(); ++p) {
+    const int cell = arrangement.cell(cells[p]->a - low_a, cells[p]->b - low_b);
     if (arrangement.patches[cell] >= 0) {
-      return layout_error(static_cast<int>(p), "lies where another one does");
+      return layout_error(static_cast<int>(p), "is in the same cell as another one");
     }
     arrangement.patches[cell] = static_cast<int>(p);
-    arrangement.orientations[cell] = places[p]->orientation;
+    arrangement.orientations[cell] = cells[p]->orientation;
   }
   for (const int patch : arrangement.patches) {
-    if (patch < 0) return layout_error(static_cast<int>(places.size()) - 1, "leaves a gap in the grid");
+    if (patch < 0) return layout_error(static_cast<int>(cells.size()) - 1, "leaves a gap in the grid");
   }
   return arrangement;
 }
 
 }  // namespace
 
-Surface oriented(const Surface& surface, const Orientation& orientation) {
+Surface orient(const Surface& surface, const Orientation& orientation) {
   Surface result = orientation.exchanged ? exchanged(surface) : surface;
   if (orientation.reversed_u) result = reversed(result, Direction::u);
   if (orientation.reversed_v) result = reversed(result, Direction::v);
   return result;
 }
 
-TurnedSide turned(Side side, const Orientation& orientation) {
+TurnedSide turn_side(Side side, const Orientation& orientation) {
   Direction direction = across(side);
   bool start = is_start(side);
   if (orientation.exchanged) direction = direction == Direction::u ? Direction::v : Direction::u;
@@ -152,23 +402,23 @@ TurnedSide turned(Side side, const Orientation& orientation) {
 
 Result<Arrangement> arrange(const std::vector<Surface>& patches, const std::vector<EdgeMatch>& matches) {
   SPOONBILL_ASSERT(!patches.empty());
-  auto places = places_of(patches.size(), matches);
+  auto cells = place_patches(patches.size(), matches);
   int low_a = 0, low_b = 0, high_a = 0, high_b = 0;
-  for (std::size_t p = 0; p < places.size(); ++p) {
-    if (!places[p]) return layout_error(static_cast<int>(p), "hangs on no other");
-    low_a = std::min(low_a, places[p]->a);
-    high_a = std::max(high_a, places[p]->a);
-    low_b = std::min(low_b, places[p]->b);
-    high_b = std::max(high_b, places[p]->b);
+  for (std::size_t p = 0; p < cells.size(); ++p) {
+    if (!cells[p]) return layout_error(static_cast<int>(p), "is connected to no other one");
+    low_a = std::min(low_a, cells[p]->a);
+    high_a = std::max(high_a, cells[p]->a);
+    low_b = std::min(low_b, cells[p]->b);
+    high_b = std::max(high_b, cells[p]->b);
   }
   Arrangement arrangement;
   arrangement.rows = high_a - low_a + 1;
   arrangement.columns = high_b - low_b + 1;
-  sort_mismatches(places, matches, arrangement);
-  if (start_rings_at_first(arrangement, places)) sort_mismatches(places, matches, arrangement);
+  sort_closing_matches(cells, matches, arrangement);
+  if (start_rings_at_first(arrangement, cells)) sort_closing_matches(cells, matches, arrangement);
   if (!arrangement.closing_u.empty()) low_a = 0;
   if (!arrangement.closing_v.empty()) low_b = 0;
-  return with_cells(std::move(arrangement), places, low_a, low_b);
+  return fill_cells(std::move(arrangement), cells, low_a, low_b);
 }
 
 }  // namespace spoonbill

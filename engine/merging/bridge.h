@@ -1,30 +1,75 @@
-// The strip that leads from one patch to the next where they do not meet: it continues both with the
-// continuity that is asked. Pure functions, outside the tick; any thread.
+// Joints between consecutive patches of a row: measures of their edges, search for folds, bridges over gaps.
+// Pure functions, outside the tick; any thread.
 #pragma once
+
+#include <optional>
+#include <vector>
 
 #include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {
 
-// How long the strip's parameter along v must be, and by what factor `after`'s domain must be stretched, for
-// both patches to run across the gap at one speed: derived from the chords from edge to edge and the mean
-// derivatives there. The strip is made tauter where it would fold over, which it does where the chords are
-// short or lie askew; and between rings, down to a quarter, until it is nowhere narrower than both of them.
-// Refused: edges without a direction across, and strips that fold however taut, unless they may.
+// Samples of the end edge of one patch and the start edge of the next, at the same parameters u.
+struct JointEdges {
+  std::vector<SurfacePoint> before, after;
+};
+JointEdges joint_edges(const Surface& before, const Surface& after);
+
+double largest_gap_m(const JointEdges& edges);
+double mean_gap_m(const JointEdges& edges);
+
+// Returns the mean distance of the edge after ahead of the edge before, along the patches' direction there;
+// negative where they overlap.
+double mean_advance_m(const JointEdges& edges);
+
+// Returns true if the patches continue straight ahead across every gap wider than `touching_m`, neither
+// sideways nor backwards.
+bool continues_ahead(const JointEdges& edges, double touching_m);
+
+// Returns the stretch s that minimises the sum of |before' - after' / s|^2; exact if the derivatives differ
+// by a constant factor. Uses the ratio of lengths if they point elsewhere.
+double stretch_at_edge(const JointEdges& edges);
+
+// Returns true if the derivatives up to the continuity agree, so that no blend is needed. The patches must
+// have equal degrees and equal knots along u.
+bool is_smooth(const Surface& before, const Surface& after, double stretch, int continuity);
+
+double mean_speed(const std::vector<SurfacePoint>& points);
+
+// Returns the length of the last (`at_end`) or first polynomial piece along v at the given speed (metres per
+// unit of v).
+double piece_length_m(const Surface& patch, bool at_end, double speed);
+
+// Returns the mean arc length of the lines along v from `start` to `end`.
+double mean_length_m(const Surface& surface, double start, double end);
+
+// Returns a position where the normal turns by more than 90 degrees from one cell to the next. Each
+// polynomial piece has 4 x 4 cells. Creases (knots of full multiplicity) are not crossed, since two sides may
+// meet there at any angle.
+std::optional<Vector3> find_fold(const Surface& surface);
+
+// Finds folds in the strip from v = `start` to v = `end`. Detects in addition slow turns: normals that oppose
+// both edges although these agree, and neighbouring lines that oppose each other although they agree at both
+// edges.
+std::optional<Vector3> find_fold_between(const Surface& surface, double start, double end);
+
+// Length of a bridge. Both patches cross the gap at one speed, from the chords between the edges and the mean
+// derivatives there. The parameter length is reduce_degree until the bridge does not fold; between rings also, to a
+// quarter at most, until it is nowhere narrower than both rings. Fails for edges without a direction across
+// v, and for bridges that fold at any length unless `may_fold` is set.
 struct BridgeLength {
   double parameter = 0.0;
   double stretch_of_after = 1.0;
-  double chord_m = 0.0;  // the mean distance of the edges
+  double chord_m = 0.0;  // mean distance between the edges
 };
 Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, int continuity,
                                    bool may_fold = false);
 
-// From before's end along v to after's start, over [before's end, after's start] as its domain; both of one
-// degree and one knot vector along u. Of the patches' degree along v: as many pieces as the continuity needs,
-// whose outer control points are those of the patches' last pieces continued; between rings that do not face
-// each other, or lie farther apart than twice both their radii, also those of a bend, which keeps the tube
-// open and even. Refused: a gap that is empty.
+// Returns the bridge from the end of `before` to the start of `after`, over the domain between them. Both
+// need the same knots along u and the same degree along v. The outer control points continue the patches' end
+// pieces with the given continuity. Between rings that face apart, or are farther apart than twice the sum of
+// their radii, columns in between follow a bend and keep the tube open. Fails for an empty gap.
 Result<Surface> bridge(const Surface& before, const Surface& after, int continuity);
 
 }  // namespace spoonbill

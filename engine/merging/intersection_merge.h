@@ -1,6 +1,6 @@
-// Merges two patches that cross each other: each keeps what lies before the other, and where they meet is an
-// edge or a fillet. No single B-spline patch holds such a corner exactly; both are resampled along lines of
-// constant u that meet on the crossing, fitted, and joined. Outside the tick; pure function.
+// Merges two intersecting patches at an edge or a fillet. A single B-spline patch cannot hold such a corner
+// exactly, so both are resampled along lines of constant u that meet on the intersection, fitted and joined.
+// Pure function, outside the tick.
 #pragma once
 
 #include "engine/merging/join_row.h"
@@ -8,24 +8,26 @@
 namespace spoonbill {
 
 struct IntersectionRequest {
-  JoinRequest join;       // the continuity is the fillet's
-  double fillet_m = 0.0;  // the radius of a ball that rolls along the corner; 0 = an edge
+  JoinRequest join;       // its continuity applies to the fillet
+  double fillet_m = 0.0;  // radius of a ball that rolls along the corner; 0: an edge
 };
 
 struct IntersectionMerge {
   Surface surface;
-  double deviation_m = 0.0;  // to the patches, outside the fillet
-  // Where the patches meet; its blend is the fillet, which leaves them from blend_start to blend_end along v.
+  double deviation_m = 0.0;  // from the patches, outside the fillet
+  // Joint of the two patches; its blend, from blend_start to blend_end along v, is the fillet.
   Joint corner;
   bool first_was_inward = false, second_was_inward = false;
 };
 
-// Of closed bodies each keeps what lies outside the other; of open patches the longer part of their lines.
-// A closed body whose normals point inwards is turned around first. The first keeps its parameters around. A
-// closed body that the first does not cross around one of its poles is run through from the crossing to the
-// pole on the far side (LinesFromLoop). Refused: patches whose lines of constant u do not each cross the
-// other or do not follow each other along the crossing, one that leaves a closed body again, as where it goes
-// through, a fillet that does not fit. The message names where. Stopped on request.
+// Merges two intersecting patches. Each closed body contributes the part outside the other; open patches
+// contribute the longer part of their lines. Closed bodies with inward normals are reversed first. The first
+// patch keeps its parameters around. If the first crosses a closed body beside its poles, the body is
+// resampled along lines from the intersection to the far pole.
+//
+// Fails if a line of constant u does not cross the other patch, or if lines do not follow each other along
+// the intersection. Fails also if a patch leaves a closed body again, or the fillet does not fit. The message
+// names a position where possible.
 Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
                                          const IntersectionRequest& request);
 

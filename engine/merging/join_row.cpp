@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,15 +12,191 @@
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/merging/bridge.h"
-#include "engine/merging/fold_search.h"
-#include "engine/merging/joint_edges.h"
+#include "engine/merging/compatible_patches.h"
 
 namespace spoonbill {
+namespace {
+
+Result<Surface> cut_back(const Surface& patch, bool at_end, double parameter) {
+  const double start = patch.v.domain_start(), end = patch.v.domain_end();
+  if (!(parameter < 0.5 * (end - start))) {
+    return Error(ErrorCode::out_of_range, "the blend takes more than half of a patch; ask for a shorter one",
+                 "blend");
+  }
+  return at_end ? part_of(patch, Direction::v, start, end - parameter)
+                : part_of(patch, Direction::v, start + parameter, end);
+}
+
+Result<JointMeasure> measure(const Surface& before, const Surface& after, const JoinRequest& request) {
+  const JointEdges edges = joint_edges(before, after);
+  if (largest_gap_m(edges) <= request.tolerance_m) {
+    return JointMeasure{false, largest_gap_m(edges), 0.0, stretch_at_edge(edges)};
+  }
+  const auto length = bridge_length(before, after, request.continuity, request.bridges_may_fold);
+  if (!length) return length.error();
+  return JointMeasure{true, length->chord_m, length->parameter, length->stretch_of_after};
+}
+
+// State of one joint over all rows.
+struct JointState {
+  bool any_touching = false, any_open = false, all_smooth = true, all_continue_ahead = true;
+  double apart_m = 0.0;                                               // largest gap
+  double mean_gap_m = 0.0, advance_m = 0.0;                           // means
+  double shortest_piece_m = std::numeric_limits<double>::infinity();  // beside the joint
+  double speed_before = 0.0, speed_after = 0.0;                       // means
+};
+
+JointState joint_state(const std::vector<PreparedRow>& rows, std::size_t joint, const JoinRequest& request) {
+  JointState state;
+  for (const PreparedRow& row : rows) {
+    const JointEdges edges = joint_edges(row.patches[joint], row.patches[joint + 1]);
+    const double gap_m = largest_gap_m(edges), fraction = 1.0 / static_cast<double>(rows.size());
+    const bool touching = gap_m <= request.tolerance_m;
+    state.any_touching = state.any_touching || touching;
+    state.any_open = state.any_open || !touching;
+    state.all_smooth = state.all_smooth && is_smooth(row.patches[joint], row.patches[joint + 1],
+                                                     stretch_at_edge(edges), request.continuity);
+    state.all_continue_ahead = state.all_continue_ahead && continues_ahead(edges, request.tolerance_m);
+    state.apart_m = std::max(state.apart_m, gap_m);
+    state.advance_m += fraction * mean_advance_m(edges);
+    state.mean_gap_m += fraction * mean_gap_m(edges);
+    const double before = mean_speed(edges.before), after = mean_speed(edges.after);
+    state.shortest_piece_m =
+        std::min({state.shortest_piece_m, piece_length_m(row.patches[joint], true, before),
+                  piece_length_m(row.patches[joint + 1], false, after)});
+    state.speed_before += fraction * before;
+    state.speed_after += fraction * after;
+  }
+  return state;
+}
+
+// Lengths of blends at small gaps that are not straight ahead, where a bridge of the gap's length would make
+// a step or fold. A blend spans one polynomial piece, within these multiples of the gap. The cut is limited
+// to a fraction of each patch.
+constexpr double least_gap_ratio = 10.0, most_gap_ratio = 40.0, most_cut_fraction = 0.25;
+// Largest overlap without a cut, relative to the gap.
+constexpr double most_back_fraction = 0.5;
+
+bool is_short_cut(const std::vector<PreparedRow>& rows, std::size_t joint, double cut_m) {
+  return std::all_of(rows.begin(), rows.end(), [&](const PreparedRow& row) {
+    const Surface &before = row.patches[joint], &after = row.patches[joint + 1];
+    const JointEdges edges = joint_edges(before, after);
+    const auto length_m = [](const Surface& patch, double speed) {
+      return speed * (patch.v.domain_end() - patch.v.domain_start());
+    };
+    return cut_m <= most_cut_fraction * std::min(length_m(before, mean_speed(edges.before)),
+                                                 length_m(after, mean_speed(edges.after)));
+  });
+}
+
+// Returns the length to cut off each patch for a blend; 0 without one.
+Result<double> blend_cut_m(const std::vector<PreparedRow>& rows, std::size_t joint, const JointState& state,
+                           const JoinRequest& request) {
+  if (request.blend_m > 0.0) {
+    const bool is_needed = state.any_open || !state.all_smooth;
+    return is_needed ? std::max(0.0, 0.5 * (request.blend_m - state.advance_m)) : 0.0;
+  }
+  if (!state.any_open) return 0.0;
+  if (state.any_touching) {
+    return Error(
+        ErrorCode::mismatch,
+        "patches of the grid touch in one row of a joint and are apart in another; ask for a blend, or allow "
+        "a larger tolerance");
+  }
+  if (state.all_continue_ahead || request.bridges_may_fold) return 0.0;
+  const double length_m =
+      std::clamp(state.shortest_piece_m, least_gap_ratio * state.apart_m, most_gap_ratio * state.apart_m);
+  const double cut_m = 0.5 * (length_m - state.advance_m);
+  if (is_short_cut(rows, joint, cut_m)) return cut_m;
+  if (state.advance_m < -most_back_fraction * state.mean_gap_m) {
+    return Error(ErrorCode::mismatch,
+                 "the patches overlap by " + short_length_text(-state.advance_m) +
+                     " where they are to be joined; move them apart, cut a piece off, or let them intersect");
+  }
+  return 0.0;
+}
+
+// All rows are cut alike, so that their joints stay at the same parameter.
+Status cut_for_blend(std::vector<PreparedRow>& rows, std::size_t joint, const JoinRequest& request) {
+  const JointState state = joint_state(rows, joint, request);
+  const auto cut_m = blend_cut_m(rows, joint, state, request);
+  if (!cut_m) return cut_m.error();
+  for (PreparedRow& row : rows) {
+    row.joints.push_back({});
+    row.joints[joint].apart_m = state.apart_m;
+    row.joints[joint].cut_back_m = cut_m.value();
+    if (cut_m.value() == 0.0) continue;
+    Surface &before = row.patches[joint], &after = row.patches[joint + 1];
+    auto shorter = cut_back(before, true, cut_m.value() / state.speed_before);
+    if (!shorter) return shorter.error();
+    auto later = cut_back(after, false, cut_m.value() / state.speed_after);
+    if (!later) return later.error();
+    before = std::move(shorter).value();
+    after = std::move(later).value();
+  }
+  return {};
+}
+
+// Uses common values for all rows: the mean stretch, and the shortest bridge, which folds in none.
+Status measure_joint(std::vector<PreparedRow>& rows, std::size_t joint, const JoinRequest& request) {
+  double stretch = 0.0, shortest = std::numeric_limits<double>::infinity();
+  for (PreparedRow& row : rows) {
+    const auto measured = measure(row.patches[joint], row.patches[joint + 1], request);
+    if (!measured) return measured.error();
+    JointMeasure& row_joint = row.joints[joint];
+    row_joint.bridged = measured->bridged;
+    row_joint.gap_m = measured->gap_m;
+    stretch += measured->stretch_of_after / static_cast<double>(rows.size());
+    shortest = std::min(shortest, measured->gap_parameter);
+  }
+  for (PreparedRow& row : rows) {
+    row.joints[joint].gap_parameter = shortest;
+    row.joints[joint].stretch_of_after = stretch;
+  }
+  return {};
+}
+
+Status match_domains(std::vector<std::vector<Surface>>& rows) {
+  for (std::size_t row = 1; row < rows.size(); ++row) {
+    for (std::size_t k = 0; k < rows[row].size(); ++k) {
+      const KnotVector& first = rows[0][k].v;
+      auto moved = with_domain(rows[row][k], Direction::v, first.domain_start(), first.domain_end());
+      if (!moved) return moved.error();
+      rows[row][k] = std::move(moved).value();
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<PreparedRow>> prepare_rows(std::vector<std::vector<Surface>> rows,
+                                              const JoinRequest& request) {
+  SPOONBILL_ASSERT(!rows.empty());
+  SPOONBILL_ASSERT(std::all_of(rows.begin(), rows.end(),
+                               [&](const auto& row) { return row.size() == rows.front().size(); }));
+  if (Status status = match_domains(rows); !status) return status.error();
+  std::vector<PreparedRow> prepared;
+  for (std::vector<Surface>& row : rows) {
+    const double done = static_cast<double>(prepared.size()), count = static_cast<double>(rows.size());
+    JoinRequest row_request = request;
+    row_request.progress = request.progress.part(done / count, (done + 1.0) / count);
+    auto compatible = make_compatible(std::move(row), row_request);
+    if (!compatible) return compatible.error();
+    prepared.push_back({std::move(compatible->patches), {}, compatible->deviation_m});
+  }
+  const std::size_t patches = prepared.empty() ? 0 : prepared[0].patches.size();
+  for (std::size_t joint = 0; joint + 1 < patches; ++joint) {
+    if (Status status = cut_for_blend(prepared, joint, request); !status) return status.error();
+    if (Status status = measure_joint(prepared, joint, request); !status) return status.error();
+  }
+  return prepared;
+}
 
 namespace {
 
-// The patches over the domains they get in the merged surface.
-Result<std::vector<Surface>> placed_in_row(const PreparedRow& row) {
+// Moves the patches to their domains in the merged surface.
+Result<std::vector<Surface>> place_in_row(const PreparedRow& row) {
   std::vector<Surface> placed{row.patches[0]};
   double stretch = 1.0;
   for (std::size_t p = 1; p < row.patches.size(); ++p) {
@@ -30,7 +207,7 @@ Result<std::vector<Surface>> placed_in_row(const PreparedRow& row) {
     const double start = placed.back().v.domain_end() + gap;
     const double length = patch.v.domain_end() - patch.v.domain_start();
     double end = start + stretch * length;
-    // What was split keeps its knots to the last bit.
+    // Parts of one patch keep their knots to the last bit.
     if (std::abs(end - patch.v.domain_end()) <= same_knot_fraction * length) end = patch.v.domain_end();
     auto moved = with_domain(patch, Direction::v, start, end);
     if (!moved) return moved.error();
@@ -39,9 +216,9 @@ Result<std::vector<Surface>> placed_in_row(const PreparedRow& row) {
   return placed;
 }
 
-// With the bridges between them, edge to edge.
-Result<std::vector<Surface>> with_bridges(const std::vector<Surface>& placed, const PreparedRow& row,
-                                          int continuity) {
+// Inserts the bridges between the patches.
+Result<std::vector<Surface>> add_bridges(const std::vector<Surface>& placed, const PreparedRow& row,
+                                         int continuity) {
   std::vector<Surface> strips{placed[0]};
   for (std::size_t p = 1; p < placed.size(); ++p) {
     if (row.joints[p - 1].bridged) {
@@ -54,8 +231,8 @@ Result<std::vector<Surface>> with_bridges(const std::vector<Surface>& placed, co
   return strips;
 }
 
-// Continuous as strips that meet at their edges are: the joint's knot stands as often as the degree.
-Result<Surface> concatenated(const std::vector<Surface>& strips) {
+// Joins strips that meet at their edges; the joint knots have full multiplicity.
+Result<Surface> concatenate(const std::vector<Surface>& strips) {
   const int degree = strips[0].v.degree(), rows = strips[0].net.rows;
   std::vector<double> knots = strips[0].v.knots();
   int columns = strips[0].net.columns;
@@ -82,22 +259,21 @@ Result<Surface> concatenated(const std::vector<Surface>& strips) {
   return make_surface(strips[0].u, std::move(v).value(), std::move(net));
 }
 
-// With each joint's knot as often as the continuity allows.
-Result<KnotVector> smoothed_knots(const KnotVector& knots, const std::vector<double>& joints,
-                                  int continuity) {
+// Reduces the multiplicity of each joint's knot to what the continuity permits.
+Result<KnotVector> smooth_knots(const KnotVector& knots, const std::vector<double>& joints, int continuity) {
   std::vector<double> fewer = knots.knots();
   for (const double joint : joints) {
     const auto [first, last] = std::equal_range(fewer.begin(), fewer.end(), joint);
-    const auto kept = std::min<std::ptrdiff_t>(last - first, knots.degree() - continuity);
-    fewer.erase(first + kept, last);
+    const auto remaining = std::min<std::ptrdiff_t>(last - first, knots.degree() - continuity);
+    fewer.erase(first + remaining, last);
   }
   return KnotVector::open(knots.degree(), std::move(fewer));
 }
 
 constexpr double rounding_m = 1e-12;
 
-// In every piece of the merged surface, which has more of them along v than the patch.
-PointGrid samples_of(const Surface& patch, const KnotVector& merged_v, int in_piece) {
+// Samples the patch in every piece of the merged surface, which has more of them along v.
+PointGrid sample_patch(const Surface& patch, const KnotVector& merged_v, int in_piece) {
   const std::vector<double> all = nested_parameters(merged_v, in_piece, 0).parameters;
   const double start = patch.v.domain_start(), end = patch.v.domain_end();
   std::vector<double> along{start};
@@ -107,31 +283,31 @@ PointGrid samples_of(const Surface& patch, const KnotVector& merged_v, int in_pi
   return sample_grid_points(patch, nested_parameters(patch.u, in_piece, 0).parameters, std::move(along));
 }
 
-// About the worst sample too, unless few tell that there is nothing but rounding.
-double deviation_from_m(const Surface& merged, const Surface& patch) {
+// Refines the largest deviation around the worst sample, unless coarse samples show rounding only.
+double deviation_m_from(const Surface& merged, const Surface& patch) {
   constexpr int few = 3, many = 6;
-  const double at_few = largest_deviation_m(merged, samples_of(patch, merged.v, few));
+  const double at_few = largest_deviation_m(merged, sample_patch(patch, merged.v, few));
   if (at_few <= rounding_m) return at_few;
-  const PointGrid of_patch = samples_of(patch, merged.v, many);
-  const PointGrid of_merged = sample_grid_points(merged, of_patch.u, of_patch.v);
+  const PointGrid patch_samples = sample_patch(patch, merged.v, many);
+  const PointGrid merged_samples = sample_grid_points(merged, patch_samples.u, patch_samples.v);
   double largest = -1.0;
   std::size_t at = 0;
-  for (std::size_t k = 0; k < of_patch.points_m.size(); ++k) {
-    const double apart = (of_patch.points_m[k] - of_merged.points_m[k]).norm();
-    if (apart <= largest) continue;
-    largest = apart;
+  for (std::size_t k = 0; k < patch_samples.points_m.size(); ++k) {
+    const double distance = (patch_samples.points_m[k] - merged_samples.points_m[k]).norm();
+    if (distance <= largest) continue;
+    largest = distance;
     at = k;
   }
-  const std::size_t i = at / of_patch.v.size(), j = at % of_patch.v.size();
-  const auto apart = [&](double u, double v) {
+  const std::size_t i = at / patch_samples.v.size(), j = at % patch_samples.v.size();
+  const auto distance = [&](double u, double v) {
     const double within = std::clamp(v, patch.v.domain_start(), patch.v.domain_end());
     return (position(merged, u, within) - position(patch, u, within)).norm();
   };
-  const auto step = [](const std::vector<double>& of, std::size_t k) {
-    return k + 1 < of.size() ? of[k + 1] - of[k] : of[k] - of[k - 1];
+  const auto step_at = [](const std::vector<double>& values, std::size_t k) {
+    return k + 1 < values.size() ? values[k + 1] - values[k] : values[k] - values[k - 1];
   };
-  const double near =
-      find_peak(apart, of_patch.u[i], of_patch.v[j], step(of_patch.u, i), step(of_patch.v, j));
+  const double near = find_peak(distance, patch_samples.u[i], patch_samples.v[j], step_at(patch_samples.u, i),
+                                step_at(patch_samples.v, j));
   return std::max({at_few, largest, near});
 }
 
@@ -142,29 +318,30 @@ Result<double> measured_deviation_m(const Surface& merged, const std::vector<Sur
     if (!progress.report(static_cast<double>(p) / static_cast<double>(placed.size()))) {
       return Progress::stopped();
     }
-    largest = std::max(largest, deviation_from_m(merged, placed[p]));
+    largest = std::max(largest, deviation_m_from(merged, placed[p]));
   }
   return largest;
 }
 
-// What fitting the joints may leave: edges that touch are brought together half way each.
+// Tolerance left for fitting the joints; touching edges each move by half their gap.
 double tolerance_left_m(const PreparedRow& row, const JoinRequest& request) {
   double gap_m = 0.0;
   for (const JointMeasure& joint : row.joints) gap_m = std::max(gap_m, joint.bridged ? 0.0 : joint.gap_m);
-  constexpr double least_share = 0.05;
+  constexpr double least_fraction = 0.05;
   return std::max(request.tolerance_m - request.spent_m - row.deviation_m - 0.5 * gap_m,
-                  least_share * request.tolerance_m);
+                  least_fraction * request.tolerance_m);
 }
 
 Status check_count(const KnotVector& knots, int largest_count) {
   const int count = knots.control_point_count();
   if (count <= largest_count) return {};
-  return Error{"the patches of a row have " + std::to_string(count) + " control points together, more than " +
-               std::to_string(largest_count) + "; simplify them first, or merge fewer"};
+  return Error(ErrorCode::too_many,
+               "the patches of a row have " + std::to_string(count) + " control points together, more than " +
+                   std::to_string(largest_count) + "; simplify them first, or merge fewer");
 }
 
-std::vector<Joint> described_joints(const Surface& merged, const std::vector<Surface>& placed,
-                                    const PreparedRow& row) {
+std::vector<Joint> describe_joints(const Surface& merged, const std::vector<Surface>& placed,
+                                   const PreparedRow& row) {
   std::vector<Joint> joints;
   for (std::size_t p = 1; p < placed.size(); ++p) {
     const double start = placed[p - 1].v.domain_end(), end = placed[p].v.domain_start();
@@ -175,52 +352,53 @@ std::vector<Joint> described_joints(const Surface& merged, const std::vector<Sur
   return joints;
 }
 
-std::optional<Vector3> place_of_fold_in(const Surface& merged, const std::vector<Joint>& joints) {
+std::optional<Vector3> find_fold_in(const Surface& merged, const std::vector<Joint>& joints) {
   for (const Joint& joint : joints) {
     if (!joint.bridged) continue;
-    if (auto place = place_of_fold_between(merged, joint.blend_start, joint.blend_end)) return place;
+    if (auto fold = find_fold_between(merged, joint.blend_start, joint.blend_end)) return fold;
   }
-  return place_of_fold(merged);
+  return find_fold(merged);
 }
 
-// What was joined exactly folds where its patches do alone.
+// Exact joins fold only where the patches do.
 Status check_folds(const Surface& merged, const std::vector<Surface>& placed,
                    const std::vector<Joint>& joints, double moved_m) {
   const bool bridged = std::any_of(joints.begin(), joints.end(), [](const Joint& j) { return j.bridged; });
   if (!bridged && moved_m <= rounding_m) return {};
-  const auto place = place_of_fold_in(merged, joints);
-  if (!place || std::any_of(placed.begin(), placed.end(), place_of_fold)) return {};
-  return Error{"the merged surface folds over at " + position_text(*place) +
-               ": the patches meet at too sharp an edge there, or lie on each other; join them C0, ask for a "
-               "blend, or cut a piece off"};
+  const auto fold = find_fold_in(merged, joints);
+  if (!fold || std::any_of(placed.begin(), placed.end(), find_fold)) return {};
+  return Error(ErrorCode::self_intersecting,
+               "the merged surface folds over at " + position_text(*fold) +
+                   ": the patches meet at too sharp an edge there, or coincide; join them C0, ask for a "
+                   "blend, or cut a piece off");
 }
 
-// Of the work.
-constexpr double prepared_share = 0.3, approximated_share = 0.6;
+// Fractions of the work.
+constexpr double prepared_fraction = 0.3, approximated_fraction = 0.6;
 
 }  // namespace
 
 Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request) {
   SPOONBILL_ASSERT(row.joints.size() + 1 == row.patches.size());
-  auto placed = placed_in_row(row);
+  auto placed = place_in_row(row);
   if (!placed) return placed.error();
-  auto strips = with_bridges(placed.value(), row, request.continuity);
+  auto strips = add_bridges(placed.value(), row, request.continuity);
   if (!strips) return strips.error();
-  auto whole = concatenated(strips.value());
+  auto whole = concatenate(strips.value());
   if (!whole) return whole.error();
   std::vector<double> joints;
   for (std::size_t s = 1; s < strips->size(); ++s) joints.push_back(strips.value()[s - 1].v.domain_end());
-  const auto knots = smoothed_knots(whole->v, joints, request.continuity);
+  const auto knots = smooth_knots(whole->v, joints, request.continuity);
   if (!knots) return knots.error();
   if (Status status = check_count(knots.value(), request.largest_count); !status) return status.error();
   auto merged = approximated(whole.value(), Direction::v, knots.value(), tolerance_left_m(row, request),
-                             request.largest_count, request.progress.part(0.0, approximated_share));
+                             request.largest_count, request.progress.part(0.0, approximated_fraction));
   if (!merged) return merged.error();
-  const auto measured_m =
-      measured_deviation_m(merged->surface, placed.value(), request.progress.part(approximated_share, 1.0));
+  const auto measured_m = measured_deviation_m(merged->surface, placed.value(),
+                                               request.progress.part(approximated_fraction, 1.0));
   if (!measured_m) return measured_m.error();
   const double deviation_m = row.deviation_m + measured_m.value();
-  std::vector<Joint> described = described_joints(merged->surface, placed.value(), row);
+  std::vector<Joint> described = describe_joints(merged->surface, placed.value(), row);
   if (!request.bridges_may_fold) {
     Status sound = check_folds(merged->surface, placed.value(), described, merged->deviation_m);
     if (!sound) return sound.error();
@@ -231,8 +409,8 @@ Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request)
 Result<Joined> join_row(std::vector<Surface> patches, const JoinRequest& request) {
   SPOONBILL_ASSERT(!patches.empty());
   JoinRequest preparing = request, joining = request;
-  preparing.progress = request.progress.part(0.0, prepared_share);
-  joining.progress = request.progress.part(prepared_share, 1.0);
+  preparing.progress = request.progress.part(0.0, prepared_fraction);
+  joining.progress = request.progress.part(prepared_fraction, 1.0);
   const auto rows = prepare_rows({std::move(patches)}, preparing);
   if (!rows) return rows.error();
   return join_prepared(rows.value()[0], joining);

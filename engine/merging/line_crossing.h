@@ -1,4 +1,5 @@
-// Where lines cross a surface: a surface's own lines of constant u, and straight ones. Outside the tick.
+// Intersections of a surface with lines (lines of constant u of another surface, or straight ones), and the
+// ball that rolls along a corner. Outside the tick.
 #pragma once
 
 #include <optional>
@@ -10,36 +11,53 @@
 namespace spoonbill {
 
 struct LineCrossing {
-  double along = 0.0;  // v of the crossing line, or the distance along a straight one
+  double along = 0.0;  // v on the crossing line, or the distance along a straight one
   double other_u = 0.0, other_v = 0.0;
   Vector3 point_m = Vector3::Zero();
 };
 
-// Holds a triangle net of the surface that is crossed, fine enough that a line which crosses it at more than
-// a few degrees is not missed; crossings are then found to rounding on the surface itself. Immutable; any
-// thread.
+// Finds where lines cross a surface. A triangle mesh, fine enough for all crossings steeper than a few
+// degrees, gives start values; the results are exact to rounding on the surface. Immutable; any thread.
 class CrossingFinder {
  public:
   explicit CrossingFinder(const Surface& other);
 
-  // In the order of v. A line that only touches may be missed.
-  std::vector<LineCrossing> of_line(const Surface& surface, double u) const;
+  // Returns the crossings in order of v. A line that only touches may be missed.
+  std::vector<LineCrossing> intersect_line(const Surface& surface, double u) const;
 
-  // In the order of distance, up to `length_m` along the unit direction.
-  std::vector<LineCrossing> of_ray(const Vector3& from_m, const Vector3& direction, double length_m) const;
+  // Returns the crossings in order of distance, up to `length_m` along the unit direction.
+  std::vector<LineCrossing> intersect_ray(const Vector3& from_m, const Vector3& direction,
+                                          double length_m) const;
 
  private:
   struct Start {
-    double share, other_u, other_v;
+    double fraction, other_u, other_v;
   };
-  std::vector<Start> of_chord(const Vector3& from, const Vector3& to) const;
+  std::vector<Start> find_starts(const Vector3& from, const Vector3& to) const;
   template <class Curve>
-  std::optional<LineCrossing> polished(const Curve& curve, double along, const Start& start) const;
+  std::optional<LineCrossing> polish(const Curve& curve, double along, const Start& start) const;
 
   Surface other_;
   std::vector<double> u_, v_;
   std::vector<Vector3> points_m_;
   std::optional<BoxTree> tree_;
 };
+
+// Contact of a ball that touches the first surface on a line of constant u and the other surface anywhere.
+struct BallContact {
+  double v = 0.0;                       // on the first surface
+  double other_u = 0.0, other_v = 0.0;  // on the other surface
+  Vector3 centre_m = Vector3::Zero();
+};
+
+// Side of each surface on which the ball is: +1 along its normals, -1 against them.
+struct BallSides {
+  int of_surface = 1, of_other = 1;
+};
+
+// Solves for the contact by Newton's method, starting from the crossing with a radius that grows from zero.
+// Empty if no ball of that radius fits.
+std::optional<BallContact> ball_contact(const Surface& surface, double u, const Surface& other,
+                                        const LineCrossing& crossing, BallSides sides, double radius_m);
 
 }  // namespace spoonbill

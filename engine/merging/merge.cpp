@@ -10,12 +10,10 @@
 #include "engine/base/text.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/merging/fold_search.h"
-#include "engine/merging/seam.h"
+#include "engine/merging/bridge.h"
 #include "engine/merging/tube_ends.h"
 
 namespace spoonbill {
-
 namespace {
 
 constexpr double rounding_m = 1e-12;
@@ -26,20 +24,20 @@ struct PatchGrid {
 
   Surface at(int a, int b) const {
     const int cell = arrangement.cell(a, b);
-    return oriented(patches[arrangement.patches[cell]], arrangement.orientations[cell]);
+    return orient(patches[arrangement.patches[cell]], arrangement.orientations[cell]);
   }
 };
 
-// The side that a patch turns to its neighbour in the grid.
+// Returns the patch's own side that becomes `in_grid`.
 Side own_side(Side in_grid, const Orientation& orientation) {
   for (const Side side : all_sides) {
-    if (turned(side, orientation).side == in_grid) return side;
+    if (turn_side(side, orientation).side == in_grid) return side;
   }
   return in_grid;
 }
 
-// From a cell to the next along a direction, which after the last is the first.
-MergedJoint described(const PatchGrid& grid, int a, int b, Direction along, const Joint& joint) {
+// Describes the joint from a cell to the next along a direction; the first follows the last.
+MergedJoint describe(const PatchGrid& grid, int a, int b, Direction along, const Joint& joint) {
   const Arrangement& all = grid.arrangement;
   const int cell = all.cell(a, b);
   const int next =
@@ -51,9 +49,8 @@ MergedJoint described(const PatchGrid& grid, int a, int b, Direction along, cons
           joint};
 }
 
-// Every row along v is joined; what results lies one after the other along u. A single column is left as it
-// is: it may be closed along v.
-Result<std::vector<Joined>> joined_along_v(const PatchGrid& grid, const JoinRequest& request) {
+// Joins every row along v. A single column is not changed, since it may become periodic along v.
+Result<std::vector<Joined>> join_along_v(const PatchGrid& grid, const JoinRequest& request) {
   std::vector<Joined> joined;
   if (grid.arrangement.columns == 1) {
     for (int a = 0; a < grid.arrangement.rows; ++a) joined.push_back({grid.at(a, 0), 0.0, {}});
@@ -63,14 +60,14 @@ Result<std::vector<Joined>> joined_along_v(const PatchGrid& grid, const JoinRequ
   for (int a = 0; a < grid.arrangement.rows; ++a) {
     for (int b = 0; b < grid.arrangement.columns; ++b) rows[a].push_back(grid.at(a, b));
   }
-  constexpr double prepared_share = 0.3;
+  constexpr double prepared_fraction = 0.3;
   JoinRequest step = request;
-  step.progress = request.progress.part(0.0, prepared_share);
+  step.progress = request.progress.part(0.0, prepared_fraction);
   const auto prepared = prepare_rows(std::move(rows), step);
   if (!prepared) return prepared.error();
-  const double each = (1.0 - prepared_share) / static_cast<double>(prepared->size());
+  const double each = (1.0 - prepared_fraction) / static_cast<double>(prepared->size());
   for (const PreparedRow& row : prepared.value()) {
-    const double done = prepared_share + each * static_cast<double>(joined.size());
+    const double done = prepared_fraction + each * static_cast<double>(joined.size());
     step.progress = request.progress.part(done, done + each);
     auto result = join_prepared(row, step);
     if (!result) return result.error();
@@ -79,11 +76,10 @@ Result<std::vector<Joined>> joined_along_v(const PatchGrid& grid, const JoinRequ
   return joined;
 }
 
-// Shares the tolerance and the progress out to the steps of a merge: each may spend its part of what those
-// before it left.
-class Steps {
+// Divides the remaining tolerance and progress among the steps of a merge.
+class ToleranceSteps {
  public:
-  Steps(const JoinRequest& request, int steps) : request_(request), steps_(steps) {}
+  ToleranceSteps(const JoinRequest& request, int steps) : request_(request), steps_(steps) {}
 
   JoinRequest next(double spent_m) {
     JoinRequest step = request_;
@@ -103,24 +99,24 @@ class Steps {
   double done_ = 0.0;
 };
 
-Result<Approximation> closed_without_folds(const Surface& surface, Direction direction,
-                                           const JoinRequest& request) {
-  auto closed = closed_around(surface, direction, request.continuity, request.tolerance_m - request.spent_m,
-                              request.progress);
+Result<Approximation> close_without_folds(const Surface& surface, Direction direction,
+                                          const JoinRequest& request) {
+  auto closed = close_around(surface, direction, request.continuity, request.tolerance_m - request.spent_m,
+                             request.progress);
   if (!closed || closed->deviation_m <= rounding_m) return closed;
-  const auto place_m = place_of_fold(closed->surface);
-  if (!place_m || place_of_fold(surface)) return closed;
-  return Error{"the surface would fold over at " + position_text(*place_m)};
+  const auto fold_m = find_fold(closed->surface);
+  if (!fold_m || find_fold(surface)) return closed;
+  return Error(ErrorCode::self_intersecting, "the surface would fold over at " + position_text(*fold_m));
 }
 
-// Where the grid is a ring along the direction.
-Status close_ring(const PatchGrid& grid, Direction direction, Steps& steps, Merged& merged) {
+// Makes the direction periodic if the grid is a ring along it.
+Status close_ring(const PatchGrid& grid, Direction direction, ToleranceSteps& steps, Merged& merged) {
   const Arrangement& all = grid.arrangement;
   const bool along_u = direction == Direction::u;
   const std::vector<EdgeMatch>& matches = along_u ? all.closing_u : all.closing_v;
   if (matches.empty()) return {};
   const JoinRequest step = steps.next(merged.deviation_m);
-  auto closed = closed_without_folds(merged.surface, direction, step);
+  auto closed = close_without_folds(merged.surface, direction, step);
   if (!step.progress.report(1.0)) return Progress::stopped();
   if (!closed) {
     for (const EdgeMatch& match : matches) {
@@ -136,15 +132,15 @@ Status close_ring(const PatchGrid& grid, Direction direction, Steps& steps, Merg
   joint.blend_start = joint.blend_end = knots_along(merged.surface, direction).domain_end();
   for (int k = 0; k < static_cast<int>(matches.size()); ++k) {
     merged.joints.push_back(
-        described(grid, along_u ? all.rows - 1 : k, along_u ? k : all.columns - 1, direction, joint));
+        describe(grid, along_u ? all.rows - 1 : k, along_u ? k : all.columns - 1, direction, joint));
     merged.joints.back().closes = true;
   }
   return {};
 }
 
-Result<Merged> joined_grid(const PatchGrid& grid, const JoinRequest& request, Steps& steps) {
+Result<Merged> join_grid(const PatchGrid& grid, const JoinRequest& request, ToleranceSteps& steps) {
   const Arrangement& all = grid.arrangement;
-  auto rows = joined_along_v(grid, all.columns > 1 ? steps.next(0.0) : request);
+  auto rows = join_along_v(grid, all.columns > 1 ? steps.next(0.0) : request);
   if (!rows) return rows.error();
   Merged merged;
   std::vector<Surface> strips;
@@ -153,7 +149,7 @@ Result<Merged> joined_grid(const PatchGrid& grid, const JoinRequest& request, St
     merged.deviation_m = std::max(merged.deviation_m, row.deviation_m);
     for (std::size_t b = 0; b < row.joints.size(); ++b) {
       merged.joints.push_back(
-          described(grid, static_cast<int>(a), static_cast<int>(b), Direction::v, row.joints[b]));
+          describe(grid, static_cast<int>(a), static_cast<int>(b), Direction::v, row.joints[b]));
     }
     strips.push_back(exchanged(row.surface));
   }
@@ -166,7 +162,7 @@ Result<Merged> joined_grid(const PatchGrid& grid, const JoinRequest& request, St
   merged.deviation_m += whole->deviation_m;
   for (std::size_t a = 0; a < whole->joints.size(); ++a) {
     for (int b = 0; b < all.columns; ++b) {
-      merged.joints.push_back(described(grid, static_cast<int>(a), b, Direction::u, whole->joints[a]));
+      merged.joints.push_back(describe(grid, static_cast<int>(a), b, Direction::u, whole->joints[a]));
     }
   }
   merged.surface = exchanged(whole->surface);
@@ -179,8 +175,8 @@ Result<Merged> merge_grid(const PatchGrid& grid, const JoinRequest& request) {
   for (const bool step : {all.columns > 1, all.rows > 1, !all.closing_u.empty(), !all.closing_v.empty()}) {
     count += step ? 1 : 0;
   }
-  Steps steps(request, count);
-  auto merged = joined_grid(grid, request, steps);
+  ToleranceSteps steps(request, count);
+  auto merged = join_grid(grid, request, steps);
   if (!merged) return merged;
   for (const Direction direction : {Direction::u, Direction::v}) {
     if (Status status = close_ring(grid, direction, steps, merged.value()); !status) return status.error();
@@ -188,48 +184,48 @@ Result<Merged> merge_grid(const PatchGrid& grid, const JoinRequest& request) {
   return merged;
 }
 
-// The wider of two tubes is opened no wider than a little beyond the other, so that the bridge has no step.
+// Largest ratio of the wider tube's opening to the other's; wider ones would give the bridge a step.
 constexpr double wider = 1.25;
 
-// Opens both poles of a pair; a ring stays as it is.
+// Opens the poles of a pair; rings stay unchanged.
 Status open_poles(std::vector<Surface>& patches, const PatchEdge& a, const PatchEdge& b) {
-  const auto opened = [&](const PatchEdge& end, double wide_enough_m) -> Result<Surface> {
+  const auto open = [&](const PatchEdge& end, double wide_enough_m) -> Result<Surface> {
     const Surface& patch = patches[end.patch];
     if (!is_pole(patch, end.side)) return patch;
-    return opened_pole(patch, end.side, wide_enough_m);
+    return open_pole(patch, end.side, wide_enough_m);
   };
   constexpr double any = std::numeric_limits<double>::infinity();
-  auto first = opened(a, any), second = opened(b, any);
+  auto first = open(a, any), second = open(b, any);
   if (!first && !second) return first.error();
-  const double of_first = first ? tube_end(first.value(), a.side).radius_m : any;
-  const double of_second = second ? tube_end(second.value(), b.side).radius_m : any;
-  if (of_first > wider * of_second) first = opened(a, wider * of_second);
-  if (of_second > wider * of_first) second = opened(b, wider * of_first);
-  if (!first) return Error{"patch " + std::to_string(a.patch + 1) + ": " + first.error().message};
-  if (!second) return Error{"patch " + std::to_string(b.patch + 1) + ": " + second.error().message};
+  const double first_radius_m = first ? tube_end(first.value(), a.side).radius_m : any;
+  const double second_radius_m = second ? tube_end(second.value(), b.side).radius_m : any;
+  if (first_radius_m > wider * second_radius_m) first = open(a, wider * second_radius_m);
+  if (second_radius_m > wider * first_radius_m) second = open(b, wider * first_radius_m);
+  if (!first) return first.error().in("patch " + std::to_string(a.patch + 1));
+  if (!second) return second.error().in("patch " + std::to_string(b.patch + 1));
   patches[a.patch] = std::move(first).value();
   patches[b.patch] = std::move(second).value();
   return {};
 }
 
-// The edges to join: those chosen, the nearest ends of tubes, or none, which lets them be found.
-std::vector<ChosenEdges> wanted_edges(const std::vector<Surface>& patches, const MergeRequest& request) {
-  std::vector<ChosenEdges> wanted = request.chosen;
-  if (!wanted.empty() || !std::all_of(patches.begin(), patches.end(), is_tube)) return wanted;
-  for (const auto& [a, b] : nearest_ends(patches)) wanted.push_back({a, b});
-  return wanted;
+// Returns the chosen edges, the nearest ends of tubes, or none if edges are to be matched automatically.
+std::vector<ChosenEdges> edges_to_join(const std::vector<Surface>& patches, const MergeRequest& request) {
+  std::vector<ChosenEdges> pairs = request.chosen;
+  if (!pairs.empty() || !std::all_of(patches.begin(), patches.end(), is_tube)) return pairs;
+  for (const auto& [a, b] : find_nearest_ends(patches)) pairs.push_back({a, b});
+  return pairs;
 }
 
-// Of tubes one after the other, the ends that are left, where they touch.
+// Adds the match of the two remaining ends of a row of tubes if they touch.
 void add_closing_ends(const std::vector<Surface>& tubes, double touching_m, std::vector<EdgeMatch>& matches) {
   std::vector<PatchEdge> free;
   for (int p = 0; p < static_cast<int>(tubes.size()); ++p) {
     const auto [first, last] = tube_sides(tubes[p]);
     for (const PatchEdge end : {PatchEdge{p, first}, PatchEdge{p, last}}) {
-      const bool taken = std::any_of(matches.begin(), matches.end(), [&](const EdgeMatch& match) {
+      const bool is_used = std::any_of(matches.begin(), matches.end(), [&](const EdgeMatch& match) {
         return match.a == end || match.b == end;
       });
-      if (!taken && is_joinable(tubes[p], end.side)) free.push_back(end);
+      if (!is_used && is_joinable(tubes[p], end.side)) free.push_back(end);
     }
   }
   if (free.size() != 2 || free[0].patch == free[1].patch) return;
@@ -237,14 +233,14 @@ void add_closing_ends(const std::vector<Surface>& tubes, double touching_m, std:
   if (match && match->gap_m <= touching_m) matches.push_back(match.value());
 }
 
-Result<std::vector<EdgeMatch>> matches_for(std::vector<Surface>& patches, const MergeRequest& request) {
-  const std::vector<ChosenEdges> wanted = wanted_edges(patches, request);
-  if (wanted.empty()) return matches_of(patches, request.join.tolerance_m);
-  for (const ChosenEdges& edges : wanted) {
+Result<std::vector<EdgeMatch>> find_matches(std::vector<Surface>& patches, const MergeRequest& request) {
+  const std::vector<ChosenEdges> pairs = edges_to_join(patches, request);
+  if (pairs.empty()) return find_edge_matches(patches, request.join.tolerance_m);
+  for (const ChosenEdges& edges : pairs) {
     if (Status status = open_poles(patches, edges.a, edges.b); !status) return status.error();
   }
   std::vector<EdgeMatch> matches;
-  for (const ChosenEdges& edges : wanted) {
+  for (const ChosenEdges& edges : pairs) {
     auto match = match_edges(patches, edges.a, edges.b, edges.reversed);
     if (!match) return match.error();
     matches.push_back(match.value());
@@ -253,8 +249,8 @@ Result<std::vector<EdgeMatch>> matches_for(std::vector<Surface>& patches, const 
   return matches;
 }
 
-// Whether one lies on the other all over, however it is held; from the same seam on where they are closed.
-bool are_one(const Surface& a, const Surface& b, double tolerance_m) {
+// Returns true if both surfaces coincide in any orientation; periodic ones must have the same seam.
+bool are_same(const Surface& a, const Surface& b, double tolerance_m) {
   constexpr int steps = 5;
   const auto is_near = [&](const Surface& other) {
     const std::vector<double> u = uniform_parameters(a.u, steps), v = uniform_parameters(a.v, steps);
@@ -269,8 +265,8 @@ bool are_one(const Surface& a, const Surface& b, double tolerance_m) {
     }
     return true;
   };
-  for (int held = 0; held < 8; ++held) {
-    if (is_near(oriented(b, {(held & 1) != 0, (held & 2) != 0, (held & 4) != 0}))) return true;
+  for (int k = 0; k < 8; ++k) {
+    if (is_near(orient(b, {(k & 1) != 0, (k & 2) != 0, (k & 4) != 0}))) return true;
   }
   return false;
 }
@@ -278,9 +274,10 @@ bool are_one(const Surface& a, const Surface& b, double tolerance_m) {
 Status check_different(const std::vector<Surface>& patches, double tolerance_m) {
   for (std::size_t b = 1; b < patches.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
-      if (!are_one(patches[a], patches[b], tolerance_m)) continue;
-      return Error{"patches " + std::to_string(a + 1) + " and " + std::to_string(b + 1) +
-                   " are the same surface at the same place; name one of them, or move the other"};
+      if (!are_same(patches[a], patches[b], tolerance_m)) continue;
+      return Error(ErrorCode::duplicate,
+                   "patches " + std::to_string(a + 1) + " and " + std::to_string(b + 1) +
+                       " are the same surface at the same position; name one of them, or move the other");
     }
   }
   return {};
@@ -291,7 +288,9 @@ Status check_named_once(const std::vector<ChosenEdges>& chosen) {
   for (const ChosenEdges& edges : chosen) {
     for (const PatchEdge& edge : {edges.a, edges.b}) {
       if (std::find(named.begin(), named.end(), edge) != named.end()) {
-        return Error{text_of(edge) + " is named in two pairs of edges and can be joined once; leave one out"};
+        return Error(
+            ErrorCode::duplicate,
+            edge_name(edge) + " is named in two pairs of edges but can be joined only once; leave one out");
       }
       named.push_back(edge);
     }
@@ -299,36 +298,40 @@ Status check_named_once(const std::vector<ChosenEdges>& chosen) {
   return {};
 }
 
-// Edges that were chosen must be joined; those that were found touch, and may stay open.
+// Chosen edges must be joined; matched ones touch and may stay open.
 Status check_left_open(const Arrangement& arrangement, const std::vector<ChosenEdges>& chosen) {
   if (arrangement.left_open.empty() || chosen.empty()) return {};
   const EdgeMatch& match = arrangement.left_open.front();
-  return Error{text_of(match.a) + " and " + text_of(match.b) +
-               " cannot be joined, as the other pairs of edges hold these patches elsewhere; leave that pair "
-               "out, and close the merged surface around if it is a ring"};
+  return Error(
+      ErrorCode::inconsistent,
+      edge_name(match.a) + " and " + edge_name(match.b) +
+          " cannot be joined, as the other pairs of edges place these patches elsewhere; leave that pair "
+          "out, and close the merged surface with change if it is a ring");
 }
 
-Error not_closed(const OpenEdges& edges) {
-  return Error{text_of(edges.a) + " and " + text_of(edges.b) +
-               " cannot be joined to close the surface around: " + edges.why};
+Error cannot_close(const OpenEdges& edges) {
+  return Error(ErrorCode::mismatch, edge_name(edges.a) + " and " + edge_name(edges.b) +
+                                        " cannot be joined to close the surface around: " + edges.why);
 }
 
 constexpr int most_patches = 64;
 
 Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
   const int count = static_cast<int>(patches.size());
-  if (count == 0) return Error{"there is no patch to merge; name at least one"};
+  if (count == 0) return Error(ErrorCode::missing, "there is no patch to merge; name at least one");
   if (count > most_patches) {
-    return Error{std::to_string(count) + " patches are more than the " + std::to_string(most_patches) +
-                 " that are merged at once; merge parts of them first"};
+    return Error(ErrorCode::too_many, std::to_string(count) + " patches are more than the " +
+                                          std::to_string(most_patches) +
+                                          " that can be merged at once; merge some of them first");
   }
   for (const ChosenEdges& edges : request.chosen) {
     for (const PatchEdge& edge : {edges.a, edges.b}) {
       const std::string name = "patch " + std::to_string(edge.patch + 1);
-      if (edge.patch < 0 || edge.patch >= count) return Error{name + " of a chosen edge does not exist"};
+      if (edge.patch < 0 || edge.patch >= count)
+        return Error(ErrorCode::unknown, name + " of a chosen edge does not exist");
       if (knots_along(patches[edge.patch], across(edge.side)).is_periodic()) {
-        return Error{name + " has no edge at its " + side_name(edge.side) +
-                     ": it is closed around there; choose another"};
+        return Error(ErrorCode::mismatch, name + " has no edge at its " + side_name(edge.side) +
+                                              ": it is closed around there; choose another");
       }
     }
   }
@@ -344,7 +347,7 @@ Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& re
   if (!request.join.progress.report(0.0)) return Progress::stopped();
   if (Status status = check_different(patches, request.join.tolerance_m); !status) return status.error();
   std::vector<Surface> ready = patches;
-  const auto matches = matches_for(ready, request);
+  const auto matches = find_matches(ready, request);
   if (!matches) return matches.error();
   if (!request.join.progress.report(0.0)) return Progress::stopped();
   const auto arrangement = arrange(ready, matches.value());
@@ -355,13 +358,15 @@ Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& re
                                       [](const ChosenEdges& edges) { return edges.reversed.has_value(); });
   auto merged = merge_grid({ready, arrangement.value()}, join);
   if (!merged) return merged;
-  if (!request.chosen.empty() && !merged->left_open.empty()) return not_closed(merged->left_open.front());
+  if (!request.chosen.empty() && !merged->left_open.empty()) return cannot_close(merged->left_open.front());
   for (const EdgeMatch& match : arrangement->left_open) {
-    merged->left_open.push_back({match.a, match.b, "their patches lie elsewhere in the grid"});
+    merged->left_open.push_back({match.a, match.b, "their patches are elsewhere in the grid"});
   }
   if (merged->deviation_m > join.tolerance_m - join.spent_m + rounding_m) {
-    return Error{"the patches can be merged within " + short_length_text(merged->deviation_m + join.spent_m) +
-                 "; allow a larger tolerance than " + short_length_text(join.tolerance_m)};
+    return Error(ErrorCode::not_converged,
+                 "the patches can be merged within " + short_length_text(merged->deviation_m + join.spent_m) +
+                     "; allow a larger tolerance than " + short_length_text(join.tolerance_m),
+                 "tolerance");
   }
   return merged;
 }

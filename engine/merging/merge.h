@@ -1,5 +1,5 @@
-// Merges patches into one surface: finds how they lie beside each other, then joins them along v and along u.
-// Pure functions, outside the tick; any thread.
+// Merges patches into one surface: lays them out in a grid, then joins them along v and along u. Pure
+// functions, outside the tick; any thread.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace spoonbill {
 
-// Two edges to join, and how they run beside each other where that is not to be found.
+// Pair of edges to join, with an optional relative direction (default: the best fit).
 struct ChosenEdges {
   PatchEdge a, b;
   std::optional<bool> reversed = {};
@@ -19,14 +19,14 @@ struct ChosenEdges {
 
 struct MergeRequest {
   JoinRequest join;
-  std::vector<ChosenEdges> chosen;  // in place of those that are found
+  std::vector<ChosenEdges> chosen;  // used instead of automatic matching if not empty
 };
 
 struct MergedJoint {
-  PatchEdge a, b;   // of the patches as they were given
-  Direction along;  // the direction of the merged surface across the joint
+  PatchEdge a, b;   // numbered as given
+  Direction along;  // direction of the merged surface across the joint
   Joint joint;
-  bool closes = false;  // the last edge lies on the first, and the direction is closed around there
+  bool closes = false;  // joins the last edge to the first and makes the direction periodic
 };
 
 struct OpenEdges {
@@ -36,17 +36,17 @@ struct OpenEdges {
 
 struct Merged {
   Surface surface;
-  double deviation_m = 0.0;  // the largest distance to the patches, outside blends
+  double deviation_m = 0.0;  // largest distance from the patches, outside blends
   std::vector<MergedJoint> joints;
-  std::vector<OpenEdges> left_open = {};  // that touch
+  std::vector<OpenEdges> left_open = {};  // pairs that touch but were not joined
 };
 
-// A row or a grid whose last edges lie on its first becomes periodic, with the continuity asked at the seam;
-// where that fails it stays open. Poles that are chosen, or the nearest of tubes that do not touch, are cut
-// off and the tubes bridged; what is cut off belongs to the blend. A bridge may fold over only where the
-// direction of an edge is chosen. Refused: no patch or more than 64, two that are one, chosen edges that
-// contradict each other or cannot be closed, patches that do not make a row or a grid, what join_row()
-// refuses, more of a deviation than the tolerance. Stopped on request. One patch is given back as it is.
+// Merges patches. A row or grid whose last edges meet its first becomes periodic with the requested
+// continuity, or stays open if that fails. Chosen poles, or the nearest ones of tubes that do not touch, are
+// cut off and the tubes bridged. Bridges may fold only if the direction of a chosen pair is given. A single
+// patch is returned unchanged. Fails for no patches, more than 64, or two identical ones; contradicting
+// chosen edges; patches that do not fill a grid; failures of join_row(); or a deviation above the tolerance.
+// Can be stopped.
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request);
 
 }  // namespace spoonbill

@@ -1,6 +1,9 @@
 #include "engine/merging/patch_edge.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "engine/base/assert.h"
 #include "engine/bspline/basis.h"
@@ -8,13 +11,12 @@
 #include "engine/bspline/grid.h"
 
 namespace spoonbill {
-
 namespace {
 
 constexpr const char* names[] = {"u_start", "u_end", "v_start", "v_end"};
 
-// Shorter edges are poles.
-constexpr double pole_share = 1e-6;
+// Shorter edges count as poles, relative to the patch's size.
+constexpr double pole_fraction = 1e-6;
 
 Vector3 blended(const EdgeCurve& curve, double t, int derivative_order) {
   const BasisFunctions basis = basis_functions(curve.knots, curve.knots.into_domain(t));
@@ -26,7 +28,7 @@ Vector3 blended(const EdgeCurve& curve, double t, int derivative_order) {
   return sum;
 }
 
-// At least so many chords, and in every piece some, tell the arc length well enough.
+// Chords for arc lengths: in total and in each piece.
 constexpr int least_chords = 256, least_chords_in_piece = 8;
 
 std::vector<double> fine_parameters(const KnotVector& knots) {
@@ -35,7 +37,7 @@ std::vector<double> fine_parameters(const KnotVector& knots) {
   return nested_parameters(knots, in_piece, 0).parameters;
 }
 
-constexpr int directions_looked_at = 48;
+constexpr int direction_samples = 48;
 
 }  // namespace
 
@@ -98,7 +100,7 @@ bool is_joinable(const Surface& surface, Side side) {
   for (const Vector3& point : curve.control_points_m) {
     longest = std::max(longest, (point - curve.control_points_m[0]).norm());
   }
-  return longest > pole_share * bounding_box(surface.net).size();
+  return longest > pole_fraction * bounding_box(surface.net).size();
 }
 
 Vector3 outward(const Surface& surface, Side side) {
@@ -106,11 +108,11 @@ Vector3 outward(const Surface& surface, Side side) {
   const KnotVector &fixed = knots_along(surface, across(side)), &along = across_u ? surface.v : surface.u;
   const double at = is_start(side) ? fixed.domain_start() : fixed.domain_end();
   Vector3 sum = Vector3::Zero();
-  for (const double t : uniform_parameters_without_seam(along, directions_looked_at)) {
+  for (const double t : uniform_parameters_without_seam(along, direction_samples)) {
     const Vector3 slope = across_u ? evaluate(surface, at, t).du : evaluate(surface, t, at).dv;
     sum += (is_start(side) ? -1.0 : 1.0) * slope.normalized();
   }
-  return sum.norm() > 1e-3 * directions_looked_at ? Vector3(sum.normalized()) : Vector3(Vector3::Zero());
+  return sum.norm() > 1e-3 * direction_samples ? Vector3(sum.normalized()) : Vector3(Vector3::Zero());
 }
 
 EdgeSamples edge_samples(const EdgeCurve& curve, int count) {
@@ -125,15 +127,90 @@ EdgeSamples edge_samples(const EdgeCurve& curve, int count) {
   EdgeSamples samples{{}, {}, lengths.back()};
   const int steps = curve.knots.is_periodic() ? count : count - 1;
   for (int k = 0; k < count; ++k) {
-    const double wanted = lengths.back() * k / steps;
-    const auto after = std::lower_bound(lengths.begin() + 1, lengths.end() - 1, wanted);
+    const double target = lengths.back() * k / steps;
+    const auto after = std::lower_bound(lengths.begin() + 1, lengths.end() - 1, target);
     const std::size_t chord = static_cast<std::size_t>(after - lengths.begin()) - 1;
     const double step = lengths[chord + 1] - lengths[chord];
-    const double share = step > 0.0 ? std::clamp((wanted - lengths[chord]) / step, 0.0, 1.0) : 0.0;
-    samples.parameters.push_back(fine[chord] + share * (fine[chord + 1] - fine[chord]));
+    const double fraction = step > 0.0 ? std::clamp((target - lengths[chord]) / step, 0.0, 1.0) : 0.0;
+    samples.parameters.push_back(fine[chord] + fraction * (fine[chord + 1] - fine[chord]));
   }
   for (const double t : samples.parameters) samples.points_m.push_back(position(curve, t));
   return samples;
+}
+
+namespace {
+
+constexpr int ring_samples = 64;
+
+Vector3 column_centre(const ControlNet& net, int column) {
+  Vector3 sum = Vector3::Zero();
+  for (int i = 0; i < net.rows; ++i) sum += net.point(i, column);
+  return sum / net.rows;
+}
+
+// Hermite cubic with the given end slopes, s from 0 to 1.
+Vector3 on_cubic(const Vector3& from, const Vector3& to, const Vector3& out, const Vector3& in, double s) {
+  const double t = 1.0 - s;
+  return t * t * (1.0 + 2.0 * s) * from + s * s * (1.0 + 2.0 * t) * to + t * t * s * out - s * s * t * in;
+}
+
+}  // namespace
+
+RingFrame ring_frame(const Surface& surface, Side side) {
+  const EdgeCurve ring = edge_curve(surface, side);
+  RingFrame frame;
+  frame.outward = outward(surface, side);
+  const std::vector<double> parameters = uniform_parameters_without_seam(ring.knots, ring_samples);
+  for (const double t : parameters) frame.centre_m += position(ring, t) / ring_samples;
+  for (const double t : parameters) {
+    frame.radius_m = std::max(frame.radius_m, (position(ring, t) - frame.centre_m).norm());
+  }
+  return frame;
+}
+
+Eigen::Matrix3d rotation_towards(const RingFrame& a, const RingFrame& b) {
+  const Vector3 inward_b = -b.outward, offset = b.centre_m - a.centre_m;
+  const double cosine = inward_b.dot(a.outward);
+  const bool within = offset.norm() < std::max(a.radius_m, b.radius_m);
+  const bool nowhere = a.outward.isZero() || b.outward.isZero();
+  if (nowhere || (cosine < 0.0 && within)) return Eigen::Matrix3d::Identity();
+  constexpr double same_direction_cosine = -0.999;
+  if (cosine > same_direction_cosine) {
+    return Eigen::Quaterniond::FromTwoVectors(inward_b, a.outward).toRotationMatrix();
+  }
+  const Vector3 axis = offset.cross(a.outward);
+  if (!(axis.norm() > 1e-6 * offset.norm())) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(std::numbers::pi, axis.normalized()).toRotationMatrix();
+}
+
+bool is_bend(const Eigen::Matrix3d& turn) {
+  return Eigen::AngleAxisd(turn).angle() > 0.25 * std::numbers::pi;
+}
+
+double bend_stretch(const Eigen::Matrix3d& turn) {
+  const double half = 0.5 * Eigen::AngleAxisd(turn).angle();
+  return half > 0.0 ? half / std::sin(half) : 1.0;
+}
+
+void fill_bend(ControlNet& net, int first, int last, const Vector3& outward, const Eigen::Matrix3d& turn) {
+  SPOONBILL_ASSERT(first >= 0 && first <= last && last < net.columns);
+  const Vector3 from = column_centre(net, first), to = column_centre(net, last);
+  const Eigen::AngleAxisd whole(Eigen::Matrix3d(turn.transpose()));
+  // Slopes for which the Hermite cubic is closest to an arc.
+  const double half = 0.5 * whole.angle();
+  const double slope = (to - from).norm() * (half > 0.0 ? 2.0 * std::tan(0.5 * half) / std::sin(half) : 1.0);
+  const Vector3 out = slope * outward, in = slope * (turn.transpose() * outward);
+  for (int column = first + 1; column < last; ++column) {
+    const double fraction = static_cast<double>(column - first) / (last - first);
+    const Vector3 centre = on_cubic(from, to, out, in, fraction);
+    const Eigen::Matrix3d rotation =
+        Eigen::AngleAxisd(fraction * whole.angle(), whole.axis()).toRotationMatrix();
+    for (int i = 0; i < net.rows; ++i) {
+      const Vector3 offset_first = net.point(i, first) - from, offset_last = turn * (net.point(i, last) - to);
+      net.set_point(i, column,
+                    centre + rotation * ((1.0 - fraction) * offset_first + fraction * offset_last));
+    }
+  }
 }
 
 }  // namespace spoonbill

@@ -1,6 +1,7 @@
-// The edges of a patch, where patches are joined. Pure functions, outside the tick; any thread.
+// Edges of patches, and the rings at the ends of tubes. Pure functions, outside the tick; any thread.
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "engine/bspline/reparameterise.h"
@@ -8,20 +9,20 @@
 
 namespace spoonbill {
 
-// Where u or v is at its start or end. A periodic direction has no such edges.
+// Side of a patch, at the start or end of u or v. A periodic direction has no sides.
 enum class Side { u_start, u_end, v_start, v_end };
 
 inline constexpr Side all_sides[] = {Side::u_start, Side::u_end, Side::v_start, Side::v_end};
 
-// The direction that is constant along the edge, and whether it is at its start there.
+// across(): the direction that is constant along the edge. is_start(): true at its start.
 Direction across(Side side);
 bool is_start(Side side);
 Side opposite(Side side);
 
-// "u_start" and so on, as files and commands name them.
+// Returns the name used in files and commands, such as "u_start".
 const char* side_name(Side side);
 
-// One of several patches, counted from 0.
+// Side of one of several patches, counted from 0.
 struct PatchEdge {
   int patch = 0;
   Side side = Side::v_end;
@@ -29,7 +30,7 @@ struct PatchEdge {
   friend bool operator==(const PatchEdge&, const PatchEdge&) = default;
 };
 
-// An edge as a curve of the other direction's parameter.
+// Edge curve over the parameter of the other direction.
 struct EdgeCurve {
   KnotVector knots;
   std::vector<Vector3> control_points_m;
@@ -37,22 +38,45 @@ struct EdgeCurve {
 EdgeCurve edge_curve(const Surface& surface, Side side);
 
 Vector3 position(const EdgeCurve& curve, double t);
-// The first derivative by the parameter.
+// Returns the first derivative with respect to the parameter.
 Vector3 derivative(const EdgeCurve& curve, double t);
 
-// Whether the side is one to join: the direction across is open and the edge longer than nothing.
+// Returns true if the direction across the side is open and the edge is not a pole.
 bool is_joinable(const Surface& surface, Side side);
 
-// The mean unit direction out of the patch across an edge; zero where the directions cancel.
+// Returns the mean unit direction out of the patch across an edge; zero if the directions cancel.
 Vector3 outward(const Surface& surface, Side side);
 
-// `count` points at equal steps of the arc length, ends included; of a periodic edge from its seam on,
-// without repeating it.
+// Points at equal steps of the arc length, including the ends. Periodic edges start at the seam and do not
+// repeat it.
 struct EdgeSamples {
   std::vector<double> parameters;
   std::vector<Vector3> points_m;
   double length_m = 0.0;
 };
 EdgeSamples edge_samples(const EdgeCurve& curve, int count);
+
+// End ring of a tube: centre, largest radius, and unit direction out of the tube (zero if undefined).
+struct RingFrame {
+  Vector3 centre_m = Vector3::Zero();
+  double radius_m = 0.0;
+  Vector3 outward = Vector3::Zero();
+};
+RingFrame ring_frame(const Surface& surface, Side side);
+
+// Returns the smallest rotation that aligns the inward direction at b with the outward direction at a. For
+// rings facing the same way, it rotates in the plane of the bend that joins them. Identity for nested rings
+// that face the same way, such as both walls of a cup at its rim, and for rings without a direction.
+Eigen::Matrix3d rotation_towards(const RingFrame& a, const RingFrame& b);
+
+// Returns the ratio of arc length to chord of a circular bend.
+double bend_stretch(const Eigen::Matrix3d& turn);
+
+// Returns true if a straight strip would pinch at this rotation: more than 45 degrees.
+bool is_bend(const Eigen::Matrix3d& turn);
+
+// Fills the net's columns between two rings along a bend that leaves the first ring in direction `outward`.
+// `turn` rotates the last ring back to the first.
+void fill_bend(ControlNet& net, int first, int last, const Vector3& outward, const Eigen::Matrix3d& turn);
 
 }  // namespace spoonbill

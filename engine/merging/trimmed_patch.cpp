@@ -10,28 +10,156 @@
 
 #include "engine/base/assert.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/bspline/trim_loop.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/merging/join_row.h"
-#include "engine/merging/round_part.h"
 
 namespace spoonbill {
+namespace {
+
+using Polygon = std::vector<Eigen::Vector2d>;
+
+// Smooth loops turn less from chord to chord.
+constexpr double smooth_cosine = 0.98;
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+Eigen::Vector2d centroid(const Polygon& polygon) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double twice = 0.0;
+  for (std::size_t c = 0; c < polygon.size(); ++c) {
+    const Eigen::Vector2d from = polygon[c] - polygon[0], to = polygon[(c + 1) % polygon.size()] - polygon[0];
+    twice += cross(from, to);
+    sum += cross(from, to) * (from + to) / 3.0;
+  }
+  return polygon[0] + sum / twice;
+}
+
+// Returns true if every ray from the centre meets the polygon once; `turn` is +1 for counterclockwise, -1 for
+// clockwise.
+bool is_star_about(const Polygon& polygon, const Eigen::Vector2d& centre, double turn) {
+  for (std::size_t c = 0; c < polygon.size(); ++c) {
+    const Eigen::Vector2d &from = polygon[c], &to = polygon[(c + 1) % polygon.size()];
+    if (!(turn * cross(from - centre, to - centre) > 0.0)) return false;
+  }
+  return true;
+}
+
+// Measured in three dimensions, where corners are visible.
+bool is_smooth(const std::vector<Vector3>& points_m) {
+  const std::size_t count = points_m.size();
+  for (std::size_t c = 0; c < count; ++c) {
+    const Vector3 to = (points_m[c] - points_m[(c + count - 1) % count]).stableNormalized();
+    if (to.dot((points_m[(c + 1) % count] - points_m[c]).stableNormalized()) < smooth_cosine) return false;
+  }
+  return true;
+}
+
+std::vector<Vector3> evaluate_positions(const Surface& surface, const Polygon& polygon) {
+  std::vector<Vector3> points_m;
+  points_m.reserve(polygon.size());
+  for (const Eigen::Vector2d& at : polygon) points_m.push_back(position(surface, at.x(), at.y()));
+  return points_m;
+}
+
+// Closed polygon parameterised by the fraction of its length in metres.
+class RoundEdge {
+ public:
+  RoundEdge(Polygon polygon, const std::vector<Vector3>& points_m) : polygon_(std::move(polygon)) {
+    double length_m = 0.0;
+    for (std::size_t c = 0; c < polygon_.size(); ++c) {
+      ends_.push_back(length_m += (points_m[(c + 1) % points_m.size()] - points_m[c]).norm());
+    }
+    for (double& end : ends_) end /= length_m;
+  }
+
+  Eigen::Vector2d at(double fraction) const {
+    const double within = fraction - std::floor(fraction);
+    const auto chord = std::min(
+        static_cast<std::size_t>(std::upper_bound(ends_.begin(), ends_.end(), within) - ends_.begin()),
+        ends_.size() - 1);
+    const double start = chord == 0 ? 0.0 : ends_[chord - 1];
+    const double along = (within - start) / (ends_[chord] - start);
+    return polygon_[chord] + along * (polygon_[(chord + 1) % polygon_.size()] - polygon_[chord]);
+  }
+
+ private:
+  Polygon polygon_;
+  std::vector<double> ends_;  // of each chord
+};
+
+// Returns where the ray from the centre towards `to` meets a hole that is star-shaped about it.
+Eigen::Vector2d project_to_hole(const Polygon& hole, const Eigen::Vector2d& centre,
+                                const Eigen::Vector2d& to) {
+  const Eigen::Vector2d offset = to - centre;
+  for (std::size_t c = 0; c < hole.size(); ++c) {
+    const Eigen::Vector2d from = hole[(c + 1) % hole.size()] - centre, next = hole[c] - centre;
+    if (cross(from, offset) < 0.0 || cross(offset, next) < 0.0) continue;
+    return centre + offset * (cross(from, next - from) / cross(offset, next - from));
+  }
+  return centre;
+}
+
+}  // namespace
+
+std::optional<Result<FittedShape>> resample_round_part(const Surface& surface,
+                                                       const std::vector<Polygon>& polygons,
+                                                       double tolerance_m) {
+  SPOONBILL_ASSERT(tolerance_m > 0.0);
+  if (polygons.empty() || polygons.size() > 2) return std::nullopt;
+  const bool first_is_outer = signed_area(polygons.front()) > 0.0;
+  const Polygon& outer = first_is_outer ? polygons.front() : polygons.back();
+  const Polygon* hole = polygons.size() == 1 ? nullptr
+                        : first_is_outer     ? &polygons.back()
+                                             : &polygons.front();
+  const Eigen::Vector2d centre = centroid(hole ? *hole : outer);
+  const std::vector<Vector3> outer_m = evaluate_positions(surface, outer);
+  if (!is_star_about(outer, centre, 1.0) || !is_smooth(outer_m)) return std::nullopt;
+  if (hole && (!is_star_about(*hole, centre, -1.0) || !is_smooth(evaluate_positions(surface, *hole)))) {
+    return std::nullopt;
+  }
+
+  const RoundEdge edge(outer, outer_m);
+  // cached, since a fit evaluates the same lines repeatedly
+  std::map<double, std::pair<Eigen::Vector2d, Eigen::Vector2d>> lines;
+  ExactShape shape;
+  shape.u = {true, {0.0, 1.0}};
+  shape.v = {false, {0.0, 1.0}};
+  shape.pole_at_end = hole == nullptr;
+  shape.at = [&](double u, double v) {
+    auto known = lines.find(u);
+    if (known == lines.end()) {
+      const Eigen::Vector2d start = edge.at(u);
+      known = lines.emplace(u, std::pair(start, hole ? project_to_hole(*hole, centre, start) : centre)).first;
+    }
+    const Eigen::Vector2d at = known->second.first + v * (known->second.second - known->second.first);
+    return position(surface, at.x(), at.y());
+  };
+  ShapeFit fit;
+  fit.tolerance_m = tolerance_m;
+  fit.min_spans = 4;
+  fit.keeps_parameters = true;
+  return fit_shape(shape, fit);
+}
 
 namespace {
 
 using Edge = TrimmedArea::Edge;
-// What is kept lies to their left.
+// Loops with the kept part on their left.
 using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
 
-// A corner between chords; smooth trims turn less from chord to chord.
+// Smooth trims turn less from chord to chord.
 constexpr double corner_cosine = 0.98;
-// Of the part's extent in u: where its last line is taken, beside an edge of constant u, and what is too
-// narrow to count.
-constexpr double beside_edge = 1e-7;
-constexpr int lines_looked_at = 64;
-// Of the longest line: shorter ones at an end are a point.
-constexpr double point_share = 1e-3;
-// Of the part's extent in v: what lines change at most from beside a corner to behind it.
-constexpr double jump_share = 1e-3;
+// Relative to the part's extent in u: offset of the last line from the edge, and width that is too narrow to
+// count.
+constexpr double edge_margin = 1e-7;
+constexpr int lines_checked = 64;
+// Shorter lines at an end, relative to the longest, are a point.
+constexpr double point_fraction = 1e-3;
+// Largest change of a line's ends across a corner, relative to the part's extent in v.
+constexpr double jump_fraction = 1e-3;
 
 struct Interval {
   double low, high;
@@ -50,7 +178,7 @@ Interval extent(const Polygons& polygons, int axis) {
 }
 
 double inside(const Interval& extent, double u) {
-  const double margin = beside_edge * extent.length();
+  const double margin = edge_margin * extent.length();
   return std::clamp(u, extent.low + margin, extent.high - margin);
 }
 
@@ -67,7 +195,7 @@ class KeptPart {
 
   const Interval& along_u() const { return along_u_; }
 
-  // Where a line of constant u meets the part; none where that is not one piece.
+  // Returns the part's interval on a line of constant u; nothing if it is not a single one.
   std::optional<Interval> on_line(double u) const {
     std::optional<double> enters, leaves;
     for (const auto& [from, to] : edges_) {
@@ -84,17 +212,17 @@ class KeptPart {
   bool is_cut_in_single_pieces() const {
     if (!meets_all_lines_twice()) return false;
     double longest = 0.0, first = 0.0, last = 0.0;
-    for (int k = 0; k <= lines_looked_at; ++k) {
-      const auto kept = on_line(inside(along_u_, along_u_.low + along_u_.length() * k / lines_looked_at));
-      if (!kept) return false;
-      last = kept->length();
+    for (int k = 0; k <= lines_checked; ++k) {
+      const auto interval = on_line(inside(along_u_, along_u_.low + along_u_.length() * k / lines_checked));
+      if (!interval) return false;
+      last = interval->length();
       if (k == 0) first = last;
       longest = std::max(longest, last);
     }
-    return first > point_share * longest && last > point_share * longest && changes_steadily();
+    return first > point_fraction * longest && last > point_fraction * longest && changes_steadily();
   }
 
-  // The ends and the corners of the loops, where lines change their ends with a kink.
+  // Returns the ends and the corners of the loops, where the lines' ends have kinks.
   std::vector<double> breaks_in_u() const {
     std::vector<double> breaks{along_u_.low, along_u_.high};
     const Eigen::Vector2d lengths(along_u_.length(), along_v_.length());
@@ -118,28 +246,28 @@ class KeptPart {
   }
 
  private:
-  // Whether no line is longer or elsewhere by a jump than the one beside it, as at a step.
+  // Returns true if the lines' ends do not jump at any corner, as they do at a step.
   bool changes_steadily() const {
-    const double beside = 2.0 * beside_edge * along_u_.length();
+    const double beside = 2.0 * edge_margin * along_u_.length();
     for (const double at : breaks_in_u()) {
       if (at == along_u_.low || at == along_u_.high) continue;
       const auto before = on_line(at - beside), after = on_line(at + beside);
       if (!before || !after) return false;
       const double jump = std::max(std::abs(before->low - after->low), std::abs(before->high - after->high));
-      if (jump > jump_share * along_v_.length()) return false;
+      if (jump > jump_fraction * along_v_.length()) return false;
     }
     return true;
   }
 
-  // Counted from one end of an edge to the next, so that nothing is missed between two lines looked at.
+  // Counts edges from one corner to the next, so that nothing between two checked lines is missed.
   bool meets_all_lines_twice() const {
-    std::vector<std::pair<double, int>> changes;  // of how many edges a line meets
+    std::vector<std::pair<double, int>> changes;  // u and change of the number of edges that a line meets
     for (const auto& [from, to] : edges_) {
       changes.emplace_back(std::min(from.x(), to.x()), 1);
       changes.emplace_back(std::max(from.x(), to.x()), -1);
     }
     std::sort(changes.begin(), changes.end());
-    const double margin = beside_edge * along_u_.length();
+    const double margin = edge_margin * along_u_.length();
     int met = 0;
     for (std::size_t k = 0; k + 1 < changes.size(); ++k) {
       met += changes[k].second;
@@ -156,26 +284,27 @@ class KeptPart {
 };
 
 Error no_single_pieces() {
-  return Error{
-      "its trims leave no part that lines of constant u, or of constant v, cross in one piece each, and no "
-      "disc "
-      "or ring with smooth edges; fill its holes, and cut it off where it ends in a point"};
+  return Error(
+      ErrorCode::unsupported,
+      "its trims leave no part that lines of constant u, or of constant v, cross in one piece each, "
+      "and no disc or ring with smooth edges; fill its holes, and cut it off where it ends in a point");
 }
 
-Result<FittedShape> resampled_between(const Surface& surface, const KeptPart& part, const Interval& piece,
-                                      double tolerance_m) {
+Result<FittedShape> resample_piece(const Surface& surface, const KeptPart& part, const Interval& piece,
+                                   double tolerance_m) {
   bool missed = false;
-  // A fit asks for the same lines again.
+  // Cached, since a fit evaluates the same lines repeatedly.
   std::map<double, std::optional<Interval>> lines;
   ExactShape shape;
   shape.u = {false, {piece.low, piece.high}};
   shape.v = {false, {0.0, 1.0}};
-  shape.at = [&](double u, double share) {
+  shape.at = [&](double u, double fraction) {
     auto known = lines.find(u);
     if (known == lines.end()) known = lines.emplace(u, part.on_line(inside(piece, u))).first;
-    const std::optional<Interval>& kept = known->second;
-    missed = missed || !kept;
-    return kept ? position(surface, u, kept->low + share * kept->length()) : position(surface, u, share);
+    const std::optional<Interval>& interval = known->second;
+    missed = missed || !interval;
+    return interval ? position(surface, u, interval->low + fraction * interval->length())
+                    : position(surface, u, fraction);
   };
   ShapeFit fit;
   fit.tolerance_m = tolerance_m;
@@ -186,22 +315,22 @@ Result<FittedShape> resampled_between(const Surface& surface, const KeptPart& pa
   return fitted;
 }
 
-// Of the tolerance, for resampling; joining the pieces takes the rest.
-constexpr double piece_share = 0.3;
-// Of six control points at least, of which one patch has 200.
+// Fraction of the tolerance for resampling; joining the pieces uses the rest.
+constexpr double piece_fraction = 0.3;
+// Pieces have at least six control points, and a patch at most 200.
 constexpr std::size_t most_pieces = 33;
 
-// Piece by piece between the corners, where the lines' ends have a kink, and the pieces edge to edge.
-Result<FittedShape> resampled(const Surface& surface, const KeptPart& part, double tolerance_m) {
+// Resamples each piece between corners, where the lines' ends have kinks, and joins the pieces.
+Result<FittedShape> resample(const Surface& surface, const KeptPart& part, double tolerance_m) {
   const std::vector<double> breaks = part.breaks_in_u();
   if (breaks.size() > most_pieces + 1) {
-    return Error{"its trims have corners on " + std::to_string(breaks.size() - 2) +
-                 " lines, more than one patch can hold; simplify them"};
+    return Error(ErrorCode::too_many, "its trims have corners on " + std::to_string(breaks.size() - 2) +
+                                          " lines, more than one patch can hold; simplify them");
   }
   std::vector<Surface> pieces;
   double deviation_m = 0.0;
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-    auto piece = resampled_between(surface, part, {breaks[k], breaks[k + 1]}, piece_share * tolerance_m);
+    auto piece = resample_piece(surface, part, {breaks[k], breaks[k + 1]}, piece_fraction * tolerance_m);
     if (!piece) return piece.error();
     deviation_m = std::max(deviation_m, piece->deviation_m);
     pieces.push_back(exchanged(piece->surface));
@@ -215,8 +344,8 @@ Result<FittedShape> resampled(const Surface& surface, const KeptPart& part, doub
   return FittedShape{exchanged(whole->surface), deviation_m + whole->deviation_m};
 }
 
-// Run through backwards, so that what is kept stays on the left.
-Polygons exchanged_polygons(const Polygons& polygons) {
+// Reverses the loops as well, so that the kept part stays on the left.
+Polygons exchange_polygons(const Polygons& polygons) {
   Polygons result;
   for (const auto& polygon : polygons) {
     auto& exchanged = result.emplace_back();
@@ -243,8 +372,8 @@ bool is_rectangle(const Polygons& polygons) {
   return std::abs(enclosed(polygons[0]) - whole) <= rounding * whole;
 }
 
-// Where lines of constant u and v bound what is kept it is a part of the patch, exactly.
-Result<FittedShape> rectangle_of(const Surface& surface, const Polygons& polygons) {
+// Cuts an exact part if the loops are a rectangle in u and v.
+Result<FittedShape> cut_rectangle(const Surface& surface, const Polygons& polygons) {
   const Interval u = extent(polygons, 0), v = extent(polygons, 1);
   const auto strip = part_of(surface, Direction::u, u.low, u.high);
   if (!strip) return strip.error();
@@ -263,15 +392,15 @@ Result<FittedShape> untrimmed(const Surface& surface, const std::vector<TrimLoop
   if (area->is_whole()) return FittedShape{surface, 0.0};
   Polygons polygons;
   for (const TrimLoop& loop : trims) polygons.push_back(to_polygon(loop, surface.u, surface.v));
-  if (is_rectangle(polygons)) return rectangle_of(surface, polygons);
+  if (is_rectangle(polygons)) return cut_rectangle(surface, polygons);
   const KeptPart part(polygons);
-  if (part.is_cut_in_single_pieces()) return resampled(surface, part, tolerance_m);
-  const KeptPart turned(exchanged_polygons(polygons));
-  if (!turned.is_cut_in_single_pieces()) {
-    auto round = round_part(surface, polygons, tolerance_m);
+  if (part.is_cut_in_single_pieces()) return resample(surface, part, tolerance_m);
+  const KeptPart exchanged_part(exchange_polygons(polygons));
+  if (!exchanged_part.is_cut_in_single_pieces()) {
+    auto round = resample_round_part(surface, polygons, tolerance_m);
     return round ? std::move(*round) : no_single_pieces();
   }
-  auto result = resampled(exchanged(surface), turned, tolerance_m);
+  auto result = resample(exchanged(surface), exchanged_part, tolerance_m);
   if (result) result->surface = exchanged(result->surface);
   return result;
 }

@@ -1,7 +1,8 @@
-// A trimmed patch as a whole one: resampled along its lines of constant u from trim to trim, and fitted.
-// Outside the tick; pure function.
+// Resampling of trimmed patches as whole ones. Pure functions, outside the tick.
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "engine/base/result.h"
@@ -11,11 +12,18 @@
 
 namespace spoonbill {
 
-// What the loops keep, its edges in v on the trims, u ending where the kept part does; C0 along lines through
-// corners of the trims, which are taken as their polygons (to_polygon). Lines of constant u must each meet
-// the kept part in one piece; where they do not, lines of constant v are tried, then lines towards the middle
-// of a disc or of a hole (round_part.h). Without loops the surface itself. Refused: holes and other parts
-// that none cuts into single pieces, a part that ends in a point where no line is left of it.
+// Resamples the part between a smooth outer loop and its centroid or a smooth hole. `polygons` are loops over
+// the parameters with the kept part on their left. The result is periodic in u, which follows the outer loop
+// by its length in metres. Along v, straight parameter lines run towards the centroid, up to the hole or a
+// pole. Empty if there are more than two loops, a loop has corners, or a line from the centroid meets one
+// more than once. Fails if fit_shape() does.
+std::optional<Result<FittedShape>> resample_round_part(
+    const Surface& surface, const std::vector<std::vector<Eigen::Vector2d>>& polygons, double tolerance_m);
+
+// Resamples the part inside the loops; without loops the surface itself. Its v edges follow the trims, as
+// polygons (to_polygon), with C0 lines at their corners. The part must meet each line of constant u in one
+// piece; otherwise lines of constant v are tried, and then lines towards the centre of a disc or hole. Fails
+// if none of these work, or if the part ends in a point.
 Result<FittedShape> untrimmed(const Surface& surface, const std::vector<TrimLoop>& trims, double tolerance_m);
 
 }  // namespace spoonbill

@@ -13,57 +13,107 @@
 #include "engine/base/text.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/merging/arrangement.h"
 
 namespace spoonbill {
+namespace {
+
+constexpr int largest_count = 200;
+
+double edge_gap_m(const Surface& surface, Direction direction) {
+  const bool u = direction == Direction::u;
+  const EdgeCurve first = edge_curve(surface, u ? Side::u_start : Side::v_start);
+  const EdgeCurve last = edge_curve(surface, u ? Side::u_end : Side::v_end);
+  double largest = 0.0;
+  for (std::size_t k = 0; k < first.control_points_m.size(); ++k) {
+    largest = std::max(largest, (first.control_points_m[k] - last.control_points_m[k]).norm());
+  }
+  return largest;
+}
+
+Result<KnotVector> make_period(const KnotVector& knots, int continuity) {
+  const auto all = knot_multiplicities(knots);
+  const int at_seam = std::max(1, knots.degree() - continuity);
+  std::vector<double> period(static_cast<std::size_t>(at_seam), knots.domain_start());
+  for (const auto& [knot, multiplicity] : all) {
+    if (knot == knots.domain_start()) continue;
+    period.insert(period.end(), static_cast<std::size_t>(multiplicity), knot);
+  }
+  // A period needs at least two control points.
+  if (period.size() < 2) period.push_back(0.5 * (knots.domain_start() + knots.domain_end()));
+  period.push_back(knots.domain_end());
+  return KnotVector::periodic(knots.degree(), std::move(period));
+}
+
+}  // namespace
+
+Result<Approximation> close_around(const Surface& surface, Direction direction, int continuity,
+                                   double tolerance_m, const Progress& progress) {
+  SPOONBILL_ASSERT(continuity >= 0);
+  const KnotVector& knots = knots_along(surface, direction);
+  if (knots.is_periodic())
+    return Error(ErrorCode::inconsistent, "the direction is closed already; choose the other one");
+  if (const double gap_m = edge_gap_m(surface, direction); gap_m > tolerance_m) {
+    return Error(ErrorCode::mismatch, "the first and the last edge are " + short_length_text(gap_m) +
+                                          " apart; allow a larger tolerance or bring them together");
+  }
+  const auto raised = elevate_degree(knots, std::max(knots.degree(), continuity + 1));
+  if (!raised) return raised.error();
+  const auto period = make_period(raised.value(), continuity);
+  if (!period) return period.error();
+  return approximated(surface, direction, period.value(), tolerance_m, largest_count, progress);
+}
 
 namespace {
 
-constexpr int samples_around = 48;
+constexpr int ring_samples = 48;
 
-// Of a quarter of a circle by a cubic: 4 (sqrt 2 - 1) / 3.
+// Control point distance of a cubic quarter circle: 4 (sqrt 2 - 1) / 3.
 constexpr double quarter_circle = 0.5522847498307936;
 
-struct RingShape {
+struct RingSize {
   Vector3 centre_m = Vector3::Zero();
   double radius_m = 0.0;
 };
 
-// The tube must run along v.
-RingShape ring_at(const Surface& tube, double v) {
-  const std::vector<double> around = uniform_parameters_without_seam(tube.u, samples_around);
-  RingShape ring;
+// `tube` must run along v.
+RingSize ring_at(const Surface& tube, double v) {
+  const std::vector<double> parameters = uniform_parameters_without_seam(tube.u, ring_samples);
+  RingSize ring;
   std::vector<Vector3> points;
-  for (const double u : around) {
+  for (const double u : parameters) {
     points.push_back(position(tube, u, v));
-    ring.centre_m += points.back() / samples_around;
+    ring.centre_m += points.back() / ring_samples;
   }
-  for (const Vector3& point : points) ring.radius_m += (point - ring.centre_m).norm() / samples_around;
+  for (const Vector3& point : points) ring.radius_m += (point - ring.centre_m).norm() / ring_samples;
   return ring;
 }
 
-// Along v, ending at v_end where the side was.
+// Orients the tube along v, with the given side at v_end.
 Surface with_end_at_v_end(const Surface& tube, Side side) {
   Surface along = across(side) == Direction::u ? exchanged(tube) : tube;
   return is_start(side) ? reversed(along, Direction::v) : along;
 }
 
-Surface turned_back(const Surface& along, Side side) {
+Surface turn_back(const Surface& along, Side side) {
   Surface tube = is_start(side) ? reversed(along, Direction::v) : along;
   return across(side) == Direction::u ? exchanged(tube) : tube;
 }
 
-// From the tube's ring to the pole; the first control points beside the ring continue the tube's sides.
-Result<Surface> cap_of(const Surface& tube, double height_m) {
+// Returns the cap from the tube's ring to the pole; its control points next to the ring continue the sides.
+Result<Surface> make_cap(const Surface& tube, double height_m) {
   const double end = tube.v.domain_end();
   const TubeEnd ring = tube_end(tube, Side::v_end);
   double speed = 0.0;
-  for (const double u : uniform_parameters_without_seam(tube.u, samples_around)) {
-    speed += evaluate(tube, u, end).dv.norm() / samples_around;
+  for (const double u : uniform_parameters_without_seam(tube.u, ring_samples)) {
+    speed += evaluate(tube, u, end).dv.norm() / ring_samples;
   }
-  if (!(speed > 0.0)) return Error{"the tube's sides have no direction at the end to cap; cut a piece off"};
+  if (!(speed > 0.0))
+    return Error(ErrorCode::degenerate,
+                 "the tube's sides have no direction at the end to cap; cut a piece off");
   const bool round = height_m > 0.0;
   if (round && ring.outward.isZero()) {
-    return Error{"the tube's sides lead out of its end in no common direction; cap it flat"};
+    return Error(ErrorCode::degenerate, "the tube's sides have no common direction at its end; cap it flat");
   }
   const double length = (round ? 3.0 * quarter_circle * height_m : ring.radius_m) / speed;
   const auto knots = KnotVector::open(3, {0, 0, 0, 0, length, length, length, length});
@@ -74,40 +124,42 @@ Result<Surface> cap_of(const Surface& tube, double height_m) {
   const int last = v.control_point_count() - 1;
   const double step = v.knots()[static_cast<std::size_t>(last) + v.degree()] - v.knots()[last];
   for (int i = 0; i < net.rows; ++i) {
-    const Vector3 rim = tube.net.point(i, last);
+    const Vector3 ring_point = tube.net.point(i, last);
     const Vector3 slope = v.degree() * (tube.net.point(i, last) - tube.net.point(i, last - 1)) / step;
-    const Vector3 spoke = rim - ring.centre_m;
+    const Vector3 spoke = ring_point - ring.centre_m;
     const Vector3 level = spoke - spoke.dot(ring.outward) * ring.outward;
-    net.set_point(i, 0, rim);
-    net.set_point(i, 1, round ? Vector3(rim + length / 3.0 * slope) : Vector3(rim + (pole - rim) / 3.0));
+    net.set_point(i, 0, ring_point);
+    net.set_point(
+        i, 1,
+        round ? Vector3(ring_point + length / 3.0 * slope) : Vector3(ring_point + (pole - ring_point) / 3.0));
     net.set_point(i, 2, pole + (round ? quarter_circle * level : Vector3(spoke / 3.0)));
     net.set_point(i, 3, pole);
   }
   return make_surface(tube.u, knots.value(), std::move(net));
 }
 
-// Spokes are straight, and a flat cap's normal stays the same along each: it folds over where a spoke's
-// normal points against the ring's area.
-std::optional<Vector3> place_of_fold_in_flat(const Surface& cap) {
+// Spokes are straight and the normal is constant along each, so the cap folds where a spoke's normal opposes
+// the ring's area.
+std::optional<Vector3> find_fold_in_flat(const Surface& cap) {
   constexpr int spokes_in_piece = 16;
   const double start = cap.v.domain_start();
-  std::vector<SurfacePoint> rim;
+  std::vector<SurfacePoint> ring_point;
   Vector3 area = Vector3::Zero();
   for (const double u : nested_parameters(cap.u, spokes_in_piece, 0).parameters) {
-    rim.push_back(evaluate(cap, u, start));
-    area += rim.back().du.cross(rim.back().dv);
+    ring_point.push_back(evaluate(cap, u, start));
+    area += ring_point.back().du.cross(ring_point.back().dv);
   }
-  for (const SurfacePoint& point : rim) {
+  for (const SurfacePoint& point : ring_point) {
     if (point.du.cross(point.dv).dot(area) < 0.0) return point.position_m;
   }
   return std::nullopt;
 }
 
-Error flat_cap_folds(const Vector3& place_m) {
-  return Error{
-      "a flat cap folds over at " + position_text(place_m) +
-      ", for the middle of the ring does not see its rim there; cut the tube where it is rounder and "
-      "cap it there"};
+Error flat_cap_folds(const Vector3& fold_m) {
+  return Error(ErrorCode::self_intersecting,
+               "a flat cap folds over at " + position_text(fold_m) +
+                   ", as the ring is not visible from its centre there; cut the tube where it is rounder and "
+                   "cap it there");
 }
 
 }  // namespace
@@ -129,68 +181,71 @@ bool is_pole(const Surface& surface, Side side) {
 TubeEnd tube_end(const Surface& surface, Side side) {
   const Surface along = with_end_at_v_end(surface, side);
   const double start = along.v.domain_start(), end = along.v.domain_end();
-  const RingShape ring = ring_at(along, end);
+  const RingSize ring = ring_at(along, end);
   if (!is_pole(surface, side)) return {ring.centre_m, ring.radius_m, outward(surface, side)};
   const Vector3 inside = ring_at(along, end - 0.02 * (end - start)).centre_m;
   return {ring.centre_m, 0.0, (ring.centre_m - inside).normalized()};
 }
 
-Result<Joined> with_cap(const Surface& surface, Side side, double height_m, const JoinRequest& request) {
+Result<Joined> add_cap(const Surface& surface, Side side, double height_m, const JoinRequest& request) {
   SPOONBILL_ASSERT(height_m >= 0.0);
   if (!is_tube(surface) || !is_joinable(surface, side)) {
-    return Error{std::string(side_name(side)) + " is not the open end of a tube; choose one that is"};
+    return Error(ErrorCode::mismatch,
+                 std::string(side_name(side)) + " is not the open end of a tube; choose one that is");
   }
   Surface along = with_end_at_v_end(surface, side);
-  // Clamped, so that the last control points are the ring and its tangents.
+  // Clamped knots, so that the last control points give the ring and its tangents.
   auto clamped = part_of(along, Direction::v, along.v.domain_start(), along.v.domain_end());
   if (!clamped) return clamped.error();
-  auto cap = cap_of(clamped.value(), height_m);
+  auto cap = make_cap(clamped.value(), height_m);
   if (!cap) return cap.error();
   if (height_m == 0.0) {
-    if (const auto place_m = place_of_fold_in_flat(cap.value())) return flat_cap_folds(*place_m);
+    if (const auto fold_m = find_fold_in_flat(cap.value())) return flat_cap_folds(*fold_m);
   }
   JoinRequest capping = request;
   capping.shared_parameters = true;
   if (height_m == 0.0) capping.continuity = 0;
   auto joined = join_row({std::move(clamped).value(), std::move(cap).value()}, capping);
   if (!joined) return joined.error();
-  joined->surface = turned_back(joined->surface, side);
+  joined->surface = turn_back(joined->surface, side);
   return joined;
 }
 
-Result<Surface> opened_pole(const Surface& surface, Side side, double wide_enough_m) {
+Result<Surface> open_pole(const Surface& surface, Side side, double wide_enough_m) {
   SPOONBILL_ASSERT(wide_enough_m >= 0.0);
   if (!is_tube(surface) || !is_pole(surface, side)) {
-    return Error{std::string(side_name(side)) + " is not the pole of a tube; choose one that is"};
+    return Error(ErrorCode::mismatch,
+                 std::string(side_name(side)) + " is not the pole of a tube; choose one that is");
   }
   const Surface along = with_end_at_v_end(surface, side);
   const double start = along.v.domain_start(), end = along.v.domain_end();
   constexpr int steps = 400;
   constexpr double straight = 0.1;
-  RingShape last = ring_at(along, end);
+  RingSize last = ring_at(along, end);
   for (int k = 1; k < steps / 2; ++k) {
     const double v = end + (start - end) * k / steps;
-    const RingShape ring = ring_at(along, v);
-    const double way = (ring.centre_m - last.centre_m).norm();
-    const bool is_straight = k > 2 && ring.radius_m - last.radius_m < straight * way;
+    const RingSize ring = ring_at(along, v);
+    const double step_m = (ring.centre_m - last.centre_m).norm();
+    const bool is_straight = k > 2 && ring.radius_m - last.radius_m < straight * step_m;
     if (is_straight || ring.radius_m >= wide_enough_m) {
       auto cut = part_of(along, Direction::v, start, v);
       if (!cut) return cut.error();
-      return turned_back(cut.value(), side);
+      return turn_back(cut.value(), side);
     }
     last = ring;
   }
-  return Error{"the tube has no straight sides near its " + std::string(side_name(side)) +
-               " to be opened at; cut it there, or let it intersect the other"};
+  return Error(ErrorCode::degenerate, "the tube has no straight sides near its " +
+                                          std::string(side_name(side)) +
+                                          " to be opened at; cut it there, or let it intersect the other");
 }
 
-std::vector<std::pair<PatchEdge, PatchEdge>> nearest_ends(const std::vector<Surface>& tubes) {
+std::vector<std::pair<PatchEdge, PatchEdge>> find_nearest_ends(const std::vector<Surface>& tubes) {
   struct Pair {
     PatchEdge a, b;
-    double apart_m;
+    double cost_m;
   };
-  // The middle of a flat disc is as near to a ring as its edge is: of those the one that is as wide.
-  constexpr double width_share = 0.01;
+  // The centre of a flat disc is as near to a ring as its edge is; similar widths decide.
+  constexpr double width_fraction = 0.01;
   std::vector<std::pair<PatchEdge, TubeEnd>> ends;
   for (int p = 0; p < static_cast<int>(tubes.size()); ++p) {
     const auto [first, last] = tube_sides(tubes[p]);
@@ -201,22 +256,22 @@ std::vector<std::pair<PatchEdge, PatchEdge>> nearest_ends(const std::vector<Surf
     for (std::size_t b = a + 1; b < ends.size(); ++b) {
       if (ends[a].first.patch == ends[b].first.patch) continue;
       const TubeEnd &one = ends[a].second, &other = ends[b].second;
-      pairs.push_back(
-          {ends[a].first, ends[b].first,
-           (one.centre_m - other.centre_m).norm() + width_share * std::abs(one.radius_m - other.radius_m)});
+      pairs.push_back({ends[a].first, ends[b].first,
+                       (one.centre_m - other.centre_m).norm() +
+                           width_fraction * std::abs(one.radius_m - other.radius_m)});
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const Pair& a, const Pair& b) { return a.apart_m < b.apart_m; });
+                   [](const Pair& a, const Pair& b) { return a.cost_m < b.cost_m; });
   std::vector<int> group(tubes.size());
   std::iota(group.begin(), group.end(), 0);
   std::vector<PatchEdge> used;
   std::vector<std::pair<PatchEdge, PatchEdge>> chosen;
   for (const Pair& pair : pairs) {
-    const bool taken = std::any_of(used.begin(), used.end(),
-                                   [&](const PatchEdge& end) { return end == pair.a || end == pair.b; });
+    const bool is_used = std::any_of(used.begin(), used.end(),
+                                     [&](const PatchEdge& end) { return end == pair.a || end == pair.b; });
     const int from = group[pair.b.patch], to = group[pair.a.patch];
-    if (taken || from == to) continue;
+    if (is_used || from == to) continue;
     std::replace(group.begin(), group.end(), from, to);
     used.insert(used.end(), {pair.a, pair.b});
     chosen.emplace_back(pair.a, pair.b);

@@ -1,25 +1,33 @@
-// The ends of tubes: rings, where they are open, or poles. Closes rings with caps, opens poles where another
-// tube is to be joined. Pure functions, outside the tick; any thread. A tube is closed around in one
-// direction and open along the other.
+// Ends of tubes: closing seams, capping open rings, opening poles for another tube. A tube is periodic in one
+// direction and open in the other. Pure functions, outside the tick; any thread.
 #pragma once
 
 #include <utility>
 #include <vector>
 
+#include "engine/base/result.h"
+#include "engine/bspline/change_knots.h"
+#include "engine/bspline/surface.h"
 #include "engine/merging/join_row.h"
 #include "engine/merging/patch_edge.h"
 
 namespace spoonbill {
 
+// Makes a direction periodic whose first and last edge meet, with the given continuity at the seam; raises
+// the degree if needed. Exact if the derivatives agree there; otherwise knots are added beside the seam until
+// the tolerance is met. Fails for a periodic direction, or edges farther apart than the tolerance. Can be
+// stopped.
+Result<Approximation> close_around(const Surface& surface, Direction direction, int continuity,
+                                   double tolerance_m, const Progress& progress = {});
+
 bool is_tube(const Surface& surface);
 
-// The two sides that a tube ends at. Only of tubes.
+// Returns the two end sides. The surface must be a tube.
 std::pair<Side, Side> tube_sides(const Surface& surface);
 
 bool is_pole(const Surface& surface, Side side);
 
-// The tube's ring at a side: its middle and mean radius, which is zero at a pole, and the unit direction out
-// of the tube.
+// Centre and mean radius of a tube's end (radius 0 at a pole), and the unit direction out of the tube.
 struct TubeEnd {
   Vector3 centre_m = Vector3::Zero();
   double radius_m = 0.0;
@@ -27,19 +35,19 @@ struct TubeEnd {
 };
 TubeEnd tube_end(const Surface& surface, Side side);
 
-// Closes an open end by a cap that bulges by `height_m` over a ring that is about plane; at a height above
-// zero the cap continues the tube's sides with the continuity that is asked, at zero it is flat and meets
-// them at an edge. A quarter of an ellipse, by the cubic that has its tangents and its middle (Goldapp 1991).
-// Refused: a flat cap of a ring whose middle does not see all of its rim, which would fold over.
-Result<Joined> with_cap(const Surface& surface, Side side, double height_m, const JoinRequest& request);
+// Closes an open end with a cap of height `height_m` over a nearly plane ring. Above zero, the cap continues
+// the sides with the requested continuity, as a quarter ellipse: the cubic with its tangents and midpoint
+// (Goldapp 1991). At zero it is flat and meets them at an edge. Fails if a flat cap would fold, as the centre
+// does not see the whole ring.
+Result<Joined> add_cap(const Surface& surface, Side side, double height_m, const JoinRequest& request);
 
-// Cuts a pole off so that the tube ends in a ring to be joined: where its sides first run straight (the
-// radius grows by less than 0.1 of the way along), or sooner where the ring is as wide as `wide_enough_m`.
-// Refused where half of the tube would go.
-Result<Surface> opened_pole(const Surface& surface, Side side, double wide_enough_m);
+// Cuts off a pole so that the tube ends in a ring: where the radius grows by less than 0.1 of the distance
+// along the axis, or earlier where the ring is as wide as `wide_enough_m`. Fails if half of the tube would be
+// lost.
+Result<Surface> open_pole(const Surface& surface, Side side, double wide_enough_m);
 
-// The pairs of ends by which tubes hang together: nearest ends first, of equally near ones those that are
-// about as wide, each used once.
-std::vector<std::pair<PatchEdge, PatchEdge>> nearest_ends(const std::vector<Surface>& tubes);
+// Returns pairs of ends that connect the tubes, nearest first, each end used once. Among equally near ends,
+// those of similar width come first.
+std::vector<std::pair<PatchEdge, PatchEdge>> find_nearest_ends(const std::vector<Surface>& tubes);
 
 }  // namespace spoonbill

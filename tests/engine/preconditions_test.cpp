@@ -14,9 +14,8 @@
 #include "engine/collision/solids/implicit_shapes.h"
 #include "engine/collision/solids/tool_shape.h"
 #include "engine/collision/surfaces/pair_search.h"
-#include "engine/fitting/nearest_points.h"
-#include "engine/fitting/quantiles.h"
-#include "engine/fitting/voxels.h"
+#include "engine/fitting/point_sets.h"
+#include "engine/fitting/scan.h"
 #include "engine/inspection/mass_properties.h"
 #include "engine/material/cells/spring_cell.h"
 #include "engine/material/contact/body_contacts.h"
@@ -86,7 +85,7 @@ TEST_F(Preconditions, OfInspection) {
 }
 
 TEST_F(Preconditions, OfFittingAndMerging) {
-  EXPECT_THROW(quantile_of({1.0, 2.0}, 1.5), FailedAssertion);
+  EXPECT_THROW(quantile({1.0, 2.0}, 1.5), FailedAssertion);
   EXPECT_THROW(group_by_voxels(Scan{}, 0.0), FailedAssertion);
   EXPECT_THROW(bridge(square_, square_, -1), FailedAssertion);
   EXPECT_THROW(edge_samples(edge_curve(square_, Side::v_end), 1), FailedAssertion);

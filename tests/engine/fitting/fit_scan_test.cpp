@@ -1,4 +1,4 @@
-// Fits to shapes of which every point is known.
+// Fits to exactly known shapes.
 #include "engine/fitting/fit_scan.h"
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ TEST(FitScan, SphereIsClosedAndFacesOutward) {
   const FittedBody& body = fitted.bodies[0];
   EXPECT_EQ(body.kind, ShapeKind::closed);
   EXPECT_EQ(body.folds.folds, 0U);
-  // Cubic pieces of a sixteenth of the way around: their own error is below 1e-4 of the radius; what remains
-  // is the fairness, and more of it about the poles, where few points hold a control point.
+  // Cubic pieces of a sixteenth of a turn have an error below 1e-4 of the radius. The rest is fairness,
+  // mostly about the poles, where few points determine a control point.
   EXPECT_LT(body.errors.data_to_surface.p95_m, 2e-5);
   EXPECT_LT(farthest_off(body.surface, from_sphere(0.02)), 6e-4);
   EXPECT_NEAR(volume_of(body.surface), 4.0 / 3.0 * M_PI * 8e-6, 1e-7);
@@ -73,7 +73,7 @@ TEST(FitScan, WavesAreASheet) {
   EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 1e-4);
 }
 
-// Nothing of an even grid without noise is a stray, and the surface goes out to its edges and corners.
+// An even grid without noise has no strays, and the surface extends to its edges and corners.
 TEST(FitScan, ExactGridIsFittedToItsEdges) {
   Scan scan;
   for (int k = 0; k < 900; ++k) {
@@ -84,12 +84,12 @@ TEST(FitScan, ExactGridIsFittedToItsEdges) {
   ASSERT_EQ(fitted.bodies.size(), 1U);
   EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::sheet);
   EXPECT_EQ(fitted.bodies[0].errors.strays, 0U);
-  // A fifth of the grid's spacing of 3.4 mm, at the corners, which are rounded.
+  // A fifth of the grid's spacing of 3.4 mm, at the rounded corners.
   EXPECT_LT(fitted.bodies[0].errors.data_to_surface.max_m, 7e-4);
   EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 2e-5);
 }
 
-// Square and low, so that it is as round about its middle as a bowl.
+// Square and low, so that it is as round about its centre as a bowl.
 TEST(FitScan, LowWavesAreNoThinWall) {
   const Scan scan = random_cloud(5000, 3, [](double s, double t) { return on_waves(s, t, 0.1, 0.004); });
   const ScanFit fitted = fit(scan, 12);
@@ -97,7 +97,7 @@ TEST(FitScan, LowWavesAreNoThinWall) {
   EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::sheet);
 }
 
-// What spans the hole faces either way: it must not tell which side is out.
+// Nodes that span the hole may face either way and must not decide the orientation.
 TEST(FitScan, ClosedShapesFaceOutwardsWhateverWasNotSeen) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     Scan scan = ellipsoid_cloud(3000 + 500 * seed, {0.02, 0.022, 0.03});
@@ -126,7 +126,7 @@ TEST(FitScan, HoleIsSpannedSmoothly) {
   ASSERT_EQ(fitted.bodies.size(), 1U);
   EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::closed);
   EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
-  // A flat lid would lie 0.6 mm below the sphere.
+  // A flat cap would be 0.6 mm below the sphere.
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.02)), 8e-4);
 }
 
@@ -143,7 +143,7 @@ TEST(FitScan, IslandsAreFittedAsAsked) {
   EXPECT_EQ(largest.other_islands, 3000U);
 }
 
-// Some 5 mm of gap, less than three nodes are apart and five times as much as points are.
+// A gap of about 5 mm: less than three node spacings, five times the point spacing.
 TEST(FitScan, IslandsNearEachOtherAreTwo) {
   Scan scan = ellipsoid_cloud(10000, {0.03, 0.03, 0.03});
   append(scan, ellipsoid_cloud(9000, {0.03, 0.03, 0.03}), {0.045, 0.045, 0.016});
@@ -158,7 +158,7 @@ TEST(FitScan, IslandsNearEachOtherAreTwo) {
   EXPECT_LT(farthest_off(all.bodies[0].surface, from_sphere(0.03)), 3e-4);
 }
 
-// As far apart along the surface: a stripe that was not seen.
+// The same distance along the surface: a stripe that was not scanned.
 TEST(FitScan, AStripeWithoutPointsPartsNoSheet) {
   Scan scan = random_cloud(20000, 31, [](double s, double t) { return on_waves(s, t, 0.2, 0.01); });
   leave_out(scan, [](const Vector3& p) { return std::abs(p.x() - 0.09) < 0.003; });
@@ -177,12 +177,12 @@ TEST(FitScan, IslandsAreBridgedToOneBody) {
   EXPECT_EQ(body.kind, ShapeKind::closed);
   EXPECT_EQ(body.folds.folds, 0U);
   EXPECT_NEAR(body.size_m.z(), 0.09, 1e-3);
-  // The middles of both are within one body: its rings run around them.
+  // The centroids of both are inside one body, whose rings run around them.
   EXPECT_GT(volume_of(body.surface), 2.0 * 4.0 / 3.0 * M_PI * 2e-6 * 0.9);
   EXPECT_LT(body.errors.data_to_surface.p95_m, 1e-3);
 }
 
-// A ball pressed in to a bowl with a wall 2 mm thick, open upwards.
+// A ball pressed into a bowl with a wall of 2 mm, open at the top.
 TriangleMesh bowl_mesh() {
   constexpr double outer = 0.025, wall = 0.002;
   TriangleMesh mesh = ball_mesh(40, 60, outer);
@@ -194,8 +194,8 @@ TriangleMesh bowl_mesh() {
   return mesh;
 }
 
-// Handles of all slopes that begin beside the bowl's rim: where that is opened, the rim of the hole does not
-// run round the way to the handle.
+// Handles of all slopes start beside the bowl's rim. The hole opened there is not planar, and its loop must
+// run the right way round.
 TEST(FitScan, HandleAtAThinRimIsBridgedTheRightWayRound) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const TriangleMesh bowl = bowl_mesh();
@@ -215,7 +215,7 @@ TEST(FitScan, HandleAtAThinRimIsBridgedTheRightWayRound) {
     const ScanFit fitted = fit(scan, 24, IslandChoice::bridge);
     ASSERT_EQ(fitted.bodies.size(), 1U);
     EXPECT_EQ(fitted.islands, 2U);
-    // Turned the wrong way round, a quarter of it folds.
+    // With the wrong sense of rotation, a quarter of it folds.
     EXPECT_LT(fitted.bodies[0].folds.folds, fitted.bodies[0].folds.samples / 500) << slope;
     EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 1e-3) << slope;
   }
@@ -228,11 +228,11 @@ TEST(FitScan, TriangleSoupOfABallIsClosed) {
   EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::closed);
   EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
   EXPECT_GT(volume_of(fitted.bodies[0].surface), 0.0);
-  // The triangles lie up to 0.05 mm within the ball.
+  // The triangles are up to 0.05 mm inside the ball.
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.02)), 2e-4);
 }
 
-// Its eight corners are the worst places: the surface rounds them. All of it counts.
+// The eight corners, which the surface rounds, have the largest errors. All of the mesh counts.
 TEST(FitScan, ErrorsOfAMeshAreThoseOfAllItsTriangles) {
   Scan box;
   for (int k = 0; k < 8; ++k) box.points_m.emplace_back(0.03 * (k & 1), 0.02 * (k >> 1 & 1), 0.05 * (k >> 2));
@@ -242,13 +242,13 @@ TEST(FitScan, ErrorsOfAMeshAreThoseOfAllItsTriangles) {
   ASSERT_EQ(fitted.bodies.size(), 1U);
   const FitErrors& errors = fitted.bodies[0].errors;
   EXPECT_EQ(fitted.bodies[0].points_m.size(), 8U);
-  EXPECT_GT(errors.places_m.size(), 2000U);
-  EXPECT_EQ(errors.distance_m.size(), errors.places_m.size());
+  EXPECT_GT(errors.positions_m.size(), 2000U);
+  EXPECT_EQ(errors.distance_m.size(), errors.positions_m.size());
   EXPECT_EQ(errors.strays, 0U);
   double at_corners = 1.0;
-  for (std::size_t p = 0; p < errors.places_m.size(); ++p) {
+  for (std::size_t p = 0; p < errors.positions_m.size(); ++p) {
     for (const Vector3& corner : box.points_m) {
-      if (errors.places_m[p] == corner) at_corners = std::min(at_corners, errors.distance_m[p]);
+      if (errors.positions_m[p] == corner) at_corners = std::min(at_corners, errors.distance_m[p]);
     }
   }
   EXPECT_LT(errors.data_to_surface.p95_m, at_corners);

@@ -1,12 +1,10 @@
-#include "engine/fitting/folds.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "engine/fitting/closest_parameters.h"
-#include "engine/fitting/estimated_normals.h"
+#include "engine/fitting/fit_quality.h"
+#include "engine/fitting/normals.h"
 #include "tests/engine/fitting/clouds.h"
 
 namespace spoonbill {
@@ -14,7 +12,7 @@ namespace {
 
 constexpr int controls = 10;
 
-// Over the unit square, the control points evenly.
+// Sheet over the unit square with even control points.
 Surface sheet() {
   ControlNet net(controls, controls);
   for (int i = 0; i < controls; ++i) {
@@ -24,7 +22,7 @@ Surface sheet() {
   return make_surface(knots, knots, std::move(net)).value();
 }
 
-// Two rows of control points have changed places: x goes back between them.
+// Two rows of control points are swapped, so that x runs backwards between them.
 Surface turned_back() {
   Surface surface = sheet();
   for (int j = 0; j < controls; ++j) {
@@ -53,7 +51,7 @@ Data facing(double z) {
 
 TEST(Folds, AFlatSheetHasNone) {
   const FoldCheck check = check_folds(sheet(), facing(1.0).view());
-  EXPECT_EQ(check.samples, 28U * 28U);  // four by four in each of 7 x 7 spans
+  EXPECT_EQ(check.samples, 28U * 28U);  // 4 x 4 samples in each of 7 x 7 spans
   EXPECT_EQ(check.folds, 0U);
   EXPECT_EQ(check.cusps, 0U);
 }
@@ -61,7 +59,7 @@ TEST(Folds, AFlatSheetHasNone) {
 TEST(Folds, AgainstTheDataAllOfItFolds) {
   const FoldCheck check = check_folds(sheet(), facing(-1.0).view());
   EXPECT_EQ(check.folds, check.samples);
-  EXPECT_EQ(check.cusps, 0U);  // in itself it is as smooth as before
+  EXPECT_EQ(check.cusps, 0U);  // the surface itself stays smooth
 }
 
 TEST(Folds, WhereItGoesBackItFoldsAndHasCusps) {
@@ -75,7 +73,7 @@ TEST(Folds, WhereItGoesBackItFoldsAndHasCusps) {
   }
 }
 
-// Over x forth, back below itself and forth again, so that no normal turns much from sample to sample.
+// Runs along x, back below itself and forward, without a large turn of the normal between samples.
 Surface doubled_back() {
   constexpr int rows = 28;
   ControlNet net(rows, controls);
@@ -93,14 +91,14 @@ Surface doubled_back() {
 FoldCheck check_without_normals(const FitPoints& points, const Surface& surface) {
   const ClosestParameters closest(surface);
   std::vector<Vector2> uv;
-  for (const Vector3& point : points.scan.points_m) uv.push_back(closest.anywhere(point, 4).uv);
-  return check_folds(surface, {uv, estimated_normals(points, surface, uv), true});
+  for (const Vector3& point : points.scan.points_m) uv.push_back(closest.project(point, 4).uv);
+  return check_folds(surface, {uv, estimate_normals(points, surface, uv), true});
 }
 
 TEST(Folds, AreFoundWithoutNormalsWhereTheSurfaceDoublesBackSlowly) {
   const auto flat = random_cloud(20000, 4, [](double s, double t) { return Vector3(s, t, 0.0); });
   const FitPoints points = make_fit_points(flat).value();
-  EXPECT_EQ(check_folds(doubled_back(), {}).folds, 0U);  // the surface alone does not tell
+  EXPECT_EQ(check_folds(doubled_back(), {}).folds, 0U);  // not visible from the surface alone
   EXPECT_GT(check_without_normals(points, doubled_back()).folds, 28U);
   EXPECT_EQ(check_without_normals(points, sheet()).folds, 0U);
 }
@@ -109,10 +107,10 @@ TEST(Folds, FewerFoldsAreBetterAndThenFewerCusps) {
   FoldCheck none, cusp, fold;
   cusp.cusps = 1;
   fold.folds = 1;
-  EXPECT_TRUE(none.better_than(cusp));
-  EXPECT_TRUE(cusp.better_than(fold));
-  EXPECT_FALSE(fold.better_than(none));
-  EXPECT_FALSE(none.better_than(none));
+  EXPECT_TRUE(none.is_better_than(cusp));
+  EXPECT_TRUE(cusp.is_better_than(fold));
+  EXPECT_FALSE(fold.is_better_than(none));
+  EXPECT_FALSE(none.is_better_than(none));
 }
 
 }  // namespace

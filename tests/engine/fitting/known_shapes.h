@@ -1,4 +1,4 @@
-// Fits of clouds whose shape is known, and how far they are from it.
+// Fits of clouds of known shape, and their distances from it.
 #pragma once
 
 #include <functional>
@@ -9,16 +9,16 @@ namespace spoonbill {
 
 using Distance = std::function<double(const Vector3&)>;
 
-// The largest distance of the surface from the known shape, on a grid of samples.
+// Returns the largest distance of the surface from the known shape, on a grid of samples.
 double farthest_off(const Surface& surface, const Distance& distance);
 
-// With so many control points each way; one that is refused is a failure of the test, and empty.
+// Fits with `control` control points in each direction. A failed fit fails the test and returns an empty
+// result.
 ScanFit fit(const Scan& scan, int control, IslandChoice islands = IslandChoice::largest);
 
 Distance from_sphere(double radius_m);
 
-// By the divergence theorem over a grid of samples: what a closed surface encloses, above zero where it faces
-// outwards.
+// Returns the enclosed volume by the divergence theorem over a grid of samples, positive for outward normals.
 double volume_of(const Surface& surface);
 
 }  // namespace spoonbill

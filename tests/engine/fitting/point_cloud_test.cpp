@@ -1,4 +1,4 @@
-// Point files of every form that is read, and what careless hands make of them.
+// Point files in all supported formats, including malformed ones.
 #include "engine/exchange/points/point_cloud.h"
 
 #include <gtest/gtest.h>
@@ -117,7 +117,7 @@ TEST(PcdPoints, TextBinaryAndCompressed) {
   for (const double value : {1.5, 2.5}) put(columns, value);
   for (const float value : {-2.25F, -2.25F, 3.0F, 3.0F}) put(columns, value);
   for (int k = 0; k < 2; ++k) put(columns, std::uint32_t{9});
-  // LZF by hand: runs of up to 32 letters as they are, each after its length less one.
+  // LZF by hand: literal runs of up to 32 bytes, each after its length minus one.
   std::string packed;
   for (std::size_t at = 0; at < columns.size(); at += 32) {
     const std::string run = columns.substr(at, 32);
@@ -188,7 +188,7 @@ TEST(TextPoints, CommasThatPartNumbersStay) {
   }
 }
 
-// Each may be read in two ways at least.
+// Each can be read in at least two ways.
 TEST(TextPoints, RefusesCommasThatMayPartNumbersOrNot) {
   for (const char* line : {"12,345 67,890 1,234", "12,345\t67,890\t1,234", "12,345, 67,890, 1,234",
                            "1,234.5;2.5;3.5", "1,2,3;4,5,6;7,8,9", "0,5;1.5;2"}) {
@@ -220,7 +220,7 @@ TEST(ObjPoints, TakesVerticesAndKnowsFaces) {
   expect_refusal(parse_obj_points("v 1 2\n"), "line 1");
 }
 
-// Whatever bytes: an answer, and an Error of one line.
+// Arbitrary bytes give a result or an Error of one line.
 TEST(PointFiles, AnyBytesGiveAnAnswer) {
   std::mt19937_64 random(7);
   const std::string text = ply_header("ascii", "2") + "2 7 8\n200 1.5 -2.25 3 0 0 1\n200 2.5 -2.25 3 0 0 1\n";

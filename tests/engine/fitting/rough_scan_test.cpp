@@ -1,4 +1,4 @@
-// Fits to scans as scanners leave them: with noise, outliers, normals that do not agree or are not there.
+// Fits to realistic scans: with noise, outliers, and inconsistent or missing normals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ double share_facing(const Surface& surface, const std::function<Vector3(const Ve
   return facing / static_cast<double>(grid * grid);
 }
 
-// What is scanned is seen from outside, and clay lies behind its normals.
+// Scans see surfaces from outside, and the clay is behind the normals.
 TEST(RoughScan, OpenShapesWithoutNormalsFaceOutwards) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     Scan tube = random_cloud(4000, seed, [](double s, double t) { return on_cylinder(s, t, 0.01, 0.06); });
@@ -59,12 +59,12 @@ TEST(RoughScan, NoiseIsAveragedAndOutliersLeftOut) {
   ASSERT_EQ(fitted.bodies.size(), 1U);
   EXPECT_GT(fitted.outliers, 200U);
   EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
-  // Some 150 points for each control point average their noise of 0.3 mm; the few at a pole do not.
+  // About 150 points for each control point average the noise of 0.3 mm; the few at a pole do not.
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.03)), 4.5e-4);
   EXPECT_LT(fitted.bodies[0].errors.surface_to_data.mean_m, 1.5e-4);
 }
 
-// A mesh over a grid of (s, t), closed along s where it comes around.
+// Mesh over a grid of (s, t), closed along s.
 Scan mesh_over(int along_s, int along_t, const std::function<Vector3(double, double)>& place) {
   Scan scan;
   for (int i = 0; i <= along_s; ++i) {
@@ -87,7 +87,7 @@ Vector3 on_ball(double s, double t) {
   return 0.03 * Vector3(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), -std::cos(b));
 }
 
-// Every so many vertices one is seen far off, but for those on the seam and about the poles.
+// Displaces every so many vertices far off the surface, except at the seam and the poles.
 std::size_t add_spikes(Scan& mesh, int along_s, int along_t, int every, double height_m) {
   std::size_t count = 0;
   for (int p = every; p < along_s * (along_t + 1); p += every) {
@@ -120,13 +120,14 @@ std::size_t spikes_in(Scan mesh) {
 }
 
 TEST(RoughScan, TipsOfMeshesAreNoSpikes) {
-  // A slender cone of evenly spaced rings.
+  // A slender cone of even rings.
   const auto on_cone = [](double s, double t) {
     const double r = 0.008 * (1.0 - t), a = 2.0 * pi * s;
     return Vector3(r * std::cos(a), r * std::sin(a), 0.08 * t);
   };
   EXPECT_EQ(spikes_in(mesh_over(40, 64, on_cone)), 0U);
-  // A pencil as CAD systems export it: rings of 2 mm, and a tip of 50 mm on the last of them in a single fan.
+  // A pencil as exported by CAD systems: rings 2 mm apart, and a tip of 50 mm as a single fan on the last
+  // one.
   constexpr int rings = 21;
   const auto on_pencil = [](double s, double t) {
     const double ring = std::round((rings + 1) * t), a = 2.0 * pi * s;
@@ -136,20 +137,20 @@ TEST(RoughScan, TipsOfMeshesAreNoSpikes) {
   EXPECT_EQ(spikes_in(mesh_over(64, rings + 1, on_pencil)), 0U);
 }
 
-// More points than are fitted: each outlier has a voxel of its own, those of the surface share theirs.
+// More points than the limit: each outlier has its own voxel, surface points share theirs.
 TEST(RoughScan, OutliersOfLargeCloudsAreLeftOut) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Scan scan = ellipsoid_cloud(600'000, {0.03, 0.03, 0.03});
   add_outliers(scan, 5, 0.05);
   const ScanFit fitted = fit(scan, 12);
   ASSERT_EQ(fitted.bodies.size(), 1U);
-  // Of 30,000 in a box of 0.06 m, some 8 % lie within 0.5 mm of the sphere, a voxel's side.
+  // Out of 30,000 in a box of 0.06 m, about 8 % are within 0.5 mm (a voxel's side) of the sphere.
   EXPECT_GT(fitted.outliers, 25'000U);
   EXPECT_LT(fitted.outliers, 30'000U);
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.03)), 2e-4);
 }
 
-// As a depth camera sees what is far off or turned away: what is sparse is surface all the same.
+// As a depth camera sees distant or oblique surfaces: sparse points are surface as well.
 TEST(RoughScan, SparsePartsOfLargeCloudsAreKept) {
   Scan scan = random_cloud(300'000, 21, [](double s, double t) { return on_waves(s, t, 0.1, 0.006); });
   const auto is_sparse = [](const Vector3& p) { return p.x() > 0.06; };
@@ -163,14 +164,14 @@ TEST(RoughScan, SparsePartsOfLargeCloudsAreKept) {
   EXPECT_NEAR(fitted.bodies[0].size_m.x(), 0.1, 1e-3);
 }
 
-// Noise and wrinkles about the poles bend a surface many times as much as its shape does.
+// Noise and wrinkles about the poles bend a surface many times more than its shape does.
 TEST(RoughScan, NoiseDoesNotWrinkleTheSurface) {
   for (const Vector3& half_axes : {Vector3(0.03, 0.03, 0.03), Vector3(0.02, 0.025, 0.04)}) {
     Scan scan = ellipsoid_cloud(12000, half_axes);
     add_noise(scan, 6, 3e-4);
     const ScanFit fitted = fit(scan, 24);
     ASSERT_EQ(fitted.bodies.size(), 1U);
-    // 8 pi for a ball, little more for these.
+    // 8 pi for a ball, slightly more for these.
     EXPECT_LT(compute_bending_energy(fitted.bodies[0].surface), 45.0);
     EXPECT_LT(fitted.bodies[0].errors.surface_to_data.p95_m, 3e-4);
   }
@@ -186,11 +187,11 @@ Scan egg_with_normals() {
   return scan;
 }
 
-// As scanners' programs write them: towards the scanner, or as it came.
+// As scanner software writes them: towards the scanner, or with random signs.
 TEST(RoughScan, NormalsThatDoNotAgreeAreMadeTo) {
   const ScanFit true_fit = fit(egg_with_normals(), 14);
   ASSERT_EQ(true_fit.bodies.size(), 1U);
-  EXPECT_EQ(true_fit.turned_normals, 0U);
+  EXPECT_EQ(true_fit.flipped_normals, 0U);
   Scan towards_origin = egg_with_normals(), random = egg_with_normals();
   for (std::size_t p = 0; p < random.normals.size(); ++p) {
     Vector3& normal = towards_origin.normals[p];
@@ -201,7 +202,7 @@ TEST(RoughScan, NormalsThatDoNotAgreeAreMadeTo) {
     const ScanFit fitted = fit(*scan, 14);
     ASSERT_EQ(fitted.bodies.size(), 1U);
     EXPECT_EQ(fitted.islands, 1U);
-    EXPECT_GT(fitted.turned_normals, 5000U);
+    EXPECT_GT(fitted.flipped_normals, 5000U);
     const FittedBody& body = fitted.bodies[0];
     EXPECT_EQ(body.points_m.size(), 12000U);
     EXPECT_EQ(body.kind, ShapeKind::closed);
@@ -211,7 +212,7 @@ TEST(RoughScan, NormalsThatDoNotAgreeAreMadeTo) {
   }
 }
 
-// Half of a ball as a bowl with a wall of `wall_m`, of which the points of each face know their normals.
+// Half a ball as a bowl with a wall of `wall_m`, with the true normals of both faces.
 Scan bowl_with_normals(double wall_m) {
   Scan scan;
   for (const double side : {1.0, -1.0}) {
@@ -226,16 +227,16 @@ Scan bowl_with_normals(double wall_m) {
   return scan;
 }
 
-// Nodes lie some 4 mm apart: the faces of the walls are nearer to each other than these.
+// Nodes are about 4 mm apart, farther than the two faces of the walls.
 TEST(RoughScan, WallsKeepTheNormalsOfTheirFaces) {
   for (const double wall : {0.001, 0.002, 0.005}) {
     const ScanFit fitted = fit(bowl_with_normals(wall), 20, IslandChoice::all);
-    EXPECT_EQ(fitted.turned_normals, 0U) << wall;
+    EXPECT_EQ(fitted.flipped_normals, 0U) << wall;
     EXPECT_EQ(fitted.islands, 2U) << wall;
   }
 }
 
-// Noise hides a part of the rims.
+// Noise hides parts of the boundaries.
 TEST(RoughScan, NoisyOpenCylinderIsATube) {
   Scan scan = random_cloud(9000, 11, [](double s, double t) { return on_cylinder(s, t, 0.031, 0.08); });
   add_noise(scan, 12, 3e-4);
@@ -244,7 +245,7 @@ TEST(RoughScan, NoisyOpenCylinderIsATube) {
   EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::tube);
 }
 
-// A single face as thick as its noise is no wall.
+// A single face as thick as its noise is not a wall.
 TEST(RoughScan, NoisyDomeIsASheet) {
   Scan scan = random_cloud(9000, 13, [](double s, double t) {
     const double r = 0.04 * std::sqrt(t), height = std::sqrt(0.045 * 0.045 - r * r);
@@ -257,7 +258,7 @@ TEST(RoughScan, NoisyDomeIsASheet) {
   EXPECT_LT(fitted.bodies[0].errors.surface_to_data.p95_m, 3e-4);
 }
 
-// Both faces of a wall 2 mm thick, 3 mm between points: only the profile tells them apart.
+// Both faces of a 2 mm wall with points 3 mm apart: only the profile separates them.
 TEST(RoughScan, ThinBowlWithoutNormalsHasTwoFaces) {
   const auto bowl = [](double s, double t, double radius) {
     const double height = t * radius, out = std::sqrt(radius * radius - height * height);

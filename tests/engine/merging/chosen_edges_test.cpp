@@ -1,4 +1,4 @@
-// Edges that the user names, and what is said of those found.
+// Edges chosen by the user, and reports on matched ones.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,9 @@ TEST(ChosenEdges, AreJoined) {
   ASSERT_TRUE(merged.ok()) << merged.error().message;
   EXPECT_EQ(merged->joints[0].a, (PatchEdge{0, Side::v_end}));
   request.chosen = {{{0, Side::v_end}, {2, Side::v_start}}};
-  EXPECT_EQ(merge(parts, request).error().message, "patch 3 of a chosen edge does not exist");
+  const auto unknown = merge(parts, request);
+  EXPECT_EQ(unknown.error().code, ErrorCode::unknown);
+  EXPECT_EQ(unknown.error().message, "patch 3 of a chosen edge does not exist");
 }
 
 TEST(ChosenEdges, ThatContradictEachOtherAreRefused) {
@@ -36,7 +38,7 @@ TEST(ChosenEdges, ThatContradictEachOtherAreRefused) {
     return merged.ok() ? std::string() : merged.error().message;
   };
   EXPECT_EQ(refused(pair),
-            "patch 1's v_end is named in two pairs of edges and can be joined once; leave one out");
+            "patch 1's v_end is named in two pairs of edges but can be joined only once; leave one out");
   EXPECT_EQ(refused({{0, Side::v_end}, {1, Side::v_end}}), refused(pair));
   const std::string ring = refused({{0, Side::v_start}, {1, Side::v_end}});
   EXPECT_NE(ring.find("patch 1's v_start and patch 2's v_end cannot be joined"), std::string::npos) << ring;

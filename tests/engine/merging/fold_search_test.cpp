@@ -1,5 +1,3 @@
-#include "engine/merging/fold_search.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,11 +5,12 @@
 #include <numbers>
 
 #include "engine/bspline/grid.h"
+#include "engine/merging/bridge.h"
 
 namespace spoonbill {
 namespace {
 
-// Over x, along a curve whose direction is given by the angle that it climbs at.
+// A ribbon over x along a curve with the given climb angle.
 Surface ribbon(const std::function<double(double)>& climb) {
   const auto u = KnotVector::clamped_uniform(3, 5).value(), v = KnotVector::clamped_uniform(3, 40).value();
   PointGrid points{uniform_parameters(u, 12), uniform_parameters(v, 161), {}};
@@ -25,18 +24,18 @@ Surface ribbon(const std::function<double(double)>& climb) {
   return fit_grid(u, v, points).value();
 }
 
-// Up to half a turn and back, so slowly that no step along it is a right angle.
+// Up to half a turn and back, too slowly for a right angle in any step.
 TEST(FoldSearch, AStripThatTurnsBackSlowlyFolds) {
   const Surface back =
       ribbon([](double t) { return 0.9 * std::numbers::pi * std::sin(t * std::numbers::pi); });
-  EXPECT_FALSE(place_of_fold(back).has_value());
-  EXPECT_TRUE(place_of_fold_between(back, 0.0, 1.0).has_value());
-  EXPECT_FALSE(place_of_fold_between(back, 0.0, 0.2).has_value());
+  EXPECT_FALSE(find_fold(back).has_value());
+  EXPECT_TRUE(find_fold_between(back, 0.0, 1.0).has_value());
+  EXPECT_FALSE(find_fold_between(back, 0.0, 0.2).has_value());
 }
 
 TEST(FoldSearch, AStripThatLeadsElsewhereDoesNot) {
-  EXPECT_FALSE(place_of_fold_between(ribbon([](double t) { return 3.0 * t; }), 0.0, 1.0).has_value());
-  EXPECT_FALSE(place_of_fold_between(ribbon([](double) { return 0.3; }), 0.0, 1.0).has_value());
+  EXPECT_FALSE(find_fold_between(ribbon([](double t) { return 3.0 * t; }), 0.0, 1.0).has_value());
+  EXPECT_FALSE(find_fold_between(ribbon([](double) { return 0.3; }), 0.0, 1.0).has_value());
 }
 
 TEST(FoldSearch, AnEdgeIsNoFold) {
@@ -50,8 +49,8 @@ TEST(FoldSearch, AnEdgeIsNoFold) {
     }
     return Surface{u, v, net};
   };
-  EXPECT_FALSE(place_of_fold(roof(edge)).has_value());
-  EXPECT_TRUE(place_of_fold(roof(smooth)).has_value());
+  EXPECT_FALSE(find_fold(roof(edge)).has_value());
+  EXPECT_TRUE(find_fold(roof(smooth)).has_value());
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "engine/merging/round_part.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +16,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// A plane at the height `y_m` from -0.05 to 0.05 m in x and z, facing up or down.
+// A plane at height `y_m` from -0.05 to 0.05 m in x and z, facing up or down.
 Surface plane(double y_m, bool up) {
   Surface surface;
   surface.u = surface.v = KnotVector::clamped_uniform(1, 2).value();
@@ -45,7 +43,7 @@ TrimLoop circle(const Surface& surface, double radius_m, bool hole,
   return make_polygon_loop(surface.u, surface.v, corners).value();
 }
 
-// About y, from the height `low_m` to `high_m`, facing outwards, its seam elsewhere than a disc's.
+// A cylinder about y from `low_m` to `high_m`, facing outwards, with a seam that differs from a disc's.
 Surface side(double radius_m, double low_m, double high_m) {
   const auto u = KnotVector::periodic_uniform(3, 24).value();
   const auto v = KnotVector::clamped_uniform(3, 6).value();
@@ -68,7 +66,7 @@ TEST(RoundPart, ADiscEndsInAPoleAndKeepsItsArea) {
     EXPECT_LE(disc->deviation_m, 1e-6);
     const Surface& surface = disc->surface;
     EXPECT_TRUE(surface.u.is_periodic());
-    // Chords of a third of a degree take 5e-6 of the circle's area, an edge within a micrometre 7e-5.
+    // Chords of a third of a degree lose 5e-6 of the circle's area, an edge within a micrometre 7e-5.
     EXPECT_NEAR(compute_enclosed_mass(surface).area_m2 / (pi * 0.03 * 0.03), 1.0, 8e-5);
     EXPECT_GT((up ? 1.0 : -1.0) * unit_normal(surface, 0.3, 0.5).y(), 0.99);
     const Vector3 pole = position(surface, 0.1, surface.v.domain_end());
@@ -76,7 +74,7 @@ TEST(RoundPart, ADiscEndsInAPoleAndKeepsItsArea) {
   }
 }
 
-// The edge of a hole that is out of the middle is met all the same.
+// An eccentric hole's edge is met exactly too.
 TEST(RoundPart, ARingRunsFromItsEdgeToItsHole) {
   const Surface sheet = plane(0.0, true);
   const auto ring = untrimmed(
@@ -93,7 +91,7 @@ TEST(RoundPart, ARingRunsFromItsEdgeToItsHole) {
   }
 }
 
-// A drum as CAD systems have it: its side, and a plane at each end trimmed by a circle.
+// A drum as in CAD systems: its side, and a plane at each end trimmed by a circle.
 TEST(RoundPart, ADrumOfThreeFacesBecomesOneClosedBody) {
   const Surface top = plane(0.03, true), bottom = plane(-0.01, false);
   const auto lid = untrimmed(top, {circle(top, 0.02, false)}, 2e-6);
@@ -113,13 +111,14 @@ TEST(RoundPart, CornersAndLinesThatMeetAnEdgeTwiceAreRefused) {
   const auto square =
       make_polygon_loop(sheet.u, sheet.v, {{0.2, 0.2}, {0.8, 0.2}, {0.8, 0.8}, {0.2, 0.8}}).value();
   EXPECT_FALSE(untrimmed(sheet, {square, circle(sheet, 0.01, true)}, 1e-6));
-  // A kidney, about whose middle it is not star-shaped.
+  // A kidney, not star-shaped about its centroid.
   std::vector<Eigen::Vector2d> kidney;
   for (int k = 0; k < 720; ++k) {
     const double turn = 2.0 * pi * k / 720, reach = 0.1 + 0.28 * std::sin(turn / 2.0);
     kidney.emplace_back(0.45 + reach * std::cos(turn), 0.5 + reach * std::sin(turn));
   }
-  EXPECT_FALSE(round_part(sheet, {kidney, {{0.7, 0.5}, {0.7, 0.51}, {0.71, 0.5}}}, 1e-6).has_value());
+  EXPECT_FALSE(
+      resample_round_part(sheet, {kidney, {{0.7, 0.5}, {0.7, 0.51}, {0.71, 0.5}}}, 1e-6).has_value());
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
-#include "engine/merging/seam.h"
-
 #include <gtest/gtest.h>
 
 #include "engine/bspline/reparameterise.h"
+#include "engine/merging/tube_ends.h"
 #include "tests/engine/bspline/random_surface.h"
 
 namespace spoonbill {
@@ -16,7 +15,7 @@ TEST(Seam, AnOpenedSurfaceIsClosedAgainExactly) {
                                          KnotVector::clamped_uniform(3, 6).value());
     const double start = random.uniform(0.0, 1.0);
     const Surface opened = part_of(whole, Direction::u, start, start + 1.0).value();
-    const auto closed = closed_around(opened, Direction::u, degree - 1, 1e-6);
+    const auto closed = close_around(opened, Direction::u, degree - 1, 1e-6);
     ASSERT_TRUE(closed.ok()) << closed.error().message;
     EXPECT_LT(closed->deviation_m, 1e-10);
     EXPECT_TRUE(closed->surface.u.is_periodic());
@@ -32,9 +31,8 @@ TEST(Seam, EdgesThatDoNotMeetAreRefused) {
   Random random(82);
   const Surface sheet = random_surface(random, KnotVector::clamped_uniform(3, 6).value(),
                                        KnotVector::periodic_uniform(3, 6).value());
-  EXPECT_FALSE(closed_around(sheet, Direction::u, 2, 1e-5).ok());
-  EXPECT_EQ(closed_around(sheet, Direction::v, 2, 1e-5).error().message,
-            "the direction is closed already; choose the other one");
+  EXPECT_FALSE(close_around(sheet, Direction::u, 2, 1e-5).ok());
+  EXPECT_EQ(close_around(sheet, Direction::v, 2, 1e-5).error().code, ErrorCode::inconsistent);
 }
 
 TEST(Seam, ASinglePieceIsClosedToo) {
@@ -47,7 +45,7 @@ TEST(Seam, ASinglePieceIsClosedToo) {
   }
   const Surface drop{KnotVector::clamped_uniform(3, 4).value(), KnotVector::clamped_uniform(1, 2).value(),
                      net};
-  const auto closed = closed_around(drop, Direction::u, 2, 1e-4);
+  const auto closed = close_around(drop, Direction::u, 2, 1e-4);
   ASSERT_TRUE(closed.ok()) << closed.error().message;
   EXPECT_TRUE(closed->surface.u.is_periodic());
   for (double u = 0.0; u < 1.0; u += 0.01) {

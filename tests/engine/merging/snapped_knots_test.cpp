@@ -1,11 +1,10 @@
-#include "engine/merging/nearly_same_knots.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "engine/bspline/reparameterise.h"
+#include "engine/merging/compatible_patches.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/merging/made_patches.h"
 
@@ -19,7 +18,7 @@ double shortest_piece(const KnotVector& knots) {
   return shortest / (ends.back() - ends.front());
 }
 
-// The surface with each coordinate moved by up to so much.
+// Returns the surface with each coordinate moved by at most `noise_m`.
 Surface with_noise(Surface surface, Random& random, double noise_m) {
   for (std::size_t k = 0; k < surface.net.size(); ++k) {
     surface.net.x[k] += random.uniform(-noise_m, noise_m);
@@ -56,7 +55,7 @@ TEST(NearlySameKnots, RoundedKnotsBecomeThoseOfTheFirstPatch) {
   const auto merged = merge({low, high}, request_of(2));
   ASSERT_TRUE(merged.ok()) << merged.error().message;
   EXPECT_EQ(merged->surface.u, low.u);
-  // What that costs is told.
+  // The cost is reported.
   EXPECT_GT(merged->deviation_m, 1e-11);
   EXPECT_LT(merged->deviation_m, 1e-8);
 }
@@ -68,14 +67,14 @@ TEST(NearlySameKnots, KnotsThatAreOneAlreadyStay) {
     return random_surface(random, u, KnotVector::clamped_uniform(2, 4).value());
   };
   const Surface close = of(0.5 + 1e-6);
-  const MovedKnots same = with_nearly_same_knots(close, of(0.7).u, 1.0);
+  const SnappedKnots same = snap_knots(close, of(0.7).u, 1.0);
   EXPECT_EQ(same.surface.u, close.u);
   EXPECT_EQ(same.deviation_m, 0.0);
-  // A hair too dear.
+  // Slightly above the limit.
   const Surface other = of(0.7);
   const auto wanted = KnotVector::open(2, {0, 0, 0, 0.5, 0.7 + 1e-6, 1, 1, 1}).value();
-  EXPECT_EQ(with_nearly_same_knots(other, wanted, 1.0).surface.u, wanted);
-  EXPECT_EQ(with_nearly_same_knots(other, wanted, 1e-12).surface.u, other.u);
+  EXPECT_EQ(snap_knots(other, wanted, 1.0).surface.u, wanted);
+  EXPECT_EQ(snap_knots(other, wanted, 1e-12).surface.u, other.u);
 }
 
 }  // namespace
