@@ -10,10 +10,10 @@ namespace {
 constexpr double nanometres_per_metre = 1e9;
 constexpr double billion = 1e9;
 
-// A sum of the four squares below this means that there is no orientation to speak of.
+// Smallest squared length of a quaternion that has a direction.
 constexpr double smallest_square = 1e-12;
 
-// Rounding to billionths leaves the square of the length within 4e-9 of 1.
+// Tolerance for the squared length of a unit quaternion; rounding to billionths changes it by up to 4e-9.
 constexpr double unit_square_tolerance = 1e-6;
 
 std::int64_t whole_nanometres(double metres) {
@@ -30,20 +30,20 @@ Status check_specification(const DeviceSpecification& specification) {
     double value;
     Range<double> range;
   };
-  const DeviceSpecification& of = specification;
   const Field fields[] = {
-      {"maximum_force_n", of.maximum_force_n, device_force_range_n},
-      {"maximum_stiffness_n_per_m", of.maximum_stiffness_n_per_m, device_stiffness_range_n_per_m},
-      {"maximum_damping_n_s_per_m", of.maximum_damping_n_s_per_m, device_damping_range_n_s_per_m},
-      {"workspace_radius_m", of.workspace_radius_m, device_workspace_range_m},
-      {"position_resolution_m", of.position_resolution_m, device_resolution_range_m},
-      {"quiet_force_n", of.quiet_force_n, device_quiet_force_range_n},
-      {"ramp_time_s", of.ramp_time_s, device_ramp_time_range_s},
-      {"maximum_force_rate_n_per_s", of.maximum_force_rate_n_per_s, device_force_rate_range_n_per_s},
-      {"maximum_speed_m_per_s", of.maximum_speed_m_per_s, device_speed_range_m_per_s}};
+      {"maximum_force_n", specification.maximum_force_n, device_force_range_n},
+      {"maximum_stiffness_n_per_m", specification.maximum_stiffness_n_per_m, device_stiffness_range_n_per_m},
+      {"maximum_damping_n_s_per_m", specification.maximum_damping_n_s_per_m, device_damping_range_n_s_per_m},
+      {"workspace_radius_m", specification.workspace_radius_m, device_workspace_range_m},
+      {"position_resolution_m", specification.position_resolution_m, device_resolution_range_m},
+      {"quiet_force_n", specification.quiet_force_n, device_quiet_force_range_n},
+      {"ramp_time_s", specification.ramp_time_s, device_ramp_time_range_s},
+      {"maximum_force_rate_n_per_s", specification.maximum_force_rate_n_per_s,
+       device_force_rate_range_n_per_s},
+      {"maximum_speed_m_per_s", specification.maximum_speed_m_per_s, device_speed_range_m_per_s}};
   for (const Field& field : fields) {
     if (Status status = check_range(field.name, field.value, field.range); !status.ok()) {
-      return Error{"device " + of.name + ": " + status.error().message};
+      return status.error().in("device " + specification.name);
     }
   }
   return {};

@@ -1,14 +1,17 @@
-// The thread that ticks: calls a function once a period at absolute deadlines, as a real-time thread where
-// the system permits that, and keeps the figures of how well it did.
+// The haptic thread: calls a function once a period at absolute deadlines, with real-time scheduling if the
+// system permits it, and measures how well it meets the deadlines.
 //
 //   deadline   |<- period ->|            |            |            |
 //   ticks      [0]          [1........................]  [4]       [5]
-//                                        ^ dropped    ^ late, but less than a period
+//                                        ^ dropped    ^ late, but by less than a period
 //
-// A tick that is late by a whole period or more is dropped, never caught up: the next one is told how many
-// were. What must not happen in the function: locks, allocation, files, anything that may wait.
+// A tick that is late by a whole period or more is dropped and never caught up; the next tick receives the
+// number of dropped ones. The function must not lock, allocate, access files or block in any other way.
 #pragma once
 
+#include <array>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -19,53 +22,79 @@
 
 namespace spoonbill {
 
+// A lock-free histogram of durations. Exactly one thread calls add(). Any thread may read; values being added
+// may not yet be included.
+class DurationHistogram {
+ public:
+  // Adds a duration. Negative durations count as zero.
+  void add(std::int64_t duration_ns) noexcept;
+
+  // Returns the duration that `fraction` (0 to 1) of the added ones do not exceed, within 1/16; 0 if empty.
+  double quantile_s(double fraction) const noexcept;
+
+  double mean_s() const noexcept;
+  std::uint64_t count() const noexcept { return count_.load(std::memory_order_relaxed); }
+
+ private:
+  // Sixteen bins for each octave; below sixteen, one bin for each whole nanosecond.
+  static constexpr std::size_t bins_per_octave = 16;
+  static constexpr std::size_t bin_count = 61 * bins_per_octave;
+
+  static std::size_t bin_index(std::uint64_t duration_ns) noexcept;
+  static double bin_centre_ns(std::size_t bin) noexcept;
+
+  std::array<std::atomic<std::uint64_t>, bin_count> bins_{};
+  std::atomic<std::uint64_t> count_{0};
+  std::atomic<std::uint64_t> sum_ns_{0};
+};
+
 inline constexpr Range<double> loop_period_range_s{1e-4, 1.0};
 
 struct LoopSettings {
   double period_s = 1e-3;
-  bool real_time = true;  // ask for first-in-first-out scheduling and locked memory
+  bool real_time = true;  // requests first-in-first-out scheduling and locked memory
 };
 
 struct LoopTick {
-  std::uint64_t index = 0;    // of the calls, from 0
-  std::uint64_t dropped = 0;  // whole periods that passed before this tick because the thread was late
+  std::uint64_t index = 0;    // number of earlier calls
+  std::uint64_t dropped = 0;  // whole periods skipped before this tick because the thread was late
 };
 
 struct LoopFigures {
-  std::uint64_t ticks = 0;   // calls that have ended
-  std::uint64_t late = 0;    // of them, begun more than half a period after their deadline
-  std::uint64_t missed = 0;  // periods dropped
-  double rate_hz = 0.0;      // of the last whole second, or since the start when there is none yet
-  // How long after its deadline a tick begins, dropped periods included; within 1/16.
+  std::uint64_t ticks = 0;   // completed calls
+  std::uint64_t late = 0;    // calls that began more than half a period after their deadline
+  std::uint64_t missed = 0;  // dropped periods
+  double rate_hz = 0.0;      // over the last whole second, or since the start during the first second
+  // Quantiles of the delay from the deadline to the start of a tick, dropped periods included; within 1/16.
   double lateness_p50_s = 0.0;
   double lateness_p99_s = 0.0;
   double lateness_p999_s = 0.0;
-  // How long the function takes.
+  // Run time of the function.
   double work_mean_s = 0.0;
   double work_p99_s = 0.0;
-  bool fifo = false;           // runs first-in-first-out, before every ordinary thread
-  bool memory_locked = false;  // what the program had in memory at the start stays there
-  std::string notice;          // one line for the person, to be shown once; empty where all was permitted
+  bool fifo = false;           // true with first-in-first-out scheduling, ahead of every ordinary thread
+  bool memory_locked = false;  // true if the memory in use at the start is locked
+  std::string notice;          // one line to show to the user once; empty if everything was permitted
 };
 
-// Owns its thread. At most one at a time in a process should be real-time: locking memory concerns all of it.
+// Owns its thread. At most one loop of a process should be real-time, because locked memory affects the whole
+// process.
 class HapticLoop {
  public:
-  // The function is called on the new thread, with denormal numbers flushed to zero, until stop(). It must
-  // not throw: an exception ends the program with its message (std::terminate). Refused: a period outside
-  // its range, an empty function, no thread to be had. Being refused real-time scheduling is no error but a
-  // notice.
+  // Calls `body` on a new thread, with denormal numbers flushed to zero, until stop(). `body` must not throw:
+  // an exception ends the program (std::terminate). Errors: a period outside its range, an empty function, a
+  // thread that cannot be started. Refused real-time scheduling is not an error but a notice.
   static Result<HapticLoop> start(const LoopSettings& settings, std::function<void(const LoopTick&)> body);
 
   HapticLoop(HapticLoop&&) noexcept;
   HapticLoop& operator=(HapticLoop&&) noexcept;
-  ~HapticLoop();  // stops
+  ~HapticLoop();  // calls stop()
 
-  // Returns when the last call has ended, at the latest a period later. Again: nothing. From the owner's
-  // thread, never from within the function.
+  // Returns when the last call has ended, at most a period later. Further calls do nothing. Must be called
+  // from the owner's thread, never from within the function.
   void stop();
 
-  // From any thread while the object lives, also after stop().
+  // Returns the current figures. Callable from any thread while the object exists, also after stop().
   LoopFigures figures() const;
 
  private:

@@ -1,10 +1,173 @@
 #include "haptic/safe_device.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/base/assert.h"
+#include "engine/simulation/simulation.h"
 
 namespace spoonbill {
+
+namespace {
+
+constexpr int quiet_ticks_needed = 10;
+
+// Number of dropped ticks that counts as a stall. In that time a hand moves a hand's breadth, and an old
+// force is no longer valid. Shorter gaps are covered by the limit on the change.
+constexpr std::uint64_t stall_ticks = 25;
+
+// Multiples of the workspace radius and of the maximum speed at which the force has faded to zero.
+constexpr double workspace_end = 1.1;
+constexpr double speed_end = 2.0;
+
+// Weight of the low pass at 20 Hz, which a hand can follow: 1 - exp(-2 pi 20 Hz tick_s).
+constexpr double slow_weight = 0.118;
+// Decay of the swing count in a tick. Swings are forgotten within 100 ticks, so a steady buzz of f Hz counts
+// to 0.2 f. The fastest tremor of a hand, at 12 Hz, reaches 2.4.
+constexpr double swing_memory = 0.99;
+constexpr double maximum_swings = 5.0;
+
+Vector3 clamp_norm(const Vector3& vector, double limit) {
+  const double norm = vector.stableNorm();
+  return norm > limit ? Vector3(vector * (limit / norm)) : vector;
+}
+
+// Returns 1 up to `begin`, 0 from `end` on, and a linear ramp between.
+double fade(double value, double begin, double end) {
+  return std::clamp((end - value) / (end - begin), 0.0, 1.0);
+}
+
+std::uint32_t find_faults(const DeviceSpecification& specification, const SafetyInput& input) {
+  std::uint32_t faults = safety_flag_none;
+  if (!input.requested_n.allFinite() || !input.position_m.allFinite()) faults |= safety_flag_not_finite;
+  if (input.stale) faults |= safety_flag_stale;
+  if (input.dropped_ticks >= stall_ticks) faults |= safety_flag_stalled;
+  const std::uint32_t pressed = input.buttons & specification.dead_man_buttons;
+  if (pressed != specification.dead_man_buttons) faults |= safety_flag_dead_man;
+  if (input.no_device) faults |= safety_flag_no_device;
+  return faults;
+}
+
+// Resets the chain and returns zero force.
+SafeForce cut(SafetyState& state, std::uint32_t faults) {
+  state = SafetyState{};
+  state.cause = faults;
+  SafeForce safe;
+  safe.flags = faults | safety_flag_cut;
+  safe.reset_proxy = (faults & safety_flag_stalled) != 0;
+  return safe;
+}
+
+void engage_when_quiet(SafetyState& state, const DeviceSpecification& specification,
+                       const Vector3& requested_n) {
+  const bool quiet = requested_n.stableNorm() < specification.quiet_force_n;
+  state.quiet_ticks = quiet ? state.quiet_ticks + 1 : 0;
+  state.engaged = state.quiet_ticks >= quiet_ticks_needed;
+}
+
+double compute_speed(const SafetyState& state, const SafetyInput& input) {
+  if (!state.position_known) return 0.0;
+  const double elapsed_s = (1.0 + static_cast<double>(input.dropped_ticks)) * tick_s;
+  return (input.position_m - state.position_m).stableNorm() / elapsed_s;
+}
+
+void ramp(SafetyState& state, const DeviceSpecification& specification, SafeForce& safe) {
+  if (state.gain >= 1.0) return;
+  const double ramp_s = specification.ramp_time_s;
+  state.gain = ramp_s > tick_s ? std::min(1.0, state.gain + tick_s / ramp_s) : 1.0;
+  if (state.gain < 1.0) {
+    safe.flags |= safety_flag_ramping | state.cause;
+  } else {
+    state.cause = safety_flag_none;
+  }
+}
+
+// Returns the requested force within the limits on force, speed and workspace, ramped in.
+Vector3 limit_force(const SafetyState& state, const DeviceSpecification& specification,
+                    const SafetyInput& input, double speed_m_per_s, SafeForce& safe) {
+  const double limit_n = specification.maximum_force_n;
+  if (input.requested_n.stableNorm() > limit_n) safe.flags |= safety_flag_force_limited;
+  const double speed_limit = specification.maximum_speed_m_per_s;
+  const double slow = fade(speed_m_per_s, speed_limit, speed_end * speed_limit);
+  if (slow < 1.0) safe.flags |= safety_flag_fast;
+  const double radius = specification.workspace_radius_m;
+  const double inside = fade(input.position_m.stableNorm(), radius, workspace_end * radius);
+  if (inside < 1.0) safe.flags |= safety_flag_outside;
+  return state.gain * slow * inside * clamp_norm(input.requested_n, limit_n);
+}
+
+Vector3 limit_change(const Vector3& from_n, const Vector3& to_n, const DeviceSpecification& specification,
+                     SafeForce& safe) {
+  const double maximum_n = specification.maximum_force_rate_n_per_s * tick_s;
+  const Vector3 step_n = to_n - from_n;
+  if (step_n.stableNorm() <= maximum_n) return to_n;
+  safe.flags |= safety_flag_change_limited;
+  return clamp_norm(from_n + clamp_norm(step_n, maximum_n), specification.maximum_force_n);
+}
+
+// Returns whether the force oscillates too often. A swing counts if it exceeds the quiet force and is opposed
+// to the previous one.
+bool is_buzzing(SafetyState& state, const DeviceSpecification& specification, const Vector3& force_n) {
+  state.slow_force_n += slow_weight * (force_n - state.slow_force_n);
+  state.swings *= swing_memory;
+  const Vector3 swing_n = force_n - state.slow_force_n;
+  if (swing_n.norm() < specification.quiet_force_n) return false;
+  if (swing_n.dot(state.swing_force_n) < 0.0) state.swings += 1.0;
+  state.swing_force_n = swing_n;
+  return state.swings > maximum_swings;
+}
+
+struct FlagText {
+  SafetyFlag flag;
+  const char* text;
+};
+
+constexpr FlagText flag_texts[] = {
+    {safety_flag_no_device, "Force cut: the device does not answer"},
+    {safety_flag_not_finite, "Force cut: a number was not finite"},
+    {safety_flag_stale, "Force cut: the simulation did not keep up"},
+    {safety_flag_stalled, "Force cut: the program stalled"},
+    {safety_flag_buzzing, "Force cut: it was oscillating; touch more lightly, or lower the force scale"},
+    {safety_flag_dead_man, "Force off: hold the safety button"},
+    {safety_flag_waiting, "Force off until the tool is clear of the material"},
+    {safety_flag_ramping, "Force is ramping in"},
+    {safety_flag_outside, "Force fades: the hand is outside the device's workspace"},
+    {safety_flag_fast, "Force fades: move more slowly"},
+    {safety_flag_force_limited, "Force at the device's limit: lower the force scale"},
+    {safety_flag_change_limited, "Force limited: it would jump"},
+};
+
+}  // namespace
+
+SafeForce make_safe(SafetyState& state, const DeviceSpecification& specification, const SafetyInput& input) {
+  if (const std::uint32_t faults = find_faults(specification, input); faults != 0) return cut(state, faults);
+  const double speed_m_per_s = compute_speed(state, input);
+  state.position_m = input.position_m;
+  state.position_known = true;
+  SafeForce safe;
+  if (!state.engaged) {
+    engage_when_quiet(state, specification, input.requested_n);
+    safe.flags = safety_flag_waiting | state.cause;
+    return safe;
+  }
+  ramp(state, specification, safe);
+  const Vector3 requested_n = limit_force(state, specification, input, speed_m_per_s, safe);
+  safe.force_n = limit_change(state.force_n, requested_n, specification, safe);
+  if (is_buzzing(state, specification, safe.force_n)) return cut(state, safety_flag_buzzing);
+  state.force_n = safe.force_n;
+  return safe;
+}
+
+std::string safety_text(std::uint32_t flags) {
+  std::string text;
+  for (const FlagText& entry : flag_texts) {
+    if ((flags & entry.flag) == 0) continue;
+    if (!text.empty()) text += '\n';
+    text += entry.text;
+  }
+  return text;
+}
 
 SafeDevice::SafeDevice(Device& device, const DeviceReading& last)
     : device_(&device), limits_(device.specification()), reading_(last) {
@@ -25,13 +188,13 @@ DeviceReading SafeDevice::read() {
   return reading_;
 }
 
-bool SafeDevice::take_proxy_reset() {
+bool SafeDevice::consume_proxy_reset() {
   return std::exchange(proxy_is_stale_, false);
 }
 
-Vector3 SafeDevice::give(const Vector3& wanted_n, std::uint64_t dropped_ticks) {
+Vector3 SafeDevice::give(const Vector3& requested_n, std::uint64_t dropped_ticks) {
   SafetyInput input;
-  input.wanted_n = wanted_n;
+  input.requested_n = requested_n;
   input.dropped_ticks = dropped_ticks;
   return give(input);
 }

@@ -1,59 +1,135 @@
-// A device behind the safety chain. Live and in lock-step alike this is the only code that reads a device and
-// the only code that gives it a force, so that no force reaches a hand past the chain.
+// The safety chain between the force that the coupling requests and the hand: no fault of the program may
+// hurt it.
 //
-//   once a tick:  read() -> reset the proxy if take_proxy_reset() -> advance the simulation -> give(force)
-//   or, while there is no simulation to advance:                                    read() -> give_none()
+// SafeDevice, both live and in lock-step, is the only code that reads a device and that sets its force. So no
+// force reaches a hand unchecked. make_safe() applies these steps in every tick:
+//   1. A fault gives zero force within that tick: a value that is not finite, a stale simulation, a stall, a
+//      released dead-man button, a device that does not answer.
+//   2. The force stays off until the requested force has been small for some ticks, so that a hand that
+//      starts inside the material is not thrown out; then the force ramps in.
+//   3. Its norm is limited to the maximum of the device.
+//   4. It fades for a hand that is too fast or outside the workspace.
+//   5. Its change per tick is limited.
+//   6. A force that oscillates with energy, faster than a hand moves, is cut.
+// After a fault or a cut the chain restarts at step 2. A cut is the one change that may exceed the limit of
+// step 5.
 //
-// A device that does not answer, or answers with garbage, gets no force. Its last good reading stands in for
-// it, as a hand that only points: the tool lets go of the material and touches nothing. When the device is
-// back, the proxy is reset to where its hand is then, and the force comes back as it does after every fault.
-//
-// One owner, as the device; allocates nothing, locks nothing, reads no clock.
+// The order and the quiet force follow cGenericTool of CHAI3D; the other limits belong to the device. The
+// chain is no part of the state hash: the material is moved by the coupling (haptic/tick.h).
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "haptic/device.h"
-#include "haptic/safety.h"
 
 namespace spoonbill {
 
+// Reasons why the hand does not receive the requested force. safety_text() describes each.
+enum SafetyFlag : std::uint32_t {
+  safety_flag_none = 0,
+  safety_flag_cut = 1u << 0,  // a fault made the force zero in this tick
+  // Faults; each stays set until the full force is back.
+  safety_flag_not_finite = 1u << 1,
+  safety_flag_stale = 1u << 2,
+  safety_flag_stalled = 1u << 3,
+  safety_flag_buzzing = 1u << 4,
+  safety_flag_dead_man = 1u << 5,
+  // Conditions of this tick.
+  safety_flag_waiting = 1u << 6,
+  safety_flag_ramping = 1u << 7,
+  safety_flag_force_limited = 1u << 8,
+  safety_flag_fast = 1u << 9,
+  safety_flag_outside = 1u << 10,
+  safety_flag_change_limited = 1u << 11,
+  // A fault, like those above.
+  safety_flag_no_device = 1u << 12,
+};
+
+struct SafetyInput {
+  Vector3 requested_n = Vector3::Zero();  // force requested by the coupling
+  Vector3 position_m = Vector3::Zero();   // position of the handle relative to the centre of the workspace
+  std::uint32_t buttons = 0;
+  std::uint64_t dropped_ticks = 0;  // whole ticks that passed without a call since the last one
+  bool stale = false;               // requested_n is not from this tick
+  bool no_device = false;           // the device does not answer: position and buttons are not from this tick
+};
+
+struct SafeForce {
+  Vector3 force_n = Vector3::Zero();
+  std::uint32_t flags = safety_flag_none;
+  bool reset_proxy = false;  // requests that the proxy be moved to the device before the next tick
+};
+
+// State of the chain. Plain data, owned by the ticking thread. Forces are off initially.
+struct SafetyState {
+  bool engaged = false;
+  int quiet_ticks = 0;
+  double gain = 0.0;                  // progress of the ramp, 0 to 1
+  std::uint32_t cause = 0;            // faults that caused the last restart
+  Vector3 force_n = Vector3::Zero();  // force of the last tick
+  bool position_known = false;
+  Vector3 position_m = Vector3::Zero();
+  Vector3 slow_force_n = Vector3::Zero();   // low-passed force, which a hand can follow
+  Vector3 swing_force_n = Vector3::Zero();  // last large deviation from slow_force_n
+  double swings = 0.0;                      // decaying count of reversals
+};
+
+// Applies the chain to one tick. A pure function: it does not allocate, lock, read a clock or throw. The
+// specification has passed check_specification(). Called only by SafeDevice.
+SafeForce make_safe(SafetyState& state, const DeviceSpecification& specification, const SafetyInput& input);
+
+// Returns one line for each flag that concerns the user, the most serious first, separated by newlines. Empty
+// if no flag is set.
+std::string safety_text(std::uint32_t flags);
+
+// A device behind the safety chain.
+//
+//   once a tick:  read() -> reset the proxy if consume_proxy_reset() -> advance the simulation -> give(force)
+//   or, while there is no simulation to advance:                                        read() -> give_none()
+//
+// A device that does not answer, or answers with an invalid reading, gets no force. Its last valid reading
+// replaces the missing one, as a hand that only points: the tool releases the material and touches nothing.
+// When the device is back, the proxy is reset to the position of the hand, and the force returns as after any
+// other fault.
+//
+// One owner, the owner of the device. Does not allocate, lock or read a clock.
 class SafeDevice {
  public:
-  // The device must outlive it; its specification, from which all limits come, has passed
-  // check_specification(). The workspace is centred where the hand begins and has the specification's radius.
-  // `last` stands in for a device that does not answer from the beginning; it must be valid.
+  // The device must outlive this object, and its specification must pass check_specification(): all limits
+  // come from there. The workspace has the radius of the specification and is centred on the first valid
+  // reading. `last` is returned while the device has never answered; it must be valid.
   explicit SafeDevice(Device& device, const DeviceReading& last = {});
 
-  // Moves or resizes the workspace, in the scene.
+  // Moves or resizes the workspace, in scene coordinates.
   void set_workspace_centre(const Vector3& centre_m) { workspace_centre_m_ = centre_m; }
   void set_workspace_radius(double radius_m) { limits_.workspace_radius_m = radius_m; }
 
-  // The reading for this tick, always valid.
+  // Returns the reading for this tick, which is always valid.
   DeviceReading read();
 
-  // Whether the proxy has to be put where the device is before this tick advances; true once for each time.
-  bool take_proxy_reset();
-  // For a simulation that has not seen the hand's last ticks.
+  // Returns whether the proxy must be moved to the device before this tick advances, and clears the request.
+  bool consume_proxy_reset();
+  // Requests a reset of the proxy, for a simulation that has missed the last motion of the hand.
   void request_proxy_reset() { proxy_is_stale_ = true; }
 
-  // Gives the hand what is safe of the force that the coupling wants, and returns that. `dropped_ticks`:
-  // whole ticks that passed before this one.
-  Vector3 give(const Vector3& wanted_n, std::uint64_t dropped_ticks);
-  // No force, while nothing computes one.
+  // Sends the safe part of the requested force to the hand and returns it. `dropped_ticks` is the number of
+  // whole ticks skipped before this one.
+  Vector3 give(const Vector3& requested_n, std::uint64_t dropped_ticks);
+  // Sends zero force while nothing computes a force.
   void give_none(std::uint64_t dropped_ticks);
 
-  // SafetyFlag bits of the last force given.
+  // SafetyFlag bits of the last force sent.
   std::uint32_t flags() const { return flags_; }
 
  private:
   Vector3 give(SafetyInput input);
 
   Device* device_;
-  DeviceSpecification limits_;  // the device's, but for the radius of the workspace
+  DeviceSpecification limits_;  // those of the device, except for the radius of the workspace
   std::optional<Vector3> workspace_centre_m_;
-  DeviceReading reading_;  // the last good one
+  DeviceReading reading_;  // last valid reading
   bool answers_ = true;
   bool proxy_is_stale_ = false;
   SafetyState state_;

@@ -7,20 +7,21 @@
 namespace spoonbill {
 namespace {
 
-// The share of the way to the newly computed force that one tick takes: a low pass at about 110 Hz, above
-// what a hand moves and below the jitter of nodes that come and go.
-constexpr double force_filter_share = 0.5;
+// Weight of the new force in the low pass. 0.5 gives a cut-off of about 110 Hz, above the motion of a hand
+// and below the jitter of nodes that gain and lose contact.
+constexpr double force_filter_weight = 0.5;
 
-// How late the force is: by the filter, and by half the tick for which it is held.
-constexpr double force_lag_s = ((1.0 - force_filter_share) / force_filter_share + 0.5) * tick_s;
+// Delay of the force, in seconds: that of the filter plus half the tick during which it is constant.
+constexpr double force_lag_s = ((1.0 - force_filter_weight) / force_filter_weight + 0.5) * tick_s;
 
-// Over the least that keeps the coupling passive.
+// Factor on the smallest damping that keeps the coupling passive.
 constexpr double damping_reserve = 2.0;
 
-// Below this a scaled force is none, and the hand holds the tool rigidly.
-constexpr double least_force_scale = 1e-9;
+// Force scale below which no force reaches the hand, and the hand moves the tool rigidly.
+constexpr double minimum_force_scale = 1e-9;
 
-// Along the way to the proxy, and never away from it, so that nothing sticks.
+// Returns the force of the damped spring along the displacement to the proxy. It never pushes away from the
+// proxy, so that nothing sticks.
 Vector3 damped_spring(const DeviceSpecification& specification, const Vector3& displacement_m,
                       const Vector3& velocity_m_per_s) {
   const double length_m = displacement_m.norm();
@@ -43,13 +44,13 @@ TickResult couple(CouplingState& coupling, const DeviceSpecification& specificat
   coupling.position_known = true;
 
   TickResult result;
-  Vector3 wanted = damped_spring(specification, displacement_m, velocity_m_per_s);
-  const double norm = wanted.norm();
+  Vector3 requested_n = damped_spring(specification, displacement_m, velocity_m_per_s);
+  const double norm = requested_n.norm();
   if (norm > specification.maximum_force_n) {
-    wanted *= specification.maximum_force_n / norm;
+    requested_n *= specification.maximum_force_n / norm;
     result.flags |= tick_flag_force_limited;
   }
-  coupling.force_n += force_filter_share * (wanted - coupling.force_n);
+  coupling.force_n += force_filter_weight * (requested_n - coupling.force_n);
   if (!coupling.force_n.allFinite()) coupling.force_n.setZero();
   result.force_n = coupling.force_n;
   return result;
@@ -57,14 +58,14 @@ TickResult couple(CouplingState& coupling, const DeviceSpecification& specificat
 
 TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpecification& specification,
                 const DeviceReading& reading) {
-  const DenormalsFlushed flushed;  // a fading force too must be the same on every thread
+  const DenormalsFlushed flushed;  // decaying forces must be the same on every thread
   const double stiffness = specification.maximum_stiffness_n_per_m;
   const double scale = simulation.scene().sculpting.force_scale;
   ToolInput input;
   input.pose = reading.pose();
   input.gripping = (reading.buttons & button_main) != 0;
   input.hovering = (reading.buttons & button_hover) != 0;
-  input.coupling_n_per_m = scale > least_force_scale ? stiffness / scale : 0.0;
+  input.coupling_n_per_m = scale > minimum_force_scale ? stiffness / scale : 0.0;
   const Reaction reaction = simulation.advance(input);
 
   Vector3 displacement_m = Vector3::Zero();

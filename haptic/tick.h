@@ -1,6 +1,7 @@
-// One tick of touch: reading in, simulation advanced, force out. A pure function of its arguments: it
-// allocates nothing, locks nothing, reads no clock and never throws, so that the 1 kHz thread and the
-// lock-step replay call the same code and get the same bits.
+// One tick of touch: reads a device reading, advances the simulation and computes the force.
+//
+// A pure function of its arguments: it does not allocate, lock, read a clock or throw. The 1 kHz thread and
+// the lock-step replay call the same code and get the same bits.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +11,24 @@
 
 namespace spoonbill {
 
-// The virtual coupling: a critically damped spring of the device's highest stiffness joins the device and the
-// proxy, the tool as the material lets it move (after the proxy of Ruspini et al. 1997). Its force goes to
-// the hand, damped, filtered and limited; the spring's opposite, divided by the force scale, presses the tool
-// on the material.
+// State of the virtual coupling: a critically damped spring, as stiff as the device permits, between the
+// device and the proxy. The proxy is the tool as the material lets it move (after Ruspini et al. 1997). The
+// force of the spring goes to the hand, damped, filtered and limited. Its opposite, divided by the force
+// scale, presses the tool on the material.
 //
-// The force comes late: it is held for a tick and filtered. Late by t, a spring K gives back more than it
-// took, as if damped by -K t (Colgate & Brown 1994 for t = half a tick), so the hand is damped along the
-// spring by twice that, and within the device's highest damping.
+// The force is late, because it is constant for a tick and filtered. With a delay t, a spring K returns more
+// energy than it received, as if damped by -K t (Colgate and Brown 1994, for t of half a tick). So the hand
+// is damped along the spring by twice that, within the maximum damping of the device.
 //
-// Plain data, owned with the simulation by whoever ticks.
+// Plain data, owned with the simulation by the ticking thread.
 struct CouplingState {
-  Vector3 force_n = Vector3::Zero();  // on the hand
+  Vector3 force_n = Vector3::Zero();  // force on the hand
   Vector3 position_m = Vector3::Zero();
   bool position_known = false;
 };
 
 struct TickResult {
-  Vector3 force_n = Vector3::Zero();  // on the hand, within the specification's limit
+  Vector3 force_n = Vector3::Zero();  // force on the hand, within the limit of the specification
   bool touching = false;
   std::uint32_t flags = 0;  // TickFlag bits
 };
@@ -35,11 +36,12 @@ struct TickResult {
 TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpecification& specification,
                 const DeviceReading& reading);
 
-// The coupling alone. `displacement_m` leads from the device to where something stops it, zero where nothing does.
+// Computes the coupling alone. `displacement_m` is the vector from the device to the proxy, zero without
+// contact.
 TickResult couple(CouplingState& coupling, const DeviceSpecification& specification,
                   const Vector3& position_m, const Vector3& displacement_m);
 
-// The coupling's part of the state hash.
+// Adds the coupling to the state hash.
 void add_to_hash(const CouplingState& coupling, StateHash& hash);
 
 }  // namespace spoonbill

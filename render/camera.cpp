@@ -9,12 +9,12 @@
 namespace spoonbill {
 namespace {
 
-constexpr double filled_share = 2.0 / 3.0;
+constexpr double filled_fraction = 2.0 / 3.0;
 
-// Depth range relative to the distance: wide enough for a tool near the eye and the ground far behind, and
-// still below a micrometre a step at a hand's distance.
-constexpr double near_share = 0.05;
-constexpr double far_share = 20.0;
+// Depth range relative to the distance. It includes a tool near the eye and the ground far behind, with steps
+// below a micrometre at a hand's distance.
+constexpr double near_ratio = 0.05;
+constexpr double far_ratio = 20.0;
 
 double focal_px(const Camera& camera, const Viewport& viewport) {
   return 0.5 * viewport.height_px / std::tan(0.5 * camera.vertical_field_of_view_rad);
@@ -25,12 +25,12 @@ Eigen::Vector2d free_centre(const Viewport& viewport) {
   return {r.x + 0.5 * r.width, r.y + 0.5 * r.height};
 }
 
-// The distance at which every corner lies within the share of the free rectangle around its middle.
+// Returns the distance at which every corner is within the filled fraction of the free rectangle.
 double fitting_distance(const Camera& camera, const Box& box, const Viewport& viewport) {
   const Eigen::Matrix3d axes = eye_axes(camera);
   const double focal = focal_px(camera, viewport);
-  const double half_width = 0.5 * filled_share * viewport.free_px.width;
-  const double half_height = 0.5 * filled_share * viewport.free_px.height;
+  const double half_width = 0.5 * filled_fraction * viewport.free_px.width;
+  const double half_height = 0.5 * filled_fraction * viewport.free_px.height;
   double distance = 0.0;
   for (int i = 0; i < 8; ++i) {
     const Vector3 local = axes.transpose() * (box.corner(i) - camera.target_m);
@@ -41,7 +41,8 @@ double fitting_distance(const Camera& camera, const Box& box, const Viewport& vi
   return distance;
 }
 
-// How far the middle of the projected corners lies from the free rectangle's, in pixels.
+// Returns the offset, in pixels, of the centre of the projected corners from the centre of the free
+// rectangle.
 Eigen::Vector2d projected_offset(const Camera& camera, const Box& box, const Viewport& viewport) {
   Box2 pixels;
   for (int i = 0; i < 8; ++i) {
@@ -64,7 +65,7 @@ Viewport make_viewport(int width_px, int height_px, const Rectangle& panel_px) {
   } else {
     viewport.free_px.width = left;
   }
-  // A panel over the whole window leaves nothing to draw in; keep the projection defined.
+  // A panel may cover the whole window. The minimum width keeps the projection defined.
   viewport.free_px.width = std::max(viewport.free_px.width, 1.0);
   return viewport;
 }
@@ -105,8 +106,8 @@ Camera frame(const Camera& camera, const Box& box, const Viewport& viewport) {
   Camera framed = camera;
   framed.target_m = box.centre();
   const double smallest_distance = 1e-3;
-  // Perspective shows the near side larger, so the middle moves a little with the distance: a few rounds
-  // settle both below a hundredth of a pixel.
+  // The centre of the projection moves with the distance, because perspective enlarges the near side. Twelve
+  // iterations converge below a hundredth of a pixel.
   for (int round = 0; round < 12; ++round) {
     framed.distance_m = std::max(smallest_distance, fitting_distance(framed, box, viewport));
     const Eigen::Vector2d offset =
@@ -140,8 +141,8 @@ Eigen::Matrix4d projection_matrix(const Camera& camera, const Viewport& viewport
   SPOONBILL_ASSERT(viewport.width_px > 0 && viewport.height_px > 0);
   const double focal = focal_px(camera, viewport);
   const Eigen::Vector2d centre = free_centre(viewport);
-  const double near_m = near_share * camera.distance_m;
-  const double far_m = far_share * camera.distance_m;
+  const double near_m = near_ratio * camera.distance_m;
+  const double far_m = far_ratio * camera.distance_m;
   Eigen::Matrix4d projection = Eigen::Matrix4d::Zero();
   projection(0, 0) = 2.0 * focal / viewport.width_px;
   projection(1, 1) = 2.0 * focal / viewport.height_px;

@@ -6,9 +6,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "render/gl/pipeline_state.h"
-
 namespace spoonbill {
+
 namespace {
 
 constexpr const char* vertex_source = R"(
@@ -42,11 +41,11 @@ Eigen::Matrix4f display_to_clip(const ImDrawData& data) {
   return matrix;
 }
 
-// ImGui's texture handles are opaque pointers; ours hold the GL name.
-ImTextureID handle_of(GLuint texture) {
+// Conversions between ImGui texture handles, which are opaque pointers, and GL names.
+ImTextureID texture_handle(GLuint texture) {
   return reinterpret_cast<ImTextureID>(std::uintptr_t{texture});
 }
-GLuint texture_of(ImTextureID handle) {
+GLuint texture_name(ImTextureID handle) {
   return static_cast<GLuint>(reinterpret_cast<std::uintptr_t>(handle));
 }
 
@@ -90,7 +89,7 @@ void ImGuiPass::upload_fonts(ImFontAtlas& atlas) {
   gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   constexpr GLint white_with_coverage[4] = {GL_ONE, GL_ONE, GL_ONE, GL_RED};
   gl_->TexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, white_with_coverage);
-  atlas.SetTexID(handle_of(atlas_.id()));
+  atlas.SetTexID(texture_handle(atlas_.id()));
 }
 
 void ImGuiPass::set_state(const ImDrawData& data) const {
@@ -137,7 +136,7 @@ void ImGuiPass::draw_list(const ImDrawData& data, const ImDrawList& list) const 
     if (x1 <= x0 || y1 <= y0) continue;
     gl_->Scissor(static_cast<GLint>(x0), static_cast<GLint>(height - y1), static_cast<GLsizei>(x1 - x0),
                  static_cast<GLsizei>(y1 - y0));
-    gl_->BindTexture(GL_TEXTURE_2D, texture_of(command.GetTexID()));
+    gl_->BindTexture(GL_TEXTURE_2D, texture_name(command.GetTexID()));
     constexpr GLenum index_type = sizeof(ImDrawIdx) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
     gl_->DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount), index_type,
                                 offset(command.IdxOffset * sizeof(ImDrawIdx)),

@@ -1,13 +1,13 @@
-// Draws what Dear ImGui laid out, in any GL context: the packaged backend finds its functions in libGL, which
-// an offscreen context does not use. The ImGui context belongs to the program; nothing here touches it.
+// Draws the Dear ImGui interface in any GL context.
+//
+// The packaged ImGui backend loads its functions from libGL, which an offscreen context does not use. The
+// program owns the ImGui context; this code does not access it.
 #pragma once
 
 #include <imgui.h>
 
 #include "engine/base/result.h"
-#include "render/gl/functions.h"
-#include "render/gl/handle.h"
-#include "render/gl/program.h"
+#include "render/gl/pipeline.h"
 
 namespace spoonbill {
 
@@ -16,12 +16,12 @@ class ImGuiPass {
   // The function table must outlive the pass.
   static Result<ImGuiPass> make(const GlFunctions& gl);
 
-  // Builds the atlas where that is still to do and makes it the texture of its letters. Call again whenever
-  // fonts changed, before the next ImGui::NewFrame().
+  // Builds the atlas if necessary and uploads it as the font texture. Call again whenever fonts change,
+  // before the next ImGui::NewFrame().
   void upload_fonts(ImFontAtlas& atlas);
 
   // Draws into the bound framebuffer, whose size in pixels is DisplaySize * FramebufferScale. Colours are
-  // blended as given, in sRGB.
+  // blended unchanged, in sRGB.
   void draw(const ImDrawData& data) const;
 
  private:

@@ -1,19 +1,55 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <optional>
+#include <string>
 #include <utility>
 
-#include "render/gl/functions.h"
+#include "engine/base/file.h"
+#include "render/gl/pipeline.h"
 #include "render/gl/render_target.h"
 #include "render/imgui_pass.h"
-#include "render/passes/body_meshes.h"
 #include "render/passes/frame_view.h"
+#include "render/passes/mesh_buffers.h"
 #include "render/passes/scene_passes.h"
 
 namespace spoonbill {
+namespace {
 
-// GL objects point at the function table, so everything lives in one place that never moves.
+constexpr std::size_t font_bytes_limit = std::size_t{256} << 20;
+
+// Character ranges: Latin-1, Greek, general punctuation, superscripts, arrows and mathematical signs. ImGui
+// stores the pointer.
+constexpr ImWchar glyph_ranges[] = {0x0020, 0x00ff, 0x0370, 0x03ff, 0x2010, 0x2030, 0x2070, 0x209f,
+                                    0x2190, 0x2194, 0x2212, 0x2212, 0x2248, 0x2265, 0};
+
+ImFont* add_size(ImFontAtlas& atlas, const std::string& file, float size_px) {
+  ImFontConfig config;
+  config.OversampleH = 2;
+  config.OversampleV = 1;
+  // The atlas reads the file when it is built, after this function has returned, so it owns a copy.
+  void* copy = IM_ALLOC(file.size());
+  std::memcpy(copy, file.data(), file.size());
+  return atlas.AddFontFromMemoryTTF(copy, static_cast<int>(file.size()), size_px, &config, glyph_ranges);
+}
+
+}  // namespace
+
+Result<InterfaceFonts> add_interface_fonts(ImFontAtlas& atlas, const std::string& path, float body_px,
+                                           float heading_px) {
+  const auto file = read_file(path, font_bytes_limit);
+  constexpr std::uint8_t truetype[4] = {0, 1, 0, 0};
+  if (!file || file->size() < sizeof(truetype) ||
+      std::memcmp(file->data(), truetype, sizeof(truetype)) != 0) {
+    return Error{ErrorCode::unreadable,
+                 path + ": no readable TrueType font; install fonts-roboto-unhinted or name another file"};
+  }
+  return InterfaceFonts{add_size(atlas, file.value(), body_px), add_size(atlas, file.value(), heading_px)};
+}
+
+// The parts of a renderer in one object that never moves, because GL objects refer to the function table.
 class Renderer::Parts {
  public:
   Parts(GlContext& context, const GlFunctions& functions)
@@ -37,7 +73,7 @@ class Renderer::Parts {
     const FrameView view = make_frame_view(settings, target_->width_px(), target_->height_px());
     const double detail = settings.detail * pixels_per_metre(settings.camera, view.viewport);
     if (Status bodies = bodies_.update(snapshot, detail, settings.keep_level); !bodies) return bodies;
-    if (Status tool = scene_->follow(snapshot.tool); !tool) return tool;
+    if (Status tool = scene_->update_tool(snapshot.tool); !tool) return tool;
     scene_->draw_shadows(view, snapshot, settings, bodies_);
     scene_->draw(view, snapshot, settings, bodies_, *target_);
     if (interface != nullptr) interface_->draw(*interface);

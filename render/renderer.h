@@ -1,4 +1,4 @@
-// Draws snapshots. One renderer a context; it lives on the context's thread.
+// Draws snapshots. One renderer a context; it is used on the thread of the context.
 //
 //   auto context = OsmesaContext::make(1280, 720);
 //   auto renderer = Renderer::make(*context.value());
@@ -6,44 +6,57 @@
 //   renderer->draw(snapshot, settings, ImGui::GetDrawData());       // each frame
 //   renderer->read_pixels(image);                                   // or renderer->present()
 //
-// The picture depends on snapshot, settings and interface alone: the same input gives the same pixels, on any
-// number of drawing threads, except that with ViewSettings::keep_level the tessellation may keep a slightly
-// finer or coarser level from the frame before.
+// The picture depends only on snapshot, settings and interface: the same input gives the same pixels for any
+// number of drawing threads. The exception is ViewSettings::keep_level, which may retain a slightly finer or
+// coarser tessellation from the previous frame.
 #pragma once
 
 #include <imgui.h>
 
 #include <memory>
+#include <string>
 
 #include "engine/base/result.h"
 #include "engine/simulation/snapshot.h"
 #include "render/gl/context.h"
-#include "render/image/image.h"
+#include "render/image.h"
 #include "render/view_settings.h"
 
 namespace spoonbill {
 
+// The interface font in its two sizes.
+struct InterfaceFonts {
+  ImFont* body = nullptr;  // owned by the atlas
+  ImFont* heading = nullptr;
+};
+
+// Adds both sizes (in pixels) of a TrueType file to the atlas, with the characters of units and labels: Greek
+// letters, superscripts, degrees, and arrows if the font has them. Upload the atlas afterwards. Errors: a
+// missing or unreadable file; the message names the file and the package that provides it.
+Result<InterfaceFonts> add_interface_fonts(ImFontAtlas& atlas, const std::string& path, float body_px,
+                                           float heading_px);
+
 class Renderer {
  public:
   // Makes the context current and builds everything that does not depend on a snapshot. The context must
-  // outlive the renderer and be current where the renderer is destroyed.
+  // outlive the renderer and be current when the renderer is destroyed.
   static Result<Renderer> make(GlContext& context);
 
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
   ~Renderer();
 
-  // Call before the first ImGui::NewFrame() and whenever fonts changed.
+  // Uploads the font atlas. Call before the first ImGui::NewFrame() and whenever fonts change.
   void upload_fonts(ImFontAtlas& atlas);
 
-  // Draws a frame of the context's present size; `interface` may be null. A surface that cannot be drawn is
-  // an error and leaves the frame unfinished.
+  // Draws a frame in the current size of the context; `interface` may be null. A surface that cannot be drawn
+  // is an error and leaves the frame incomplete.
   Status draw(const Snapshot& snapshot, const ViewSettings& settings, const ImDrawData* interface);
 
-  // The last frame, RGBA8 in sRGB, top row first.
+  // Copies the last frame as RGBA8 in sRGB, top row first.
   void read_pixels(Image& image) const;
 
-  // Shows the last frame in the context's window; does nothing without a window.
+  // Shows the last frame in the window of the context; does nothing without a window.
   void present();
 
  private:

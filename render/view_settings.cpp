@@ -1,10 +1,35 @@
 #include "render/view_settings.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "engine/base/geometry.h"
 
 namespace spoonbill {
+
+namespace {
+
+// A late frame adds 2, a punctual one subtracts 1. The quality is lowered if more than a third of the frames
+// are late for a while.
+constexpr int late_weight = 2;
+constexpr int late_limit = 12;
+
+// Largest part of the frame time at which the next better quality, by index of the current one, is tried.
+// Samples and shadow add half to double the cost, fine tessellation less.
+constexpr std::array<double, 4> spare_fraction = {0.0, 0.45, 0.65, 0.65};
+
+constexpr int minimum_patience_frames = 120;   // two seconds, the initial value
+constexpr int maximum_patience_frames = 7200;  // two minutes
+constexpr int trial_frames = 120;              // a quality sustained for this long is accepted
+
+constexpr double coarse_detail = 0.5;
+
+FrameQuality neighbour(FrameQuality quality, int step) {
+  return static_cast<FrameQuality>(static_cast<int>(quality) + step);
+}
+
+}  // namespace
 
 double interface_scale_for(int height_px) {
   constexpr double reference_height_px = 720.0;
@@ -13,8 +38,66 @@ double interface_scale_for(int height_px) {
 
 double ground_below(const Box& model) {
   if (model.is_empty()) return 0.0;
-  constexpr double gap_share = 0.01;
-  return model.low.y() - gap_share * model.size();
+  constexpr double gap_fraction = 0.01;
+  return model.low.y() - gap_fraction * model.size();
+}
+
+void FrameBudget::add_frame(double took_s) {
+  ++frames_since_change_;
+  if (frames_since_change_ == trial_frames && on_trial_) {
+    on_trial_ = false;
+    patience_frames_ = minimum_patience_frames;
+  }
+  const bool late = !(took_s <= frame_s_);
+  late_frames_ = late ? late_frames_ + late_weight : std::max(0, late_frames_ - 1);
+  if (late_frames_ >= late_limit && quality_ != FrameQuality::coarse) {
+    if (on_trial_) patience_frames_ = std::min(2 * patience_frames_, maximum_patience_frames);
+    on_trial_ = false;
+    change(neighbour(quality_, +1));
+    return;
+  }
+  late_frames_ = std::min(late_frames_, late_limit);
+  consider_raising(took_s);
+}
+
+void FrameBudget::consider_raising(double took_s) {
+  if (quality_ == FrameQuality::full) return;
+  const bool spare = took_s <= spare_fraction[static_cast<std::size_t>(quality_)] * frame_s_;
+  // One slow frame among many is weak evidence, but it cancels several fast ones.
+  constexpr int slow_frame_penalty = 10;
+  spare_frames_ = spare ? spare_frames_ + 1 : std::max(0, spare_frames_ - slow_frame_penalty);
+  if (spare_frames_ < patience_frames_) return;
+  change(neighbour(quality_, -1));
+  on_trial_ = true;
+}
+
+void FrameBudget::change(FrameQuality quality) {
+  quality_ = quality;
+  late_frames_ = spare_frames_ = frames_since_change_ = 0;
+}
+
+void FrameBudget::apply(ViewSettings& settings) const {
+  if (quality_ >= FrameQuality::no_samples) settings.samples = 0;
+  if (quality_ >= FrameQuality::no_shadow) settings.shadow = false;
+  if (quality_ >= FrameQuality::coarse) settings.detail = std::min(settings.detail, coarse_detail);
+}
+
+std::string FrameBudget::text() const {
+  std::string missing;
+  switch (quality_) {
+    case FrameQuality::full:
+      return {};
+    case FrameQuality::no_samples:
+      missing = "without antialiasing";
+      break;
+    case FrameQuality::no_shadow:
+      missing = "without antialiasing and shadow";
+      break;
+    case FrameQuality::coarse:
+      missing = "coarser, without antialiasing and shadow";
+      break;
+  }
+  return "drawing " + missing + " to hold " + std::to_string(std::lround(1.0 / frame_s_)) + " Hz";
 }
 
 }  // namespace spoonbill

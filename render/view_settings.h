@@ -1,8 +1,9 @@
-// How a snapshot is shown: plain data, set by the panel, by a recording and by tests. Nothing here changes
-// the simulation.
+// How a snapshot is drawn: plain data, set by the panel, a recording or a test. None of it changes the
+// simulation.
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "engine/base/geometry.h"
 #include "engine/collision/stages/contact_stages.h"
@@ -10,51 +11,92 @@
 
 namespace spoonbill {
 
-// The stages in which a contact is found, in their order (section 4.1 of Pungotra et al. 2013).
+// Stages of the contact search, in their order (section 4.1 of Pungotra et al. 2013).
 enum class ContactStage { none, hulls, spheres, triangles, contacts };
 
-// What is drawn over the bare scene; each has one meaning and can be switched off.
+// Switches of the overlays. Each overlay has one meaning.
 struct Overlays {
   bool fixed_nodes = true;       // green squares
   bool touched_nodes = true;     // red discs
   bool lattice = false;          // the thinnest lines
-  bool cells = false;            // thick lines: where the lattice's hexahedra meet the surface
+  bool cells = false;            // thick lines where the hexahedra of the lattice meet the surface
   bool control_net = false;      // thin lines with points
   bool force = true;             // the force on the hand: an arrow with its newtons
-  bool contact_normals = false;  // short lines out of the contact points
+  bool contact_normals = false;  // short lines from the contact points
   bool fixing_planes = true;
   bool symmetry_plane = true;  // dash-dotted
   bool tool = true;
   bool ground_grid = true;
   bool scale_bar = true;
-  bool legend = true;  // names what is on
+  bool legend = true;  // lists the visible overlays
   ContactStage contact_stage = ContactStage::none;
-  int sphere_level = 0;  // of the spheres: 0, the coarsest, to finest_stage_level
+  int sphere_level = 0;  // level of the spheres: 0, the coarsest, to finest_stage_level
 };
 
 struct ViewSettings {
   Camera camera;
-  Rectangle panel_px;            // covered by the panel at the left or right edge; empty without one
-  double interface_scale = 1.0;  // widths of lines and sizes of marks: 1 at 720 pixels of height
+  Rectangle panel_px;            // area covered by the panel at the left or right edge; empty without a panel
+  double interface_scale = 1.0;  // factor on line widths and mark sizes: 1 at a height of 720 pixels
 
   Overlays overlays;
-  std::shared_ptr<const ContactStages> stages;  // the snapshot's, for the contact stage; null draws none
-  bool see_through_body = false;                // draws the body as a ghost, so that nodes inside it show
+  std::shared_ptr<const ContactStages> stages;  // contact stages of the snapshot; null draws none
+  bool see_through_body = false;                // draws the body as a ghost, so that inner nodes are visible
 
-  Vector3 toward_key_light = Vector3(-0.42, 0.80, 0.43);  // any length; kept above the horizon when drawn
+  Vector3 toward_key_light = Vector3(-0.42, 0.80, 0.43);  // any length; raised above the horizon when drawn
   bool shadow = true;
-  int samples = 4;  // 0 or 4 samples a pixel
-  double detail =
-      1.0;  // of the tessellation: at 0.5 its edges are twice as long, its chords twice as far off
-  bool keep_level = true;   // the tessellation may stay a little too fine or coarse, rather than flicker
+  int samples = 4;          // samples a pixel, 0 or 4
+  double detail = 1.0;      // fineness of the tessellation; 0.5 doubles edge lengths and chord errors
+  bool keep_level = true;   // lets the tessellation stay slightly too fine or coarse, to avoid flicker
   double ground_y_m = 0.0;  // see ground_below()
   double arrow_m_per_n = 0.012;
 };
 
-// The interface scale that keeps sizes legible: 1 up to 720 pixels of height, 2 at 1440.
+// Returns the interface scale for a window height: 1 up to 720 pixels, 2 at 1440.
 double interface_scale_for(int height_px);
 
-// The ground's height just below a model: its lowest point, less a gap that keeps it from touching.
+// Returns the height of the ground for a model: its lowest point minus a gap that prevents contact.
 double ground_below(const Box& model);
+
+// Drawing qualities, from best to worst.
+enum class FrameQuality { full, no_samples, no_shadow, coarse };
+
+// Reduces the drawing quality to hold the frame rate. A pure policy on measured frame times: it reads no
+// clock. One owner: the drawing thread.
+//
+//   FrameBudget budget;
+//   budget.apply(settings);                  // before each frame
+//   renderer.draw(snapshot, settings, ...);
+//   budget.add_frame(seconds_it_took);       // after each frame: drawing and presenting, without waiting
+class FrameBudget {
+ public:
+  // `frame_s` is the time available for a frame, above 0.
+  explicit FrameBudget(double frame_s = 1.0 / 60.0) : frame_s_(frame_s) {}
+
+  // Records the time of a frame drawn at quality(). Consecutive late frames, or more than a third of late
+  // ones, lower the quality; a long time with spare capacity raises it. A single late frame changes nothing,
+  // because another program may have caused it. A quality that fails soon after it was raised is retried
+  // after a longer time.
+  void add_frame(double took_s);
+
+  FrameQuality quality() const { return quality_; }
+
+  // Lowers settings to quality(); never raises them.
+  void apply(ViewSettings& settings) const;
+
+  // Returns one line for the panel that says what is missing; empty at full quality.
+  std::string text() const;
+
+ private:
+  void change(FrameQuality quality);
+  void consider_raising(double took_s);
+
+  double frame_s_;
+  FrameQuality quality_ = FrameQuality::full;
+  int late_frames_ = 0;          // weighted count of recent late frames
+  int spare_frames_ = 0;         // count of frames with spare capacity
+  int frames_since_change_ = 0;  // frames since the quality changed
+  int patience_frames_ = 120;    // frames with spare capacity before the quality is raised
+  bool on_trial_ = false;        // true if the last change raised the quality
+};
 
 }  // namespace spoonbill

@@ -19,9 +19,9 @@
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 #include "engine/material/lattice/body_lattice.h"
-#include "haptic/devices/virtual_device.h"
-#include "haptic/recording/recording.h"
-#include "haptic/recording/script.h"
+#include "haptic/virtual_device.h"
+#include "haptic/recording.h"
+#include "haptic/script.h"
 
 namespace spoonbill {
 namespace {

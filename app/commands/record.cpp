@@ -18,8 +18,8 @@
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 #include "engine/scene/tool.h"
-#include "haptic/devices/playback_device.h"
-#include "haptic/devices/scripted_device.h"
+#include "haptic/virtual_device.h"
+#include "haptic/script.h"
 
 namespace spoonbill {
 namespace {

@@ -18,8 +18,8 @@
 #include "app/report/progress_bar.h"
 #include "app/session/lockstep.h"
 #include "engine/base/geometry.h"
-#include "haptic/devices/playback_device.h"
-#include "render/gl/allocator_thresholds.h"
+#include "haptic/virtual_device.h"
+#include "render/gl/context.h"
 
 namespace spoonbill {
 namespace {
@@ -134,7 +134,7 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
 Status run_with_pictures(const Replay& replay, FactSheet& facts) {
   const PictureRequest request = picture_request(replay.options, replay.lockstep, replay.console);
   if (!request.folder && !request.video) return run_without_pictures(replay);
-  keep_drawing_memory();
+  retain_freed_memory();
   InterruptWatch interrupt;
   auto pictures = ReplayPictures::start(request);
   if (!pictures) return pictures.error();

@@ -8,7 +8,7 @@
 
 #include "app/panel/interface_context.h"
 #include "render/gl/glfw_window.h"
-#include "render/image/image.h"
+#include "render/image.h"
 #include "render/renderer.h"
 
 namespace spoonbill {

@@ -13,9 +13,9 @@
 #include "app/panel/session_panel.h"
 #include "engine/base/assert.h"
 #include "engine/base/geometry.h"
-#include "haptic/safety.h"
-#include "render/gl/allocator_thresholds.h"
-#include "render/overlay/labels.h"
+#include "haptic/safe_device.h"
+#include "render/gl/context.h"
+#include "render/overlay/overlays.h"
 #include "render/tessellation/tessellated_surface.h"
 
 namespace spoonbill {
@@ -109,7 +109,7 @@ Status Editor::run() {
 }
 
 Status Editor::run_frames() {
-  keep_drawing_memory();
+  retain_freed_memory();
   start();
   window_.window().show();
   auto last = Clock::now();

@@ -21,9 +21,9 @@
 #include "app/view/shown_stages.h"
 #include "app/view/view_choice.h"
 #include "engine/base/geometry.h"
-#include "haptic/devices/hand_inputs.h"
-#include "haptic/devices/space_mouse.h"
-#include "render/frame_budget.h"
+#include "haptic/virtual_device.h"
+#include "haptic/space_mouse.h"
+#include "render/view_settings.h"
 
 namespace spoonbill {
 

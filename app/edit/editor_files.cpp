@@ -9,7 +9,7 @@
 #include "app/edit/editor.h"
 #include "app/live/exporter.h"
 #include "app/start/shipped_materials.h"
-#include "render/image/png.h"
+#include "render/image.h"
 
 namespace spoonbill {
 namespace {

@@ -43,7 +43,7 @@ Pointer Editor::read_pointer() const {
 }
 
 void Editor::take_keys(const LiveFrame& frame) {
-  const std::vector<GlfwWindow::KeyPress> presses = window_.window().take_key_presses();
+  const std::vector<GlfwWindow::KeyPress> presses = window_.window().consume_key_presses();
   if (unsaved_.asking() || left_over_.asking()) return;
   for (const GlfwWindow::KeyPress& press : presses) {
     // While a name is typed only Esc is a command.

@@ -8,7 +8,7 @@
 
 #include "app/edit/navigation.h"
 #include "app/edit/surface_pick.h"
-#include "haptic/devices/hand_inputs.h"
+#include "haptic/virtual_device.h"
 
 namespace spoonbill {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/overlay/solid_tool.h"
+#include "render/tessellation/tool_mesh.h"
 
 namespace spoonbill {
 namespace {

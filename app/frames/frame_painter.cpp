@@ -5,7 +5,7 @@
 #include "app/panel/font_file.h"
 #include "app/panel/panel.h"
 #include "engine/base/geometry.h"
-#include "render/overlay/labels.h"
+#include "render/overlay/overlays.h"
 
 namespace spoonbill {
 namespace {

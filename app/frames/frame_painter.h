@@ -10,8 +10,8 @@
 #include "app/view/shown_stages.h"
 #include "app/view/view_choice.h"
 #include "engine/base/geometry.h"
-#include "render/gl/osmesa_context.h"
-#include "render/image/image.h"
+#include "render/gl/context.h"
+#include "render/image.h"
 #include "render/renderer.h"
 
 namespace spoonbill {

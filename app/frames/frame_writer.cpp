@@ -7,7 +7,7 @@
 #include <system_error>
 #include <vector>
 
-#include "render/image/png.h"
+#include "render/image.h"
 
 namespace spoonbill {
 namespace {

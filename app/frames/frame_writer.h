@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "engine/base/result.h"
-#include "render/image/image.h"
+#include "render/image.h"
 
 namespace spoonbill {
 

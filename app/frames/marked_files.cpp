@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "render/image/png.h"
+#include "render/image.h"
 
 namespace spoonbill {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/session/session.h"
-#include "render/image/image.h"
+#include "render/image.h"
 
 namespace spoonbill {
 

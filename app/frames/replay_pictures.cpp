@@ -6,7 +6,7 @@
 
 #include "app/panel/font_file.h"
 #include "app/session/lockstep.h"
-#include "render/image/png.h"
+#include "render/image.h"
 
 namespace spoonbill {
 namespace {

@@ -9,7 +9,7 @@
 #include "app/frames/frame_writer.h"
 #include "app/frames/video_encoder.h"
 #include "engine/base/result.h"
-#include "render/image/contact_sheet.h"
+#include "render/contact_sheet.h"
 
 namespace spoonbill {
 

@@ -184,7 +184,7 @@ void HapticSide::push(JournalEntry&& entry) {
 }
 
 void HapticSide::advance_session(const DeviceReading& reading, std::uint64_t dropped) {
-  if (safe_device_.take_proxy_reset()) reset_proxy();
+  if (safe_device_.consume_proxy_reset()) reset_proxy();
   if (recording_) {
     push(RecordedReading{reading});
     ++recorded_ticks_;

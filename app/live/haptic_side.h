@@ -19,10 +19,9 @@
 #include "app/live/live_frame.h"
 #include "app/live/session_worker.h"
 #include "engine/base/assert.h"
-#include "haptic/bounded_queue.h"
+#include "haptic/lock_free.h"
 #include "haptic/haptic_loop.h"
 #include "haptic/safe_device.h"
-#include "haptic/triple_buffer.h"
 
 namespace spoonbill {
 

@@ -14,9 +14,8 @@
 #include "app/live/exporter.h"
 #include "app/live/live_frame.h"
 #include "app/live/notices.h"
-#include "haptic/bounded_queue.h"
-#include "haptic/recording/recording_writer.h"
-#include "haptic/triple_buffer.h"
+#include "haptic/lock_free.h"
+#include "haptic/recording.h"
 
 namespace spoonbill {
 

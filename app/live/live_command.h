@@ -10,7 +10,7 @@
 
 #include "app/session/request.h"
 #include "app/session/session.h"
-#include "haptic/recording/recording_writer.h"
+#include "haptic/recording.h"
 
 namespace spoonbill {
 

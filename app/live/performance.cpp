@@ -7,8 +7,8 @@
 #include "app/frames/frame_painter.h"
 #include "app/panel/session_panel.h"
 #include "engine/base/geometry.h"
-#include "haptic/devices/steered_device.h"
-#include "render/gl/allocator_thresholds.h"
+#include "haptic/virtual_device.h"
+#include "render/gl/context.h"
 
 namespace spoonbill {
 namespace {
@@ -23,7 +23,7 @@ constexpr std::chrono::seconds longest_wait{10};
 class Painting {
  public:
   static Result<Painting> make(const LiveFrame& first) {
-    keep_drawing_memory();
+    retain_freed_memory();
     auto painter = FramePainter::make(width_px, height_px);
     if (!painter) return painter.error();
     return Painting(std::move(painter).value(), framed_box(first.snapshot));

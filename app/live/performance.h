@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/live/live_session.h"
-#include "haptic/recording/script.h"
+#include "haptic/script.h"
 
 namespace spoonbill {
 

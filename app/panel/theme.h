@@ -3,7 +3,7 @@
 
 #include <imgui.h>
 
-#include "render/interface_fonts.h"
+#include "render/renderer.h"
 
 namespace spoonbill {
 

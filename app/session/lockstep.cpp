@@ -88,7 +88,7 @@ Status Lockstep::reset_proxy() {
 
 Status Lockstep::run_tick() {
   const DeviceReading reading = device_.read();
-  if (device_.take_proxy_reset()) {
+  if (device_.consume_proxy_reset()) {
     if (Status reset = reset_proxy(); !reset) return reset;
   }
   if (writer_ != nullptr) {

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "app/session/session.h"
-#include "haptic/recording/recording.h"
-#include "haptic/recording/recording_writer.h"
+#include "haptic/recording.h"
 #include "haptic/safe_device.h"
 
 namespace spoonbill {

@@ -14,7 +14,7 @@
 #include "engine/base/result.h"
 #include "engine/exchange/json.h"
 #include "engine/scene/scene.h"
-#include "haptic/recording/timed_command.h"
+#include "haptic/recording.h"
 
 namespace spoonbill {
 

@@ -11,7 +11,7 @@
 #include "app/view/view_choice.h"
 #include "engine/exchange/document.h"
 #include "haptic/device.h"
-#include "haptic/recording/timed_command.h"
+#include "haptic/recording.h"
 #include "haptic/tick.h"
 
 namespace spoonbill {

@@ -6,12 +6,90 @@
 #include <algorithm>
 #include <utility>
 
-#include "render/gl/glfw_library.h"
-
 namespace spoonbill {
 namespace {
 
-constexpr int largest_side = 16384;
+constexpr const char* library_file = "libglfw.so.3";
+constexpr const char* library_package = "libglfw3";
+
+// Returns the address of a GLFW function, or null if the library or the function is missing.
+void* glfw_symbol(const char* name) {
+  const auto library = SharedLibrary::open(library_file, library_package);
+  return library ? library->symbol(name) : nullptr;
+}
+
+// X(result, name, parameters, arguments): the declarations must match those of the GLFW header.
+#define SPOONBILL_GLFW_FUNCTIONS(X)                                                                          \
+  X(GLFWcursor*, glfwCreateStandardCursor, (int shape), (shape))                                             \
+  X(GLFWwindow*, glfwCreateWindow,                                                                           \
+    (int width, int height, const char* title, GLFWmonitor* monitor, GLFWwindow* share),                     \
+    (width, height, title, monitor, share))                                                                  \
+  X(void, glfwDefaultWindowHints, (), ())                                                                    \
+  X(void, glfwDestroyCursor, (GLFWcursor * cursor), (cursor))                                                \
+  X(void, glfwDestroyWindow, (GLFWwindow * window), (window))                                                \
+  X(const char*, glfwGetClipboardString, (GLFWwindow * window), (window))                                    \
+  X(GLFWwindow*, glfwGetCurrentContext, (), ())                                                              \
+  X(void, glfwGetCursorPos, (GLFWwindow * window, double* xpos, double* ypos), (window, xpos, ypos))         \
+  X(int, glfwGetError, (const char** description), (description))                                            \
+  X(void, glfwGetFramebufferSize, (GLFWwindow * window, int* width, int* height), (window, width, height))   \
+  X(int, glfwGetInputMode, (GLFWwindow * window, int mode), (window, mode))                                  \
+  X(const float*, glfwGetJoystickAxes, (int jid, int* count), (jid, count))                                  \
+  X(const unsigned char*, glfwGetJoystickButtons, (int jid, int* count), (jid, count))                       \
+  X(int, glfwGetMouseButton, (GLFWwindow * window, int button), (window, button))                            \
+  X(GLFWglproc, glfwGetProcAddress, (const char* procname), (procname))                                      \
+  X(double, glfwGetTime, (), ())                                                                             \
+  X(uint64_t, glfwGetTimerFrequency, (), ())                                                                 \
+  X(int, glfwGetWindowAttrib, (GLFWwindow * window, int attrib), (window, attrib))                           \
+  X(void, glfwGetWindowContentScale, (GLFWwindow * window, float* xscale, float* yscale),                    \
+    (window, xscale, yscale))                                                                                \
+  X(void, glfwGetWindowSize, (GLFWwindow * window, int* width, int* height), (window, width, height))        \
+  X(void*, glfwGetWindowUserPointer, (GLFWwindow * window), (window))                                        \
+  X(void, glfwHideWindow, (GLFWwindow * window), (window))                                                   \
+  X(int, glfwInit, (), ())                                                                                   \
+  X(void, glfwMakeContextCurrent, (GLFWwindow * window), (window))                                           \
+  X(void, glfwPollEvents, (), ())                                                                            \
+  X(GLFWcharfun, glfwSetCharCallback, (GLFWwindow * window, GLFWcharfun callback), (window, callback))       \
+  X(void, glfwSetClipboardString, (GLFWwindow * window, const char* string), (window, string))               \
+  X(void, glfwSetCursor, (GLFWwindow * window, GLFWcursor * cursor), (window, cursor))                       \
+  X(GLFWcursorenterfun, glfwSetCursorEnterCallback, (GLFWwindow * window, GLFWcursorenterfun callback),      \
+    (window, callback))                                                                                      \
+  X(void, glfwSetCursorPos, (GLFWwindow * window, double xpos, double ypos), (window, xpos, ypos))           \
+  X(GLFWerrorfun, glfwSetErrorCallback, (GLFWerrorfun callback), (callback))                                 \
+  X(void, glfwSetInputMode, (GLFWwindow * window, int mode, int value), (window, mode, value))               \
+  X(GLFWkeyfun, glfwSetKeyCallback, (GLFWwindow * window, GLFWkeyfun callback), (window, callback))          \
+  X(GLFWmonitorfun, glfwSetMonitorCallback, (GLFWmonitorfun callback), (callback))                           \
+  X(GLFWmousebuttonfun, glfwSetMouseButtonCallback, (GLFWwindow * window, GLFWmousebuttonfun callback),      \
+    (window, callback))                                                                                      \
+  X(GLFWscrollfun, glfwSetScrollCallback, (GLFWwindow * window, GLFWscrollfun callback), (window, callback)) \
+  X(GLFWwindowfocusfun, glfwSetWindowFocusCallback, (GLFWwindow * window, GLFWwindowfocusfun callback),      \
+    (window, callback))                                                                                      \
+  X(void, glfwSetWindowShouldClose, (GLFWwindow * window, int value), (window, value))                       \
+  X(void, glfwSetWindowSize, (GLFWwindow * window, int width, int height), (window, width, height))          \
+  X(void, glfwSetWindowUserPointer, (GLFWwindow * window, void* pointer), (window, pointer))                 \
+  X(void, glfwShowWindow, (GLFWwindow * window), (window))                                                   \
+  X(void, glfwSwapBuffers, (GLFWwindow * window), (window))                                                  \
+  X(void, glfwSwapInterval, (int interval), (interval))                                                      \
+  X(void, glfwTerminate, (), ())                                                                             \
+  X(void, glfwWaitEventsTimeout, (double timeout), (timeout))                                                \
+  X(void, glfwWindowHint, (int hint, int value), (hint, value))                                              \
+  X(int, glfwWindowShouldClose, (GLFWwindow * window), (window))
+
+// Opens GLFW. Must succeed before any GLFW function is called. Errors, which name the package: GLFW is
+// missing or lacks one of the functions.
+Status open_glfw() {
+  const auto library = SharedLibrary::open(library_file, library_package);
+  if (!library) return library.error();
+#define SPOONBILL_CHECK_GLFW_FUNCTION(result, name, parameters, arguments)                                 \
+  if (library->symbol(#name) == nullptr) {                                                                 \
+    return Error{ErrorCode::unavailable,                                                                   \
+                 std::string(library_file) + " has no " #name ": GLFW 3.3 or later is needed, update it"}; \
+  }
+  SPOONBILL_GLFW_FUNCTIONS(SPOONBILL_CHECK_GLFW_FUNCTION)
+#undef SPOONBILL_CHECK_GLFW_FUNCTION
+  return {};
+}
+
+constexpr int maximum_side = 16384;
 
 std::string last_glfw_message() {
   const char* message = nullptr;
@@ -19,16 +97,18 @@ std::string last_glfw_message() {
   return message != nullptr ? message : "GLFW gives no reason";
 }
 
-Error no_window(const std::string& reason) {
-  return Error{"no window can be opened: " + reason +
-               "; start it in a desktop session, or use `spoonbill replay`, which draws without a display"};
+Error make_window_error(const std::string& reason) {
+  return Error{
+      ErrorCode::unavailable,
+      "no window can be opened: " + reason +
+          "; start it in a desktop session, or use `spoonbill replay`, which draws without a display"};
 }
 
-bool glfw_in_use() {
+bool is_glfw_in_use() {
   return glfwGetTimerFrequency() != 0;
 }
 
-void ask_for_core_profile() {
+void request_core_profile() {
   glfwDefaultWindowHints();
   glfwWindowHint(GLFW_CLIENT_API, GLFW_OPENGL_API);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -36,7 +116,7 @@ void ask_for_core_profile() {
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-  // The renderer has a depth buffer and samples of its own.
+  // The renderer has its own depth buffer and samples.
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   glfwWindowHint(GLFW_SAMPLES, 0);
@@ -45,19 +125,22 @@ void ask_for_core_profile() {
 }  // namespace
 
 Result<std::unique_ptr<GlfwWindow>> GlfwWindow::make(int width, int height, const std::string& title) {
-  if (width < 1 || height < 1 || width > largest_side || height > largest_side) {
-    return Error{"window size " + std::to_string(width) + "x" + std::to_string(height) +
-                 ": each side must lie between 1 and " + std::to_string(largest_side)};
+  if (width < 1 || height < 1 || width > maximum_side || height > maximum_side) {
+    return Error{ErrorCode::out_of_range, "window size " + std::to_string(width) + "x" +
+                                              std::to_string(height) + ": each side must be 1 to " +
+                                              std::to_string(maximum_side)};
   }
-  if (const Status opened = open_glfw(); !opened) return no_window(opened.error().message);
-  if (glfw_in_use()) return Error{"a window is open already: close it before opening another"};
-  if (glfwInit() != GLFW_TRUE) return no_window(last_glfw_message());
-  ask_for_core_profile();
+  if (const Status opened = open_glfw(); !opened) return make_window_error(opened.error().message);
+  if (is_glfw_in_use()) {
+    return Error{ErrorCode::in_use, "a window is already open: close it before opening another"};
+  }
+  if (glfwInit() != GLFW_TRUE) return make_window_error(last_glfw_message());
+  request_core_profile();
   GLFWwindow* window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (window == nullptr) {
     const std::string reason = last_glfw_message();
     glfwTerminate();
-    return no_window("the display has no OpenGL 3.3 core profile (" + reason + ")");
+    return make_window_error("the display has no OpenGL 3.3 core profile (" + reason + ")");
   }
   return std::unique_ptr<GlfwWindow>(new GlfwWindow(window));
 }
@@ -72,7 +155,7 @@ GlfwWindow::GlfwWindow(GLFWwindow* window) : window_(window) {
   });
 }
 
-std::vector<GlfwWindow::KeyPress> GlfwWindow::take_key_presses() {
+std::vector<GlfwWindow::KeyPress> GlfwWindow::consume_key_presses() {
   return std::exchange(key_presses_, {});
 }
 
@@ -85,7 +168,8 @@ Status GlfwWindow::make_current() {
   if (glfwGetCurrentContext() == window_) return {};
   glfwMakeContextCurrent(window_);
   if (glfwGetCurrentContext() != window_) {
-    return Error{"the window's GL context cannot be made current: " + last_glfw_message()};
+    return Error{ErrorCode::unavailable,
+                 "the window's GL context cannot be made current: " + last_glfw_message()};
   }
   glfwSwapInterval(1);
   return {};
@@ -158,3 +242,12 @@ void GlfwWindow::set_should_close(bool close) {
 }
 
 }  // namespace spoonbill
+
+// Definitions of the GLFW functions that the window and the ImGui backend call. Each forwards to the function
+// of the same name in the shared library.
+#define SPOONBILL_DEFINE_GLFW_FUNCTION(result, name, parameters, arguments)                        \
+  extern "C" result name parameters {                                                              \
+    static const auto function = reinterpret_cast<decltype(&name)>(spoonbill::glfw_symbol(#name)); \
+    return function arguments;                                                                     \
+  }
+SPOONBILL_GLFW_FUNCTIONS(SPOONBILL_DEFINE_GLFW_FUNCTION)

@@ -1,5 +1,4 @@
-// A desktop window with a GL context. One owner; every call comes from the program's main thread, which is
-// what GLFW asks for. GLFW is one to a process, so there is one window at a time.
+// A desktop window with a GL context.
 //
 //   auto window = GlfwWindow::make(1280, 720, "Spoonbill");
 //   auto renderer = Renderer::make(*window.value());
@@ -21,11 +20,14 @@ struct GLFWwindow;
 
 namespace spoonbill {
 
+// One owner. All calls must come from the main thread of the program, as GLFW requires. GLFW is global to the
+// process, so there is one window at a time.
 class GlfwWindow final : public GlContext {
  public:
-  // Width and height as on a display of ordinary density, 1..16384: at scale 2 the window gets twice as many
-  // pixels. Hidden until show(), so that nobody sees an empty frame. The context is not current yet. Refused,
-  // with the remedy: no display, a display without OpenGL 3.3 core, a second window, impossible sizes.
+  // Makes a window that is hidden until show(), so that no empty frame appears. Width and height, 1 to 16384,
+  // are for a display of ordinary density: at scale 2 the window gets twice as many pixels. The context is
+  // not current yet. Errors, with the remedy: no display, a display without OpenGL 3.3 core, a second window,
+  // invalid sizes.
   static Result<std::unique_ptr<GlfwWindow>> make(int width, int height, const std::string& title);
 
   ~GlfwWindow() override;
@@ -35,45 +37,48 @@ class GlfwWindow final : public GlContext {
   Status make_current() override;
   GlProcedure procedure(const char* name) const override;
 
-  // The framebuffer in pixels, at least 1: what is drawn and read. Follows the window as events are handled.
+  // Size of the framebuffer in pixels, at least 1. Changes with the window when events are handled.
   int width_px() const override;
   int height_px() const override;
 
   bool has_window() const override { return true; }
 
-  // Waits for the display's next refresh where the driver can; make_current() must have been called.
+  // Shows the frame and waits for the next refresh of the display if the driver can. Requires make_current().
   void swap() override;
 
-  // The window in screen coordinates, in which the pointer moves. They are pixels on X11, not everywhere.
+  // Size of the window in screen coordinates, in which the pointer moves. These are pixels on X11, but not
+  // everywhere.
   int width() const;
   int height() const;
-  void resize(int width, int height);  // in screen coordinates; the display may take its time or refuse
+  void resize(int width, int height);  // screen coordinates; the display may delay or refuse the change
 
-  // How many pixels a length of the interface should cover: 1 on an ordinary display, 2 on a dense one. It
-  // changes when the window moves to another display.
+  // Returns the size of a pixel of the interface in pixels of the display: 1 on an ordinary display, 2 on a
+  // dense one. Changes when the window moves to another display.
   double scale() const;
 
   void show();
   void hide();
-  bool is_minimised() const;  // nothing need be drawn
+  bool is_minimised() const;  // a minimised window need not be drawn
 
-  // Handles what has happened.
+  // Handles pending events.
   void poll_events();
 
-  // Whether somebody asked the window to close. The owner decides, and may put the wish aside.
+  // Returns whether the user requested to close the window. The owner decides and may clear the request.
   bool should_close() const;
   void set_should_close(bool close);
 
-  // A key as it goes down; held ones repeat no press.
+  // A key that was pressed. Holding a key does not repeat it.
   struct KeyPress {
     int key = 0;  // GLFW_KEY_
     bool ctrl = false;
     bool shift = false;
   };
-  // Those since the last call, in their order: a tap between two frames is not lost.
-  std::vector<KeyPress> take_key_presses();
+  // Returns the key presses since the last call, in order, and clears them. Short presses between two frames
+  // are included.
+  std::vector<KeyPress> consume_key_presses();
 
-  // For Dear ImGui's GLFW backend, whose callbacks must be installed after make(); it stays the window's.
+  // Returns the handle for the GLFW backend of Dear ImGui, whose callbacks must be installed after make().
+  // The window remains the owner.
   GLFWwindow* native() const { return window_; }
 
  private:

@@ -5,7 +5,7 @@
 namespace spoonbill {
 namespace {
 
-// GL_PACK_INVERT_MESA of GL_MESA_pack_invert, which only Mesa has: saves turning the rows over afterwards.
+// GL_PACK_INVERT_MESA of GL_MESA_pack_invert, an extension of Mesa that flips rows while reading.
 constexpr GLenum pack_top_row_first = 0x8758;
 
 }  // namespace
@@ -48,7 +48,8 @@ RenderTarget::RenderTarget(const GlFunctions& gl, int width_px, int height_px, i
 
 Result<RenderTarget> RenderTarget::make(const GlFunctions& gl, int width_px, int height_px, int samples) {
   if (samples != 0 && samples != 4) {
-    return Error{"view setting samples = " + std::to_string(samples) + ": choose 0 or 4"};
+    return Error{ErrorCode::out_of_range, "samples is " + std::to_string(samples) + ", must be 0 or 4",
+                 "samples"};
   }
   RenderTarget target(gl, width_px, height_px, samples);
   for (const GlHandle* framebuffer : {&target.scene_, &target.frame_}) {
@@ -60,8 +61,10 @@ Result<RenderTarget> RenderTarget::make(const GlFunctions& gl, int width_px, int
 Status RenderTarget::check(GLuint framebuffer) const {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   if (gl_->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return {};
-  return Error{"no framebuffer of " + std::to_string(width_px_) + "x" + std::to_string(height_px_) +
-               " pixels with " + std::to_string(samples_) + " samples: choose a smaller size or samples = 0"};
+  return Error{ErrorCode::unsupported, "no framebuffer of " + std::to_string(width_px_) + "x" +
+                                           std::to_string(height_px_) + " pixels with " +
+                                           std::to_string(samples_) +
+                                           " samples: choose a smaller size or samples = 0"};
 }
 
 void RenderTarget::begin_scene(std::span<const PixelArea> areas) const {

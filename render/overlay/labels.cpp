@@ -1,13 +1,11 @@
-#include "render/overlay/labels.h"
+#include <imgui.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <functional>
 
-#include "render/overlay/contact_stage.h"
-#include "render/overlay/force_arrow.h"
-#include "render/overlay/ground_grid.h"
+#include "render/overlay/overlays.h"
 
 namespace spoonbill {
 namespace {
@@ -46,11 +44,11 @@ void add_scale_bar(const ViewSettings& settings, const Viewport& viewport, std::
   if (!settings.overlays.scale_bar) return;
   const auto bar = ground_scale_bar(settings.camera, viewport, settings.ground_y_m);
   if (!bar) return;
-  const auto middle = project(settings.camera, viewport, 0.5 * (bar->start_m + bar->end_m));
-  if (!middle) return;
+  const auto centre = project(settings.camera, viewport, 0.5 * (bar->start_m + bar->end_m));
+  if (!centre) return;
   Label label;
   label.text = bar->text();
-  label.position_px = *middle + Eigen::Vector2d(0.0, 9.0 * settings.interface_scale);
+  label.position_px = *centre + Eigen::Vector2d(0.0, 9.0 * settings.interface_scale);
   label.anchor = Eigen::Vector2d(0.5, 0.0);
   labels.push_back(label);
 }
@@ -62,12 +60,12 @@ void add_stage(const Snapshot& snapshot, const ViewSettings& settings, const Vie
   const Rectangle& free = viewport.free_px;
   Label label;
   label.text = *caption;
-  // Below a menu, where the panel begins below one.
+  // The panel begins below the menu, and so does the caption.
   const double top = std::max(free.y, settings.panel_px.y);
   label.position_px = {free.x + 0.5 * free.width, top + 18.0 * settings.interface_scale};
   label.anchor = {0.5, 0.0};
   labels.push_back(label);
-  // Of the deepest contact alone: names would hide each other.
+  // Only the arrows of the deepest contact get names, because more would overlap.
   const std::vector<OverlayArrow> arrows = contact_arrows(snapshot, settings);
   for (std::size_t k = 0; k < std::min<std::size_t>(arrows.size(), 3); ++k) {
     const auto start = project(settings.camera, viewport, arrows[k].start_m);
@@ -81,17 +79,17 @@ void add_stage(const Snapshot& snapshot, const ViewSettings& settings, const Vie
   }
 }
 
-std::string of_text(const char* what, std::size_t count, std::size_t all) {
+std::string fraction_text(const char* what, std::size_t count, std::size_t all) {
   return count_text(what, count) + " of " + std::to_string(all);
 }
 
 using AddToLegend = std::function<void(std::string, LabelSymbol, Colour)>;
 
 void add_stage_legend(const ContactStages& stages, const Overlays& on, const AddToLegend& add) {
-  std::size_t kept = 0, kept_second = 0, dropped = 0, deepest = 0;
+  std::size_t active = 0, active_second = 0, rejected = 0, deepest = 0;
   for (const StageSphere& sphere : stages.spheres) {
     if (sphere.cell.level != on.sphere_level) continue;
-    ++(!sphere.kept ? dropped : sphere.is_second ? kept_second : kept);
+    ++(!sphere.kept ? rejected : sphere.is_second ? active_second : active);
   }
   for (const StageContact& contact : stages.contacts) deepest += contact.is_deepest ? 1 : 0;
   switch (on.contact_stage) {
@@ -99,21 +97,21 @@ void add_stage_legend(const ContactStages& stages, const Overlays& on, const Add
       break;
     case ContactStage::hulls:
       add("convex hulls", LabelSymbol::line, palette::hull);
-      add(of_text("elements in range", static_cast<std::size_t>(stages.elements_within),
-                  static_cast<std::size_t>(stages.elements)),
+      add(fraction_text("elements in range", static_cast<std::size_t>(stages.elements_within),
+                        static_cast<std::size_t>(stages.elements)),
           LabelSymbol::line, palette::parameter_range);
       break;
     case ContactStage::spheres:
-      add(count_text("spheres kept", kept), LabelSymbol::sphere, palette::kept_sphere);
-      if (kept_second > 0) {
-        add(count_text("of the other surface", kept_second), LabelSymbol::sphere,
-            palette::kept_second_sphere);
+      add(count_text("spheres kept", active), LabelSymbol::sphere, palette::active_sphere);
+      if (active_second > 0) {
+        add(count_text("of the other surface", active_second), LabelSymbol::sphere,
+            palette::active_second_sphere);
       }
-      add(count_text("spheres dropped", dropped), LabelSymbol::sphere, palette::dropped_sphere);
+      add(count_text("spheres dropped", rejected), LabelSymbol::sphere, palette::rejected_sphere);
       break;
     case ContactStage::triangles:
-      add(of_text("triangles that meet", stages.triangles.size(),
-                  static_cast<std::size_t>(stages.triangles_tested)),
+      add(fraction_text("triangles that meet", stages.triangles.size(),
+                        static_cast<std::size_t>(stages.triangles_tested)),
           LabelSymbol::plane, palette::active_triangle);
       break;
     case ContactStage::contacts:
@@ -126,7 +124,7 @@ void add_stage_legend(const ContactStages& stages, const Overlays& on, const Add
   if (stages.overflow) add("not all are shown", LabelSymbol::none, palette::text);
 }
 
-std::vector<Label> legend_of(const Snapshot& snapshot, const ViewSettings& settings) {
+std::vector<Label> make_legend(const Snapshot& snapshot, const ViewSettings& settings) {
   const Overlays& on = settings.overlays;
   std::vector<Label> legend;
   const auto add = [&](std::string text, LabelSymbol symbol, Colour colour) {
@@ -207,7 +205,7 @@ ImVec2 text_size(ImFont& font, const std::string& text) {
   return font.CalcTextSizeA(font.FontSize, 10000.0f, 0.0f, text.c_str());
 }
 
-// A pale plate keeps words legible over whatever lies behind them.
+// Draws text on a pale plate, which keeps it legible over any background.
 void draw_in_scene(const Label& label, ImFont& font, float scale, ImDrawList& list) {
   const ImVec2 size = text_size(font, label.text);
   const ImVec2 at(static_cast<float>(label.position_px.x() - label.anchor.x() * size.x),
@@ -252,7 +250,7 @@ OverlayLabels overlay_labels(const Snapshot& snapshot, const ViewSettings& setti
   add_force(snapshot, settings, viewport, labels.in_scene);
   add_scale_bar(settings, viewport, labels.in_scene);
   add_stage(snapshot, settings, viewport, labels.in_scene);
-  if (settings.overlays.legend) labels.legend = legend_of(snapshot, settings);
+  if (settings.overlays.legend) labels.legend = make_legend(snapshot, settings);
   return labels;
 }
 

@@ -1,14 +1,16 @@
-// What all passes of a frame share. Made once a frame, read by every pass; world space in metres.
+// Data that all passes share: the view of one frame, and GLSL for lights and shadows. World space in metres,
+// linear light.
 #pragma once
 
 #include <Eigen/Core>
 
 #include "render/camera.h"
-#include "render/gl/program.h"
+#include "render/gl/pipeline.h"
 #include "render/view_settings.h"
 
 namespace spoonbill {
 
+// Made once a frame and read by every pass.
 struct FrameView {
   Viewport viewport;
   Eigen::Matrix4f world_to_clip;
@@ -17,14 +19,31 @@ struct FrameView {
   Eigen::Vector3f toward_key;         // unit, at least 12 degrees above the horizon
   float ground_y_m = 0.0f;
   float interface_scale = 1.0f;
-  float nearest_depth_m = 0.0f;    // lines are cut here before they are widened
-  float pixel_depth_ratio = 0.0f;  // pixels that a length of one metre covers at a depth of one metre
+  float nearest_depth_m = 0.0f;    // depth at which lines are clipped before they are widened
+  float pixel_depth_ratio = 0.0f;  // length in pixels of one metre at a depth of one metre
 };
 
 FrameView make_frame_view(const ViewSettings& settings, int width_px, int height_px);
 
-// Sets the uniforms that every scene shader may use: world_to_clip, eye, toward_key, ground_y, and the ways
-// of the lights that turn with the eye: toward_fill, toward_rim, toward_strip.
+// Sets the uniforms that every scene shader may use: world_to_clip, eye, toward_key, ground_y, and the
+// directions of the lights that move with the eye: toward_fill, toward_rim, toward_strip.
 void set_frame_uniforms(const Program& program, const FrameView& view);
+
+// A vertex shader for passes over a whole viewport: draws one triangle that covers it from three vertices
+// without attributes.
+extern const char* const whole_viewport_vertex_glsl;
+
+// The uniform toward_key, which must precede the two parts below.
+extern const char* const key_light_glsl;
+
+// Functions for the shadow of the round tool: the fractions of key light and sky that pass it. The shadow is
+// exact in the centre and softens with the distance to the sphere; the occlusion of the sky is the closed
+// form for a sphere above a plane. Uniforms: tool_centre, tool_radius (0 without a tool).
+extern const char* const sphere_shadow_glsl;
+
+// Lights and materials of the studio. studio_light() returns the light from a surface point to the eye;
+// opaque_colour() and clear_colour() encode it to sRGB. Uniforms: eye, ground_y, toward_fill, toward_rim,
+// toward_strip.
+extern const char* const studio_light_glsl;
 
 }  // namespace spoonbill

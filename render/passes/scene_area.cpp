@@ -1,25 +1,21 @@
-#include "render/passes/scene_area.h"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 #include "engine/base/geometry.h"
-#include "render/overlay/contact_normals.h"
-#include "render/overlay/contact_stage.h"
-#include "render/overlay/fixing_plane.h"
-#include "render/overlay/force_arrow.h"
-#include "render/overlay/solid_tool.h"
-#include "render/overlay/symmetry_plane.h"
+#include "render/overlay/overlays.h"
+#include "render/passes/scene_passes.h"
+#include "render/tessellation/tool_mesh.h"
 
 namespace spoonbill {
 namespace {
 
 constexpr int strip_width_px = 64;
-constexpr double margin_px = 14.0;  // before the interface scale: for marks and the width of lines
+constexpr double margin_px = 14.0;  // before the interface scale; space for marks and line widths
 
-// Grows with what is projected; whole once a point cannot be.
+// Vertical strips that grow with the projected shapes. They cover the whole viewport once a point cannot be
+// projected.
 class Strips {
  public:
   explicit Strips(const FrameView& view)
@@ -27,7 +23,8 @@ class Strips {
         margin_px_(static_cast<float>(margin_px) * view.interface_scale),
         heights_(static_cast<std::size_t>((view.viewport.width_px + strip_width_px - 1) / strip_width_px)) {}
 
-  // The hull of points is within the box around their places on the screen.
+  // Accumulates points and marks the box around their projections, which contains the projection of their
+  // hull.
   class Hull {
    public:
     explicit Hull(Strips& strips) : strips_(strips) {}
@@ -59,8 +56,8 @@ class Strips {
   void include_triangles(const TessellatedSurface& surface) {
     const GridSamples<float>& at = surface.samples();
     const std::vector<std::uint32_t>& indices = surface.indices();
-    if (surface.is_mesh() || surface.is_trimmed()) return include_each(at, indices);
-    // Two triangles a cell.
+    if (surface.is_mesh() || surface.is_trimmed()) return include_each_triangle(at, indices);
+    // Each cell of the grid has two triangles.
     for (std::size_t first = 0; first + 5 < indices.size(); first += 6) {
       Hull hull(*this);
       for (const std::size_t corner : {0, 1, 2, 5}) {
@@ -83,7 +80,7 @@ class Strips {
   }
 
  private:
-  void include_each(const GridSamples<float>& at, const std::vector<std::uint32_t>& indices) {
+  void include_each_triangle(const GridSamples<float>& at, const std::vector<std::uint32_t>& indices) {
     for (std::size_t first = 0; first < indices.size(); first += 3) {
       Hull hull(*this);
       for (std::size_t corner = first; corner < first + 3; ++corner) {
@@ -103,9 +100,9 @@ class Strips {
       whole_ = true;
       return Eigen::Vector2f::Zero();
     }
-    const Eigen::Vector2f share = (clip.head<2>() / clip.w()).array() * 0.5F + 0.5F;
-    return {share.x() * static_cast<float>(view_.viewport.width_px),
-            share.y() * static_cast<float>(view_.viewport.height_px)};
+    const Eigen::Vector2f fraction = (clip.head<2>() / clip.w()).array() * 0.5F + 0.5F;
+    return {fraction.x() * static_cast<float>(view_.viewport.width_px),
+            fraction.y() * static_cast<float>(view_.viewport.height_px)};
   }
 
   void mark(const Eigen::Vector2f& low, const Eigen::Vector2f& high) {
@@ -129,7 +126,7 @@ class Strips {
   bool whole_ = false;
 };
 
-// Its lines join points that lie far from each other.
+// Returns the box around a control net, whose lines join distant points.
 Box net_box(const SurfaceSnapshot& surface) {
   Box box;
   for (std::size_t i = 0; i < surface.x.size(); ++i) {

@@ -4,17 +4,8 @@
 #include <utility>
 
 #include "engine/base/geometry.h"
-#include "render/overlay/cell_lines.h"
-#include "render/overlay/contact_normals.h"
-#include "render/overlay/contact_stage.h"
-#include "render/overlay/control_net.h"
-#include "render/overlay/fixing_plane.h"
-#include "render/overlay/force_arrow.h"
-#include "render/overlay/ground_grid.h"
-#include "render/overlay/node_marks.h"
-#include "render/overlay/solid_tool.h"
-#include "render/overlay/symmetry_plane.h"
-#include "render/passes/scene_area.h"
+#include "render/overlay/overlays.h"
+#include "render/tessellation/tool_mesh.h"
 
 namespace spoonbill {
 namespace {
@@ -22,44 +13,44 @@ namespace {
 constexpr float arrow_width_px = 5.0f;
 constexpr float smallest_tool_px = 5.0f;
 constexpr float stage_arrow_px = 3.0f;
-// What lies on the surface must not sink into its chords.
+// Lift of shapes on a surface above its chords.
 constexpr float stage_lift_m = 0.0004f;
 constexpr float ghost_translucency = 0.85f;
 
-// Marks on the surface are lifted by this share of a lattice cell, so that chords over a curve show and what
-// lies on the far side does not.
-constexpr float lift_share_of_cell = 0.4f;
+// Lift of marks on the surface, as a fraction of a lattice cell: marks stay visible above the chords of a
+// curve, those on the far side stay hidden.
+constexpr float lift_fraction_of_cell = 0.4f;
 constexpr float lift_without_lattice_m = 0.0002f;
 
 float lift_m(const Snapshot& snapshot) {
   const float cell = snapshot.bodies.empty() ? 0.0f : mean_edge_m(snapshot.bodies.front().lattice);
-  return cell > 0.0f ? lift_share_of_cell * cell : lift_without_lattice_m;
+  return cell > 0.0f ? lift_fraction_of_cell * cell : lift_without_lattice_m;
 }
 
-// A length of that many pixels at a point.
+// Returns the length in metres of a number of pixels at a point.
 float pixels_at(const FrameView& view, const Eigen::Vector3f& point_m, float pixels) {
   const float depth = (point_m - view.eye_m).norm();
   return pixels * view.interface_scale * depth / view.pixel_depth_ratio;
 }
 
-// What a solid darkens: as the ball in the middle of its box does.
-ToolSphere ball_within(const Box& box, const ToolFrame& frame) {
-  const Vector3 middle = frame.origin_m + frame.axes * box.centre();
-  return {middle.cast<float>(), static_cast<float>(0.5 * box.extent().minCoeff())};
+// Returns the sphere that approximates the shadow of a solid: the ball in the centre of its box.
+ToolSphere ball_in_box(const Box& box, const ToolFrame& frame) {
+  const Vector3 centre = frame.origin_m + frame.axes * box.centre();
+  return {centre.cast<float>(), static_cast<float>(0.5 * box.extent().minCoeff())};
 }
 
 ToolSphere tool_sphere(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) {
   if (!settings.overlays.tool || is_soft(snapshot.tool)) return {};
   if (const ToolBody* body = rigid_body(snapshot.tool)) {
-    return ball_within(bounding_box(body->solid), tool_frame(snapshot));
+    return ball_in_box(bounding_box(body->solid), tool_frame(snapshot));
   }
   const Eigen::Vector3f centre = snapshot.tool.proxy.position_m.cast<float>();
   if (snapshot.tool.kind == ToolKind::sphere) return {centre, static_cast<float>(snapshot.tool.radius_m)};
   return {centre, pixels_at(view, centre, smallest_tool_px)};
 }
 
-SurfaceLook look_of(const BodySnapshot& body, const ViewSettings& settings) {
-  SurfaceLook look = look_of_material(body.material.name);
+SurfaceLook choose_look(const BodySnapshot& body, const ViewSettings& settings) {
+  SurfaceLook look = find_material_look(body.material.name);
   if (settings.see_through_body) {
     look.translucency = ghost_translucency;
     look.metalness = 0.0f;
@@ -126,7 +117,7 @@ void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, co
   const ShadowPass* shadow = settings.shadow ? &passes_.shadow : nullptr;
   const auto draw_bodies = [&](bool translucent) {
     for (std::size_t b = 0; b < bodies.buffers().size(); ++b) {
-      const SurfaceLook look = look_of(snapshot.bodies[b], settings);
+      const SurfaceLook look = choose_look(snapshot.bodies[b], settings);
       if ((look.translucency > 0.0f) != translucent) continue;
       passes_.surface.draw(view, bodies.buffers()[b], look, tool, shadow);
     }
@@ -157,7 +148,7 @@ void ScenePasses::draw_ground(const FrameView& view, const ViewSettings& setting
   if (settings.shadow) passes_.ground.draw_shadow(view, passes_.shadow);
 }
 
-// After the bodies, which would hide it where they stand before the ground.
+// Drawn after the bodies, which would otherwise hide the bar.
 void ScenePasses::draw_scale_bar(const FrameView& view, const ViewSettings& settings) {
   if (!settings.overlays.scale_bar) return;
   const auto bar = ground_scale_bar(settings.camera, view.viewport, settings.ground_y_m);
@@ -230,7 +221,7 @@ void ScenePasses::draw_tool(const FrameView& view, const ToolSnapshot& tool, con
   }
 }
 
-// After the tool, through which a contact is seen.
+// Drawn after the tool, so that contacts are visible through it.
 void ScenePasses::draw_stage(const FrameView& view, const Snapshot& snapshot,
                              const ViewSettings& settings) const {
   StageShapes shapes = stage_shapes(snapshot, settings);
@@ -245,7 +236,7 @@ void ScenePasses::draw_stage(const FrameView& view, const Snapshot& snapshot,
   }
 }
 
-// After the tool, which would otherwise tint the nodes under it.
+// Drawn after the tool, which would otherwise tint the nodes behind it.
 void ScenePasses::draw_touched(const FrameView& view, const Snapshot& snapshot) {
   marks_.clear();
   for (const BodySnapshot& body : snapshot.bodies) append_touched_marks(body.lattice, marks_);

@@ -1,42 +1,50 @@
-// All passes of a picture and their order: the shadow maps; the scene, with samples (what is opaque, what is
-// translucent, the marks over it); then the frame, without (background, the ground's grid and shadows, and
-// the scene laid over them). Ground lines are smooth by themselves and need no samples.
+// All passes of a picture and their order.
+//
+//   shadow maps
+//   scene, with samples:     opaque bodies and force, translucent bodies, overlays, planes, tool,
+//                            contact stage, touched nodes
+//   frame, without samples:  background, ground with grid and shadows, resolved scene, scale bar
+//
+// The lines of the ground have smooth edges themselves and need no samples.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/simulation/snapshot.h"
-#include "render/passes/background_pass.h"
-#include "render/passes/body_meshes.h"
+#include "render/gl/render_target.h"
+#include "render/passes/frame_passes.h"
 #include "render/passes/frame_view.h"
-#include "render/passes/ground_pass.h"
-#include "render/passes/line_pass.h"
-#include "render/passes/mark_pass.h"
-#include "render/passes/resolve_pass.h"
+#include "render/passes/mesh_buffers.h"
+#include "render/passes/overlay_passes.h"
 #include "render/passes/shadow_pass.h"
-#include "render/passes/shell_pass.h"
-#include "render/passes/solid_pass.h"
-#include "render/passes/surface_pass.h"
-#include "render/passes/tool_buffers.h"
-#include "render/passes/triangle_pass.h"
+#include "render/passes/surface_passes.h"
 #include "render/view_settings.h"
 
 namespace spoonbill {
+
+// Returns the part of the picture that the scene can touch, as disjoint vertical strips with a margin for
+// marks. The strips enclose bodies, tool and overlays; one strip covers the whole viewport if any point is
+// behind the eye. With four samples, clearing and resolving empty pixels would take as long as drawing the
+// model. Defined in scene_area.cpp.
+std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& settings,
+                                  const FrameView& view, const std::vector<TessellatedSurface>& bodies);
 
 class ScenePasses {
  public:
   static Result<ScenePasses> make(const GlFunctions& gl);
 
-  // Before a frame. The error is that of a solid tool that cannot be drawn.
-  Status follow(const ToolSnapshot& tool) { return passes_.tool.update(tool); }
+  // Updates the mesh of the tool. Call before each frame. Returns the error of a solid tool that cannot be
+  // drawn.
+  Status update_tool(const ToolSnapshot& tool) { return passes_.tool.update(tool); }
 
-  // Before draw(), into maps of their own; nothing when shadows are off.
+  // Draws the shadow maps; does nothing if shadows are off. Call before draw().
   void draw_shadows(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
                     const BodyMeshes& bodies);
 
-  // Leaves the finished picture in the target's frame.
+  // Draws the complete picture into the target's frame.
   void draw(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
             const BodyMeshes& bodies, const RenderTarget& target);
 
@@ -70,7 +78,7 @@ class ScenePasses {
   void draw_touched(const FrameView& view, const Snapshot& snapshot);
 
   Passes passes_;
-  std::vector<OverlayLine> lines_;  // working memory, kept from frame to frame
+  std::vector<OverlayLine> lines_;  // working memory, reused from frame to frame
   std::vector<OverlayMark> marks_;
 };
 

@@ -6,19 +6,119 @@
 #include <utility>
 
 #include "engine/base/geometry.h"
-#include "render/gl/pipeline_state.h"
-#include "render/passes/lighting_glsl.h"
-#include "render/passes/shadow_glsl.h"
-#include "render/passes/whole_viewport_glsl.h"
+#include "render/passes/frame_view.h"
 
 namespace spoonbill {
 namespace {
+
+constexpr const char* shadow_depth_vertex_glsl = R"(
+uniform mat4 to_clip;
+layout(location = 0) in float x;
+layout(location = 1) in float y;
+layout(location = 2) in float z;
+void main() { gl_Position = to_clip * vec4(x, y, z, 1.0); }
+)";
+
+constexpr const char* shadow_depth_fragment_glsl = R"(
+void main() {}
+)";
+
+// The occluders of the ground, with MAX blending. Red: the key light is blocked. Green: the height of the
+// highest occluder. Blue: the closeness of the lowest occluder overhead.
+constexpr const char* shadow_cover_vertex_glsl = R"(
+uniform mat4 to_clip;
+uniform float ground_height;
+layout(location = 0) in float x;
+layout(location = 1) in float y;
+layout(location = 2) in float z;
+out float height;
+void main() {
+  height = y - ground_height;
+  gl_Position = to_clip * vec4(x, y, z, 1.0);
+}
+)";
+
+constexpr const char* shadow_cover_fragment_glsl = R"(
+uniform float high;
+uniform float reach;
+uniform int overhead;
+in float height;
+out vec4 result;
+
+void main() {
+  vec2 covered = vec2(1.0, height / high) * step(0.0, height);
+  float close = exp(-max(height, 0.0) / reach);
+  result = overhead != 0 ? vec4(0.0, 0.0, close, 1.0) : vec4(covered, 0.0, 1.0);
+}
+)";
+
+// The light on the ground: a percentage-closer soft shadow of the key light, and the occlusion of the sky
+// nearby. Follows sphere_shadow_glsl. The taps form a golden-angle spiral and read the mip level whose texels
+// are about as wide as the gap between taps. A coarse level, whose four texels cover all taps, shows where
+// there is no occluder; the loops are skipped there, which saves most of the time on a software renderer.
+constexpr const char* ground_light_fragment_glsl = R"(
+uniform sampler2D cover;
+uniform vec2 corner;
+uniform float side;
+uniform float ground_texels;
+uniform float cover_texels;
+uniform float high;
+uniform float spread;
+uniform float reach;
+uniform float ground_height;
+out vec4 result;
+
+const int search_taps = 8;
+const int taps = 14;
+
+float level_for(float radius) { return max(log2(radius * cover_texels / side * 0.5), 0.0); }
+
+// Returns the sum over a disc around uv; without taps if `any` is 0.
+vec3 gather(vec2 uv, float radius, float level, int count, float any) {
+  const mat2 golden_turn = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
+  vec2 way = vec2(radius / side, 0.0);
+  vec3 sum = vec3(0.0);
+  int end = any > 0.0 ? count : 0;
+  for (int i = 0; i < end; ++i) {
+    sum += textureLod(cover, uv + way * sqrt((float(i) + 0.5) / float(count)), level).rgb;
+    way = golden_turn * way;
+  }
+  return sum;
+}
+
+void main() {
+  vec2 uv = gl_FragCoord.xy / ground_texels;
+  vec3 ground = vec3(corner.x + uv.x * side, ground_height, corner.y + uv.y * side);
+
+  float search = max(high * spread, 1.5 * side / ground_texels);
+  float level = level_for(search);
+  float near = textureLod(cover, uv, ceil(level) + 2.0).r;
+  vec2 blockers = gather(uv, search, level + 0.5, search_taps, near).rg;
+
+  float mean_height = high * blockers.g / max(blockers.r, 1e-6);
+  float radius = max(mean_height * spread, 0.8 * side / ground_texels);
+  float covered = gather(uv, radius, level_for(radius), taps, blockers.r).r;
+  float key = 1.0 - covered / float(taps);
+
+  level = level_for(reach);
+  near = textureLod(cover, uv, ceil(level) + 2.0).b;
+  float hidden = gather(uv, reach, level, taps, near).b;
+  float sky = 1.0 - 0.85 * min(hidden / float(taps), 1.0);
+
+  key *= key_past_sphere(ground);
+  sky *= sky_past_sphere(ground, vec3(0.0, 1.0, 0.0));
+  // The weights of key and sky add up to one, so that open ground leaves the background unchanged. The light is linear;
+  // the background that it dims is encoded.
+  float dark = 1.0 - pow(0.06 + 0.94 * (0.46 * key + 0.54 * sky), 1.0 / 2.2);
+  result = vec4(dark);
+}
+)";
 
 constexpr int key_side_px = 1024;
 constexpr int cover_side_px = 256;
 constexpr int ground_side_px = 192;
 
-// How far from the body the ground under it is darkened by the hidden sky.
+// Distance from the body within which the ground is darkened by the occluded sky.
 constexpr float contact_reach_m = 0.007f;
 
 GlHandle make_map(const GlFunctions& gl, GLint internal_format, GLenum format, GLenum type, int side_px,
@@ -45,8 +145,53 @@ GlHandle make_map_framebuffer(const GlFunctions& gl, GLenum attachment, const Gl
   return framebuffer;
 }
 
-int used_px(float share, int side_px) {
-  return std::min(side_px, static_cast<int>(std::ceil(share * static_cast<float>(side_px))) + 1);
+int used_px(float fraction, int side_px) {
+  return std::min(side_px, static_cast<int>(std::ceil(fraction * static_cast<float>(side_px))) + 1);
+}
+
+constexpr float contact_margin_m = 0.012f;
+
+// Returns the projection of points along the light onto the ground, to the clip space of a square map. sign
+// +1 keeps the highest point in front, -1 the lowest.
+Eigen::Matrix4f ground_projection(const ShadowArea& area, const Eigen::Vector3f& along, float ground_y_m,
+                                  float sign) {
+  const float to_clip = 2.0f / area.side_m;
+  const float skew_x = -along.x() / along.y(), skew_z = -along.z() / along.y();
+  Eigen::Matrix4f m = Eigen::Matrix4f::Zero();
+  m(0, 0) = to_clip;
+  m(0, 1) = to_clip * skew_x;
+  m(0, 3) = to_clip * (-skew_x * ground_y_m - area.corner_m.x()) - 1.0f;
+  m(1, 2) = to_clip;
+  m(1, 1) = to_clip * skew_z;
+  m(1, 3) = to_clip * (-skew_z * ground_y_m - area.corner_m.y()) - 1.0f;
+  const float depth = 2.0f / (area.high_m - area.low_m);
+  m(2, 1) = -sign * depth;
+  m(2, 3) = sign * depth * (ground_y_m + 0.5f * (area.low_m + area.high_m));
+  m(3, 3) = 1.0f;
+  return m;
+}
+
+// The rectangle of the ground that shadows and contact shadows can reach.
+struct Footprint {
+  FloatBox2 box;
+
+  void include_shadow(const Box& caster, float ground_y_m, const Eigen::Vector3f& toward_key) {
+    for (int i = 0; i < 8; ++i) {
+      const Eigen::Vector3f corner = caster.corner(i).cast<float>();
+      const float height = std::max(0.0f, corner.y() - ground_y_m);
+      const Eigen::Vector2f below(corner.x(), corner.z());
+      const Eigen::Vector2f cast =
+          below - Eigen::Vector2f(toward_key.x(), toward_key.z()) * (height / toward_key.y());
+      const Eigen::Vector2f soft = Eigen::Vector2f::Constant(key_light_spread * height + contact_margin_m);
+      box.join({below.cwiseMin(cast) - soft, below.cwiseMax(cast) + soft});
+    }
+  }
+};
+
+// Rounds a size up to the next of eight steps in an octave.
+float quantised_size(float size) {
+  const float octave = std::exp2(std::floor(std::log2(size)));
+  return octave * std::ceil(8.0f * size / octave) / 8.0f;
 }
 
 }  // namespace
@@ -134,8 +279,8 @@ void ShadowPass::light_ground(const FrameView& view, const ToolSphere& tool) con
   gl_->BindFramebuffer(GL_FRAMEBUFFER, ground_framebuffer_.id());
   gl_->ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
   gl_->Clear(GL_COLOR_BUFFER_BIT);
-  gl_->Viewport(0, 0, used_px(area_.used_share.x(), ground_side_px),
-                used_px(area_.used_share.y(), ground_side_px));
+  gl_->Viewport(0, 0, used_px(area_.used_fraction.x(), ground_side_px),
+                used_px(area_.used_fraction.y(), ground_side_px));
   const Program& program = programs_.ground;
   program.use();
   program.set("cover", 0);
@@ -153,6 +298,29 @@ void ShadowPass::light_ground(const FrameView& view, const ToolSphere& tool) con
   gl_->BindTexture(GL_TEXTURE_2D, cover_.id());
   gl_->BindVertexArray(vertex_array_.id());
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+ShadowArea shadow_area(const Box& body, const Box& tool, float ground_y_m, const Eigen::Vector3f& toward_key,
+                       int map_side_px) {
+  Box box = body;
+  if (box.is_empty()) box.include(Vector3(0.0, ground_y_m, 0.0));
+  Footprint footprint;
+  footprint.include_shadow(box, ground_y_m, toward_key);
+  if (!tool.is_empty()) footprint.include_shadow(tool, ground_y_m, toward_key);
+  const Eigen::Vector2f low = footprint.box.low, high = footprint.box.high;
+  ShadowArea area;
+  area.side_m = quantised_size((high - low).maxCoeff());
+  const float step = area.side_m / 64.0f;
+  area.side_m += step;
+  const float texel = area.side_m / static_cast<float>(map_side_px);
+  const float snap = std::max(1.0f, std::round(step / texel)) * texel;
+  area.corner_m = (low / snap).array().floor().matrix() * snap;
+  area.used_fraction = ((high - area.corner_m) / area.side_m).cwiseMin(1.0f);
+  area.low_m = static_cast<float>(box.low.y()) - ground_y_m - 0.001f;
+  area.high_m = static_cast<float>(box.high.y()) - ground_y_m + 0.001f;
+  area.key_to_clip = ground_projection(area, toward_key, ground_y_m, 1.0f);
+  area.sky_to_clip = ground_projection(area, Eigen::Vector3f::UnitY(), ground_y_m, -1.0f);
+  return area;
 }
 
 }  // namespace spoonbill

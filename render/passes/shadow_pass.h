@@ -1,43 +1,62 @@
-// What the body hides of the key light and of the sky: the depth map that the body reads for its own shadow,
-// and the light that reaches the ground, ready to be laid over it.
+// The shadows of the bodies: the depth map for shadows on the bodies, and the light that reaches the ground.
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
-#include "render/gl/functions.h"
-#include "render/gl/handle.h"
-#include "render/gl/program.h"
+#include "render/gl/pipeline.h"
 #include "render/passes/frame_view.h"
-#include "render/passes/shadow_area.h"
-#include "render/passes/surface_buffers.h"
+#include "render/passes/mesh_buffers.h"
 
 namespace spoonbill {
 
-// The round tool as the shaders know it.
+// The part of the ground that shadows can reach, and the projections of the world onto it.
+//
+// The shadow map covers the ground instead of a plane across the light: a point is projected along the light
+// onto the ground, and its depth is its height. So one map serves both the shadow of a body on itself and the
+// shadow on the ground.
+struct ShadowArea {
+  Eigen::Vector2f corner_m;       // smallest x and z
+  float side_m = 0.0f;            // side of the square that the map covers
+  Eigen::Vector2f used_fraction;  // fraction of the square, from the corner, that shadows can reach
+  float low_m = 0.0f,
+        high_m = 0.0f;          // range of heights above the ground that the depth of the map represents
+  Eigen::Matrix4f key_to_clip;  // world to the map of the key light
+  Eigen::Matrix4f sky_to_clip;  // world to the map of occluders above the ground, seen from below
+};
+
+// Tangent of half the angle of the key light: the rate at which shadows soften with distance.
+inline constexpr float key_light_spread = 0.17f;
+
+// Computes the shadow area. Corner and side move in steps of texels and of eighths of the size, so that edges
+// do not crawl while the scene moves slightly. The tool needs space on the ground but is not in the map.
+// Either box may be empty. toward_key points above the horizon.
+ShadowArea shadow_area(const Box& body, const Box& tool, float ground_y_m, const Eigen::Vector3f& toward_key,
+                       int map_side_px);
+
+// The round tool in the form that the shaders use.
 struct ToolSphere {
   Eigen::Vector3f centre_m = Eigen::Vector3f::Zero();
   float radius_m = 0.0f;  // 0 without a tool
 };
 
-// Sets tool_centre and tool_radius.
+// Sets the uniforms tool_centre and tool_radius.
 void set_tool_uniforms(const Program& program, const ToolSphere& tool);
 
 class ShadowPass {
  public:
   static Result<ShadowPass> make(const GlFunctions& gl);
 
-  // Draws the maps. The bound framebuffer, viewport and state are changed.
+  // Draws the maps. Changes the bound framebuffer, the viewport and the pipeline state.
   void draw(const FrameView& view, const std::vector<SurfaceBuffers>& bodies, const Box& body_box,
             const Box& tool_box, const ToolSphere& tool);
 
-  // Of the last draw().
+  // Results of the last draw().
   const ShadowArea& area() const { return area_; }
-  GLuint key_map() const { return key_map_.id(); }  // depth with comparison, bilinear
-  GLuint ground_dark() const {
-    return ground_dark_.id();
-  }  // red: how far to dim what is behind; 0 in the open
+  GLuint key_map() const { return key_map_.id(); }          // depth with comparison, bilinear
+  GLuint ground_dark() const { return ground_dark_.id(); }  // red: darkening of the ground, 0 in the open
 
   static int key_map_side_px();
 
@@ -48,7 +67,7 @@ class ShadowPass {
   ShadowPass(const GlFunctions& gl, Programs programs);
   void draw_key_map(const std::vector<SurfaceBuffers>& bodies) const;
   void draw_cover(const FrameView& view, const std::vector<SurfaceBuffers>& bodies) const;
-  float highest_m() const;  // above the ground, more than 0
+  float highest_m() const;  // greatest height above the ground, more than 0
   void light_ground(const FrameView& view, const ToolSphere& tool) const;
 
   const GlFunctions* gl_;

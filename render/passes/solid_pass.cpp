@@ -1,5 +1,3 @@
-#include "render/passes/solid_pass.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -10,15 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "render/gl/pipeline_state.h"
-#include "render/passes/lathe.h"
-#include "render/passes/lighting_glsl.h"
-#include "render/surface_look.h"
+#include "render/passes/surface_passes.h"
 
 namespace spoonbill {
 namespace {
 
-constexpr const char* vertex_source = R"(
+constexpr const char* solid_vertex_source = R"(
 uniform mat4 world_to_clip;
 uniform mat4 model;
 uniform mat4 normal_to_world;
@@ -67,32 +62,98 @@ constexpr std::array<int, 5> sphere_segments = {16, 28, 44, 68, 104};
 constexpr float sphere_sagitta_px = 0.25f;
 constexpr int arrow_segments = 28;
 
-Eigen::Matrix4f placed(const Eigen::Vector3f& origin, const Eigen::Matrix3f& axes) {
+Eigen::Matrix4f make_model(const Eigen::Vector3f& origin, const Eigen::Matrix3f& axes) {
   Eigen::Matrix4f model = Eigen::Matrix4f::Identity();
   model.topLeftCorner<3, 3>() = axes;
   model.topRightCorner<3, 1>() = origin;
   return model;
 }
 
-Eigen::Vector4f linear(Colour colour) {
-  return {linear_of_srgb8(colour.r), linear_of_srgb8(colour.g), linear_of_srgb8(colour.b),
+Eigen::Vector4f to_linear(Colour colour) {
+  return {srgb8_to_linear(colour.r), srgb8_to_linear(colour.g), srgb8_to_linear(colour.b),
           static_cast<float>(colour.a) / 255.0f};
 }
 
-// As it goes into the picture.
-Eigen::Vector4f encoded(Colour colour) {
+// Returns the colour in sRGB, as it is written to the picture.
+Eigen::Vector4f to_srgb(Colour colour) {
   return Eigen::Vector4i(colour.r, colour.g, colour.b, colour.a).cast<float>() / 255.0f;
+}
+
+struct SolidVertex {
+  Eigen::Vector3f position;
+  Eigen::Vector3f normal;  // unit, outward
+};
+
+// A point of a profile: distance from the axis, height, and normal in the plane of the profile.
+struct LathePoint {
+  float radius, height, normal_out, normal_up;
+};
+
+SolidVertex revolve(const LathePoint& p, double angle) {
+  const auto c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
+  return {{p.radius * c, p.height, p.radius * s}, {p.normal_out * c, p.normal_up, p.normal_out * s}};
+}
+
+// Appends the band between two profile points, the lower one first. Three vertices a triangle,
+// counter-clockwise seen from outside.
+void append_band(const LathePoint& low, const LathePoint& high, int segments,
+                 std::vector<SolidVertex>& vertices) {
+  for (int i = 0; i < segments; ++i) {
+    const double a = 2.0 * std::numbers::pi * i / segments;
+    const double b = 2.0 * std::numbers::pi * (i + 1) / segments;
+    const SolidVertex low_a = revolve(low, a), low_b = revolve(low, b);
+    const SolidVertex high_a = revolve(high, a), high_b = revolve(high, b);
+    for (const SolidVertex& v : {low_a, high_b, low_b, low_a, high_a, high_b}) vertices.push_back(v);
+  }
+}
+
+// Returns a sphere of radius 1 around the origin.
+std::vector<SolidVertex> lathe_sphere(int segments) {
+  std::vector<SolidVertex> vertices;
+  const int bands = segments / 2;
+  const auto at = [&](int band) {
+    const double latitude = std::numbers::pi * (static_cast<double>(band) / bands - 0.5);
+    const auto out = static_cast<float>(std::cos(latitude)), up = static_cast<float>(std::sin(latitude));
+    return LathePoint{out, up, out, up};
+  };
+  for (int band = 0; band < bands; ++band) append_band(at(band), at(band + 1), segments, vertices);
+  return vertices;
+}
+
+// Returns a closed cylinder of radius 1 from y = 0 to 1.
+std::vector<SolidVertex> lathe_cylinder(int segments) {
+  std::vector<SolidVertex> vertices;
+  append_band({0, 0, 0, -1}, {1, 0, 0, -1}, segments, vertices);
+  append_band({1, 0, 1, 0}, {1, 1, 1, 0}, segments, vertices);
+  append_band({1, 1, 0, 1}, {0, 1, 0, 1}, segments, vertices);
+  return vertices;
+}
+
+// Returns a closed cone of radius 1 at y = 0 with its tip at y = 1.
+std::vector<SolidVertex> lathe_cone(int segments) {
+  std::vector<SolidVertex> vertices;
+  const auto slant = static_cast<float>(std::numbers::sqrt2 / 2.0);
+  append_band({0, 0, 0, -1}, {1, 0, 0, -1}, segments, vertices);
+  append_band({1, 0, slant, slant}, {0, 1, slant, slant}, segments, vertices);
+  return vertices;
+}
+
+// Returns the unit square of the xy plane.
+std::vector<SolidVertex> unit_pane() {
+  const Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
+  const SolidVertex a{{0, 0, 0}, normal}, b{{1, 0, 0}, normal}, c{{1, 1, 0}, normal}, d{{0, 1, 0}, normal};
+  return {a, b, c, a, c, d};
 }
 
 }  // namespace
 
 Result<SolidPass> SolidPass::make(const GlFunctions& gl) {
   const std::string light = std::string(key_light_glsl) + studio_light_glsl;
-  auto solid = Program::make(gl, "solid", vertex_source, light + solid_source);
+  auto solid = Program::make(gl, "solid", solid_vertex_source, light + solid_source);
   if (!solid) return solid.error();
-  auto glass = Program::make(gl, "glass", vertex_source, light + glass_source);
+  auto glass = Program::make(gl, "glass", solid_vertex_source, light + glass_source);
   if (!glass) return glass.error();
-  auto pane = Program::make(gl, "pane", vertex_source, pane_source);
+  auto pane = Program::make(gl, "pane", solid_vertex_source, pane_source);
   if (!pane) return pane.error();
   return SolidPass(gl, Programs{std::move(solid).value(), std::move(glass).value(), std::move(pane).value()});
 }
@@ -127,7 +188,7 @@ SolidPass::SolidPass(const GlFunctions& gl, Programs programs)
 void SolidPass::draw_solid(const FrameView& view, const Shape& shape, const Eigen::Matrix4f& model,
                            Colour colour) const {
   set_pipeline_state(*gl_, {Depth::test_and_write, Blend::off, Cull::back});
-  draw_shape(programs_.solid, view, shape, model, linear(colour));
+  draw_shape(programs_.solid, view, shape, model, to_linear(colour));
 }
 
 void SolidPass::draw_shape(const Program& program, const FrameView& view, const Shape& shape,
@@ -148,7 +209,8 @@ void SolidPass::use_program(const Program& program, const FrameView& view, const
   program.set("colour", colour);
 }
 
-// A chord of a circle of radius r, cut into n, lies within r (pi / n)^2 / 2 of its arc.
+// Returns the coarsest sphere whose sagitta is small enough on the screen. A chord of a circle of radius r
+// with n pieces deviates from its arc by at most r (pi / n)^2 / 2.
 const SolidPass::Shape& SolidPass::sphere_for(const FrameView& view, const Eigen::Vector3f& centre_m,
                                               float radius_m) const {
   const float depth = std::max((centre_m - view.eye_m).norm() - radius_m, view.nearest_depth_m);
@@ -163,22 +225,22 @@ void SolidPass::draw_glass_sphere(const FrameView& view, const Eigen::Vector3f& 
                                   Colour colour) const {
   set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, Cull::back});
   draw_shape(programs_.glass, view, sphere_for(view, centre_m, radius_m),
-             placed(centre_m, radius_m * Eigen::Matrix3f::Identity()), linear(colour));
+             make_model(centre_m, radius_m * Eigen::Matrix3f::Identity()), to_linear(colour));
 }
 
 void SolidPass::draw_glass_tool(const FrameView& view, ToolBuffers& tool, const ToolFrame& frame,
                                 Colour colour) const {
   const bool mirrored = frame.axes.determinant() < 0.0;
   set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, mirrored ? Cull::front : Cull::back});
-  use_program(programs_.glass, view, placed(frame.origin_m.cast<float>(), frame.axes.cast<float>()),
-              linear(colour));
+  use_program(programs_.glass, view, make_model(frame.origin_m.cast<float>(), frame.axes.cast<float>()),
+              to_linear(colour));
   tool.draw((frame.axes.transpose() * (view.eye_m.cast<double>() - frame.origin_m)).cast<float>());
 }
 
 void SolidPass::draw_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,
                             Colour colour) const {
   draw_solid(view, sphere_for(view, centre_m, radius_m),
-             placed(centre_m, radius_m * Eigen::Matrix3f::Identity()), colour);
+             make_model(centre_m, radius_m * Eigen::Matrix3f::Identity()), colour);
 }
 
 void SolidPass::draw_arrow(const FrameView& view, const Eigen::Vector3f& start_m,
@@ -193,8 +255,8 @@ void SolidPass::draw_arrow(const FrameView& view, const Eigen::Vector3f& start_m
   const float shaft_length = length - head_length;
   const Eigen::Vector3f shaft_size(0.5f * width_m, shaft_length, 0.5f * width_m);
   const Eigen::Vector3f head_size(head_radius, head_length, head_radius);
-  draw_solid(view, shaft_, placed(start_m, turn * shaft_size.asDiagonal()), colour);
-  draw_solid(view, head_, placed(start_m + shaft_length * along, turn * head_size.asDiagonal()), colour);
+  draw_solid(view, shaft_, make_model(start_m, turn * shaft_size.asDiagonal()), colour);
+  draw_solid(view, head_, make_model(start_m + shaft_length * along, turn * head_size.asDiagonal()), colour);
 }
 
 void SolidPass::draw_pane(const FrameView& view, const std::array<Eigen::Vector3f, 4>& corners_m,
@@ -204,7 +266,7 @@ void SolidPass::draw_pane(const FrameView& view, const std::array<Eigen::Vector3
   axes.col(1) = corners_m[3] - corners_m[0];
   axes.col(2) = axes.col(0).cross(axes.col(1)).normalized();
   set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, Cull::off});
-  draw_shape(programs_.pane, view, pane_, placed(corners_m[0], axes), encoded(colour));
+  draw_shape(programs_.pane, view, pane_, make_model(corners_m[0], axes), to_srgb(colour));
 }
 
 }  // namespace spoonbill

@@ -1,14 +1,12 @@
-#include "render/passes/surface_pass.h"
-
 #include <string>
+#include <utility>
 
-#include "render/gl/pipeline_state.h"
-#include "render/passes/lighting_glsl.h"
+#include "render/passes/surface_passes.h"
 
 namespace spoonbill {
 namespace {
 
-constexpr const char* vertex_source = R"(
+constexpr const char* body_vertex_source = R"(
 uniform mat4 world_to_clip;
 layout(location = 0) in float x;
 layout(location = 1) in float y;
@@ -25,9 +23,9 @@ void main() {
 }
 )";
 
-// The constant `opaque` goes in front. Five bilinear comparisons blur the edge over about a millimetre; the
-// offset along the normal keeps the surface from shadowing itself.
-constexpr const char* fragment_source = R"(
+// The constant `opaque` is prepended. Five bilinear comparisons blur the edge of the shadow over about a
+// millimetre; the offset along the normal prevents self-shadowing.
+constexpr const char* body_fragment_source = R"(
 uniform sampler2DShadow key_map;
 uniform mat4 key_to_clip;
 uniform float texel;
@@ -70,17 +68,18 @@ void main() {
 }
 )";
 
-std::string fragment_shader(bool opaque) {
+std::string body_fragment_shader(bool opaque) {
   return std::string(opaque ? "const bool opaque = true;\n" : "const bool opaque = false;\n") +
-         key_light_glsl + sphere_shadow_glsl + studio_light_glsl + fragment_source;
+         key_light_glsl + sphere_shadow_glsl + studio_light_glsl + body_fragment_source;
 }
 
 }  // namespace
 
 Result<SurfacePass> SurfacePass::make(const GlFunctions& gl) {
-  auto opaque = Program::make(gl, "opaque surface", vertex_source, fragment_shader(true));
+  auto opaque = Program::make(gl, "opaque surface", body_vertex_source, body_fragment_shader(true));
   if (!opaque) return opaque.error();
-  auto translucent = Program::make(gl, "translucent surface", vertex_source, fragment_shader(false));
+  auto translucent =
+      Program::make(gl, "translucent surface", body_vertex_source, body_fragment_shader(false));
   if (!translucent) return translucent.error();
   return SurfacePass(gl, std::move(opaque).value(), std::move(translucent).value());
 }

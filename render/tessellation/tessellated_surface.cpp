@@ -2,10 +2,17 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <numeric>
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/geometry.h"
+#include "engine/collision/meshes/mesh_edges.h"
 
 namespace spoonbill {
 namespace {
@@ -14,25 +21,178 @@ Eigen::Vector3d vertex(const GridSamples<float>& samples, std::size_t i) {
   return {samples.x[i], samples.y[i], samples.z[i]};
 }
 
+// Cosine of 40 degrees. Faces that meet at a larger angle have an edge between them.
+constexpr float smooth_cosine = 0.766F;
+
+Eigen::Vector3f position(const MeshSnapshot& mesh, std::uint32_t vertex) {
+  return {mesh.x[vertex], mesh.y[vertex], mesh.z[vertex]};
+}
+
+// Returns the normal of a triangle, with twice its area as length.
+Eigen::Vector3f face_normal(const MeshSnapshot& mesh, const std::array<std::uint32_t, 3>& corners) {
+  const Eigen::Vector3f a = position(mesh, corners[0]);
+  return (position(mesh, corners[1]) - a).cross(position(mesh, corners[2]) - a);
+}
+
+// Disjoint sets of triangle corners; each set is drawn as one vertex.
+class CornerGroups {
+ public:
+  explicit CornerGroups(std::size_t corners) : parent_(corners) {
+    std::iota(parent_.begin(), parent_.end(), 0U);
+  }
+  std::uint32_t find(std::uint32_t corner) {
+    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
+    return corner;
+  }
+  void join(std::uint32_t a, std::uint32_t b) { parent_[find(a)] = find(b); }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+constexpr std::array<int, 10> piece_steps = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
+
+// Ratios of needed to previous pieces within which the previous number is retained; see
+// choose_sampling_level().
+constexpr double tolerated_excess = 1.15;
+constexpr double tolerated_waste = 0.4;
+
+// The control points along one line of the net, in the order of the basis functions, with periodic lines
+// unrolled.
+class NetLine {
+ public:
+  NetLine(const SurfaceSnapshot& surface, bool along_u, int across)
+      : surface_(surface),
+        count_((along_u ? surface.u : surface.v).control_point_count()),
+        start_(along_u ? across : across * surface.v.control_point_count()),
+        stride_(along_u ? surface.v.control_point_count() : 1) {}
+
+  Vector3 operator[](int i) const {
+    const auto at = static_cast<std::size_t>(start_ + (i % count_) * stride_);
+    return {surface_.x[at], surface_.y[at], surface_.z[at]};
+  }
+
+ private:
+  const SurfaceSnapshot& surface_;
+  int count_;
+  int start_;
+  int stride_;
+};
+
+// Bounds for each control point of the derivatives, over all lines of the net: the length of S' in metres per
+// parameter, and the length of the part of S'' perpendicular to S', which bends a line.
+struct DerivativeBounds {
+  std::vector<double> speed;  // control point i acts on spans i + 1 to i + degree
+  std::vector<double> bend;   // control point i acts on spans i + 2 to i + degree
+};
+
+void include_line(const NetLine& line, const KnotVector& knots, DerivativeBounds& bounds) {
+  const auto& t = knots.extended_knots();
+  const int p = knots.degree();
+  Vector3 before = Vector3::Zero();
+  for (int i = 0; i < static_cast<int>(bounds.speed.size()); ++i) {
+    const double width = t[i + p + 1] - t[i + 1];
+    const Vector3 slope = width > 0.0 ? Vector3((line[i + 1] - line[i]) * (p / width)) : before;
+    bounds.speed[i] = std::max(bounds.speed[i], slope.norm());
+    const double inner_width = t[i + p] - t[i + 1];
+    if (i > 0 && p > 1 && inner_width > 0.0) {
+      const Vector3 second = (slope - before) * ((p - 1) / inner_width);
+      const Vector3 direction = (slope + before).normalized();
+      bounds.bend[i - 1] = std::max(bounds.bend[i - 1], (second - direction * direction.dot(second)).norm());
+    }
+    before = slope;
+  }
+}
+
+DerivativeBounds derivative_bounds(const SurfaceSnapshot& surface, bool along_u) {
+  const KnotVector& knots = along_u ? surface.u : surface.v;
+  const int lines = (along_u ? surface.v : surface.u).control_point_count();
+  const std::size_t slopes = knots.extended_knots().size() - static_cast<std::size_t>(knots.degree()) - 2;
+  DerivativeBounds bounds{std::vector<double>(slopes), std::vector<double>(slopes)};
+  for (int across = 0; across < lines; ++across) {
+    include_line(NetLine(surface, along_u, across), knots, bounds);
+  }
+  return bounds;
+}
+
+// Returns the maximum over the control points that act on a span.
+double maximum_over(const std::vector<double>& values, int first, int last) {
+  double maximum = 0.0;
+  for (int i = std::max(first, 0); i <= last && i < static_cast<int>(values.size()); ++i) {
+    maximum = std::max(maximum, values[static_cast<std::size_t>(i)]);
+  }
+  return maximum;
+}
+
+int choose_pieces(double needed, int previous) {
+  if (previous > 0 && needed <= previous * tolerated_excess && needed > previous * tolerated_waste) {
+    return previous;
+  }
+  const auto step = std::lower_bound(piece_steps.begin(), piece_steps.end(), needed);
+  return step == piece_steps.end() ? piece_steps.back() : *step;
+}
+
+std::vector<int> pieces_along(const SurfaceSnapshot& surface, bool along_u, double pixels_per_metre,
+                              const std::vector<int>& previous, const SamplingTarget& target) {
+  const KnotVector& knots = along_u ? surface.u : surface.v;
+  const DerivativeBounds bounds = derivative_bounds(surface, along_u);
+  const std::vector<double> breakpoints = knots.breakpoints();
+  const std::size_t spans = breakpoints.size() - 1;
+  std::vector<int> pieces(spans);
+  for (std::size_t s = 0; s < spans; ++s) {
+    const double width = breakpoints[s + 1] - breakpoints[s];
+    const int k = knots.find_span(0.5 * (breakpoints[s] + breakpoints[s + 1]));
+    const double speed = maximum_over(bounds.speed, k - knots.degree(), k - 1);
+    const double bend = maximum_over(bounds.bend, k - knots.degree(), k - 2);
+    const double edge_px = speed * width * pixels_per_metre;
+    // The chord over a parameter width h deviates from its arc by at most h^2 |S''| / 8.
+    const double sagitta_px = bend * width * width / 8.0 * pixels_per_metre;
+    const double needed =
+        std::max(edge_px / target.longest_edge_px, std::sqrt(sagitta_px / target.largest_sagitta_px));
+    pieces[s] = choose_pieces(needed, previous.size() == spans ? previous[s] : 0);
+  }
+  return pieces;
+}
+
+std::int64_t pieces_below(const std::vector<int>& pieces, int maximum) {
+  std::int64_t sum = 0;
+  for (const int count : pieces) sum += std::min(count, maximum);
+  return sum;
+}
+
+// Reduces the pieces of the finest spans until the number of cells is within the limit.
+void thin(SamplingLevel& level) {
+  auto maximum = piece_steps.rbegin();
+  while (std::next(maximum) != piece_steps.rend() &&
+         pieces_below(level.u_pieces, *maximum) * pieces_below(level.v_pieces, *maximum) >
+             sampling_cell_limit) {
+    ++maximum;
+  }
+  for (std::vector<int>* pieces : {&level.u_pieces, &level.v_pieces}) {
+    for (int& count : *pieces) count = std::min(count, *maximum);
+  }
+}
+
 }  // namespace
 
 Status check_net(const SurfaceSnapshot& surface) {
   const auto expected = static_cast<std::size_t>(surface.u.control_point_count()) *
                         static_cast<std::size_t>(surface.v.control_point_count());
   if (surface.x.size() == expected && surface.y.size() == expected && surface.z.size() == expected) return {};
-  return Error{"surface to draw: its knots ask for " + std::to_string(expected) +
-               " control points, its net has " + std::to_string(surface.x.size())};
+  return Error{ErrorCode::inconsistent, "surface to draw: its knots need " + std::to_string(expected) +
+                                            " control points, its net has " +
+                                            std::to_string(surface.x.size())};
 }
 
 Status TessellatedSurface::update(const SurfaceSnapshot& surface, const SamplingLevel& level) {
   if (Status net = check_net(surface); !net) return net;
-  const bool keep = !is_mesh_ && evaluator_ && structure_ == surface.structure && level_ == level &&
-                    grid_->u.knots == surface.u && grid_->v.knots == surface.v && trim_ == surface.trim;
-  if (!keep) {
+  const bool unchanged = !is_mesh_ && evaluator_ && structure_ == surface.structure && level_ == level &&
+                         grid_->u.knots == surface.u && grid_->v.knots == surface.v && trim_ == surface.trim;
+  if (!unchanged) {
     if (Status built = rebuild(surface, level); !built) return built;
   }
   evaluator_->points_and_normals(surface.x.data(), surface.y.data(), surface.z.data(), samples_);
-  if (!keep) orient();
+  if (!unchanged) orient();
   fill_cut_vertices();
   if (inward_) {
     for (auto* component : {&samples_.nx, &samples_.ny, &samples_.nz}) {
@@ -43,8 +203,8 @@ Status TessellatedSurface::update(const SurfaceSnapshot& surface, const Sampling
 }
 
 void TessellatedSurface::update(const MeshSnapshot& mesh) {
-  if (!is_mesh_ || !shading_.is_of(mesh)) {
-    shading_.make(mesh);
+  if (!is_mesh_ || !shading_.matches(mesh)) {
+    shading_.rebuild(mesh);
     indices_ = shading_.indices();
     ++topology_version_;
     closed_ = is_mesh_ = true;
@@ -90,8 +250,8 @@ void TessellatedSurface::build_indices(bool u_wraps, bool v_wraps) {
   }
 }
 
-// Whether the first or last line across a direction has shrunk to a point.
-bool TessellatedSurface::edge_collapsed(bool along_u, int at) const {
+// Returns whether the first or last line across a direction has shrunk to a point.
+bool TessellatedSurface::is_edge_collapsed(bool along_u, int at) const {
   const int rows = grid_->rows(), columns = grid_->columns();
   const int count = along_u ? columns : rows;
   constexpr double pole_m = 1e-7;
@@ -118,19 +278,19 @@ double TessellatedSurface::signed_volume_m3() const {
 }
 
 void TessellatedSurface::orient() {
-  const bool u_shut =
-      grid_->u.knots.is_periodic() || (edge_collapsed(true, 0) && edge_collapsed(true, grid_->rows() - 1));
-  const bool v_shut = grid_->v.knots.is_periodic() ||
-                      (edge_collapsed(false, 0) && edge_collapsed(false, grid_->columns() - 1));
-  closed_ = u_shut && v_shut;
+  const bool u_closed = grid_->u.knots.is_periodic() ||
+                        (is_edge_collapsed(true, 0) && is_edge_collapsed(true, grid_->rows() - 1));
+  const bool v_closed = grid_->v.knots.is_periodic() ||
+                        (is_edge_collapsed(false, 0) && is_edge_collapsed(false, grid_->columns() - 1));
+  closed_ = u_closed && v_closed;
   inward_ = closed_ && signed_volume_m3() < 0.0;
   if (trim_) trim_indices();
   if (!inward_) return;
   for (std::size_t i = 0; i + 2 < indices_.size(); i += 3) std::swap(indices_[i + 1], indices_[i + 2]);
 }
 
-// Takes the place of the whole surface's triangles, by which it is known whether it is closed and which side
-// is out.
+// Replaces the triangles of the whole surface, which served to find out whether it is closed and which side
+// is outside.
 void TessellatedSurface::trim_indices() {
   TrimmedGrid cut = trim_grid(grid_->u, grid_->v, *trim_);
   indices_.clear();
@@ -195,6 +355,90 @@ Box drawn_bounds(const Snapshot& snapshot) {
     box.join(one);
   }
   return box;
+}
+
+void MeshShading::rebuild(const MeshSnapshot& mesh) {
+  SPOONBILL_ASSERT(mesh.triangles != nullptr);
+  triangles_ = mesh.triangles;
+  const auto& triangles = *triangles_;
+  const MeshEdges edges(triangles, mesh.x.size());
+  CornerGroups groups(3 * triangles.size());
+  for (MeshSide side = 0; side < 3 * triangles.size(); ++side) {
+    const MeshSide other = edges.across(side);
+    if (other == MeshEdges::open || other == MeshEdges::branching) continue;
+    const Eigen::Vector3f one = face_normal(mesh, triangles[side / 3]).normalized();
+    if (one.dot(face_normal(mesh, triangles[other / 3]).normalized()) < smooth_cosine) continue;
+    // Adjacent triangles traverse their common side in opposite directions, so the other side starts where
+    // this one ends.
+    groups.join(side, next_side(other));
+  }
+  indices_.assign(3 * triangles.size(), 0);
+  vertex_.clear();
+  constexpr std::uint32_t none = 0xffffffffU;
+  std::vector<std::uint32_t> drawn(3 * triangles.size(), none);
+  for (std::uint32_t corner = 0; corner < indices_.size(); ++corner) {
+    std::uint32_t& index = drawn[groups.find(corner)];
+    if (index == none) {
+      index = static_cast<std::uint32_t>(vertex_.size());
+      vertex_.push_back(triangles[corner / 3][corner % 3]);
+    }
+    indices_[corner] = index;
+  }
+}
+
+void MeshShading::shade(const MeshSnapshot& mesh, GridSamples<float>& samples) const {
+  SPOONBILL_ASSERT(matches(mesh));
+  samples.resize(vertex_.size());
+  for (std::size_t v = 0; v < vertex_.size(); ++v) {
+    samples.x[v] = mesh.x[vertex_[v]];
+    samples.y[v] = mesh.y[vertex_[v]];
+    samples.z[v] = mesh.z[vertex_[v]];
+    samples.nx[v] = samples.ny[v] = samples.nz[v] = 0.0F;
+  }
+  for (std::size_t t = 0; t < triangles_->size(); ++t) {
+    const Eigen::Vector3f normal = face_normal(mesh, (*triangles_)[t]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = indices_[3 * t + k];
+      samples.nx[v] += normal.x();
+      samples.ny[v] += normal.y();
+      samples.nz[v] += normal.z();
+    }
+  }
+  for (std::size_t v = 0; v < vertex_.size(); ++v) {
+    const float length = std::hypot(samples.nx[v], samples.ny[v], samples.nz[v]);
+    if (!(length > 0.0F)) continue;
+    samples.nx[v] /= length;
+    samples.ny[v] /= length;
+    samples.nz[v] /= length;
+  }
+}
+
+SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces) {
+  SPOONBILL_ASSERT(pieces >= 1);
+  return {std::vector<int>(surface.u.breakpoints().size() - 1, pieces),
+          std::vector<int>(surface.v.breakpoints().size() - 1, pieces)};
+}
+
+SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixels_per_metre,
+                                    const SamplingLevel& previous, const SamplingTarget& target) {
+  SPOONBILL_ASSERT(surface.x.size() == static_cast<std::size_t>(surface.u.control_point_count()) *
+                                           surface.v.control_point_count());
+  SamplingLevel level{pieces_along(surface, true, pixels_per_metre, previous.u_pieces, target),
+                      pieces_along(surface, false, pixels_per_metre, previous.v_pieces, target)};
+  thin(level);
+  return level;
+}
+
+std::vector<double> drawing_parameters(const KnotVector& knots, const std::vector<int>& pieces) {
+  SPOONBILL_ASSERT(pieces.size() + 1 == knots.breakpoints().size());
+  const std::vector<double> breakpoints = knots.breakpoints();
+  std::vector<double> parameters;
+  for (std::size_t s = 0; s + 1 < breakpoints.size(); ++s) {
+    const double width = breakpoints[s + 1] - breakpoints[s];
+    for (int i = 0; i < pieces[s]; ++i) parameters.push_back(breakpoints[s] + width * i / pieces[s]);
+  }
+  if (!knots.is_periodic()) parameters.push_back(breakpoints.back());
+  return parameters;
 }
 
 }  // namespace spoonbill

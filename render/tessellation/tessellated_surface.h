@@ -1,56 +1,114 @@
-// A surface as triangles: samples on a knot-aligned grid and the indices that join them, or those that a mesh
-// has. No GL. One owner, one thread.
+// The surface of a body as triangles: a B-spline surface sampled on a knot-aligned grid, or a deforming mesh.
+// No GL.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/simulation/snapshot.h"
-#include "render/camera.h"
-#include "render/tessellation/mesh_shading.h"
-#include "render/tessellation/sampling_level.h"
 
 namespace spoonbill {
 
-// Refused: a control net whose size does not fit its knots.
+// The fineness of a tessellation: the number of pieces of each polynomial span. Numbers change in steps of a
+// half or a third, so that the grid seldom changes. The ends of every span are vertices.
+struct SamplingLevel {
+  // Pieces of each span between the breakpoints of a direction; empty before the first choice.
+  std::vector<int> u_pieces;
+  std::vector<int> v_pieces;
+
+  friend bool operator==(const SamplingLevel&, const SamplingLevel&) = default;
+};
+
+// Returns a level with the same number of pieces in every span.
+SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces);
+
+struct SamplingTarget {
+  double longest_edge_px = 48.0;
+  double largest_sagitta_px = 0.3;  // distance of a chord from its arc; near the resolution of four samples
+};
+
+// Maximum number of cells of one surface. Without a limit, all of a large surface seen from close up would be
+// sampled finely, including the part behind the camera.
+inline constexpr std::int64_t sampling_cell_limit = 1'000'000;
+
+// Returns the level at which no edge and no sagitta exceeds the target, estimated from the control points of
+// the derivatives. `previous` is retained, span by span, while it is neither too coarse nor more than about
+// twice too fine, so that a slowly changing shape does not flicker between levels. The level is coarser if
+// the cells would exceed the limit. The size of the net must fit the knots.
+SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixels_per_metre,
+                                    const SamplingLevel& previous, const SamplingTarget& target = {});
+
+// Returns the parameters of a direction, aligned with the knots. The seam of a periodic direction appears
+// once. `pieces` has one entry a span.
+std::vector<double> drawing_parameters(const KnotVector& knots, const std::vector<int>& pieces);
+
+// Vertices and normals of a deforming mesh: smooth where adjacent faces are nearly parallel, with an edge
+// elsewhere. One owner, one thread.
+class MeshShading {
+ public:
+  // Returns whether the shading was built for these triangles.
+  bool matches(const MeshSnapshot& mesh) const { return mesh.triangles == triangles_; }
+
+  // Finds the edges in the current shape of the mesh. They stay edges while the mesh deforms.
+  void rebuild(const MeshSnapshot& mesh);
+
+  // Three vertex indices a triangle, counter-clockwise seen from outside.
+  const std::vector<std::uint32_t>& indices() const { return indices_; }
+
+  // Computes positions and normals of the vertices. Requires matches(mesh). Allocates nothing once `samples`
+  // has its size.
+  void shade(const MeshSnapshot& mesh, GridSamples<float>& samples) const;
+
+ private:
+  // Shared ownership, so that no other mesh gets the same address.
+  std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles_;
+  std::vector<std::uint32_t> indices_;  // drawn vertex of each corner
+  std::vector<std::uint32_t> vertex_;   // mesh vertex of each drawn vertex
+};
+
+// Returns an error if the size of the control net does not fit the knots.
 Status check_net(const SurfaceSnapshot& surface);
 
+// One owner, one thread.
 class TessellatedSurface {
  public:
-  // Evaluates the surface at the level. The grid, its blending matrices and the indices are built again only
-  // when the surface's structure or the level changed; otherwise this allocates nothing. The error names what
-  // the grid refused, or a control net whose size does not fit its knots.
+  // Evaluates the surface at a sampling level. Grid, blending matrices and indices are rebuilt only if the
+  // structure of the surface or the level has changed; otherwise nothing is allocated. Errors: a grid that
+  // cannot be built, a control net whose size does not fit its knots.
   Status update(const SurfaceSnapshot& surface, const SamplingLevel& level);
 
-  // The same of a mesh, which has its triangles whatever the level.
+  // Updates from a mesh, whose triangles do not depend on a level.
   void update(const MeshSnapshot& mesh);
-  // Whether it holds one now.
+  // Returns whether the last update was from a mesh.
   bool is_mesh() const { return is_mesh_; }
 
   const SamplingLevel& level() const { return level_; }
 
-  // Positions in metres and unit normals, vertex by vertex. Normals point outward from a closed surface,
-  // along du x dv of an open one.
+  // Positions in metres and unit normals of the vertices. Normals point outward on a closed surface and along
+  // du x dv on an open one.
   const GridSamples<float>& samples() const { return samples_; }
   std::size_t vertex_count() const { return samples_.x.size(); }
 
-  // Triangles, counter-clockwise seen from where the normals point. Seams are joined by shared vertices. A
-  // pole is a row of vertices in one place, its triangles partly of no area.
+  // Triangles, counter-clockwise seen from the side of the normals. Seams share vertices. A pole is a row of
+  // coincident vertices, some of whose triangles have no area.
   const std::vector<std::uint32_t>& indices() const { return indices_; }
 
-  // Counts the rebuilds of grid and indices, so that buffers know when to follow.
+  // Number of rebuilds of the indices; tells buffers when to upload them.
   std::uint64_t topology_version() const { return topology_version_; }
 
-  // Whether the surface encloses a volume: nobody sees its inside.
+  // Returns whether the surface encloses a volume, so that its inside is never visible.
   bool is_closed() const { return closed_; }
 
-  // Whether triangles are cut along trim loops; samples that no triangle has are then not of the surface.
+  // Returns whether triangles are cut along trim loops. Samples without a triangle are then outside the
+  // surface.
   bool is_trimmed() const { return trim_ != nullptr; }
 
   Box bounds() const;
@@ -61,7 +119,7 @@ class TessellatedSurface {
   void trim_indices();
   void fill_cut_vertices();
   void orient();
-  bool edge_collapsed(bool along_u, int at) const;
+  bool is_edge_collapsed(bool along_u, int at) const;
   double signed_volume_m3() const;
 
   std::uint64_t structure_ = 0;
@@ -70,18 +128,18 @@ class TessellatedSurface {
   bool is_mesh_ = false;
   std::uint64_t topology_version_ = 0;
   bool closed_ = false;
-  bool inward_ = false;  // du x dv points into the closed surface
+  bool inward_ = false;  // true if du x dv points into the closed surface
   std::unique_ptr<const Grid> grid_;
   std::optional<GridEvaluator<float>> evaluator_;
   GridSamples<float> samples_;
   std::vector<std::uint32_t> indices_;
   std::shared_ptr<const TrimmedArea> trim_;
-  std::vector<CutVertex> cut_vertices_;  // the samples after the grid's
+  std::vector<CutVertex> cut_vertices_;  // sources of the samples after those of the grid
 };
 
-// The box around all surfaces of a snapshot, evaluated rather than taken from the control nets, which reach
+// Returns the box around all surfaces of a snapshot. The surfaces are evaluated, because control nets extend
 // farther. Meant for framing and for the ground, not for every frame. Surfaces that cannot be evaluated are
-// left out.
+// skipped.
 Box drawn_bounds(const Snapshot& snapshot);
 
 }  // namespace spoonbill

@@ -1,30 +1,80 @@
-// The triangles of a tool's solid for drawing, with normals. No GL.
+// Rigid solid tools for drawing: triangle mesh, frame, extent, and the order in which a glassy tool is drawn.
+// No GL.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/geometry.h"
 #include "engine/base/result.h"
 #include "engine/scene/tool.h"
+#include "engine/simulation/snapshot.h"
 
 namespace spoonbill {
+
+// Returns the body of a tool that is drawn as a rigid solid. Null for a point, for a sphere, and for a soft
+// tool, which is one of the bodies of the snapshot.
+const ToolBody* rigid_body(const ToolSnapshot& tool);
+bool is_soft(const ToolSnapshot& tool);
+
+// Radius of the disc that represents a half-space, around its origin.
+inline constexpr double half_space_radius_m = 0.05;
+
+// Returns a box around the solid in its own frame; for a surface, the box around its control points.
+Box bounding_box(const ToolSolid& solid);
+
+// The transformation from the frame of the tool to the world: world = axes * local + origin_m. The axes are
+// orthonormal, and left-handed for a mirror image.
+struct ToolFrame {
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  Vector3 origin_m = Vector3::Zero();
+};
+ToolFrame tool_frame(const Snapshot& snapshot);
+ToolFrame mirrored_tool_frame(const Snapshot& snapshot);
+
+// Returns the point at which a ray from the centre of the box leaves the box. `direction` is a unit vector of
+// the world.
+Vector3 find_exit_point(const Box& box, const ToolFrame& frame, const Vector3& direction);
 
 struct ToolVertex {
   Eigen::Vector3f position_m;
   Eigen::Vector3f normal;  // unit, outward
 };
 
-// In the tool's frame. Three indices a triangle, counter-clockwise seen from outside. Vertices are shared
-// where the solid is smooth and doubled along its edges. A sheet, which has no inside, has both its sides.
+// A triangle mesh in the frame of the tool. Three indices a triangle, counter-clockwise seen from outside.
+// Vertices are shared where the solid is smooth and duplicated along its edges. An open sheet has triangles
+// on both sides.
 struct ToolMesh {
   std::vector<ToolVertex> vertices;
   std::vector<std::uint32_t> indices;
-  bool convex = false;  // no eye sees more than one layer of outsides
+  bool convex = false;  // true if at most one layer of outsides is visible
 };
 
-// Fine enough for a tool that fills the screen. Empty for a sphere of radius 0. Refused: a surface that
-// cannot be tessellated.
+// Returns a mesh fine enough for a tool that fills the screen; empty for a sphere of radius 0. Errors: a
+// surface that cannot be tessellated.
 Result<ToolMesh> make_tool_mesh(const ToolSolid& solid);
+
+// Sorts triangles for drawing glass from back to front. One owner, one thread.
+class FacingOrder {
+ public:
+  // Returns the indices of the triangles that face the eye, the farthest centre first. `eye_m` is in the
+  // frame of the mesh. Valid until the next call. Exact except for triangles that are long compared with
+  // their distance from each other.
+  const std::vector<std::uint32_t>& sort(const ToolMesh& mesh, const Eigen::Vector3f& eye_m);
+
+ private:
+  struct Facing {
+    float distance_m;
+    std::uint32_t first_index;
+  };
+  void find_facing(const ToolMesh& mesh, const Eigen::Vector3f& eye_m);
+  std::uint32_t bucket_index(float distance_m) const;
+
+  std::vector<Facing> facing_;
+  std::vector<std::uint32_t> ends_;  // end of the triangles of each bucket, the farthest bucket first
+  std::vector<std::uint32_t> indices_;
+  float farthest_m_ = 0.0F, buckets_per_m_ = 0.0F;
+};
 
 }  // namespace spoonbill

@@ -4,7 +4,7 @@
 
 #include <thread>
 
-#include "haptic/devices/steered_device.h"
+#include "haptic/virtual_device.h"
 #include "tests/app/workplace.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/simulation/handle.h"

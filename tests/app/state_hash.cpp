@@ -6,7 +6,7 @@
 
 #include "app/report/hash_text.h"
 #include "app/session/lockstep.h"
-#include "haptic/devices/playback_device.h"
+#include "haptic/virtual_device.h"
 
 namespace spoonbill {
 namespace {

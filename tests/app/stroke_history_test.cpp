@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "haptic/devices/virtual_device.h"
+#include "haptic/virtual_device.h"
 #include "haptic/tick.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/effort.h"

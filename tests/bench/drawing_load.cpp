@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "render/camera.h"
-#include "render/gl/osmesa_context.h"
+#include "render/gl/context.h"
 #include "render/renderer.h"
 #include "render/tessellation/tessellated_surface.h"
 

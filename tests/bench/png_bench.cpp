@@ -6,7 +6,7 @@
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #include <stb/stb_image_write.h>
 
-#include "render/image/png.h"
+#include "render/image.h"
 #include "tests/render/read_png.h"
 
 namespace spoonbill {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "haptic/recording/recording.h"
+#include "haptic/recording.h"
 
 namespace spoonbill {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "engine/simulation/simulation.h"
 #include "haptic/device.h"
-#include "haptic/recording/timed_command.h"
+#include "haptic/recording.h"
 
 namespace spoonbill {
 

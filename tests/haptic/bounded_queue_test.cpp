@@ -1,10 +1,9 @@
-#include "haptic/bounded_queue.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <vector>
 
+#include "haptic/lock_free.h"
 #include "tests/engine/allocations.h"
 
 namespace spoonbill {

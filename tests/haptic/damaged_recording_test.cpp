@@ -4,7 +4,7 @@
 #include <random>
 #include <sstream>
 
-#include "haptic/recording/recording.h"
+#include "haptic/recording.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/exchange/damage.h"
 #include "tests/engine/exchange/sample_document.h"
@@ -29,7 +29,7 @@ std::string header_line() {
   return text.substr(0, text.find('\n') + 1);
 }
 
-// What the message says of a recording with these lines after a sound header.
+// Returns the error message for a recording with these lines after a valid header.
 std::string refusal(const std::string& lines) {
   const auto recording = read_text(header_line() + lines);
   return recording.ok() ? "accepted" : recording.error().message;
@@ -85,9 +85,9 @@ TEST(DamagedRecording, HasNoHeader) {
   EXPECT_EQ(message("{\"tick\":0,\"ticks\":1}\n"), "a.jsonl: line 1: spoonbill_recording is missing");
   EXPECT_TRUE(message("\x7f"
                       "ELF\x02\x01")
-                  .starts_with("a.jsonl: line 1: is cut or not a recording: "));
-  EXPECT_TRUE(
-      message(header_line().substr(0, 100)).starts_with("a.jsonl: line 1: is cut or not a recording: "));
+                  .starts_with("a.jsonl: line 1: is truncated or not a recording: "));
+  EXPECT_TRUE(message(header_line().substr(0, 100))
+                  .starts_with("a.jsonl: line 1: is truncated or not a recording: "));
   std::string newer = header_line();
   newer.replace(newer.find("recording\":1"), 12, "recording\":7");
   EXPECT_EQ(message(newer),
@@ -125,11 +125,11 @@ TEST(DamagedRecording, NamesLineAndField) {
   EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"dx_nm\":[NaN]}\n"),
             "a.jsonl: line 2: column 30: parsing value - invalid literal; last read: '\"dx_nm\":[N'");
   EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"dq_e9\":[[0],[0],[0],[-1000000000]]}\n"),
-            "a.jsonl: line 2: dq_e9 leads to an orientation that is not a unit quaternion at its reading 0");
+            "a.jsonl: line 2: dq_e9 leads to an orientation that is not a unit quaternion at reading 0");
   EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"dq_e9\":[[0],[0],[0]]}\n"),
             "a.jsonl: line 2: dq_e9 is a list of 3, must be a list of 4");
   EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"buttons\":[-1]}\n"),
-            "a.jsonl: line 2: buttons holds -1, must hold whole numbers of 32 bits");
+            "a.jsonl: line 2: buttons contains -1, must contain 32-bit whole numbers");
   EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"speed\":1}\n"),
             "a.jsonl: line 2: has an unknown field \"speed\"; known: tick, ticks, dx_nm, dy_nm, dz_nm, "
             "dq_e9, buttons");
@@ -140,11 +140,11 @@ TEST(DamagedRecording, NamesLineAndField) {
   EXPECT_EQ(refusal("{\"tick\":0,\"state_hash\":\"12\"}\n"),
             "a.jsonl: line 2: state_hash is \"12\", must be 16 hexadecimal digits");
   EXPECT_EQ(refusal("{\"tick\":0,\"command\":\"look\"}\n{\"tick\":0,\"state_hash\":\"0000000000000000\"}\n"),
-            "a.jsonl: line 3: state_hash stands after a command of its tick, must stand before");
+            "a.jsonl: line 3: state_hash comes after a command of its tick, must come before it");
   EXPECT_EQ(refusal(still + "{\"end\":true,\"ticks\":99,\"state_hash\":\"0000000000000000\"}\n"),
-            "a.jsonl: line 3: ticks is 99, but the lines before hold 100");
+            "a.jsonl: line 3: ticks is 99, but the lines before it contain 100");
   EXPECT_EQ(refusal("{\"end\":true,\"ticks\":0,\"state_hash\":\"0000000000000000\"}\n" + still),
-            "a.jsonl: line 3: stands after the end of the recording, remove it");
+            "a.jsonl: line 3: is after the end of the recording, remove it");
 }
 
 TEST(DamagedRecording, HasAbsurdSizes) {
@@ -155,7 +155,7 @@ TEST(DamagedRecording, HasAbsurdSizes) {
   for (std::uint64_t tick = 0; tick <= recording_tick_limit; tick += 100) {
     lines += "{\"tick\":" + std::to_string(tick) + ",\"ticks\":100}\n";
   }
-  EXPECT_EQ(refusal(lines), "a.jsonl: line 100002: ticks lead beyond 10000000 ticks, the most that is read");
+  EXPECT_EQ(refusal(lines), "a.jsonl: line 100002: ticks exceed the limit of 10000000 ticks");
 }
 
 TEST(DamagedRecording, IsNoFile) {

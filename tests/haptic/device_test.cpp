@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "haptic/devices/playback_device.h"
+#include "haptic/virtual_device.h"
 #include "tests/haptic/sample_recording.h"
 
 namespace spoonbill {

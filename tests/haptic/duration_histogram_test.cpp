@@ -1,11 +1,11 @@
-#include "haptic/duration_histogram.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "haptic/haptic_loop.h"
 
 namespace spoonbill {
 namespace {

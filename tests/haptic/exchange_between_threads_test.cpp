@@ -8,8 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "haptic/bounded_queue.h"
-#include "haptic/triple_buffer.h"
+#include "haptic/lock_free.h"
 
 namespace spoonbill {
 namespace {

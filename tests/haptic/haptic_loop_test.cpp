@@ -117,11 +117,13 @@ TEST(HapticLoop, WithoutRealTimeAsksForNothing) {
 }
 
 TEST(HapticLoop, RefusesWhatItCannotRun) {
-  EXPECT_EQ(HapticLoop::start({}, nullptr).error().message, "the loop has nothing to call");
+  EXPECT_EQ(HapticLoop::start({}, nullptr).error().code, ErrorCode::missing);
   LoopSettings settings;
   settings.period_s = 1e-6;
-  EXPECT_EQ(HapticLoop::start(settings, [](const LoopTick&) {}).error().message,
-            "the loop's period_s is 1e-06, must be 1e-04 to 1");
+  const auto loop = HapticLoop::start(settings, [](const LoopTick&) {});
+  EXPECT_EQ(loop.error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(loop.error().field, "period_s");
+  EXPECT_EQ(loop.error().message, "haptic loop: period_s is 1e-06, must be 1e-04 to 1");
 }
 
 // In a process that gave up what root may do: ends with 0 when the loop runs, says so, and names the remedy.

@@ -9,8 +9,8 @@
 #include <random>
 
 #include "engine/simulation/simulation.h"
-#include "haptic/devices/virtual_device.h"
 #include "haptic/tick.h"
+#include "haptic/virtual_device.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
 

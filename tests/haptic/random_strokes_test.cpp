@@ -11,7 +11,7 @@
 
 #include "engine/exchange/document.h"
 #include "engine/simulation/simulation.h"
-#include "haptic/safety.h"
+#include "haptic/safe_device.h"
 #include "haptic/tick.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
@@ -200,7 +200,7 @@ Watched stroke(Random& random, Simulation& simulation) {
     const DeviceReading reading = t < stroke_ticks ? hand.next() : Hand::far_away();
     const TickResult result = tick(simulation, coupling, device, reading);
     SafetyInput input;
-    input.wanted_n = result.force_n;
+    input.requested_n = result.force_n;
     input.position_m = reading.pose().position_m;
     const SafeForce safe = make_safe(safety, device, input);
     watched.strongest_n = std::max({watched.strongest_n, result.force_n.norm(), safe.force_n.norm()});

@@ -1,7 +1,7 @@
 // What a recording's header says about the device, also one from before the safety chain.
 #include <gtest/gtest.h>
 
-#include "haptic/recording/recording_lines.h"
+#include "haptic/recording_lines.h"
 #include "tests/haptic/sample_recording.h"
 
 namespace spoonbill {

@@ -1,4 +1,4 @@
-#include "haptic/recording/recording.h"
+#include "haptic/recording.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -9,7 +9,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "haptic/recording/recording_writer.h"
 #include "tests/engine/exchange/sample_document.h"
 #include "tests/haptic/sample_recording.h"
 
@@ -151,7 +150,8 @@ TEST(RecordingWriter, RefusesWhatCouldNotBeReadBack) {
   Json deep = 1;
   for (int i = 0; i < 80; ++i) deep = Json::array({deep});
   EXPECT_NE(refusal({{"command", "x"}, {"deep", deep}}).find("nested deeper"), std::string::npos);
-  EXPECT_NE(refusal({{"command", "x"}, {"nan", std::nan("")}}).find("JSON cannot keep"), std::string::npos);
+  EXPECT_NE(refusal({{"command", "x"}, {"nan", std::nan("")}}).find("JSON cannot represent"),
+            std::string::npos);
   EXPECT_NE(refusal({{"command", "x"}, {"tick", 5}}).find("tick cannot be an argument"), std::string::npos);
   EXPECT_NE(refusal({{"command", "x"}, {"long", std::string(34'000'000, 'x')}}).find("32 MiB"),
             std::string::npos);
@@ -214,7 +214,7 @@ TEST(RecordingWriter, LosesATenthOfASecondWhenKilled) {
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_GE(recording->readings.size(), ticks - 100);
   EXPECT_TRUE(std::equal(recording->readings.begin(), recording->readings.end(), readings.begin()));
-  EXPECT_EQ(recording->notice, file.string() + ": was cut after 1700 ticks; replays up to there");
+  EXPECT_EQ(recording->notice, file.string() + ": is truncated after 1700 ticks; replays up to there");
 }
 
 }  // namespace

@@ -63,18 +63,18 @@ TEST(SafeDevice, StandsInForADeviceThatDoesNotAnswerWithAHandThatTouchesNothing)
     stub.reading = at_x(0.02, button_main);
     engage(safe);
     ASSERT_NE(stub.given_n, Vector3::Zero());
-    EXPECT_FALSE(safe.take_proxy_reset());
+    EXPECT_FALSE(safe.consume_proxy_reset());
     stub.reading = answer;
     EXPECT_EQ(safe.read(), at_x(0.02, button_hover));
     EXPECT_EQ(safe.give(Vector3(1, 0, 0), 0), Vector3::Zero());
     EXPECT_EQ(stub.given_n, Vector3::Zero());
     EXPECT_EQ(safe.flags(), safety_flag_no_device | safety_flag_cut);
-    EXPECT_FALSE(safe.take_proxy_reset());
+    EXPECT_FALSE(safe.consume_proxy_reset());
 
     stub.reading = at_x(0.03, button_main);
     EXPECT_EQ(safe.read(), at_x(0.03, button_main));
-    EXPECT_TRUE(safe.take_proxy_reset());
-    EXPECT_FALSE(safe.take_proxy_reset());
+    EXPECT_TRUE(safe.consume_proxy_reset());
+    EXPECT_FALSE(safe.consume_proxy_reset());
     run(safe, 1.0, 100);
     EXPECT_EQ(stub.given_n, Vector3::Zero());
     EXPECT_EQ(safe.flags(), safety_flag_no_device | safety_flag_waiting);
@@ -99,10 +99,10 @@ TEST(SafeDevice, AsksForTheProxyToBeResetAfterAStall) {
   safe.read();
   safe.give(Vector3(1, 0, 0), 100);
   EXPECT_EQ(stub.given_n, Vector3::Zero());
-  EXPECT_TRUE(safe.take_proxy_reset());
+  EXPECT_TRUE(safe.consume_proxy_reset());
   safe.request_proxy_reset();
-  EXPECT_TRUE(safe.take_proxy_reset());
-  EXPECT_FALSE(safe.take_proxy_reset());
+  EXPECT_TRUE(safe.consume_proxy_reset());
+  EXPECT_FALSE(safe.consume_proxy_reset());
 }
 
 TEST(SafeDevice, TheWorkspaceIsWhereTheHandBeginsOrWhereItIsPut) {

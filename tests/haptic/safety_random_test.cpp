@@ -7,9 +7,9 @@
 #include <random>
 
 #include "engine/simulation/simulation.h"
-#include "haptic/devices/virtual_device.h"
-#include "haptic/safety.h"
+#include "haptic/safe_device.h"
 #include "haptic/tick.h"
+#include "haptic/virtual_device.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
 
@@ -56,7 +56,7 @@ class RandomInput {
   SafetyInput next() {
     if (random_.once_in(300)) manner_ = random_.bits() % 5;
     SafetyInput input;
-    input.wanted_n = next_force();
+    input.requested_n = next_force();
     velocity_ = random_.once_in(200) ? Vector3(random_.scaled(1e-3, 20.0) * random_.direction()) : velocity_;
     position_ += velocity_ * tick_s;
     if (position_.norm() > 1.5 || random_.once_in(5000)) {
@@ -90,9 +90,9 @@ class RandomInput {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     constexpr std::array bad = {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity};
     const auto axis = static_cast<Eigen::Index>(random_.bits() % 3);
-    if (random_.once_in(10'000)) input.wanted_n[axis] = bad[random_.bits() % 3];
+    if (random_.once_in(10'000)) input.requested_n[axis] = bad[random_.bits() % 3];
     if (random_.once_in(10'000)) input.position_m[axis] = bad[random_.bits() % 3];
-    if (random_.once_in(1000)) input.wanted_n[axis] = std::numeric_limits<double>::max();
+    if (random_.once_in(1000)) input.requested_n[axis] = std::numeric_limits<double>::max();
     if (random_.once_in(10'000)) input.dropped_ticks = random_.bits() >> (random_.bits() % 64);
     input.stale = random_.once_in(10'000);
   }
@@ -106,7 +106,7 @@ class RandomInput {
 
 // What the chain itself cannot be asked: computed from the input alone.
 bool is_fault(const DeviceSpecification& specification, const SafetyInput& input) {
-  if (input.stale || !input.wanted_n.allFinite() || !input.position_m.allFinite()) return true;
+  if (input.stale || !input.requested_n.allFinite() || !input.position_m.allFinite()) return true;
   return input.dropped_ticks >= 25 || (specification.dead_man_buttons & ~input.buttons) != 0;
 }
 
@@ -212,7 +212,7 @@ Watched sculpt(Random& random, int ticks) {
     target.pose.position_m = from + (to - from) * ((k % stroke + 1.0) / stroke);
     device.set_target(target);
     SafetyInput input;
-    input.wanted_n = tick(simulation, coupling, device.specification(), *device.read()).force_n;
+    input.requested_n = tick(simulation, coupling, device.specification(), *device.read()).force_n;
     input.position_m = device.position_m();
     input.stale = random.once_in(1000);
     if (random.once_in(300)) input.dropped_ticks = random.bits() % 60;

@@ -1,5 +1,3 @@
-#include "haptic/safety.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +7,8 @@
 #include <utility>
 
 #include "engine/simulation/simulation.h"
-#include "haptic/devices/virtual_device.h"
+#include "haptic/safe_device.h"
+#include "haptic/virtual_device.h"
 #include "tests/engine/allocations.h"
 
 namespace spoonbill {
@@ -19,7 +18,7 @@ const DeviceSpecification device = VirtualDevice::default_specification();
 
 SafetyInput wanting(double x_n) {
   SafetyInput input;
-  input.wanted_n = Vector3(x_n, 0.0, 0.0);
+  input.requested_n = Vector3(x_n, 0.0, 0.0);
   return input;
 }
 
@@ -79,13 +78,13 @@ TEST(Safety, PassesOnWhatNeedsNoLimit) {
 TEST(Safety, LimitsTheNormAndKeepsTheDirection) {
   SafetyState state = engaged_state();
   SafetyInput input;
-  input.wanted_n = Vector3(300.0, 400.0, 0.0);
+  input.requested_n = Vector3(300.0, 400.0, 0.0);
   SafeForce safe;
   for (int tick = 0; tick < 100; ++tick) safe = make_safe(state, device, input);
   EXPECT_NEAR(safe.force_n.norm(), device.maximum_force_n, 1e-12);
   EXPECT_NEAR(safe.force_n.y() / safe.force_n.x(), 4.0 / 3.0, 1e-12);
   EXPECT_EQ(safe.flags, safety_flag_force_limited);
-  input.wanted_n.setConstant(std::numeric_limits<double>::max());
+  input.requested_n.setConstant(std::numeric_limits<double>::max());
   EXPECT_LE(make_safe(state, device, input).force_n.norm(), device.maximum_force_n * (1.0 + 1e-12));
 }
 
@@ -123,7 +122,7 @@ void expect_cut(const SafetyInput& fault, std::uint32_t flag) {
 TEST(Safety, FaultsGiveZeroForceInTheirTick) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     SafetyInput fault = wanting(3.0);
-    fault.wanted_n.z() = bad;
+    fault.requested_n.z() = bad;
     expect_cut(fault, safety_flag_not_finite);
     fault = wanting(3.0);
     fault.position_m.y() = bad;
@@ -210,7 +209,7 @@ TEST(Safety, ADeadManButtonMustBeHeldWhereTheDeviceHasOne) {
   }
   input.buttons = 3;
   for (int tick = 0; tick < 1000; ++tick) make_safe(state, with_button, input);
-  input.wanted_n.x() = 3.0;
+  input.requested_n.x() = 3.0;
   for (int tick = 0; tick < 10; ++tick) make_safe(state, with_button, input);
   EXPECT_EQ(make_safe(state, with_button, input).force_n.x(), 3.0);
   input.buttons = 1;
@@ -245,6 +244,8 @@ TEST(Specification, RefusesWhatTheSafetyChainCannotKeep) {
   EXPECT_TRUE(check_specification(device).ok());
   DeviceSpecification broken = device;
   broken.ramp_time_s = -1.0;
+  EXPECT_EQ(check_specification(broken).error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(check_specification(broken).error().field, "ramp_time_s");
   EXPECT_EQ(check_specification(broken).error().message,
             "device virtual: ramp_time_s is -1, must be 0 to 60");
   broken = device;

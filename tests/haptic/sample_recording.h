@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "haptic/recording/recording.h"
-#include "haptic/recording/recording_writer.h"
+#include "haptic/recording.h"
 
 namespace spoonbill {
 

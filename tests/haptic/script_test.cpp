@@ -1,4 +1,4 @@
-#include "haptic/recording/script.h"
+#include "haptic/script.h"
 
 #include <gtest/gtest.h>
 
@@ -114,7 +114,7 @@ TEST(Script, NamesWhatIsWrong) {
   EXPECT_EQ(refusal(begin + "{\"move_to_mm\": [0,0,99999], \"over_s\": 1}"),
             "bend.json: steps[1].move_to_mm[2] is 99999, must be -10000 to 10000");
   EXPECT_EQ(refusal(begin + "{\"note\": \"idle\"}"),
-            "bend.json: steps[1] says nothing to do; known: start_mm, move_to_mm, turn_to, hold_s, grip, "
+            "bend.json: steps[1] has no action; known: start_mm, move_to_mm, turn_to, hold_s, grip, "
             "at_s, command");
   EXPECT_EQ(refusal(begin + "{\"hold_s\": 1, \"over_s\": 2}"),
             "bend.json: steps[1] has an unknown field \"over_s\"; known: hold_s");
@@ -132,8 +132,10 @@ TEST(Script, SaysWhichModelIsMissing) {
       "{\"spoonbill_script\": 1, \"model\": \"none.json\", \"steps\": [{\"start_mm\": [0,0,0]}]}");
   const auto script = read_script(file);
   ASSERT_FALSE(script.ok());
+  EXPECT_EQ(script.error().code, ErrorCode::unreadable);
+  EXPECT_EQ(script.error().field, "model");
   EXPECT_EQ(script.error().message, file.string() + ": model: " + (folder.path() / "none.json").string() +
-                                        " is no file; give its path from the script's folder");
+                                        " is not a file; give its path relative to the folder of the script");
   EXPECT_FALSE(read_script(folder.path()).ok());
   folder.write("none.json", "{}");
   EXPECT_TRUE(read_script(file).ok());

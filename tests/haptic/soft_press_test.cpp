@@ -6,9 +6,9 @@
 
 #include "engine/exchange/document.h"
 #include "engine/simulation/body_contact.h"
-#include "haptic/devices/virtual_device.h"
-#include "haptic/recording/script.h"
+#include "haptic/script.h"
 #include "haptic/tick.h"
+#include "haptic/virtual_device.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/simulation/soft_bodies.h"
 

@@ -1,6 +1,6 @@
 // The SpaceMouse against a daemon that the test plays, on a socket of its own, and its steering as
 // arithmetic.
-#include "haptic/devices/space_mouse.h"
+#include "haptic/space_mouse.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -67,7 +67,7 @@ TEST(SpaceMouse, FollowsTheDaemonsEventsUntilItLeaves) {
   ASSERT_TRUE(mouse.ok()) << mouse.error().message;
   daemon.accept_client();
   EXPECT_EQ(mouse->poll()->translation, Vector3::Zero());
-  EXPECT_EQ(SpaceMouse::open().error().message, "the SpaceMouse is open already");
+  EXPECT_EQ(SpaceMouse::open().error().code, ErrorCode::in_use);
 
   daemon.move({350, -175, 70, 0, 0, 35});
   daemon.press(1);
@@ -137,6 +137,7 @@ TEST(SpaceMouse, SaysWhatToDoWithoutADaemon) {
   if (access("/var/run/spnav.sock", F_OK) == 0) GTEST_SKIP() << "this machine has the daemon";
   const auto mouse = SpaceMouse::open();
   ASSERT_FALSE(mouse.ok());
+  EXPECT_EQ(mouse.error().code, ErrorCode::unavailable);
   EXPECT_NE(mouse.error().message.find("spacenavd"), std::string::npos);
 }
 

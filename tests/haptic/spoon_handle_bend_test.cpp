@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "engine/exchange/document.h"
-#include "haptic/devices/virtual_device.h"
-#include "haptic/recording/script.h"
+#include "haptic/script.h"
 #include "haptic/tick.h"
+#include "haptic/virtual_device.h"
 #include "tests/engine/effort.h"
 
 namespace spoonbill {

@@ -1,10 +1,8 @@
-#include "haptic/devices/steered_device.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "haptic/devices/hand_inputs.h"
+#include "haptic/virtual_device.h"
 
 namespace spoonbill {
 namespace {

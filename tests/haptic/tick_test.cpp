@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "engine/base/processor.h"
-#include "haptic/devices/virtual_device.h"
+#include "haptic/virtual_device.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/simulation/handle.h"
 

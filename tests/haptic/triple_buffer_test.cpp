@@ -1,8 +1,8 @@
-#include "haptic/triple_buffer.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "haptic/lock_free.h"
 
 namespace spoonbill {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptic/devices/virtual_device.h"
+#include "haptic/virtual_device.h"
 
 #include <gtest/gtest.h>
 
@@ -136,8 +136,9 @@ TEST(VirtualDevice, PassesOnOrientationAndButtons) {
 TEST(VirtualDevice, RefusesHandsThatAreNotStable) {
   const auto device = VirtualDevice::make({0.001, 300.0, 10.0}, {});
   ASSERT_FALSE(device.ok());
-  EXPECT_EQ(device.error().message, "hand: mass_kg is 0.001, must be 0.01 to 10");
-  EXPECT_FALSE(VirtualDevice::make({}, target_at_m(std::nan(""))).ok());
+  EXPECT_EQ(device.error().code, ErrorCode::out_of_range);
+  EXPECT_EQ(device.error().field, "mass_kg");
+  EXPECT_EQ(VirtualDevice::make({}, target_at_m(std::nan(""))).error().field, "start");
 }
 
 }  // namespace

@@ -18,9 +18,8 @@
 #include "engine/base/geometry.h"
 #include "engine/exchange/document.h"
 #include "engine/merging/merge.h"
-#include "haptic/devices/playback_device.h"
-#include "haptic/devices/virtual_device.h"
-#include "render/image/png.h"
+#include "haptic/virtual_device.h"
+#include "render/image.h"
 #include "tests/render/compare.h"
 #include "tests/render/read_png.h"
 

@@ -13,7 +13,8 @@ Status check_sizes(const Image& a, const Image& b) {
   const auto size = [](const Image& image) {
     return std::to_string(image.width) + "x" + std::to_string(image.height);
   };
-  return Error{"pictures of different sizes cannot be compared: " + size(a) + " and " + size(b)};
+  return Error{ErrorCode::inconsistent,
+               "pictures of different sizes cannot be compared: " + size(a) + " and " + size(b)};
 }
 
 double block_difference(const Image& a, const Image& b, int x0, int y0) {

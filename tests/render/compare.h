@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/base/result.h"
-#include "render/image/image.h"
+#include "render/image.h"
 
 namespace spoonbill {
 

@@ -1,10 +1,10 @@
-#include "render/frame_budget.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <limits>
 #include <random>
+
+#include "render/view_settings.h"
 
 namespace spoonbill {
 namespace {

@@ -1,3 +1,5 @@
+#include "render/image.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,8 +8,7 @@
 #include <random>
 #include <string>
 
-#include "render/image/contact_sheet.h"
-#include "render/image/png.h"
+#include "render/contact_sheet.h"
 #include "tests/render/compare.h"
 #include "tests/render/read_png.h"
 
@@ -161,7 +162,7 @@ TEST(ContactSheet, PlacesFramesInAGridWithMargins) {
 }
 
 TEST(ContactSheet, NeedsFramesAndTheFontOfItsCaptions) {
-  EXPECT_FALSE(ContactSheet({}).compose());
+  EXPECT_EQ(ContactSheet({}).compose().error().code, ErrorCode::too_few);
   ContactSheetLayout layout;
   layout.caption_px = 14;
   layout.caption_font_path = "/nonexistent/font.ttf";
@@ -169,6 +170,7 @@ TEST(ContactSheet, NeedsFramesAndTheFontOfItsCaptions) {
   sheet.add(plain(40, 30, 5), "0.10 s");
   const auto picture = sheet.compose();
   ASSERT_FALSE(picture);
+  EXPECT_EQ(picture.error().code, ErrorCode::unreadable);
   EXPECT_NE(picture.error().message.find("/nonexistent/font.ttf"), std::string::npos);
 }
 

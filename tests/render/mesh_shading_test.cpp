@@ -1,5 +1,3 @@
-#include "render/tessellation/mesh_shading.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>

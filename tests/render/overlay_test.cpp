@@ -4,14 +4,9 @@
 #include <string>
 
 #include "engine/base/geometry.h"
-#include "render/overlay/cell_lines.h"
-#include "render/overlay/fixing_plane.h"
-#include "render/overlay/force_arrow.h"
-#include "render/overlay/ground_grid.h"
-#include "render/overlay/labels.h"
-#include "render/overlay/node_marks.h"
-#include "render/passes/shadow_area.h"
-#include "render/surface_look.h"
+#include "render/colour.h"
+#include "render/overlay/overlays.h"
+#include "render/passes/shadow_pass.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/render/sample_scene.h"
 
@@ -185,10 +180,10 @@ TEST(ShadowArea, HoldsWhatTheLightCarriesToTheGround) {
 }
 
 TEST(SurfaceLook, MaterialsLookLikeThemselves) {
-  EXPECT_GT(look_of_material("modelling-clay").roughness, 0.6f);
-  EXPECT_EQ(look_of_material("Steel 304").metalness, 1.0f);
-  EXPECT_GT(look_of_material("jelly").translucency, 0.3f);
-  EXPECT_EQ(look_of_material("unobtainium").translucency, 0.0f);
+  EXPECT_GT(find_material_look("modelling-clay").roughness, 0.6f);
+  EXPECT_EQ(find_material_look("Steel 304").metalness, 1.0f);
+  EXPECT_GT(find_material_look("jelly").translucency, 0.3f);
+  EXPECT_EQ(find_material_look("unobtainium").translucency, 0.0f);
 }
 
 LatticeSnapshot block_of_nodes(int ni, int nj, int nk) {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "engine/base/result.h"
-#include "render/image/image.h"
+#include "render/image.h"
 
 namespace spoonbill {
 

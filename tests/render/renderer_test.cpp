@@ -14,10 +14,9 @@
 #include <vector>
 
 #include "engine/base/geometry.h"
-#include "render/gl/osmesa_context.h"
-#include "render/image/png.h"
-#include "render/interface_fonts.h"
-#include "render/overlay/ground_grid.h"
+#include "render/gl/context.h"
+#include "render/image.h"
+#include "render/overlay/overlays.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/render/compare.h"
 #include "tests/render/sample_scene.h"
@@ -304,6 +303,7 @@ TEST(InterfaceFonts, AMissingFileIsAnError) {
   ImFontAtlas atlas;
   const auto fonts = add_interface_fonts(atlas, "/nonexistent/font.ttf", 15.0f, 19.0f);
   ASSERT_FALSE(fonts);
+  EXPECT_EQ(fonts.error().code, ErrorCode::unreadable);
   EXPECT_NE(fonts.error().message.find("/nonexistent/font.ttf"), std::string::npos);
 }
 

@@ -1,9 +1,8 @@
-#include "render/passes/scene_area.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "render/passes/scene_passes.h"
 #include "tests/render/sample_scene.h"
 
 namespace spoonbill {

@@ -1,5 +1,3 @@
-#include "render/overlay/solid_tool.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -12,10 +10,11 @@
 
 #include "engine/base/geometry.h"
 #include "engine/scene/scene.h"
-#include "render/gl/osmesa_context.h"
-#include "render/overlay/force_arrow.h"
-#include "render/passes/scene_area.h"
+#include "render/gl/context.h"
+#include "render/overlay/overlays.h"
+#include "render/passes/scene_passes.h"
 #include "render/renderer.h"
+#include "render/tessellation/tool_mesh.h"
 #include "tests/render/sample_scene.h"
 
 namespace spoonbill {

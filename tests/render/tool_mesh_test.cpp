@@ -11,8 +11,6 @@
 #include <vector>
 
 #include "engine/base/geometry.h"
-#include "render/overlay/solid_tool.h"
-#include "render/tessellation/facing_order.h"
 #include "tests/render/sample_scene.h"
 
 namespace spoonbill {
@@ -227,7 +225,7 @@ TEST(FacingOrder, GivesWhatFacesTheEyeFromFarToNear) {
   const ToolMesh mesh = mesh_of(ImplicitShape(TorusShape{0.008, 0.003}));
   const Eigen::Vector3f eye(0.05F, 0.01F, 0.0F);
   FacingOrder order;
-  const std::vector<std::uint32_t> indices = order.of(mesh, eye);
+  const std::vector<std::uint32_t> indices = order.sort(mesh, eye);
   std::size_t facing = 0;
   for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
     const Vector3 a = corner(mesh, t);
@@ -250,7 +248,7 @@ TEST(FacingOrder, GivesWhatFacesTheEyeFromFarToNear) {
 TEST(FacingOrder, GivesNothingToAnEyeThatIsNowhere) {
   FacingOrder order;
   const ToolMesh mesh = mesh_of(ImplicitShape(TorusShape{0.008, 0.003}));
-  EXPECT_TRUE(order.of(mesh, Eigen::Vector3f::Constant(std::nanf(""))).empty());
+  EXPECT_TRUE(order.sort(mesh, Eigen::Vector3f::Constant(std::nanf(""))).empty());
 }
 
 }  // namespace

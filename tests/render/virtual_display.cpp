@@ -41,7 +41,7 @@ std::string read_line(int pipe) {
 
 Result<std::unique_ptr<VirtualDisplay>> VirtualDisplay::start(int width_px, int height_px) {
   int pipe_ends[2];
-  if (pipe(pipe_ends) != 0) return Error{"no pipe for Xvfb"};
+  if (pipe(pipe_ends) != 0) return Error{ErrorCode::unavailable, "no pipe for Xvfb"};
   const std::string screen = std::to_string(width_px) + "x" + std::to_string(height_px) + "x24";
   const pid_t process = fork();
   if (process == 0) {
@@ -53,7 +53,8 @@ Result<std::unique_ptr<VirtualDisplay>> VirtualDisplay::start(int width_px, int 
   close(pipe_ends[0]);
   if (number.empty()) {
     waitpid(process, nullptr, 0);
-    return Error{"Xvfb does not start: install the group [tests] of app/setup/packages.txt"};
+    return Error{ErrorCode::unavailable,
+                 "Xvfb does not start: install the group [tests] of app/setup/packages.txt"};
   }
   return std::unique_ptr<VirtualDisplay>(new VirtualDisplay(process, ":" + number));
 }

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "engine/base/result.h"
-#include "render/image/image.h"
+#include "render/image.h"
 
 namespace spoonbill {
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "engine/base/geometry.h"
+#include "render/gl/context.h"
 #include "render/gl/glfw_window.h"
-#include "render/gl/osmesa_context.h"
 #include "render/renderer.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/render/compare.h"
@@ -124,7 +124,7 @@ TEST_F(Window, ADenseDisplayGetsMorePixels) {
 
 TEST_F(Window, OnlyOneIsOpenAtATime) {
   open();
-  EXPECT_FALSE(GlfwWindow::make(width, height, "second"));
+  EXPECT_EQ(GlfwWindow::make(width, height, "second").error().code, ErrorCode::in_use);
   renderer_.reset();
   window_.reset();
   open();
@@ -141,6 +141,7 @@ TEST(WindowWithoutDisplay, SaysWhatWorksWithoutOne) {
   unsetenv("DISPLAY");
   const auto window = GlfwWindow::make(width, height, "Spoonbill");
   ASSERT_FALSE(window);
+  EXPECT_EQ(window.error().code, ErrorCode::unavailable);
   const std::string& message = window.error().message;
   EXPECT_NE(message.find("spoonbill replay"), std::string::npos) << message;
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;

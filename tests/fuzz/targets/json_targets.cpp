@@ -4,8 +4,8 @@
 #include "engine/exchange/cad_stream.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/frame_stream.h"
-#include "haptic/recording/recording.h"
-#include "haptic/recording/script.h"
+#include "haptic/recording.h"
+#include "haptic/script.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/targets/targets.h"
 

@@ -1,0 +1,131 @@
+// Recordings: the input of every tick, with the document that the session started from.
+//
+// A recording is a text file with one JSON value a line, so that ordinary tools can read, cut and compare it,
+// and a crash damages only the last line.
+//
+//   {"spoonbill_recording":1,"tick_s":0.001,"device":{...},"document":{...}}        line 1; device: see below
+//   {"tick":0,"state_hash":"0123456789abcdef"}                                      every 1,000 ticks
+//   {"tick":0,"command":"place_plane","point_mm":[20,0,0],"normal":[1,0,0]}         a command
+//   {"tick":0,"ticks":100,"dx_nm":[...],"dy_nm":[...],"dz_nm":[...],"dq_e9":[[...],[...],[...],[...]],
+//    "buttons":[...]}                                                               motion (on one line)
+//   {"end":true,"ticks":4300,"state_hash":"fedcba9876543210"}                       last line
+//
+// Version 1. Lines are in the order of their ticks. Within a tick the order is: state hash, commands, motion.
+// The state hash is that of the simulation after ticks 0 to tick - 1, before any command of this tick. A
+// motion line covers `ticks` readings from `tick` on. It ends at the next multiple of 100, or earlier before
+// a command or the end, so that the same recording always has the same lines. dx_nm, dy_nm and dz_nm are the
+// differences of DeviceReading::position_nm to the previous reading (before tick 0: the default reading),
+// dq_e9 those of orientation_e9 (x, y, z, w). Each is omitted if all its numbers are zero. `buttons` lists
+// the buttons themselves and is omitted while they do not change. The hash of the last line is that of the
+// final state.
+//
+// device: name, maximum_force_n, maximum_stiffness_n_per_m, maximum_damping_n_s_per_m, workspace_radius_m,
+// position_resolution_m, senses_orientation, actuates_torque. Optional, with the defaults of
+// DeviceSpecification: quiet_force_n, ramp_time_s, maximum_force_rate_n_per_s, maximum_speed_m_per_s,
+// dead_man_buttons.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/exchange/document.h"
+#include "engine/exchange/json.h"
+#include "haptic/device.h"
+
+namespace spoonbill {
+
+inline constexpr int recording_version = 1;
+inline constexpr std::uint64_t recording_line_ticks = 100;  // most ticks that a crash can lose
+inline constexpr std::uint64_t recording_checkpoint_ticks = 1000;
+inline constexpr std::uint64_t recording_tick_limit = 10'000'000;  // 2 h 46 min
+
+struct RecordingHeader {
+  DeviceSpecification device;
+  Document document;  // the scene at tick 0
+};
+
+// A command and its tick. The command stays JSON, because the engine interprets commands of the simulation
+// and the program those of the view, and neither needs to know the other's.
+struct TimedCommand {
+  std::uint64_t tick = 0;  // the command applies before this tick runs; commands of one tick keep their order
+  Json command;            // {"command": "...", arguments...}
+  std::string origin;      // source for messages: "bend.jsonl: line 12" or "bend.json: steps[3]"
+};
+
+struct Checkpoint {
+  std::uint64_t tick = 0;
+  std::uint64_t state_hash = 0;
+
+  friend bool operator==(const Checkpoint&, const Checkpoint&) = default;
+};
+
+struct Recording {
+  RecordingHeader header;
+  std::vector<DeviceReading> readings;  // one a tick
+  std::vector<TimedCommand> commands;   // in order; those at readings.size() follow the last tick
+  std::vector<Checkpoint> checkpoints;
+  std::optional<Checkpoint> end;  // empty if the recording is truncated
+  std::string notice;             // one line for the user; empty if the recording is complete
+};
+
+// Reads a recording. A recording that is truncated anywhere after its first line is read up to the cut. Any
+// other deviation from the format above is an error that names line and field. So is a recording beyond the
+// limits: 10 million ticks, 1 GiB, positions within 10 m, unit quaternions.
+Result<Recording> read_recording(const std::filesystem::path& file);
+Result<Recording> read_recording(std::istream& in, const std::string& source);
+
+// Writes a recording while it happens. Each complete line is passed to the operating system at once, so that
+// a killed program loses at most 100 ticks.
+//
+// One owner, never the haptic thread: writing may block. After an error every later call returns the same
+// error.
+//
+//   while (...) {
+//     if (writer.checkpoint_due()) writer.checkpoint(simulation.state_hash());
+//     for (commands of this tick) writer.command(json);
+//     writer.reading(reading);
+//   }
+//   writer.finish(simulation.state_hash());
+//   writer.commit();
+class RecordingWriter {
+ public:
+  // Creates the file and writes the header. If the file exists, the recording grows as FILE.part, which can
+  // be replayed too. Errors: a path that cannot be written, a document that could not be read back.
+  static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header);
+
+  RecordingWriter(RecordingWriter&&) noexcept;
+  RecordingWriter& operator=(RecordingWriter&&) noexcept;
+  ~RecordingWriter();  // without finish() the recording has no end line, as after a crash
+
+  // Returns the next tick, which is the number of readings so far.
+  std::uint64_t tick() const;
+
+  // Returns whether checkpoint() must be called: at each multiple of 1,000 ticks, before the commands of the
+  // tick.
+  bool checkpoint_due() const;
+  Status checkpoint(std::uint64_t state_hash);
+
+  // Writes a command that applies before the next tick: an object with a text "command" and without "tick".
+  Status command(const Json& command);
+
+  Status reading(const DeviceReading& reading);
+
+  // Writes the last line and waits until the file is on the disk.
+  Status finish(std::uint64_t state_hash);
+
+  // Replaces an older file of the same name and closes the recording. Called after finish().
+  Status commit();
+
+ private:
+  struct State;
+  explicit RecordingWriter(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace spoonbill

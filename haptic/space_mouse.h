@@ -1,0 +1,70 @@
+// A 3Dconnexion SpaceMouse: a cap that a hand pushes and turns in six directions, without force feedback.
+// Read with libspnav from the daemon spacenavd.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "engine/base/geometry.h"
+#include "engine/base/result.h"
+#include "haptic/virtual_device.h"
+
+namespace spoonbill {
+
+// Displacement of the cap from rest, -1 to 1 on each axis: x right, y up, z toward the person. Rotations are
+// right-handed about these axes.
+struct SpaceMouseMotion {
+  Vector3 translation = Vector3::Zero();
+  Vector3 rotation = Vector3::Zero();
+  std::uint32_t buttons = 0;  // bit n: button n is down
+};
+
+// Converts the six numbers of a libspnav event: x right, y up, z away from the person, and rotations about
+// them.
+SpaceMouseMotion motion_from_counts(const int (&counts)[6], std::uint32_t buttons);
+
+// The connection to the daemon. libspnav has one connection for the process. One owner: the drawing thread,
+// never the haptic thread, because polling allocates and makes system calls.
+class SpaceMouse : public InputSource {
+ public:
+  // Opens the connection. Errors: no daemon, or a SpaceMouse that is already open. Waits up to 0.3 s for an
+  // old daemon's answer.
+  static Result<SpaceMouse> open();
+
+  SpaceMouse(SpaceMouse&& other) noexcept;
+  SpaceMouse& operator=(SpaceMouse&& other) noexcept;
+  ~SpaceMouse() override;
+
+  // Returns the current displacement of the cap. Empty, permanently, once the daemon has gone.
+  std::optional<SpaceMouseMotion> poll();
+
+  // Polls and returns whether the cap is displaced beyond the dead zone of Steering, or the main button was
+  // pressed or released.
+  bool is_used() override;
+
+  // Steers with the motion that is_used() polled and with the main button alone.
+  HandTarget next_target(const HandTarget& current, double elapsed_s) override;
+
+ private:
+  SpaceMouse() = default;
+  void close();
+  std::uint32_t main_button() const { return motion_.buttons & button_main; }
+
+  bool is_open_ = true;
+  SpaceMouseMotion motion_;
+};
+
+// Rate control: the displacement of the cap sets the speed of the target.
+struct Steering {
+  double speed_m_per_s = 0.1;        // at full displacement
+  double turn_rate_rad_per_s = 1.5;  // at full displacement
+  double dead_zone = 0.08;           // displacements below this count as zero, because hands rest on the cap
+};
+
+// Returns the target `elapsed_s` later. Beyond the dead zone the speed grows with the square of the
+// displacement, for fine work near rest. Rotations are about the world axes. The buttons replace those of the
+// target. The time is clamped to 0 to 0.1 s, in case the program paused.
+HandTarget steer(const HandTarget& target, const SpaceMouseMotion& motion, double elapsed_s,
+                 const Steering& steering = {});
+
+}  // namespace spoonbill

@@ -1,0 +1,61 @@
+// Colours: the palette of the overlays and the looks of the materials.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string_view>
+
+namespace spoonbill {
+
+// An sRGB colour with straight alpha.
+struct Colour {
+  std::uint8_t r = 0, g = 0, b = 0, a = 255;
+};
+
+// Returns the linear value, 0 to 1, of an 8-bit sRGB value.
+float srgb8_to_linear(int value);
+
+// Colours with a meaning, shared by the scene and the legend. Every meaning also has a shape of its own, so
+// that nothing depends on distinguishing red from green.
+namespace palette {
+
+inline constexpr Colour fixed_node{28, 150, 84};    // squares
+inline constexpr Colour touched_node{214, 40, 46};  // discs
+inline constexpr Colour lattice{52, 62, 74, 150};   // the thinnest lines
+inline constexpr Colour cell_edge{178, 30, 52};     // thick lines
+inline constexpr Colour far_cell_edge{178, 30, 52, 170};
+inline constexpr Colour control_net{38, 66, 128, 190};  // thin lines and diamonds
+inline constexpr Colour force{226, 116, 14};            // the arrow
+inline constexpr Colour contact_normal{112, 46, 134};   // short lines
+inline constexpr Colour fixing_plane{28, 150, 84, 40};
+inline constexpr Colour fixing_plane_border{22, 122, 70, 210};
+inline constexpr Colour symmetry_plane{38, 92, 168, 210};  // dash-dotted
+inline constexpr Colour tool{52, 118, 204};
+inline constexpr Colour ground_line{70, 78, 88};
+inline constexpr Colour scale_bar{48, 54, 62};
+inline constexpr Colour hull{96, 58, 160, 170};             // thin lines from point to point
+inline constexpr Colour parameter_range{0, 124, 132};       // thick borders on the surface
+inline constexpr Colour active_sphere{178, 34, 116};        // translucent shells
+inline constexpr Colour active_second_sphere{20, 92, 168};  // shells of the other surface
+inline constexpr Colour rejected_sphere{92, 100, 112, 90};  // faint shells
+inline constexpr Colour active_triangle{246, 196, 24, 205};
+inline constexpr Colour triangle_edge{120, 84, 0};
+inline constexpr Colour tangent_u{0, 118, 196};  // an arrow with a label
+inline constexpr Colour tangent_v{0, 132, 104};
+inline constexpr Colour text{38, 43, 50};
+
+}  // namespace palette
+
+// The look of a material. Affects drawing only, not the physics.
+struct SurfaceLook {
+  Eigen::Vector3f base_colour = {0.5f, 0.5f, 0.5f};  // linear reflectance; for metals the tint of the mirror
+  float roughness = 0.6f;                            // 0 mirror .. 1 chalk
+  float metalness = 0.0f;                            // 0 or 1
+  float translucency = 0.0f;                         // 0 opaque .. 1 clear
+};
+
+// Returns the look of the first known word in the material's name ("modelling-clay", "steel-304"). Other
+// names get a neutral matt grey.
+SurfaceLook find_material_look(std::string_view name);
+
+}  // namespace spoonbill

@@ -1,0 +1,209 @@
+// The overlays of the scene as lines, marks and other simple shapes, and the labels of the picture, without
+// GL. Each overlay has one meaning and can be switched off in Overlays (render/view_settings.h). Lengths are
+// in metres, in the world.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/geometry.h"
+#include "engine/simulation/snapshot.h"
+#include "render/camera.h"
+#include "render/colour.h"
+#include "render/view_settings.h"
+
+struct ImDrawList;
+struct ImFont;
+
+namespace spoonbill {
+
+// A straight line between two points of the world, of constant width in pixels.
+struct OverlayLine {
+  Eigen::Vector3f start_m = Eigen::Vector3f::Zero();
+  Eigen::Vector3f end_m = Eigen::Vector3f::Zero();
+  Colour start_colour;
+  Colour end_colour;
+  float width_px = 1.0f;  // before the interface scale
+};
+
+enum class MarkShape { square, disc, diamond };
+
+// A small flat mark at a point of the world, facing the eye.
+struct OverlayMark {
+  Eigen::Vector3f position_m = Eigen::Vector3f::Zero();
+  Colour colour;
+  float radius_m = 0.0f;    // half the width in the world
+  float minimum_px = 2.0f;  // smallest radius on the screen, before the interface scale
+  float shape = 0.0f;       // a MarkShape
+};
+
+// A translucent sphere with an outline. A faint colour is drawn as an outline only.
+struct OverlayShell {
+  Eigen::Vector3f centre_m = Eigen::Vector3f::Zero();
+  float radius_m = 0.0f;
+  Colour colour;
+};
+
+// A corner of a filled triangle; three consecutive corners are one triangle.
+struct OverlayCorner {
+  Eigen::Vector3f position_m = Eigen::Vector3f::Zero();
+  Colour colour;
+};
+
+struct OverlayArrow {
+  Vector3 start_m, tip_m;
+  Colour colour;
+  const char* name;
+};
+
+// Lattice and control net: body_overlays.cpp.
+
+// Returns the smallest of the mean edge lengths along the three directions of the lattice, in metres: the
+// space available for marks. Zero for a lattice without edges.
+float mean_edge_m(const LatticeSnapshot& lattice);
+
+// Appends a green square for each fixed node of the shell, or for every fixed node if `inner` (Fig. 7 of
+// Pungotra et al. 2013).
+void append_fixed_marks(const LatticeSnapshot& lattice, bool inner, std::vector<OverlayMark>& marks);
+
+// Appends a red disc for each touched node.
+void append_touched_marks(const LatticeSnapshot& lattice, std::vector<OverlayMark>& marks);
+
+// Appends the edges between neighbouring nodes of the shell, or all edges if `inner`.
+void append_lattice_lines(const LatticeSnapshot& lattice, bool inner, std::vector<OverlayLine>& lines);
+
+// The boundaries of the lattice's hexahedra on the surface of the body (Fig. 11 of Pungotra et al. 2013).
+struct CellLines {
+  std::vector<OverlayLine> near;  // edges of faces toward the eye, thick
+  std::vector<OverlayLine>
+      far;  // edges of faces away from the eye, thin and pale; drawn before a translucent body
+};
+
+// Appends each edge of the outer faces once. All edges are near if the lattice is a box around a triangle
+// mesh.
+void append_cell_lines(const LatticeSnapshot& lattice, const Eigen::Vector3f& eye_m, CellLines& lines);
+
+// Appends the rows and columns of the control net as thin lines, closed in periodic directions, with a
+// diamond at each control point.
+void append_control_net(const SurfaceSnapshot& surface, std::vector<OverlayLine>& lines,
+                        std::vector<OverlayMark>& marks);
+
+// Fixing planes and plane of symmetry: plane_overlays.cpp.
+
+using PlaneCorners = std::array<Vector3, 4>;  // in order around a rectangle
+
+// Returns an upright rectangle around the fixed nodes, which do not move while the body bends; around the box
+// of the body if no node is fixed.
+PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies,
+                                  const Box& body);
+
+// Returns the tip of the arrow along the normal of a fixing plane.
+Vector3 plane_arrow_tip(const PlaneCorners& corners, const PlaneSnapshot& plane);
+
+// Appends the border of a fixing plane and a short arrow along its normal, toward the free side.
+void append_plane_border(const PlaneCorners& corners, const PlaneSnapshot& plane,
+                         std::vector<OverlayLine>& lines);
+
+// Returns an upright rectangle in the plane of symmetry, around the box of the body.
+PlaneCorners symmetry_plane_corners(const PlaneSnapshot& plane, const Box& body);
+
+// Appends the dash-dotted border of a plane of symmetry, as in engineering drawings.
+void append_symmetry_plane(const PlaneCorners& corners, std::vector<OverlayLine>& lines);
+
+// Force and contacts: contact_overlays.cpp.
+
+// The force on the hand as an arrow from the tool.
+struct ForceArrow {
+  Vector3 start_m, tip_m;
+  double newtons = 0.0;
+};
+
+// Returns an arrow whose length is proportional to the force, at most the larger of 60 mm and five tool
+// radii. Empty if the overlay is off, or below 5 mN, where the direction is noise.
+std::optional<ForceArrow> force_arrow(const Snapshot& snapshot, const ViewSettings& settings);
+
+// Returns the length of the lines of append_contact_normals(): more than half the radius of the tool.
+double contact_normal_length_m(const ToolSnapshot& tool);
+
+// Appends the outward normals of the contact points as short lines.
+void append_contact_normals(const std::vector<ContactSnapshot>& contacts, double length_m,
+                            std::vector<OverlayLine>& lines);
+
+// The shapes of one stage of the contact search.
+struct StageShapes {
+  std::vector<OverlayLine> lines;
+  std::vector<OverlayShell> shells;
+  std::vector<OverlayCorner> corners;
+  std::vector<OverlayMark> marks;
+  std::vector<OverlayArrow> arrows;
+};
+
+// Returns the shapes of the selected stage; empty without stages.
+StageShapes stage_shapes(const Snapshot& snapshot, const ViewSettings& settings);
+
+// Returns the normal and the tangents at the deepest contact of each region.
+std::vector<OverlayArrow> contact_arrows(const Snapshot& snapshot, const ViewSettings& settings);
+
+// Returns a sentence that describes the selected stage; empty if no stage is shown.
+std::optional<std::string> stage_caption(const ViewSettings& settings);
+
+// Returns the box around all shapes.
+Box bounding_box(const StageShapes& shapes);
+
+// Ground grid and scale bar: ground_overlays.cpp.
+
+// Appends lines at multiples of a round length that suits the distance of the camera. Every fifth line is
+// stronger, and all fade out around the target of the camera.
+void append_ground_grid(const Camera& camera, const Viewport& viewport, double ground_y_m,
+                        std::vector<OverlayLine>& lines);
+
+// A bar of a round length (1, 2 or 5 times a power of ten), parallel to the lower edge of the picture.
+struct ScaleBar {
+  Vector3 start_m, end_m;
+  double length_m = 0.0;
+
+  // Returns the length as text, such as "20 mm".
+  std::string text() const;
+};
+
+// Returns a scale bar on the ground in the lower centre of the free rectangle. Empty if the ground is not
+// visible there.
+std::optional<ScaleBar> ground_scale_bar(const Camera& camera, const Viewport& viewport, double ground_y_m);
+
+// Appends the bar with a tick at each end.
+void append_scale_bar(const ScaleBar& bar, const Camera& camera, std::vector<OverlayLine>& lines);
+
+// Returns the largest of 1, 2, 5 times a power of ten that does not exceed `length`, which must be positive.
+double round_length_below(double length);
+
+// Labels and legend: labels.cpp.
+
+enum class LabelSymbol { none, square, disc, diamond, line, arrow, sphere, plane };
+
+struct Label {
+  std::string text;
+  Eigen::Vector2d position_px = Eigen::Vector2d::Zero();  // position of the anchor
+  Eigen::Vector2d anchor = Eigen::Vector2d::Zero();       // in the text's box: 0,0 top left, 1,1 bottom right
+  LabelSymbol symbol = LabelSymbol::none;                 // drawn to the left of the text
+  Colour colour;                                          // colour of the symbol
+};
+
+struct OverlayLabels {
+  std::vector<Label> in_scene;  // force, scale bar and contact stage
+  std::vector<Label> legend;    // one line each, from the top; positions are set by draw_labels()
+};
+
+// Lays out the labels of the enabled overlays, without GL or ImGui. The legend lists only what the snapshot
+// contains.
+OverlayLabels overlay_labels(const Snapshot& snapshot, const ViewSettings& settings, int width_px,
+                             int height_px);
+
+// Draws the labels on an ImGui draw list, the legend in the lower right corner of the free rectangle. Use the
+// background draw list, which is behind the panel.
+void draw_labels(const OverlayLabels& labels, const ViewSettings& settings, int width_px, int height_px,
+                 ImFont& font, ImDrawList& list);
+
+}  // namespace spoonbill

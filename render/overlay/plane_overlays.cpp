@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/geometry.h"
+#include "render/overlay/overlays.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double fixing_overhang_fraction = 0.45;  // of the larger side, added on each side
+constexpr float border_width_px = 1.4f;
+
+struct PlaneAxes {
+  Vector3 up, across;
+};
+
+PlaneAxes compute_axes(const PlaneSnapshot& plane) {
+  const Vector3 vertical = std::abs(plane.normal.y()) < 0.95 ? Vector3::UnitY() : Vector3::UnitX();
+  const Vector3 up = (vertical - plane.normal * plane.normal.dot(vertical)).normalized();
+  return {up, plane.normal.cross(up)};
+}
+
+// Returns the coordinates of an offset along the axes of the plane.
+Eigen::Vector2d project_on(const PlaneAxes& axes, const Vector3& offset) {
+  return {axes.up.dot(offset), axes.across.dot(offset)};
+}
+
+Box2 compute_extent(const PlaneSnapshot& plane, const Box& body, const PlaneAxes& axes) {
+  Box2 extent;
+  for (int i = 0; i < 8 && !body.is_empty(); ++i)
+    extent.include(project_on(axes, body.corner(i) - plane.point_m));
+  if (extent.is_empty()) extent.include(project_on(axes, Vector3::Zero()));
+  return extent;
+}
+
+Box2 compute_extent(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies, const Box& body,
+                    const PlaneAxes& axes) {
+  Box2 extent;
+  for (const BodySnapshot& each : bodies) {
+    const LatticeSnapshot& lattice = each.lattice;
+    for (std::size_t i = 0; i < lattice.x.size(); ++i) {
+      if (lattice.fixed[i] == 0) continue;
+      extent.include(project_on(axes, Vector3(lattice.x[i], lattice.y[i], lattice.z[i]) - plane.point_m));
+    }
+  }
+  return extent.is_empty() ? compute_extent(plane, body, axes) : extent;
+}
+
+PlaneCorners make_corners(const PlaneSnapshot& plane, const PlaneAxes& axes, Box2 extent,
+                          double overhang_fraction) {
+  const double overhang = overhang_fraction * extent.extent().maxCoeff();
+  extent.low.array() -= overhang;
+  extent.high.array() += overhang;
+  const auto at = [&](double up, double across) {
+    return Vector3(plane.point_m + up * axes.up + across * axes.across);
+  };
+  return {at(extent.low.x(), extent.low.y()), at(extent.high.x(), extent.low.y()),
+          at(extent.high.x(), extent.high.y()), at(extent.low.x(), extent.high.y())};
+}
+
+constexpr double symmetry_overhang_fraction = 0.12;
+constexpr float symmetry_width_px = 1.4f;
+constexpr int dashes_along_longest_side = 24;
+// Dash and dot, as fractions of a period with gaps between them.
+constexpr double dash_fraction = 0.55;
+constexpr double dot_start = 0.72, dot_end = 0.83;
+
+}  // namespace
+
+PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies,
+                                  const Box& body) {
+  const PlaneAxes axes = compute_axes(plane);
+  return make_corners(plane, axes, compute_extent(plane, bodies, body, axes), fixing_overhang_fraction);
+}
+
+Vector3 plane_arrow_tip(const PlaneCorners& corners, const PlaneSnapshot& plane) {
+  const double length = 0.30 * (corners[2] - corners[1]).norm();
+  return 0.5 * (corners[1] + corners[2]) + length * plane.normal;
+}
+
+void append_plane_border(const PlaneCorners& corners, const PlaneSnapshot& plane,
+                         std::vector<OverlayLine>& lines) {
+  const auto add = [&](const Vector3& a, const Vector3& b) {
+    lines.push_back({a.cast<float>(), b.cast<float>(), palette::fixing_plane_border,
+                     palette::fixing_plane_border, border_width_px});
+  };
+  for (std::size_t i = 0; i < 4; ++i) add(corners[i], corners[(i + 1) % 4]);
+  const Vector3 top_centre = 0.5 * (corners[1] + corners[2]);
+  const Vector3 side = (corners[2] - corners[1]).normalized();
+  const Vector3 tip = plane_arrow_tip(corners, plane);
+  const double length = (tip - top_centre).norm();
+  add(top_centre, tip);
+  add(tip, tip - 0.3 * length * (plane.normal + side));
+  add(tip, tip - 0.3 * length * (plane.normal - side));
+}
+
+PlaneCorners symmetry_plane_corners(const PlaneSnapshot& plane, const Box& body) {
+  const PlaneAxes axes = compute_axes(plane);
+  return make_corners(plane, axes, compute_extent(plane, body, axes), symmetry_overhang_fraction);
+}
+
+void append_symmetry_plane(const PlaneCorners& corners, std::vector<OverlayLine>& lines) {
+  const double longest = std::max((corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm());
+  if (!(longest > 0.0)) return;
+  for (std::size_t side = 0; side < corners.size(); ++side) {
+    const Vector3& start = corners[side];
+    const Vector3 along = corners[(side + 1) % corners.size()] - start;
+    const int dashes =
+        std::max(1, static_cast<int>(std::lround(dashes_along_longest_side * along.norm() / longest)));
+    const auto add = [&](double from, double to) {
+      const Vector3 a = start + from / dashes * along, b = start + to / dashes * along;
+      lines.push_back({a.cast<float>(), b.cast<float>(), palette::symmetry_plane, palette::symmetry_plane,
+                       symmetry_width_px});
+    };
+    for (int dash = 0; dash < dashes; ++dash) {
+      add(dash, dash + dash_fraction);
+      add(dash + dot_start, dash + dot_end);
+    }
+  }
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,109 @@
+#include "render/passes/mesh_buffers.h"
+
+#include <cstddef>
+#include <utility>
+
+#include "engine/base/geometry.h"
+
+namespace spoonbill {
+
+SurfaceBuffers::SurfaceBuffers(const GlFunctions& gl)
+    : gl_(&gl), vertex_array_(make_vertex_array(gl)), vertices_(make_buffer(gl)), indices_(make_buffer(gl)) {}
+
+void SurfaceBuffers::upload(const TessellatedSurface& surface) {
+  const GridSamples<float>& samples = surface.samples();
+  const std::size_t plane_bytes = surface.vertex_count() * sizeof(float);
+  gl_->BindVertexArray(vertex_array_.id());
+  gl_->BindBuffer(GL_ARRAY_BUFFER, vertices_.id());
+  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(6 * plane_bytes), nullptr, GL_STREAM_DRAW);
+  GLuint attribute = 0;
+  for (const auto* plane : {&samples.x, &samples.y, &samples.z, &samples.nx, &samples.ny, &samples.nz}) {
+    const std::size_t start = attribute * plane_bytes;
+    gl_->BufferSubData(GL_ARRAY_BUFFER, static_cast<GLintptr>(start), static_cast<GLsizeiptr>(plane_bytes),
+                       plane->data());
+    gl_->VertexAttribPointer(attribute, 1, GL_FLOAT, GL_FALSE, 0, reinterpret_cast<const void*>(start));
+    gl_->EnableVertexAttribArray(attribute);
+    ++attribute;
+  }
+  closed_ = surface.is_closed();
+  if (topology_version_ == surface.topology_version()) return;
+  topology_version_ = surface.topology_version();
+  index_count_ = static_cast<GLsizei>(surface.indices().size());
+  gl_->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.id());
+  gl_->BufferData(GL_ELEMENT_ARRAY_BUFFER,
+                  static_cast<GLsizeiptr>(surface.indices().size() * sizeof(std::uint32_t)),
+                  surface.indices().data(), GL_STATIC_DRAW);
+}
+
+void SurfaceBuffers::draw() const {
+  gl_->BindVertexArray(vertex_array_.id());
+  gl_->DrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+}
+
+Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level) {
+  surfaces_.resize(snapshot.bodies.size());
+  while (buffers_.size() > surfaces_.size()) buffers_.pop_back();
+  while (buffers_.size() < surfaces_.size()) buffers_.emplace_back(*gl_);
+  bounds_ = {};
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    const BodySnapshot& body = snapshot.bodies[i];
+    if (body.is_mesh()) {
+      surfaces_[i].update(body.mesh);
+    } else {
+      if (Status net = check_net(body.surface); !net) return net;
+      const SamplingLevel last = keep_level ? surfaces_[i].level() : SamplingLevel();
+      const SamplingLevel level = choose_sampling_level(body.surface, pixels_per_metre, last);
+      if (Status updated = surfaces_[i].update(body.surface, level); !updated) return updated;
+    }
+    buffers_[i].upload(surfaces_[i]);
+    const Box one = surfaces_[i].bounds();
+    if (one.is_empty()) continue;
+    bounds_.join(one);
+  }
+  return {};
+}
+
+ToolBuffers::ToolBuffers(const GlFunctions& gl)
+    : gl_(&gl), vertex_array_(make_vertex_array(gl)), vertices_(make_buffer(gl)), indices_(make_buffer(gl)) {}
+
+Status ToolBuffers::update(const ToolSnapshot& tool) {
+  if (rigid_body(tool) == nullptr || tool.body == body_) return {};
+  Result<ToolMesh> mesh = make_tool_mesh(tool.body->solid);
+  if (!mesh) return mesh.error();
+  mesh_ = std::move(mesh).value();
+  body_ = tool.body;
+  upload();
+  return {};
+}
+
+void ToolBuffers::upload() const {
+  gl_->BindVertexArray(vertex_array_.id());
+  gl_->BindBuffer(GL_ARRAY_BUFFER, vertices_.id());
+  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh_.vertices.size() * sizeof(ToolVertex)),
+                  mesh_.vertices.data(), GL_STATIC_DRAW);
+  constexpr GLsizei stride = sizeof(ToolVertex);
+  gl_->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, stride, nullptr);
+  gl_->VertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, stride,
+                           reinterpret_cast<const void*>(offsetof(ToolVertex, normal)));
+  gl_->EnableVertexAttribArray(0);
+  gl_->EnableVertexAttribArray(1);
+  gl_->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.id());
+  gl_->BufferData(GL_ELEMENT_ARRAY_BUFFER,
+                  static_cast<GLsizeiptr>(mesh_.indices.size() * sizeof(std::uint32_t)), mesh_.indices.data(),
+                  GL_STATIC_DRAW);
+}
+
+void ToolBuffers::draw(const Eigen::Vector3f& eye_m) {
+  gl_->BindVertexArray(vertex_array_.id());
+  std::size_t count = mesh_.indices.size();
+  if (!mesh_.convex) {
+    const std::vector<std::uint32_t>& ordered = order_.sort(mesh_, eye_m);
+    count = ordered.size();
+    gl_->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.id());
+    gl_->BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(count * sizeof(std::uint32_t)),
+                    ordered.data(), GL_STREAM_DRAW);
+  }
+  gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT, nullptr);
+}
+
+}  // namespace spoonbill

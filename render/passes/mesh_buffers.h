@@ -1,0 +1,89 @@
+// The meshes of bodies and tool in GL buffers, which persist from frame to frame.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/base/geometry.h"
+#include "engine/base/result.h"
+#include "engine/simulation/snapshot.h"
+#include "render/gl/pipeline.h"
+#include "render/tessellation/tessellated_surface.h"
+#include "render/tessellation/tool_mesh.h"
+
+namespace spoonbill {
+
+// A tessellated surface in GL buffers: planar attributes (x, y, z, nx, ny, nz at locations 0 to 5) and
+// indices.
+class SurfaceBuffers {
+ public:
+  explicit SurfaceBuffers(const GlFunctions& gl);
+
+  // Uploads the samples, and the indices if the topology has changed. The old storage is orphaned, because
+  // overwriting it would wait for the frame that still reads it.
+  void upload(const TessellatedSurface& surface);
+
+  // Draws with the program in use.
+  void draw() const;
+
+  bool is_closed() const { return closed_; }
+
+ private:
+  const GlFunctions* gl_;
+  GlHandle vertex_array_;
+  GlHandle vertices_;
+  GlHandle indices_;
+  GLsizei index_count_ = 0;
+  std::uint64_t topology_version_ = 0;
+  bool closed_ = false;
+};
+
+// The surfaces of a snapshot, tessellated for the screen.
+class BodyMeshes {
+ public:
+  explicit BodyMeshes(const GlFunctions& gl) : gl_(&gl) {}
+
+  // Updates all surfaces to the snapshot. `keep_level` lets the tessellation of the last frame stay while it
+  // is fine enough. Returns the error of the first surface that cannot be tessellated.
+  Status update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level);
+
+  const std::vector<TessellatedSurface>& surfaces() const { return surfaces_; }
+  const std::vector<SurfaceBuffers>& buffers() const { return buffers_; }
+  const Box& bounds() const { return bounds_; }
+
+ private:
+  const GlFunctions* gl_;
+  std::vector<TessellatedSurface> surfaces_;
+  std::vector<SurfaceBuffers> buffers_;
+  Box bounds_;
+};
+
+// The mesh of a rigid solid tool.
+class ToolBuffers {
+ public:
+  explicit ToolBuffers(const GlFunctions& gl);
+
+  // Builds and uploads the mesh if the tool has a different body than at the last call. Returns the error of
+  // a solid that has no mesh.
+  Status update(const ToolSnapshot& tool);
+
+  bool empty() const { return mesh_.indices.empty(); }
+
+  // Draws, with the program in use, the triangles that face the eye, from back to front. `eye_m` is in the
+  // frame of the tool.
+  void draw(const Eigen::Vector3f& eye_m);
+
+ private:
+  void upload() const;
+
+  const GlFunctions* gl_;
+  GlHandle vertex_array_;
+  GlHandle vertices_;
+  GlHandle indices_;
+  std::shared_ptr<const ToolBody> body_;  // shared ownership, so that no other body gets the same address
+  ToolMesh mesh_;
+  FacingOrder order_;
+};
+
+}  // namespace spoonbill

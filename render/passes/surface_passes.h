@@ -1,0 +1,91 @@
+// Passes that draw lit surfaces: the bodies (surface_pass.cpp), and the tool, arrows and panes
+// (solid_pass.cpp).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "render/colour.h"
+#include "render/gl/pipeline.h"
+#include "render/passes/frame_view.h"
+#include "render/passes/mesh_buffers.h"
+#include "render/passes/shadow_pass.h"
+#include "render/tessellation/tool_mesh.h"
+
+namespace spoonbill {
+
+// Draws the surface of a body in the light of the studio.
+class SurfacePass {
+ public:
+  static Result<SurfacePass> make(const GlFunctions& gl);
+
+  // Draws a surface. Opaque looks write depth. Translucent ones are blended, back faces first, and must be
+  // drawn after everything opaque. `shadow` is null if shadows are off.
+  void draw(const FrameView& view, const SurfaceBuffers& surface, const SurfaceLook& look,
+            const ToolSphere& tool, const ShadowPass* shadow) const;
+
+ private:
+  SurfacePass(const GlFunctions& gl, Program opaque, Program translucent)
+      : gl_(&gl), opaque_(std::move(opaque)), translucent_(std::move(translucent)) {}
+  void set_uniforms(const Program& program, const FrameView& view, const SurfaceLook& look,
+                    const ToolSphere& tool, const ShadowPass* shadow) const;
+
+  const GlFunctions* gl_;
+  // Two programs, because a software renderer computes both sides of every branch.
+  Program opaque_, translucent_;
+};
+
+// Draws simple solids (the tool, arrows) and flat translucent panes (fixing planes).
+class SolidPass {
+ public:
+  static Result<SolidPass> make(const GlFunctions& gl);
+
+  // Draws a glassy sphere, most transparent in the centre. Draw after everything opaque.
+  void draw_glass_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,
+                         Colour colour) const;
+
+  // Draws a solid tool of the same glass.
+  void draw_glass_tool(const FrameView& view, ToolBuffers& tool, const ToolFrame& frame, Colour colour) const;
+
+  void draw_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,
+                   Colour colour) const;
+
+  // Draws an arrow: a shaft of diameter `width_m` with a cone as its head.
+  void draw_arrow(const FrameView& view, const Eigen::Vector3f& start_m, const Eigen::Vector3f& tip_m,
+                  float width_m, Colour colour) const;
+
+  // Draws a flat, unlit quadrilateral, visible from both sides. The alpha of the colour is its opacity.
+  void draw_pane(const FrameView& view, const std::array<Eigen::Vector3f, 4>& corners_m, Colour colour) const;
+
+ private:
+  // A range of the shared vertex buffer.
+  struct Shape {
+    GLint first = 0;
+    GLsizei count = 0;
+  };
+  struct Programs {
+    Program solid, glass, pane;
+  };
+
+  SolidPass(const GlFunctions& gl, Programs programs);
+  const Shape& sphere_for(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m) const;
+  void draw_solid(const FrameView& view, const Shape& shape, const Eigen::Matrix4f& model,
+                  Colour colour) const;
+  void draw_shape(const Program& program, const FrameView& view, const Shape& shape,
+                  const Eigen::Matrix4f& model, const Eigen::Vector4f& colour) const;
+
+  void use_program(const Program& program, const FrameView& view, const Eigen::Matrix4f& model,
+                   const Eigen::Vector4f& colour) const;
+
+  const GlFunctions* gl_;
+  Programs programs_;
+  GlHandle vertex_array_;
+  GlHandle vertices_;
+  std::vector<Shape> spheres_;  // from coarse to fine
+  Shape shaft_, head_, pane_;
+};
+
+}  // namespace spoonbill
