@@ -1,17 +1,81 @@
 #include "app/console.h"
 
+#include <ctime>
+
 namespace spoonbill {
 
 std::string one_line(const std::string& text) {
   std::string line = text.substr(0, text.find('\n'));
   for (std::size_t k = 0; k < line.size(); ++k) {
     const auto letter = static_cast<unsigned char>(line[k]);
+    // U+0080 to U+009F in UTF-8, which some terminals obey.
     const bool is_wide_control =
         letter == 0xc2 && k + 1 < line.size() && static_cast<unsigned char>(line[k + 1]) < 0xa0;
     if (letter < ' ' || letter == 127) line[k] = '?';
     if (is_wide_control) line.replace(k, 2, "?");
   }
   return line;
+}
+
+InterruptWatch::InterruptWatch() {
+  sigemptyset(&watched_);
+  sigaddset(&watched_, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &watched_, &before_);
+}
+
+InterruptWatch::~InterruptWatch() {
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+bool InterruptWatch::requested() const {
+  sigset_t pending;
+  sigpending(&pending);
+  return sigismember(&pending, SIGINT) == 1;
+}
+
+void InterruptWatch::answer() {
+  const timespec no_wait{};
+  while (sigtimedwait(&watched_, nullptr, &no_wait) > 0) {
+  }
+}
+
+ProgressBar::ProgressBar(Console& console, std::string label, bool is_forced)
+    : console_(&console), label_(std::move(label)), visible_(console.err_is_terminal || is_forced) {}
+
+ProgressBar::~ProgressBar() {
+  if (visible_ && console_->err_is_terminal && shown_percent_ >= 0) console_->err << '\n';
+}
+
+void ProgressBar::show(std::uint64_t done, std::uint64_t total) {
+  if (!visible_) return;
+  const int percent = total == 0 ? 100 : static_cast<int>(100 * done / total);
+  const int step = console_->err_is_terminal ? 1 : 10;
+  if (percent < shown_percent_ + step && shown_percent_ >= 0) return;
+  shown_percent_ = percent - percent % step;
+
+  constexpr int width = 40;
+  const auto filled = static_cast<std::size_t>(width * percent / 100);
+  const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');
+  const std::string text = label_ + " [" + bar + "] " + std::to_string(percent) + " %";
+  if (console_->err_is_terminal) {
+    console_->err << '\r' << text << std::flush;
+  } else {
+    console_->err << text << std::endl;
+  }
+}
+
+void ProgressBar::show(double fraction) {
+  constexpr double resolution = 1000.0;
+  show(static_cast<std::uint64_t>(resolution * fraction), static_cast<std::uint64_t>(resolution));
+}
+
+Error CancellableJob::cancelled() {
+  interrupt_.answer();
+  return stopped_before_writing(out_);
+}
+
+Error stopped_before_writing(const std::filesystem::path& file) {
+  return Error{ErrorCode::cancelled, "stopped; " + file.string() + " was not written"};
 }
 
 }  // namespace spoonbill

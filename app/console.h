@@ -1,19 +1,102 @@
-// Where a command writes: facts to `out`, words to the person to `err`. The streams must outlive it.
+// The terminal side of a command: its output streams, the progress that it shows, and Ctrl+C.
 #pragma once
 
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
 #include <ostream>
 #include <string>
+#include <utility>
+
+#include "engine/base/progress.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 
+// The streams of a command: results go to `out`, progress, warnings and errors to `err`. Both must outlive
+// it.
 struct Console {
   std::ostream& out;
   std::ostream& err;
-  bool person_watches = false;  // err is a terminal
+  bool err_is_terminal = false;
 };
 
-// The text's first line, without what a terminal would obey: messages quote files, whose content may be
-// anything.
+// Returns the first line of the text with every control character replaced by '?'. Messages quote files,
+// whose content could otherwise drive the terminal.
 std::string one_line(const std::string& text);
+
+// Blocks SIGINT while it lives, so that Ctrl+C waits until the work reaches a point where it can stop. Create
+// it before other threads start: they inherit the signal mask. SIGTERM still ends the process at once.
+class InterruptWatch {
+ public:
+  InterruptWatch();
+  ~InterruptWatch();  // delivers a signal that is still pending
+  InterruptWatch(const InterruptWatch&) = delete;
+  InterruptWatch& operator=(const InterruptWatch&) = delete;
+
+  // Returns true once Ctrl+C has been pressed.
+  bool requested() const;
+
+  // Discards the pending signal, so that the process lives on to report that it stopped.
+  void answer();
+
+ private:
+  sigset_t watched_;
+  sigset_t before_;
+};
+
+// A progress bar on the console's error stream: one line that is redrawn on a terminal, one line for every
+// tenth elsewhere, nothing when it is hidden.
+class ProgressBar {
+ public:
+  // The bar is visible on a terminal, and elsewhere if it is forced. The console must outlive it.
+  ProgressBar(Console& console, std::string label, bool is_forced);
+  ~ProgressBar();  // ends the line that the bar was drawn on
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void show(std::uint64_t done, std::uint64_t total);
+  // `fraction` is from 0 to 1.
+  void show(double fraction);
+
+ private:
+  Console* console_;
+  std::string label_;
+  bool visible_;
+  int shown_percent_ = -1;
+};
+
+// A long job of a command: it shows a progress bar, and Ctrl+C stops it. The console must outlive it.
+class CancellableJob {
+ public:
+  // `out` is the file that stays unwritten when the job is stopped.
+  CancellableJob(Console& console, std::string label, std::filesystem::path out)
+      : out_(std::move(out)), bar_(console, std::move(label), false) {}
+
+  // Calls `work` with the Progress that it must report to and returns its result, or ErrorCode::cancelled
+  // after Ctrl+C.
+  template <class Work>
+  auto run(const Work& work) -> decltype(work(Progress())) {
+    const Progress progress([this](double fraction) {
+      bar_.show(fraction);
+      return !interrupt_.requested();
+    });
+    if (!progress.report(0.0)) return cancelled();
+    auto result = work(progress);
+    // Ctrl+C may have been pressed during the last step, which can be long.
+    if (!progress.report(result ? 1.0 : 0.0)) return cancelled();
+    return result;
+  }
+
+ private:
+  Error cancelled();
+
+  InterruptWatch interrupt_;
+  std::filesystem::path out_;
+  ProgressBar bar_;
+};
+
+// The error of a command that Ctrl+C stopped before it wrote the file.
+Error stopped_before_writing(const std::filesystem::path& file);
 
 }  // namespace spoonbill

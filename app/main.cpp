@@ -11,12 +11,11 @@
 #include "engine/base/assert.h"
 
 int main(int argc, char** argv) {
-  // A reader of our output or an encoder that goes away is an error to report, not the end of the process.
+  // A closed pipe and a file above the user's size limit are write errors to report, not the end of the
+  // process.
   std::signal(SIGPIPE, SIG_IGN);
-  // So is a file that grows beyond what the user may write.
   std::signal(SIGXFSZ, SIG_IGN);
-  // A broken promise within the program gives up the work at hand, not the process: a tick, a save, this
-  // command.
+  // A failed assertion abandons the job in progress (a tick, a save, this command), not the process.
   spoonbill::set_assertion_handler(spoonbill::throw_failed_assertion);
   try {
     const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);

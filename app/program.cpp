@@ -8,12 +8,36 @@
 namespace spoonbill {
 namespace {
 
-const char* const description =
+const char* const program_description =
     "Spoonbill: shape B-spline surfaces by touch.\n"
-    "`spoonbill COMMAND --help` tells all about a command.";
+    "`spoonbill COMMAND --help` describes a command and its options.";
 
-int act(const CommandEntry& entry, Console& console) {
-  const Status status = entry.act(console);
+// The order here is the order of the commands and their groups in --help.
+std::vector<CommandEntry> add_commands(const OptionSet& root) {
+  struct Group {
+    const char* name;
+    std::vector<CommandEntry (*)(OptionSet)> commands;
+  };
+  const std::vector<Group> groups = {
+      {"Make a model", {add_new, add_fit, add_merge, add_change}},
+      {"Look at a model", {add_info, add_check, add_sample, add_collide}},
+      {"Exchange with other programs", {add_convert}},
+      {"Sculpt", {add_edit, add_record, add_replay}},
+      {"Try a model", {add_rest}},
+      {"", {add_read_mesh, add_read_points}},  // hidden: the program runs these itself
+  };
+  std::vector<CommandEntry> entries;
+  for (const Group& group : groups) {
+    for (const auto add : group.commands) {
+      entries.push_back(add(root));
+      entries.back().parser.set_group(group.name);
+    }
+  }
+  return entries;
+}
+
+int run_command(const CommandEntry& entry, Console& console) {
+  const Status status = entry.run(console);
   if (!status) {
     console.err << "spoonbill: " << one_line(status.error().message) << '\n';
     return exit_failed;
@@ -29,14 +53,11 @@ int act(const CommandEntry& entry, Console& console) {
 }  // namespace
 
 int run_program(const std::vector<std::string>& arguments, Console& console, const std::string& version) {
-  CommandLine line(description, "spoonbill");
+  CommandLine line(program_description, "spoonbill");
   line.set_version("spoonbill " + version);
   const OptionSet root = line.options();
   root.require_command();
-  const std::vector<CommandEntry> commands = {
-      add_edit(root),    add_replay(root), add_record(root),  add_info(root),      add_sample(root),
-      add_collide(root), add_rest(root),   add_new(root),     add_fit(root),       add_merge(root),
-      add_change(root),  add_check(root),  add_convert(root), add_read_mesh(root), add_read_points(root)};
+  const std::vector<CommandEntry> commands = add_commands(root);
   const CommandLine::Parsed parsed = line.parse(arguments);
   switch (parsed.outcome) {
     case CommandLine::Outcome::answered:
@@ -50,7 +71,7 @@ int run_program(const std::vector<std::string>& arguments, Console& console, con
   }
   const auto chosen = std::find_if(commands.begin(), commands.end(),
                                    [](const CommandEntry& command) { return command.parser.is_chosen(); });
-  return act(*chosen, console);
+  return run_command(*chosen, console);
 }
 
 }  // namespace spoonbill

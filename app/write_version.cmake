@@ -1,5 +1,5 @@
-# cmake -Dgit=PROGRAM -Dproject=FOLDER -Dsource=FILE -P write_version.cmake: writes the source of version_with_commit().
-# `git` is empty where the project is no repository.
+# cmake -Dgit=PROGRAM -Dproject=FOLDER -Dsource=FILE -P write_version.cmake: writes the source of
+# version_with_commit(). `git` is empty when the project is not a Git repository.
 cmake_minimum_required(VERSION 3.25)
 set(commit "")
 if(git)

@@ -7,15 +7,11 @@
 #include <vector>
 
 #include "app/commands/command.h"
-#include "app/commands/common_options.h"
 #include "app/commands/option_set.h"
 #include "app/files/cad_file.h"
-#include "app/files/document_file.h"
-#include "app/interrupt.h"
+#include "app/files/documents.h"
 #include "app/report/check_facts.h"
-#include "app/report/progress_bar.h"
-#include "app/report/solid_check_facts.h"
-#include "app/report/surface_extent.h"
+#include "app/report/document_facts.h"
 #include "engine/inspection/solid_check.h"
 
 namespace spoonbill {
@@ -26,10 +22,10 @@ struct CheckOptions {
   bool json = false;
 };
 
-// Of the model's size, how near to a solid the mesh is that tells its thickness and where it meets itself.
-constexpr double chord_share = 1e-3;
-constexpr Range<double> chord_range_m{1e-6, 2e-4};
-constexpr std::size_t triangle_limit = 5'000'000;
+// Chord error of the meshes on which solids are measured, as a fraction of the model's size.
+constexpr double solid_chord_fraction = 1e-3;
+constexpr Range<double> solid_chord_range_m{1e-6, 2e-4};
+constexpr std::size_t solid_triangle_limit = 5'000'000;
 
 double size_of(const std::vector<Body>& bodies) {
   Box box = extent_of(bodies.front().surface, bodies.front().trims);
@@ -37,11 +33,11 @@ double size_of(const std::vector<Body>& bodies) {
   return box.size();
 }
 
-bool all_sound(const Json& facts) {
+bool are_all_sound(const Json& facts) {
   return std::all_of(facts.begin(), facts.end(), [](const Json& one) { return one["sound"].get<bool>(); });
 }
 
-CadModel model_of(const std::vector<Body>& bodies) {
+CadModel make_model(const std::vector<Body>& bodies) {
   CadModel model;
   for (const Body& body : bodies) {
     CadSurface surface;
@@ -54,7 +50,7 @@ CadModel model_of(const std::vector<Body>& bodies) {
   return model;
 }
 
-// Those that several bodies bound; an Error where there are some that cannot be joined.
+// Joins the solids that several bodies bound.
 Result<CadSolids> join_solids(const CheckOptions& options, const std::vector<Body>& all,
                               const InterruptWatch& interrupt) {
   if (std::all_of(all.begin(), all.end(), [](const Body& body) { return body.solid.empty(); })) {
@@ -62,21 +58,22 @@ Result<CadSolids> join_solids(const CheckOptions& options, const std::vector<Bod
   }
   CadChild child;
   child.progress = Progress([&](double) { return !interrupt.requested(); });
-  const CadModel model = model_of(all);
-  const double chord_m = std::clamp(chord_share * size_of(all), chord_range_m.low, chord_range_m.high);
-  auto solids = make_cad_solids(model, {chord_m, triangle_limit}, options.model, child);
-  // What takes too many triangles may be told less exactly.
-  if (solids || interrupt.requested() || chord_m == chord_range_m.high) return solids;
-  return make_cad_solids(model, {chord_range_m.high, triangle_limit}, options.model, child);
+  const CadModel model = make_model(all);
+  const double chord_m =
+      std::clamp(solid_chord_fraction * size_of(all), solid_chord_range_m.low, solid_chord_range_m.high);
+  auto solids = make_cad_solids(model, {chord_m, solid_triangle_limit}, options.model, child);
+  // A model with too many triangles is measured less exactly.
+  if (solids || interrupt.requested() || chord_m == solid_chord_range_m.high) return solids;
+  return make_cad_solids(model, {solid_chord_range_m.high, solid_triangle_limit}, options.model, child);
 }
 
 std::vector<const Surface*> surfaces_of(const CadSolid& solid, const std::vector<Body>& all) {
   std::vector<const Surface*> surfaces;
-  for (const std::size_t place : solid.places) surfaces.push_back(&all[place].surface);
+  for (const std::size_t body : solid.places) surfaces.push_back(&all[body].surface);
   return surfaces;
 }
 
-// The solids' facts as JSON.
+// Adds the solids and returns their JSON.
 Result<Json> check_solids(FactSheet& facts, const CadSolids& solids, const std::vector<Body>& all,
                           InterruptWatch& interrupt, Console& console) {
   ProgressBar bar(console, "Checking solids", false);
@@ -90,7 +87,7 @@ Result<Json> check_solids(FactSheet& facts, const CadSolids& solids, const std::
     const auto check = check_solid(solid.mesh, surfaces_of(solid, all), solid.chord_error_m, progress);
     if (!check) {
       interrupt.answer();
-      return Error{"stopped"};
+      return Progress::stopped();
     }
     json.push_back(add_solid_check_facts(facts, solid, *check, all));
   }
@@ -101,8 +98,8 @@ Result<Json> check_solids(FactSheet& facts, const CadSolids& solids, const std::
 }
 
 struct CheckedBodies {
-  Json facts = Json::array();       // of the bodies, in their order
-  std::vector<std::size_t> solids;  // those that enclose what they are made of, and are no faces
+  Json facts = Json::array();       // one entry per body
+  std::vector<std::size_t> solids;  // bodies that enclose their material and are not faces of a solid
 };
 
 Result<CheckedBodies> check_bodies(FactSheet& facts, const std::vector<Body>& all,
@@ -113,7 +110,7 @@ Result<CheckedBodies> check_bodies(FactSheet& facts, const std::vector<Body>& al
   Json& bodies = checked.facts;
   for (const Body& body : all) {
     const auto trim = make_trimmed_area(body);
-    if (!trim) return Error{"body \"" + body.name + "\": " + trim.error().message};
+    if (!trim) return trim.error().in("body \"" + body.name + "\"");
     const TrimmedArea area = trim.value() ? *trim.value() : TrimmedArea();
     const double done = static_cast<double>(bodies.size());
     const CheckedAs as = faces.contains(bodies.size()) ? CheckedAs::face : CheckedAs::body;
@@ -124,7 +121,7 @@ Result<CheckedBodies> check_bodies(FactSheet& facts, const std::vector<Body>& al
     const auto check = check_surface(body.surface, area, progress);
     if (!check) {
       interrupt.answer();
-      return Error{"stopped"};
+      return Progress::stopped();
     }
     const bool is_solid = as == CheckedAs::body && !body.shell_thickness_m && check->encloses();
     if (is_solid && check->mass.volume_m3 > 0.0) checked.solids.push_back(bodies.size());
@@ -133,17 +130,17 @@ Result<CheckedBodies> check_bodies(FactSheet& facts, const std::vector<Body>& al
   return checked;
 }
 
-// Adds where solid bodies are in each other.
-Status check_meetings(FactSheet& facts, const std::vector<std::size_t>& solids, const std::vector<Body>& all,
+// Adds the overlaps of solid bodies.
+Status check_overlaps(FactSheet& facts, const std::vector<std::size_t>& solids, const std::vector<Body>& all,
                       InterruptWatch& interrupt) {
   std::vector<const Surface*> surfaces;
   surfaces.reserve(solids.size());
-  for (const std::size_t place : solids) surfaces.push_back(&all[place].surface);
+  for (const std::size_t body : solids) surfaces.push_back(&all[body].surface);
   const auto meetings =
       find_body_overlaps(surfaces, Progress([&](double) { return !interrupt.requested(); }));
   if (!meetings) {
     interrupt.answer();
-    return Error{"stopped"};
+    return Progress::stopped();
   }
   Json json = Json::array();
   for (const BodyOverlap& meeting : meetings->found) {
@@ -152,8 +149,8 @@ Status check_meetings(FactSheet& facts, const std::vector<std::size_t>& solids, 
   }
   facts.add("", "", "meetings", std::move(json));
   facts.add(meetings->complete ? "" : "Notice",
-            "bodies are near each other in more places than could be searched", "meetings_complete",
-            meetings->complete);
+            "bodies are close at more points than could be searched; some overlaps may be missing",
+            "meetings_complete", meetings->complete);
   return {};
 }
 
@@ -173,15 +170,15 @@ Status check(const CheckOptions& options, Console& console) {
   std::set<std::size_t> faces;
   for (const CadSolid& solid : solids->solids) faces.insert(solid.places.begin(), solid.places.end());
   const auto solid_facts = check_solids(facts, solids.value(), all, interrupt, console);
-  if (!solid_facts) return Error{options.model.string() + ": " + solid_facts.error().message};
+  if (!solid_facts) return solid_facts.error().in(options.model.string());
   const auto bodies = check_bodies(facts, all, faces, interrupt, console);
-  if (!bodies) return Error{options.model.string() + ": " + bodies.error().message};
+  if (!bodies) return bodies.error().in(options.model.string());
   if (all.size() > 1) {
-    const Status met = check_meetings(facts, bodies->solids, all, interrupt);
-    if (!met) return Error{options.model.string() + ": " + met.error().message};
+    const Status met = check_overlaps(facts, bodies->solids, all, interrupt);
+    if (!met) return met.error().in(options.model.string());
   }
   facts.add("", "", "solids", solid_facts.value());
-  facts.add("", "", "sound", all_sound(solid_facts.value()) && all_sound(bodies->facts));
+  facts.add("", "", "sound", are_all_sound(solid_facts.value()) && are_all_sound(bodies->facts));
   facts.add("", "", "bodies", bodies->facts);
   facts.print(console.out, options.json);
   return {};
@@ -191,23 +188,23 @@ Status check(const CheckOptions& options, Console& console) {
 
 CommandEntry add_check(OptionSet root) {
   auto options = std::make_shared<CheckOptions>();
-  const OptionSet parser =
-      root.add_command("check", "Tell whether a model's bodies are sound, and how thick and curved");
+  const OptionSet parser = root.add_command(
+      "check", "Check whether a model's bodies are sound, and measure thickness and curvature");
   parser.set_footer(
-      "Of each body: whether its surface is closed, passes through itself, folds or loses its area; volume,\n"
-      "area, mass and its centre; principal curvatures, above zero where convex; the smallest convex and\n"
-      "hollow radius; the smallest thickness, straight inwards from samples a third of a knot span apart to\n"
-      "where the line goes out within 50 degrees of straight, so that blunter edges are not thin; the\n"
-      "places of all these; and how bent it is, the integral of both curvatures' squares, which is small\n"
-      "where a surface is fair. What trims take away does not count, and regions weigh what they are made\n"
-      "of. Bodies that are faces of one solid, as CAD parts come in, are that solid where they close, and\n"
-      "are judged as faces: its volume, area, mass and centre, whether faces pass through each other, and\n"
-      "its smallest thickness, searched on a mesh of it, beside which no wall is thinner by more than is\n"
-      "told. Of several solid bodies: which are in each other, and how deep; that alone is no fault. Sound\n"
-      "is a body or a solid that encloses what it is made of, and a face of such a solid, that meets itself\n"
-      "nowhere. The exit code is 0 whatever was found; \"sound\" in the JSON tells.\n"
+      "For each body: whether its surface is closed, passes through itself, folds or has no area; volume,\n"
+      "area, mass and centre of mass; principal curvatures, positive where convex; the smallest convex and\n"
+      "concave radii; the smallest thickness, measured straight inwards from samples a third of a knot span\n"
+      "apart, to where the line leaves within 50 degrees of the normal, so that blunter edges are not thin;\n"
+      "the positions of all these; and the bending, the integral of both curvatures squared, which is small\n"
+      "for a fair surface. Trimmed areas do not count, and regions have the mass of their material.\n"
+      "Bodies that are faces of one solid, as parts from CAD are, are joined to that solid if they close. "
+      "It\n"
+      "has the volume, area, mass, centre and smallest thickness; that is measured on a mesh, and the error\n"
+      "is reported. Solid bodies that overlap are listed with their depth; an overlap alone is no fault.\n"
+      "A body is sound if it encloses its material, or is a face of a solid that does, and does not\n"
+      "intersect itself. The exit code is 0 for any result; see \"sound\" in the JSON.\n"
       "Example: spoonbill check assets/models/spoon-handle.json");
-  parser.add_option("MODEL", options->model, "A document (.json)").require();
+  parser.add_option("MODEL", options->model, "Document (.json)").require();
   add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return check(*options, console); }};
 }

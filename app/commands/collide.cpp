@@ -1,22 +1,27 @@
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "app/commands/body_collision.h"
 #include "app/commands/command.h"
-#include "app/commands/common_options.h"
-#include "app/commands/mesh_contact.h"
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
-#include "app/files/mesh_file.h"
+#include "app/files/scan_file.h"
 #include "app/report/contact_facts.h"
-#include "app/report/mesh_facts.h"
+#include "engine/base/geometry.h"
+#include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/meshes/mesh_distance.h"
 #include "engine/collision/rigid/body_tree.h"
 #include "engine/collision/rigid/mesh_pair.h"
+#include "engine/collision/solids/signed_distance.h"
+#include "engine/collision/solids/surface_collider.h"
 #include "engine/collision/surfaces/closed_surface.h"
 #include "engine/collision/surfaces/surface_pair_collider.h"
 #include "engine/exchange/document.h"
@@ -28,42 +33,193 @@ namespace {
 struct CollideOptions {
   std::filesystem::path first, second;
   Pose pose;
-  bool posed = false;
+  bool has_pose = false;
   std::optional<LengthUnit> unit;
   bool json = false;
 };
 
-// Cells a quarter of an element wide: regions are told that closely.
-constexpr int levels = 2;
+// Subdivision levels: contact regions are resolved to cells a quarter of an element wide.
+constexpr int collision_levels = 2;
 
 // One side of a collision: the bodies of a document, or a mesh.
-struct Model {
+struct CollisionModel {
   std::vector<Surface> bodies;
-  std::vector<std::string> names;  // of the bodies; empty where there is one
+  std::vector<std::string> names;  // names of the bodies; empty for a single body
   std::optional<CleanMesh> mesh;
 };
 
-// A surface that collide takes: solid, whole and closed. `whose` begins an Error's message.
-Result<Surface> closed_surface_of(Body& body, const std::string& whose) {
+// The bodies of a model for the search for close pairs.
+struct BodyBoxes {
+  std::vector<Box> boxes;          // one per body, at least one
+  std::vector<std::string> names;  // one per body, or none for a single body
+};
+
+// Returns the boxes enlarged so that bodies which touch within the tolerance overlap.
+std::vector<Box> enlarge_boxes(std::vector<Box> boxes) {
+  for (Box& box : boxes) box = {box.low.array() - touch_tolerance_m, box.high.array() + touch_tolerance_m};
+  return boxes;
+}
+
+// Returns the axis-aligned box around a box in the pose.
+Box pose_box(const Box& box, const Pose& pose) {
+  const Eigen::Matrix3d rotation = pose.orientation.normalized().toRotationMatrix();
+  const Vector3 centre = rotation * (0.5 * (box.low + box.high)) + pose.position_m;
+  const Vector3 half = rotation.cwiseAbs() * (0.5 * (box.high - box.low));
+  return {centre - half, centre + half};
+}
+
+// Combines the answers of pairs of bodies: the models touch if a pair does; otherwise the nearest pair
+// counts.
+class CombinedAnswer {
+ public:
+  CombinedAnswer(std::vector<std::string> names_a, std::vector<std::string> names_b)
+      : names_a_(std::move(names_a)), names_b_(std::move(names_b)) {
+    answer_.distance_m = std::numeric_limits<double>::infinity();
+  }
+
+  void add(std::size_t a, std::size_t b, CollisionAnswer answer) {
+    const auto name_sides = [&](ContactSide& side_a, ContactSide& side_b) {
+      side_a.body = find_name(names_a_, a);
+      side_b.body = find_name(names_b_, b);
+    };
+    answer_.touching |= answer.touching;
+    answer_.contained |= answer.contained;
+    answer_.complete &= answer.complete;
+    if (!answer.touching && answer.distance_m < answer_.distance_m) {
+      name_sides(answer.nearest_a, answer.nearest_b);
+      answer_.distance_m = answer.distance_m;
+      answer_.nearest_a = std::move(answer.nearest_a);
+      answer_.nearest_b = std::move(answer.nearest_b);
+    }
+    for (ModelContact& contact : answer.contacts) {
+      name_sides(contact.a, contact.b);
+      answer_.contacts.push_back(std::move(contact));
+    }
+  }
+  const CollisionAnswer& answer() const { return answer_; }
+
+ private:
+  static std::string find_name(const std::vector<std::string>& names, std::size_t body) {
+    return names.empty() ? std::string() : names[body];
+  }
+
+  std::vector<std::string> names_a_, names_b_;
+  CollisionAnswer answer_;
+};
+
+// Collides body a of A with body b of B. The distance of bodies that do not touch is needed up to `reach_m`,
+// and may be infinite beyond.
+using PairCollision = std::function<Result<CollisionAnswer>(std::size_t a, std::size_t b, double reach_m)>;
+
+// Collides the close pairs of bodies of two models, or finds the nearest pair if none touches. The first
+// error of a pair is returned.
+Result<CollisionAnswer> collide_bodies(const BodyBoxes& a, const BodyBoxes& b, const PairCollision& collide) {
+  const BodyTree bodies(enlarge_boxes(a.boxes)), others(enlarge_boxes(b.boxes));
+  CombinedAnswer combined(a.names, b.names);
+  std::set<BodyPair> tested;
+  std::optional<Error> error;
+  const auto add = [&](std::size_t i, std::size_t j) {
+    auto answer = collide(i, j, combined.answer().distance_m);
+    if (!answer) {
+      error = answer.error();
+      return;
+    }
+    tested.emplace(i, j);
+    combined.add(i, j, std::move(answer).value());
+  };
+  for (const auto& [i, j] : bodies.near_pairs(others)) {
+    if (!error) add(i, j);
+  }
+  if (!error && !combined.answer().touching) {
+    bodies.find_nearest(others, [&](std::size_t i, std::size_t j) {
+      if (!error && !tested.contains({i, j})) add(i, j);
+      return error ? 0.0 : combined.answer().distance_m;
+    });
+  }
+  if (error) return *error;
+  return combined.answer();
+}
+
+ContactSide mesh_side(const ToolShape& tool, const Vector3& from) {
+  const DistanceSample sample = tool.at(from);
+  return {from - sample.distance_m * sample.gradient, {}, {}};
+}
+
+ContactSide surface_side(const SurfaceContact& contact) {
+  return {contact.point_m, SurfaceParameters{contact.u, contact.v, {}}, {}};
+}
+
+// The mesh separates from the body along the surface's normal.
+ModelContact make_contact(const ToolShape& tool, const SurfaceContact& at, bool mesh_is_a) {
+  ModelContact contact{surface_side(at), mesh_side(tool, at.point_m), -at.normal, at.depth_m, at.tangent_u,
+                       at.tangent_v};
+  if (!mesh_is_a) return contact;
+  std::swap(contact.a, contact.b);
+  contact.normal = at.normal;
+  return contact;
+}
+
+// Collides a mesh in its pose with the closed surface of a body. `mesh_is_a` selects the mesh's side of the
+// answer. Depths are those of the surface in the mesh, or of a mesh that is inside the body.
+Result<CollisionAnswer> collide_mesh(const SignedDistance& mesh, const Pose& mesh_pose,
+                                     const Surface& surface, bool mesh_is_a) {
+  const auto grid = make_nested_grid(surface.u, surface.v, collision_levels);
+  if (!grid) return grid.error();
+  SurfaceCollider collider(grid.value());
+  const ToolShape tool = ToolShape::solid(mesh, mesh_pose);
+  const CollisionResult result = collider.collide(surface, tool, 0.0, true);
+
+  CollisionAnswer answer;
+  answer.touching = result.found;
+  answer.complete = !result.overflow;
+  const ModelContact nearest = make_contact(tool, result.nearest, mesh_is_a);
+  answer.nearest_a = nearest.a;
+  answer.nearest_b = nearest.b;
+  answer.distance_m = std::max(-result.nearest.depth_m, 0.0);
+  if (!result.found) return answer;
+
+  for (const ToolContactRegion& region : collider.find_contact_regions(surface, tool)) {
+    answer.contacts.push_back(make_contact(tool, region.deepest, mesh_is_a));
+    ContactSide& side = mesh_is_a ? answer.contacts.back().b : answer.contacts.back().a;
+    side.parameters->range = region.range;
+  }
+  answer.complete = answer.complete && !collider.regions_overflow();
+  // A mesh without contact regions is inside the body. One that is inside and also touches has the depth of
+  // the deepest point overall.
+  answer.contained = answer.contacts.empty();
+  if (answer.contained) {
+    answer.contacts.push_back(nearest);
+  } else {
+    answer.contacts.front().depth_m = std::max(answer.contacts.front().depth_m, nearest.depth_m);
+  }
+  return answer;
+}
+
+// Moves the surface out of a solid, untrimmed and closed body. `context` names the body in errors.
+Result<Surface> extract_closed_surface(Body& body, const std::string& context) {
   if (body.shell_thickness_m) {
-    return Error{whose + "its body is a shell, and collide takes solid ones; give it a mesh of both faces"};
+    return Error{ErrorCode::unsupported,
+                 context +
+                     ": the body is a shell, and collide needs solid bodies; export a mesh of it "
+                     "with `spoonbill convert` and collide that"};
   }
   if (!body.trims.empty()) {
-    return Error{whose + "its body is trimmed, and collide takes closed ones; leave its trims out"};
+    return Error{ErrorCode::unsupported,
+                 context + ": the body is trimmed, and collide needs closed bodies; remove its trims"};
   }
-  if (Status closed = check_closed_tube(body.surface); !closed) return Error{whose + closed.error().message};
+  if (Status closed = check_closed_tube(body.surface); !closed) return closed.error().in(context);
   return std::move(body.surface);
 }
 
-Result<Model> read_bodies(const std::filesystem::path& file) {
+Result<CollisionModel> read_bodies(const std::filesystem::path& file) {
   auto document = read_document(file);
   if (!document) return document.error();
   std::vector<Body>& bodies = document->scene.bodies;
-  Model model;
+  CollisionModel model;
   for (Body& body : bodies) {
     const bool alone = bodies.size() == 1;
     auto surface =
-        closed_surface_of(body, file.string() + ": " + (alone ? "" : "body \"" + body.name + "\": "));
+        extract_closed_surface(body, file.string() + (alone ? "" : ": body \"" + body.name + "\""));
     if (!surface) return surface.error();
     model.bodies.push_back(std::move(surface).value());
     if (!alone) model.names.push_back(body.name);
@@ -71,28 +227,28 @@ Result<Model> read_bodies(const std::filesystem::path& file) {
   return model;
 }
 
-// How the facts name a mesh.
+// The JSON member of a mesh and the suffix of its labels.
 struct MeshLabel {
   const char* field;
-  const char* whose;
+  const char* suffix;
 };
 
-// Reads and cleans a mesh, and adds what was cleaned to the facts.
-Result<Model> read_mesh(const std::filesystem::path& file, const std::optional<LengthUnit>& unit,
-                        const MeshLabel& label, FactSheet& facts) {
+// Reads and cleans a mesh, and adds its facts.
+Result<CollisionModel> read_mesh(const std::filesystem::path& file, const std::optional<LengthUnit>& unit,
+                                 const MeshLabel& label, FactSheet& facts) {
   MeshReading reading;
   reading.unit = unit;
   auto read = read_mesh_file(file, reading);
   if (!read) return read.error();
   auto clean = clean_mesh(std::move(read->mesh), file.string());
   if (!clean) return clean.error();
-  add_mesh_facts(facts, read->unit, clean.value(), sheet_thickness_m, label.field, label.whose);
-  Model model;
+  add_mesh_facts(facts, read->unit, clean.value(), sheet_thickness_m, label.field, label.suffix);
+  CollisionModel model;
   model.mesh = std::move(clean).value();
   return model;
 }
 
-FactSheet facts_of(const CollideOptions& options) {
+FactSheet begin_facts(const CollideOptions& options) {
   FactSheet facts;
   facts.add("A", options.first.string(), "a", options.first.string());
   if (!options.second.empty()) facts.add("B", options.second.string(), "b", options.second.string());
@@ -101,7 +257,8 @@ FactSheet facts_of(const CollideOptions& options) {
 
 Result<CollisionAnswer> collide_surfaces(const Surface& a, const Surface& b, double reach_m,
                                          const std::string& files) {
-  const auto grid_a = make_nested_grid(a.u, a.v, levels), grid_b = make_nested_grid(b.u, b.v, levels);
+  const auto grid_a = make_nested_grid(a.u, a.v, collision_levels),
+             grid_b = make_nested_grid(b.u, b.v, collision_levels);
   if (!grid_a) return grid_a.error();
   if (!grid_b) return grid_b.error();
 
@@ -111,20 +268,20 @@ Result<CollisionAnswer> collide_surfaces(const Surface& a, const Surface& b, dou
   query.reach_m = reach_m;
   const PairResult result = collider.collide(a, b, query);
   if (result.overflow && !result.touching) {
-    return Error{"these surfaces come near each other in more places than can be searched: " + files +
-                 "; give them fewer control points or another --pose"};
+    return Error{ErrorCode::too_many, "the surfaces are close at more points than can be searched: " + files +
+                                          "; reduce their control points or change --pose"};
   }
-  return answer_of(result, collider.contacts());
+  return make_answer(result, collider.contacts());
 }
 
 Result<CollisionAnswer> collide_with_itself(const Surface& body) {
-  const auto grid = make_nested_grid(body.u, body.v, levels);
+  const auto grid = make_nested_grid(body.u, body.v, collision_levels);
   if (!grid) return grid.error();
   SurfaceSelfCollider collider(grid.value());
   SelfQuery query;
   query.closed = true;
   const SelfResult result = collider.collide(body, query);
-  return answer_of(result, collider.contacts());
+  return make_answer(result, collider.contacts());
 }
 
 std::vector<Box> boxes_of(const std::vector<Surface>& bodies) {
@@ -134,23 +291,24 @@ std::vector<Box> boxes_of(const std::vector<Surface>& bodies) {
   return boxes;
 }
 
-// Each body with itself, and with the others.
-Result<CollisionAnswer> collide_alone(const Model& model, const std::string& file) {
-  BodiesAnswer together(model.names, model.names);
+// Collides each body with itself and with the others.
+Result<CollisionAnswer> collide_document_with_itself(const CollisionModel& model, const std::string& file) {
+  CombinedAnswer combined(model.names, model.names);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     auto answer = collide_with_itself(model.bodies[b]);
     if (!answer) return answer.error();
-    together.add(b, b, std::move(answer).value());
+    combined.add(b, b, std::move(answer).value());
   }
   for (const auto& [a, b] : BodyTree(boxes_of(model.bodies)).near_pairs()) {
     auto answer = collide_surfaces(model.bodies[a], model.bodies[b], 0.0, file);
     if (!answer) return answer.error();
-    if (answer->touching) together.add(a, b, std::move(answer).value());
+    if (answer->touching) combined.add(a, b, std::move(answer).value());
   }
-  return together.answer();
+  return combined.answer();
 }
 
-Result<CollisionAnswer> collide_documents(const Model& a, const Model& b, const CollideOptions& options) {
+Result<CollisionAnswer> collide_documents(const CollisionModel& a, const CollisionModel& b,
+                                          const CollideOptions& options) {
   std::vector<Surface> placed_b;
   for (const Surface& body : b.bodies) placed_b.push_back(placed(body, options.pose));
   const std::string files = options.first.string() + " and " + options.second.string();
@@ -160,8 +318,9 @@ Result<CollisionAnswer> collide_documents(const Model& a, const Model& b, const 
                         });
 }
 
-// Either may be the mesh; the pose moves B.
-Result<CollisionAnswer> collide_with_mesh(const Model& a, const Model& b, const Pose& pose) {
+// Collides a mesh with the bodies of a document. Either may be A; the pose moves B.
+Result<CollisionAnswer> collide_with_mesh(const CollisionModel& a, const CollisionModel& b,
+                                          const Pose& pose) {
   const bool mesh_is_a = a.mesh.has_value();
   const MeshDistance mesh(mesh_is_a ? *a.mesh : *b.mesh);
   const Pose mesh_pose = mesh_is_a ? Pose() : pose;
@@ -169,7 +328,7 @@ Result<CollisionAnswer> collide_with_mesh(const Model& a, const Model& b, const 
   for (Surface& body : bodies) {
     if (mesh_is_a) body = placed(std::move(body), pose);
   }
-  const BodyBoxes of_mesh{{box_about(mesh.bounds(), mesh_pose)}, {}};
+  const BodyBoxes of_mesh{{pose_box(mesh.bounds(), mesh_pose)}, {}};
   const BodyBoxes of_bodies{boxes_of(bodies), mesh_is_a ? b.names : a.names};
   return collide_bodies(mesh_is_a ? of_mesh : of_bodies, mesh_is_a ? of_bodies : of_mesh,
                         [&](std::size_t i, std::size_t j, double) {
@@ -179,21 +338,25 @@ Result<CollisionAnswer> collide_with_mesh(const Model& a, const Model& b, const 
 
 Status check_use(const CollideOptions& options, bool mesh_is_a, bool mesh_is_b) {
   if (options.unit && !mesh_is_a && !mesh_is_b) {
-    return Error{options.first.string() + ": a document has its unit; leave --unit out"};
+    return Error{ErrorCode::inconsistent,
+                 options.first.string() + ": a document has its own unit; remove --unit", "--unit"};
   }
   if (!options.second.empty()) return {};
   if (mesh_is_a) {
-    return Error{options.first.string() + " is a mesh; name a document or a mesh that it is to touch"};
+    return Error{ErrorCode::missing,
+                 options.first.string() + ": is a mesh and needs a second model; add a document or a mesh",
+                 "B"};
   }
-  if (options.posed) return Error{"--pose is where B is; name B, or leave it out"};
+  if (options.has_pose)
+    return Error{ErrorCode::inconsistent, "--pose is the pose of B; add B, or remove --pose", "--pose"};
   return {};
 }
 
-Status collide(const CollideOptions& options, Console& console) {
+Status collide_models(const CollideOptions& options, Console& console) {
   const bool mesh_is_a = is_mesh(format_from_name(options.first)), mesh_is_b = is_mesh(format_from_name(options.second));
   if (Status use = check_use(options, mesh_is_a, mesh_is_b); !use) return use.error();
   const bool both = mesh_is_a && mesh_is_b;
-  FactSheet facts = facts_of(options);
+  FactSheet facts = begin_facts(options);
   const auto read = [&](const std::filesystem::path& file, bool is_mesh, const MeshLabel& label) {
     return is_mesh ? read_mesh(file, options.unit, both ? label : MeshLabel{"mesh", ""}, facts)
                    : read_bodies(file);
@@ -201,10 +364,11 @@ Status collide(const CollideOptions& options, Console& console) {
   const auto a = read(options.first, mesh_is_a, {"mesh_a", " of A"});
   if (!a) return a.error();
   const bool alone = options.second.empty();
-  const auto b = alone ? Result<Model>(Model()) : read(options.second, mesh_is_b, {"mesh_b", " of B"});
+  const auto b =
+      alone ? Result<CollisionModel>(CollisionModel()) : read(options.second, mesh_is_b, {"mesh_b", " of B"});
   if (!b) return b.error();
-  const auto answer = alone  ? collide_alone(a.value(), options.first.string())
-                      : both ? Result(answer_of(collide_meshes(*a->mesh, *b->mesh, options.pose)))
+  const auto answer = alone  ? collide_document_with_itself(a.value(), options.first.string())
+                      : both ? Result(make_answer(collide_meshes(*a->mesh, *b->mesh, options.pose)))
                       : mesh_is_a || mesh_is_b ? collide_with_mesh(a.value(), b.value(), options.pose)
                                                : collide_documents(a.value(), b.value(), options);
   if (!answer) return answer.error();
@@ -218,18 +382,17 @@ Status collide(const CollideOptions& options, Console& console) {
 CommandEntry add_collide(OptionSet root) {
   auto options = std::make_shared<CollideOptions>();
   const OptionSet parser =
-      root.add_command("collide", "Tell whether and how deep two models touch, or one touches itself");
+      root.add_command("collide", "Find contacts between two models, or of one with itself");
   parser.set_footer(
-      "Found on the B-spline surfaces themselves, to a micrometre: where they touch, how deep, which way A\n"
-      "gets out, and the parameters on both; where they do not, the distance and the nearest points.\n"
-      "A mesh is cleaned first, its closed parts solid, its open ones plates 1 mm thick. Two meshes are as "
-      "deep\n"
-      "as the deepest of their corners and edges. Of a document all bodies count, also with each other.\n"
+      "Computed on the B-spline surfaces, accurate to a micrometre. Models that touch: position, depth,\n"
+      "direction in which A separates, and the parameters on both. Others: distance and nearest points.\n"
+      "A mesh is cleaned first; its closed parts are solid, its open parts plates 1 mm thick. The depth of\n"
+      "two meshes is that of their deepest corner or edge. All bodies of a document count; a document alone\n"
+      "is also tested between its bodies.\n"
       "Example: spoonbill collide assets/models/spoon-handle.json assets/models/spoon-handle.json "
       "--pose 0,5mm,0,1,0,0,0");
-  parser.add_option("A", options->first, "A document (.json) or a mesh (.obj, .stl, .ply)").require();
-  parser.add_option("B", options->second,
-                    "Another, or the same. Without it, A with itself, which must be a document");
+  parser.add_option("A", options->first, "Document (.json) or mesh (.obj, .stl, .ply)").require();
+  parser.add_option("B", options->second, "Second model, also A again; default: A, a document, with itself");
   parser
       .add_parsed(
           "--pose",
@@ -237,11 +400,11 @@ CommandEntry add_collide(OptionSet root) {
             const auto pose = parse_pose(text);
             if (!pose) return pose.error();
             options->pose = pose.value();
-            options->posed = true;
+            options->has_pose = true;
             return {};
           },
-          "Where B is: x,y,z, each with its unit (mm, cm, m or in) unless 0, and a turn as a quaternion "
-          "w,x,y,z")
+          "Pose of B: x,y,z, each with its unit (mm, cm, m or in) unless 0, and the rotation as a quaternion "
+          "w,x,y,z; default: 0,0,0,1,0,0,0")
       .show_as("X,Y,Z,QW,QX,QY,QZ");
   parser
       .add_parsed(
@@ -252,10 +415,10 @@ CommandEntry add_collide(OptionSet root) {
             options->unit = unit.value();
             return {};
           },
-          "Of the numbers of meshes: mm, cm, m or in; mm for .obj and .stl and m for .ply unless told")
+          "Unit of the meshes' numbers: mm, cm, m or in; default: mm for .obj and .stl, m for .ply")
       .show_as("UNIT");
   add_json_option(parser, options->json);
-  return {parser, [options](Console& console) { return collide(*options, console); }};
+  return {parser, [options](Console& console) { return collide_models(*options, console); }};
 }
 
 }  // namespace spoonbill

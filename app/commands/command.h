@@ -1,35 +1,50 @@
-// The commands of the program. Each add_ function declares its command's options at the root parser; the
-// entry's act() does the work once they have been read.
+// The commands of the program, and the options that several of them have. Each add_ function declares one
+// command and its options on the root parser; the entry's run() does the work after parsing.
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <string>
 
 #include "app/commands/option_set.h"
 #include "app/console.h"
+#include "engine/base/processor.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {
 
 struct CommandEntry {
   OptionSet parser;
-  std::function<Status(Console&)> act;
+  std::function<Status(Console&)> run;
 };
 
-CommandEntry add_replay(OptionSet root);
-CommandEntry add_record(OptionSet root);
-CommandEntry add_edit(OptionSet root);
+CommandEntry add_new(OptionSet root);
+CommandEntry add_fit(OptionSet root);
+CommandEntry add_merge(OptionSet root);
+CommandEntry add_change(OptionSet root);
 CommandEntry add_info(OptionSet root);
+CommandEntry add_check(OptionSet root);
 CommandEntry add_sample(OptionSet root);
 CommandEntry add_collide(OptionSet root);
 CommandEntry add_convert(OptionSet root);
+CommandEntry add_edit(OptionSet root);
+CommandEntry add_record(OptionSet root);
+CommandEntry add_replay(OptionSet root);
 CommandEntry add_rest(OptionSet root);
-CommandEntry add_merge(OptionSet root);
-CommandEntry add_change(OptionSet root);
-CommandEntry add_new(OptionSet root);
-CommandEntry add_fit(OptionSet root);
-CommandEntry add_check(OptionSet root);
-// The program's own, not shown.
+// Internal commands that the program runs as child processes; --help does not list them.
 CommandEntry add_read_mesh(OptionSet root);
 CommandEntry add_read_points(OptionSet root);
+
+// The targets of the options below must live until the command line has been parsed.
+
+// --json: prints one JSON object and nothing else on standard output.
+void add_json_option(OptionSet parser, bool& json);
+
+// --out: the document to write. Any ending but .json is wrong use, which protects files of other formats.
+CommandOption add_document_output(OptionSet parser, std::filesystem::path& out,
+                                  const std::string& help = "Document to write (.json)");
+
+// --instruction-set: one of the sets that this processor supports; any other is wrong use.
+void add_instruction_set_option(OptionSet parser, InstructionSet& set);
 
 }  // namespace spoonbill

@@ -3,20 +3,18 @@
 #include <vector>
 
 #include "app/commands/command.h"
-#include "app/commands/common_options.h"
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
-#include "app/commands/parsed_option.h"
-#include "app/convert/conversion.h"
-#include "app/interrupt.h"
-#include "app/report/conversion_facts.h"
-#include "app/report/progress_bar.h"
+#include "app/files/conversion.h"
+#include "app/report/document_facts.h"
+#include "app/report/quantity_text.h"
+#include "engine/base/text.h"
 #include "engine/exchange/mesh_export/tessellation.h"
 
 namespace spoonbill {
 namespace {
 
-constexpr Range<double> tolerance_range_m{1e-9, 0.01};
+constexpr Range<double> cad_tolerance_range_m{1e-9, 0.01};
 
 struct ConvertOptions {
   ConversionRequest request;
@@ -24,7 +22,30 @@ struct ConvertOptions {
   bool json = false;
 };
 
-Status convert(const ConvertOptions& options, Console& console) {
+void add_conversion_facts(FactSheet& facts, const ConversionReport& report) {
+  add_unit_facts(facts, report.unit_in, report.unit_declared);
+  facts.add("Unit written", report.unit_out, "unit_out", report.unit_out);
+  add_surface_facts(facts, report.surfaces);
+  if (report.solids) {
+    facts.add("Solids", std::to_string(*report.solids), "solids", *report.solids);
+    facts.add("Not solid", std::to_string(*report.open_shells), "open_shells", *report.open_shells);
+  }
+  if (report.triangles) {
+    facts.add("Triangles",
+              std::to_string(*report.triangles) + ", within " +
+                  millimetres_with_digits(report.chord_error_m, 2) + " of the surface",
+              "triangles", *report.triangles);
+    facts.add("Watertight",
+              std::to_string(*report.closed_meshes) + " of " + std::to_string(report.meshes.value_or(0)),
+              "closed_meshes", *report.closed_meshes);
+    facts.add("", "", "meshes", report.meshes.value_or(0));
+    facts.add("", "", "chord_error_m", report.chord_error_m);
+  }
+  for (const std::string& note : report.notes) facts.add("Note", note, "", nullptr);
+  facts.add("", "", "notes", report.notes);
+}
+
+Status convert_model(const ConvertOptions& options, Console& console) {
   InterruptWatch interrupt;
   Result<ConversionReport> report = Error{ErrorCode::internal, "not converted"};
   {
@@ -47,51 +68,53 @@ Status convert(const ConvertOptions& options, Console& console) {
 Result<StepSchema> parse_schema(const std::string& text) {
   if (text == "ap214") return StepSchema::ap214;
   if (text == "ap242") return StepSchema::ap242;
-  return Error{"'" + text.substr(0, 40) + "' is not a schema of STEP: ap214 or ap242"};
+  return Error{ErrorCode::unknown, "'" + excerpt(text) + "' is not a schema of STEP: ap214 or ap242"};
 }
 
 }  // namespace
 
 CommandEntry add_convert(OptionSet root) {
   auto options = std::make_shared<ConvertOptions>();
-  const OptionSet parser =
-      root.add_command("convert", "Bring a model in from CAD, or out to CAD or as a mesh");
+  const OptionSet parser = root.add_command("convert", "Convert a model from or to CAD, or to a mesh");
   parser.set_footer(
-      "Read: documents (.json), STEP (.step, .stp) and IGES (.iges, .igs). Written: those, and meshes "
-      "(.stl,\n"
-      ".obj, .ply, .3mf). Bodies that close become solids in STEP and IGES, and watertight meshes; each "
-      "face\n"
-      "of a CAD file becomes a body, those of one solid too, which leave as that solid again where they\n"
-      "close, in a mesh as well; gaps of theirs that are bridged are said. OUT appears whole or not at all.\n"
+      "Reads documents (.json), STEP (.step, .stp) and IGES (.iges, .igs); writes those and meshes (.stl,\n"
+      ".obj, .ply, .3mf). Closed bodies become solids in STEP and IGES, and watertight meshes. Each face of\n"
+      "a CAD file becomes a body. The faces of one solid are written as that solid again if they close, "
+      "also\n"
+      "in a mesh; gaps that are bridged are reported. OUT appears complete or not at all.\n"
       "Example: spoonbill convert assets/models/spoon-handle.json handle.step --schema ap242");
-  parser.add_option("IN", options->request.in, "A document or a CAD file").require();
-  parser.add_option("OUT", options->request.out, "The file to write; its ending is its format").require();
+  parser.add_option("IN", options->request.in, "Document or CAD file to read").require();
+  parser.add_option("OUT", options->request.out, "File to write; its ending selects the format").require();
   ConversionRequest& request = options->request;
   const auto length_in = [](Range<double> range) {
     return [range](const std::string& text) { return parse_length(text, range); };
   };
   add_parsed_option(
       parser, "--unit", "UNIT", parse_unit, [&request](const LengthUnit& unit) { request.unit = unit; },
-      "Of the other file's numbers: mm, cm, m or in. Going out, mm unless told (m for .ply); coming in,\n"
-      "what the file declares unless told, or mm where it declares none");
+      "Unit of the CAD or mesh file's numbers: mm, cm, m or in. Default when writing: mm, for .ply m; when "
+      "reading: the unit that the file declares, or mm");
   add_parsed_option(
       parser, "--chord", "LENGTH", length_in(chord_range_m),
       [&request](double chord_m) { request.chord_m = chord_m; },
-      "How far a mesh's triangles may be from the surface; 0.05mm unless told");
+      "Largest distance of a mesh's triangles from the surface; default: 0.05mm, range: " +
+          short_length_text(chord_range_m.low) + " to " + short_length_text(chord_range_m.high));
   add_parsed_option(
-      parser, "--tolerance", "LENGTH", length_in(tolerance_range_m),
+      parser, "--tolerance", "LENGTH", length_in(cad_tolerance_range_m),
       [&request](double tolerance_m) { request.tolerance_m = tolerance_m; },
-      "How far what no B-spline is, such as a cylinder, may come to be from itself; 0.01mm unless told");
+      "Largest deviation of CAD geometry that is not a B-spline, such as a cylinder; default: 0.01mm, "
+      "range: " +
+          short_length_text(cad_tolerance_range_m.low) + " to " +
+          short_length_text(cad_tolerance_range_m.high));
   add_parsed_option(
       parser, "--schema", "SCHEMA", parse_schema, [&request](StepSchema schema) { request.schema = schema; },
-      "Of a STEP file: ap214, unless told, or ap242");
+      "Schema of a STEP file: ap214 (default) or ap242");
   add_parsed_option(
-      parser, "--bodies", "LIST", parse_places,
-      [&request](const std::vector<int>& places) { request.bodies = places; },
-      "Which of IN's, as `spoonbill info` counts them: 1,3-5; all unless told");
-  parser.add_flag("--progress", options->progress, "Show progress even where nobody watches");
+      parser, "--bodies", "LIST", parse_number_list,
+      [&request](const std::vector<int>& numbers) { request.bodies = numbers; },
+      "Numbers of the bodies to convert, as `spoonbill info` lists them, such as 1,3-5; default: all");
+  parser.add_flag("--progress", options->progress, "Show progress even if the output is not a terminal");
   add_json_option(parser, options->json);
-  return {parser, [options](Console& console) { return convert(*options, console); }};
+  return {parser, [options](Console& console) { return convert_model(*options, console); }};
 }
 
 }  // namespace spoonbill

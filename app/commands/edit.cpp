@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include "app/commands/command.h"
-#include "app/commands/common_options.h"
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/edit/editor.h"
@@ -13,12 +12,13 @@
 namespace spoonbill {
 namespace {
 
-constexpr Range<int> window_side_range{320, 7680};
+constexpr Range<int> window_size_range{320, 7680};
 
-Status edit(const EditSettings& settings, Console& console) {
+Status edit_model(const EditSettings& settings, Console& console) {
   std::error_code ignored;
   if (std::filesystem::equivalent(settings.recording, settings.model, ignored)) {
-    return Error{settings.recording.string() + ": is the model, record to another file"};
+    return Error{ErrorCode::inconsistent,
+                 settings.recording.string() + ": is the model itself; record to another file", "--record"};
   }
   auto editor = Editor::make(settings);
   if (!editor) return editor.error();
@@ -31,28 +31,30 @@ Status edit(const EditSettings& settings, Console& console) {
 
 CommandEntry add_edit(OptionSet root) {
   auto settings = std::make_shared<EditSettings>();
-  // For tests that work the window from outside.
+  // For tests that operate the window from another process.
   if (const char* log = std::getenv("SPOONBILL_FRAME_LOG")) settings->log = log;
-  const OptionSet parser = root.add_command("edit", "Shape a model by touch, in a window");
+  const OptionSet parser = root.add_command("edit", "Sculpt a model by touch in a window");
   parser.set_footer(
-      "The mouse holds the tool: press to push in, drag to bend, F1 shows the keys. A SpaceMouse steers it\n"
-      "when spacenavd runs. Without a model the bundled spoon handle opens. Work is autosaved every second\n"
-      "and offered again after a crash.\n"
+      "The mouse moves the tool: press to push in, drag to bend; F1 shows the keys. A SpaceMouse moves it\n"
+      "while spacenavd runs. Without MODEL, the bundled spoon handle opens. The program saves a recovery\n"
+      "copy every second and offers it after a crash.\n"
       "Example: spoonbill edit assets/models/spoon-handle.json");
-  parser.add_option("MODEL", settings->model, "A document (.json)");
+  parser.add_option("MODEL", settings->model, "Document (.json); default: the bundled spoon handle");
   parser
       .add_parsed(
           "--size",
           [settings](const std::string& text) -> Status {
-            const auto size = parse_extent(text, window_side_range, "1280x720");
+            const auto size = parse_extent(text, window_size_range, "1280x720");
             if (!size) return size.error();
             settings->width = size->width;
             settings->height = size->height;
             return {};
           },
-          "The window's size; 1280x720 unless told")
+          "Window size in pixels, each from 320 to 7680; default: 1280x720")
       .show_as("WxH");
-  parser.add_option("--scale", settings->scale, "The interface's scale, where the display does not tell it")
+  parser
+      .add_option("--scale", settings->scale,
+                  "Scale of the interface, from 1 to 4; default: that of the display")
       .limit(Range<double>{1.0, 4.0});
   parser
       .add_parsed(
@@ -63,11 +65,12 @@ CommandEntry add_edit(OptionSet root) {
             settings->navigation = preset.value();
             return {};
           },
-          "How the mouse moves the camera: rhino (default), blender or sculptgl")
+          "Mouse navigation of the camera: rhino (default), blender or sculptgl")
       .show_as("NAME");
-  parser.add_option("--record", settings->recording, "Record the session from its start").show_as("FILE");
+  parser.add_option("--record", settings->recording, "Recording of the session to write; default: none")
+      .show_as("FILE");
   add_instruction_set_option(parser, settings->instruction_set);
-  return {parser, [settings](Console& console) { return edit(*settings, console); }};
+  return {parser, [settings](Console& console) { return edit_model(*settings, console); }};
 }
 
 }  // namespace spoonbill

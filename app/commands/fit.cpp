@@ -9,16 +9,11 @@
 
 #include "app/assets_folder.h"
 #include "app/commands/command.h"
-#include "app/commands/common_options.h"
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
-#include "app/commands/parsed_option.h"
-#include "app/files/error_cloud.h"
-#include "app/files/fitted_document.h"
+#include "app/files/documents.h"
 #include "app/files/scan_file.h"
-#include "app/interrupt.h"
-#include "app/report/fit_facts.h"
-#include "app/report/progress_bar.h"
+#include "app/report/fit_report.h"
 #include "engine/base/text.h"
 #include "engine/exchange/cad_model.h"
 #include "engine/exchange/file_format.h"
@@ -26,9 +21,9 @@
 namespace spoonbill {
 namespace {
 
-constexpr Range<int> control_range{4, 200};
-constexpr Range<double> tolerance_range_m{1e-6, 0.1};
-// Where colours end that no tolerance asks for.
+constexpr Range<int> fit_control_range{4, 200};
+constexpr Range<double> fit_tolerance_range_m{1e-6, 0.1};
+// The least distance at the end of the colour scale.
 constexpr double least_scale_m = 1e-6;
 
 struct FitOptions {
@@ -54,21 +49,22 @@ Result<ScanFit> fit_with_progress(const FitOptions& options, Scan scan, Console&
   auto fit = fit_scan(std::move(scan), request);
   if (stopped) {
     interrupt.answer();
-    return Error{"stopped; " + options.out.string() + " was not written"};
+    return stopped_before_writing(options.out);
   }
-  if (!fit) return Error{options.scan.string() + ": " + fit.error().message};
+  if (!fit) return fit.error().in(options.scan.string());
   return fit;
 }
 
-// That a document can hold, with the number of a body behind it.
-std::string name_of(const std::filesystem::path& scan) {
+// Returns the scan's name, short enough to be followed by the number of a body.
+std::string document_name(const std::filesystem::path& scan) {
   return clean_cad_name(scan.stem().string(), "scan", cad_name_bytes_limit - 2);
 }
 
 Status fit(const FitOptions& options, Console& console) {
   std::error_code ignored;
   if (std::filesystem::equivalent(options.scan, options.errors, ignored)) {
-    return Error{options.errors.string() + ": is the scan itself; choose another name"};
+    return Error{ErrorCode::inconsistent,
+                 options.errors.string() + ": is the scan itself; choose another name", "--errors"};
   }
   const auto clay = read_material(std::filesystem::path(assets_folder) / "materials/modelling-clay.json");
   if (!clay) return clay.error();
@@ -78,9 +74,9 @@ Status fit(const FitOptions& options, Console& console) {
   if (!file) return file.error();
   const auto fitted = fit_with_progress(options, std::move(file->scan), console);
   if (!fitted) return fitted.error();
-  const auto document = fitted_document(fitted.value(), name_of(options.scan), clay.value());
-  if (!document) return Error{options.scan.string() + ": " + document.error().message};
-  // Files become whole: what asks to stop now waits for them.
+  const auto document = make_fitted_document(fitted.value(), document_name(options.scan), clay.value());
+  if (!document) return document.error().in(options.scan.string());
+  // Ctrl+C waits until the files are complete.
   const InterruptWatch until_written;
   if (Status written = write_document(document->document, options.out); !written) return written;
   FactSheet facts;
@@ -96,13 +92,13 @@ Status fit(const FitOptions& options, Console& console) {
               options.errors.string());
     facts.add("", "", "errors_full_m", full);
   }
-  std::vector<std::string> remarks = document->remarks;
-  for (std::string& remark : shortcoming_remarks(fitted.value(), tolerance_m)) {
-    remarks.push_back(std::move(remark));
+  std::vector<std::string> notes = document->notes;
+  for (std::string& note : find_fit_shortcomings(fitted.value(), tolerance_m)) {
+    notes.push_back(std::move(note));
   }
-  if (const auto remark = size_remark(file.value(), fitted.value())) remarks.push_back(*remark);
-  if (const auto remark = looseness_remark(fitted.value())) remarks.push_back(*remark);
-  add_remarks(facts, remarks);
+  if (const auto note = find_size_note(file.value(), fitted.value())) notes.push_back(*note);
+  if (const auto note = find_detail_note(fitted.value())) notes.push_back(*note);
+  add_notes(facts, notes);
   facts.print(console.out, options.json);
   return {};
 }
@@ -120,41 +116,45 @@ Result<IslandChoice> parse_islands(const std::string& text) {
 
 Result<std::filesystem::path> parse_cloud_name(const std::string& text) {
   if (format_from_name(text) == FileFormat::ply) return std::filesystem::path(text);
-  return Error{"'" + excerpt(text) + "' does not end in .ply, as a cloud with colours does"};
+  return Error{ErrorCode::unsupported,
+               "'" + excerpt(text) + "' does not end in .ply, as a coloured cloud must"};
 }
 
 void add_options(OptionSet parser, const std::shared_ptr<FitOptions>& options) {
   parser
       .add_option("SCAN", options->scan,
-                  "Points (.ply, .pcd, .xyz, .txt, .csv, .asc, .pts, .obj) or triangles (.ply, .obj, .stl)")
+                  "Point cloud (.ply, .pcd, .xyz, .txt, .csv, .asc, .pts, .obj) or mesh (.ply, .obj, .stl)")
       .require();
   add_document_output(parser, options->out).require();
   add_parsed_option(
       parser, "--control", "UxV",
-      [](const std::string& text) { return parse_extent(text, control_range, "24x24"); },
+      [](const std::string& text) { return parse_extent(text, fit_control_range, "24x24"); },
       [options](const Extent& control) { options->control = control; },
-      "At most so many control points along u and v (24x24 unless told)");
+      "Largest number of control points along u and v, each from 4 to 200; default: 24x24");
   add_parsed_option(
       parser, "--tolerance", "LENGTH",
-      [](const std::string& text) { return parse_length(text, tolerance_range_m); },
+      [](const std::string& text) { return parse_length(text, fit_tolerance_range_m); },
       [options](double length) { options->request.settings.tolerance_m = length; },
-      "No more control points once the scan lies within; it is said where 95 % of it does not");
+      "Distance from the scan below which no control points are added; a note says if less than 95 % of the "
+      "scan is within. Default: none; range: " +
+          short_length_text(fit_tolerance_range_m.low) + " to " +
+          short_length_text(fit_tolerance_range_m.high));
   add_parsed_option(
       parser, "--unit", "UNIT", [](const std::string& text) { return parse_unit(text); },
       [options](const LengthUnit& unit) { options->unit = unit; },
-      "The unit of the scan's numbers: mm, cm, m or in (PLY and PCD: m, others: mm)");
+      "Unit of the scan's numbers: mm, cm, m or in; default: m for .ply and .pcd, mm for others");
   add_parsed_option(
       parser, "--kind", "KIND", parse_kind, [options](ShapeKind kind) { options->request.kind = kind; },
-      "sheet, tube or closed; found unless told");
+      "Kind of shape: sheet, tube or closed; default: detected");
   add_parsed_option(
       parser, "--islands", "CHOICE", parse_islands,
       [options](IslandChoice islands) { options->request.islands = islands; },
-      "Of a scan in several parts: largest alone (unless told), bridge for one closed body over the gaps, or "
-      "all, each a body");
+      "Parts of the scan to fit: largest (default), bridge for one closed body across the gaps, or all, each "
+      "as a body");
   add_parsed_option(
       parser, "--errors", "FILE", parse_cloud_name,
       [options](const std::filesystem::path& file) { options->errors = file; },
-      "A cloud of the scan's points coloured by their distance (.ply)");
+      "Cloud of the scan's points to write, coloured by their distance (.ply)");
   add_json_option(parser, options->json);
 }
 
@@ -164,12 +164,12 @@ CommandEntry add_fit(OptionSet root) {
   auto options = std::make_shared<FitOptions>();
   const OptionSet parser = root.add_command("fit", "Fit B-spline surfaces to a scan");
   parser.set_footer(
-      "Outliers and specks are left out, and the kind of shape is found: a sheet (open both ways), a tube\n"
-      "(closes in u), or a closed shape (closes in u, with a pole at both ends of v). Knots go where errors\n"
-      "are. The report tells how far scan and surface are from each other, both ways, and whether the "
-      "surface\n"
-      "folds. Closed shapes become solids of clay, others shells.\n"
-      "Example: spoonbill fit pear.ply --out pear.json --control 24x24 --errors pear-errors.ply");
+      "Outliers and specks are ignored, and the kind of shape is detected: a sheet (open in both\n"
+      "directions), a tube (closed in u) or a closed shape (closed in u, a pole at both ends of v). Knots "
+      "are\n"
+      "added where errors are large. The report gives the distances from scan to surface and back, and\n"
+      "whether the surface folds. Closed shapes become solids of clay, others shells.\n"
+      "Example: spoonbill fit assets/models/egg.stl --out egg.json --errors egg-errors.ply");
   add_options(parser, options);
   return {parser, [options](Console& console) { return fit(*options, console); }};
 }

@@ -5,16 +5,11 @@
 #include <string>
 
 #include "app/commands/command.h"
-#include "app/commands/common_options.h"
 #include "app/commands/option_set.h"
 #include "app/files/cad_file.h"
-#include "app/files/document_file.h"
-#include "app/interrupt.h"
-#include "app/report/conversion_facts.h"
+#include "app/files/documents.h"
 #include "app/report/document_facts.h"
-#include "app/report/hash_text.h"
-#include "app/report/map_progress.h"
-#include "app/report/progress_bar.h"
+#include "app/report/quantity_text.h"
 #include "app/session/session.h"
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
@@ -31,40 +26,41 @@ struct InfoOptions {
   bool json = false;
 };
 
-std::string seconds_text(std::uint64_t ticks) {
+std::string duration_text(std::uint64_t ticks) {
   return number_text(static_cast<double>(ticks) / 1000.0) + " s";
 }
 
 void add_duration(FactSheet& facts, std::uint64_t ticks) {
-  facts.add("Ticks", std::to_string(ticks) + " (" + seconds_text(ticks) + ")", "ticks", ticks);
+  facts.add("Ticks", std::to_string(ticks) + " (" + duration_text(ticks) + ")", "ticks", ticks);
   facts.add("", "", "duration_s", static_cast<double>(ticks) / 1000.0);
 }
 
-bool holds_lattices(const Scene& scene) {
+bool has_lattices(const Scene& scene) {
   if (!check_body_count(scene)) return false;
   return std::all_of(scene.bodies.begin(), scene.bodies.end(),
                      [](const Body& body) { return make_body_lattice(body).ok(); });
 }
 
-// As a session would make it, without the memory that undo takes beforehand.
-Result<Simulation> simulation_of(const Document& document, const std::string& source,
-                                 const FeatureMapWatch& watch) {
+// Makes the simulation that a session would make, without reserving memory for undo.
+Result<Simulation> make_simulation(const Document& document, const std::string& source,
+                                   const FeatureMapWatch& watch) {
   const auto view = view_from_json(document.view, source);
   if (!view) return view.error();
   auto simulation = Simulation::make(document.scene, best_instruction_set(), watch);
-  if (!simulation) return Error{source + ": " + simulation.error().message};
+  if (!simulation) return simulation.error().in(source);
   return simulation;
 }
 
-// What holds no lattice, or more bodies than are sculpted together, may still be looked at, merged and
-// exported; what is refused for another reason is an error here too.
-Status add_simulated(FactSheet& facts, const Document& document, const std::string& source,
-                     Console& console) {
+// Adds the document and its simulation. Without a lattice, or with more bodies than can be sculpted together,
+// a document can still be viewed, merged and exported, so its facts say why there is no lattice. Any other
+// failure is an error.
+Status add_document_and_simulation(FactSheet& facts, const Document& document, const std::string& source,
+                                   Console& console) {
   add_document_facts(facts, document);
   MapProgress maps(console);
-  const auto simulation = simulation_of(document, source, maps.watch());
+  const auto simulation = make_simulation(document, source, maps.watch());
   if (!simulation) {
-    if (holds_lattices(document.scene)) return simulation.error();
+    if (has_lattices(document.scene)) return simulation.error();
     facts.add("Lattice", "none: " + simulation.error().message, "lattice", nullptr);
     facts.add("", "", "no_lattice_because", simulation.error().message);
     return {};
@@ -73,7 +69,7 @@ Status add_simulated(FactSheet& facts, const Document& document, const std::stri
   simulation->write_snapshot(snapshot);
   add_simulation_facts(facts, snapshot, document.scene.bodies);
   add_elasticity_facts(facts, simulation.value());
-  add_remarks(facts, simulation->remarks());
+  add_notes(facts, simulation->remarks());
   add_cell_facts(facts, simulation.value(), maps.reports());
   return {};
 }
@@ -82,7 +78,7 @@ Status describe_document(FactSheet& facts, const std::filesystem::path& file, Co
   const auto document = read_document(file);
   if (!document) return document.error();
   facts.add("Kind", "document", "kind", "document");
-  return add_simulated(facts, document.value(), file.string(), console);
+  return add_document_and_simulation(facts, document.value(), file.string(), console);
 }
 
 Status describe_recording(FactSheet& facts, const std::filesystem::path& file, Console& console) {
@@ -101,7 +97,7 @@ Status describe_recording(FactSheet& facts, const std::filesystem::path& file, C
   const DeviceSpecification& device = recording->header.device;
   facts.add("Device", device.name + ", at most " + number_text(device.maximum_force_n) + " N", "device",
             {{"name", device.name}, {"maximum_force_n", device.maximum_force_n}});
-  return add_simulated(facts, recording->header.document, file.string(), console);
+  return add_document_and_simulation(facts, recording->header.document, file.string(), console);
 }
 
 Status describe_script(FactSheet& facts, const std::filesystem::path& file) {
@@ -145,7 +141,7 @@ Status describe_cad(FactSheet& facts, const std::filesystem::path& file, Console
   return {};
 }
 
-Status describe(FactSheet& facts, const std::filesystem::path& file, Console& console) {
+Status describe_file(FactSheet& facts, const std::filesystem::path& file, Console& console) {
   if (is_cad(format_from_name(file))) return describe_cad(facts, file, console);
   if (Status native = check_native_name(file); !native) return native;
   const auto format = find_native_format(file);
@@ -165,7 +161,7 @@ Status describe(FactSheet& facts, const std::filesystem::path& file, Console& co
 Status info(const InfoOptions& options, Console& console) {
   FactSheet facts;
   facts.add("File", options.file.string(), "file", options.file.string());
-  if (Status described = describe(facts, options.file, console); !described) return described;
+  if (Status described = describe_file(facts, options.file, console); !described) return described;
   facts.print(console.out, options.json);
   return {};
 }
@@ -175,17 +171,14 @@ Status info(const InfoOptions& options, Console& console) {
 CommandEntry add_info(OptionSet root) {
   auto options = std::make_shared<InfoOptions>();
   const OptionSet parser =
-      root.add_command("info", "Tell what a model, recording, script, material or CAD file holds");
+      root.add_command("info", "Describe a model, recording, script, material or CAD file");
   parser.set_footer(
-      "A model is reported with its size, its surfaces' degrees, control points and knots, and the lattice "
-      "that a\n"
-      "simulation would have: nodes, how good its cells are, mass, the Young's modulus felt while "
-      "sculpting,\n"
-      "and what the lattice achieves of the material's elasticity along each axis.\n"
+      "For a model: its size; the degrees, control points and knots of its surfaces; and the lattice of its\n"
+      "simulation: nodes, quality of the cells, mass, effective Young's modulus while sculpting, and the\n"
+      "fraction of the material's elasticity that the lattice achieves along each axis.\n"
       "Example: spoonbill info assets/models/spoon-handle.json");
   parser
-      .add_option("FILE", options->file,
-                  "A document, script or material (.json), a recording, or a STEP or IGES file")
+      .add_option("FILE", options->file, "Document, script or material (.json), recording, STEP or IGES file")
       .require();
   add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return info(*options, console); }};

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,19 +12,15 @@
 #include <vector>
 
 #include "app/commands/command.h"
-#include "app/commands/common_options.h"
-#include "app/commands/left_out.h"
-#include "app/commands/merge_report.h"
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
-#include "app/commands/parsed_option.h"
-#include "app/commands/watched_work.h"
-#include "app/files/document_file.h"
-#include "app/interrupt.h"
+#include "app/commands/surface_change.h"
+#include "app/files/documents.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
 #include "engine/base/text.h"
 #include "engine/inspection/surface_check.h"
+#include "engine/inspection/curvature.h"
 #include "engine/inspection/mass_properties.h"
 #include "engine/merging/intersection_merge.h"
 #include "engine/merging/trimmed_patch.h"
@@ -31,49 +28,69 @@
 namespace spoonbill {
 namespace {
 
-constexpr Range<double> tolerance_range_m{1e-9, 0.1};
+constexpr Range<double> merge_tolerance_range_m{1e-9, 0.1};
 constexpr Range<double> blend_range_m{0.0, 1.0};
 constexpr Range<double> fillet_range_m{0.0, 1.0};
 constexpr Range<double> twist_range{-1.0, 1.0};
-// Of the tolerance, for making a trimmed patch whole.
-constexpr double trimmed_share = 0.25;
 constexpr Range<int> model_count_range{1, 64};
+// Fraction of the tolerance that resampling a trimmed patch may use.
+constexpr double untrimming_fraction = 0.25;
+// A fillet tighter than this fraction of the requested radius gets a note.
+constexpr double tight_fillet_fraction = 0.8;
 
 struct MergeOptions {
   std::vector<std::filesystem::path> models;
   std::filesystem::path out;
   std::string name;
   MergeRequest request;
-  std::optional<int> continuity;  // where it is asked for
+  std::optional<int> continuity;  // if the option is given
   bool crossing = false;
   double fillet_m = 0.0;
   bool json = false;
 };
 
-// "-0.25"
+// The input of a merge.
+struct MergeParts {
+  std::optional<Document> first;  // the merged document takes its material, tool and view
+  std::vector<Body> bodies;
+  std::vector<Surface> patches;  // surfaces of the bodies without trims
+  double untrimmed_m = 0.0;      // largest deviation that removing the trims caused
+  std::vector<std::string> notes;
+};
+
+struct MergeOutcome {
+  Merged merged;
+  std::vector<Joint> corners;                 // corner k joins patch k + 1 to the result of those before it
+  std::vector<std::string> tight_fillets;     // notes
+  std::vector<std::size_t> reversed_patches;  // patches whose normals pointed inwards
+};
+
+// Parses "-0.25".
 Result<double> parse_twist(const std::string& text) {
-  double share = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), share);
-  if (error == std::errc() && end == text.data() + text.size() && twist_range.contains(share)) return share;
-  return Error{"'" + excerpt(text) + "' is not a share of a turn from -1 to 1"};
+  double turns = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), turns);
+  if (error == std::errc() && end == text.data() + text.size() && twist_range.contains(turns)) return turns;
+  return Error{ErrorCode::out_of_range, "'" + excerpt(text) + "' is not a fraction of a turn from -1 to 1"};
 }
 
-// "2.v_start": the second patch's edge.
+// Parses "2.v_start", an edge of the second patch.
 Result<PatchEdge> parse_edge(const std::string& text) {
   const std::size_t dot = text.find('.');
   if (dot == 0 || dot == std::string::npos || dot > 3 || text.find_first_not_of("0123456789") != dot) {
-    return Error{"'" + excerpt(text) + "' is not an edge like 2.v_start, the second patch's"};
+    return Error{ErrorCode::malformed,
+                 "'" + excerpt(text) + "' is not an edge like 2.v_start, of the second patch"};
   }
   const auto side = parse_side(text.substr(dot + 1));
   if (!side) return side.error();
   return PatchEdge{std::stoi(text.substr(0, dot)) - 1, side.value()};
 }
 
-// "1.v_end:2.v_start", or with -2.v_start against it.
+// Parses "1.v_end:2.v_start", or "1.v_end:-2.v_start" for edges that run in opposite directions.
 Result<ChosenEdges> parse_edges(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {
-    return Error{"'" + excerpt(text) + "' is not a pair of edges like 1.v_end:2.v_start"};
+    return Error{ErrorCode::malformed,
+                 "'" + excerpt(text) + "' is not a pair of edges like 1.v_end:2.v_start"};
   }
   std::string second = text.substr(colon + 1);
   ChosenEdges edges;
@@ -85,52 +102,158 @@ Result<ChosenEdges> parse_edges(const std::string& text) {
   if (!a) return a.error();
   if (!b) return b.error();
   if (a->patch == b->patch) {
-    return Error{"'" + excerpt(text) + "' joins a patch to itself; name two patches"};
+    return Error{ErrorCode::inconsistent,
+                 "'" + excerpt(text) + "' joins a patch to itself; name two patches"};
   }
   edges.a = a.value();
   edges.b = b.value();
   return edges;
 }
 
-// What is to be merged, and what the merged document takes from the first model.
-struct Parts {
-  std::optional<Document> first;
-  std::vector<Body> bodies;
-  std::vector<Surface> patches;  // of the bodies, whole
-  double untrimmed_m = 0.0;      // how far making them whole moved them
-  std::vector<std::string> remarks;
-};
-
-struct Outcome {
-  Merged merged;
-  std::vector<Joint> corners;              // of each body but the first with what those before it became
-  std::vector<std::string> tight_fillets;  // remarks
-  std::vector<std::size_t> turned;         // the bodies whose normals pointed inwards
-};
-
-// C1 for a fillet: an arc and what it touches cannot be C2 without making it tighter.
+// Returns the continuity of the joints. Default: C0 for a sharp corner; C1 for a fillet, because an arc that
+// is C2 with its neighbours is tighter than its radius.
 int continuity_of(const MergeOptions& options) {
   if (options.crossing && options.fillet_m == 0.0) return 0;
   if (options.continuity) return *options.continuity;
   return options.crossing ? 1 : JoinRequest().continuity;
 }
 
-void add_remarks_of_merging(const MergeOptions& options, const Outcome& outcome,
-                            std::vector<std::string>& remarks) {
-  if (options.request.join.blend_m > 0.0) add_unused_blends(outcome.merged.joints, remarks);
-  add_left_open(outcome.merged.left_open, remarks);
-  const Surface& surface = outcome.merged.surface;
-  if (find_closing(surface).closedness == Closedness::solid && compute_enclosed_mass(surface).volume_m3 < 0.0) {
-    remarks.emplace_back("its normals point inwards; reverse u with change");
-  }
-  for (const std::size_t place : outcome.turned) {
-    remarks.push_back("the normals of patch " + std::to_string(place + 1) +
-                      " pointed inwards; it was turned around first");
-  }
-  remarks.insert(remarks.end(), outcome.tight_fillets.begin(), outcome.tight_fillets.end());
+std::string edge_text(const PatchEdge& edge) {
+  return std::to_string(edge.patch + 1) + "." + side_name(edge.side);
 }
 
-void report(const MergeOptions& options, const Parts& parts, const Outcome& outcome, Console& console) {
+std::string edges_text(const PatchEdge& a, const PatchEdge& b) {
+  return edge_text(a) + " and " + edge_text(b);
+}
+
+std::string joint_text(const MergedJoint& merged) {
+  const Joint& joint = merged.joint;
+  const std::string edges = edges_text(merged.a, merged.b);
+  if (merged.closes) return edges + ", edge to edge, which closes the surface around";
+  if (!joint.bridged) return edges + ", edge to edge";
+  if (joint.cut_back_m == 0.0) {
+    return edges + ", bridged over a gap of " + short_length_text(joint.gap_m) + " by a blend of " +
+           short_length_text(joint.blend_length_m);
+  }
+  return edges + ", up to " + short_length_text(joint.apart_m) + " apart, cut back by " +
+         short_length_text(joint.cut_back_m) + " each for a blend of " +
+         short_length_text(joint.blend_length_m);
+}
+
+Json joint_json(const std::string& a, const std::string& b, Direction along, const Joint& joint) {
+  return {{"a", a},
+          {"b", b},
+          {"along", along == Direction::u ? "u" : "v"},
+          {"bridged", joint.bridged},
+          {"gap_m", joint.gap_m},
+          {"apart_m", joint.apart_m},
+          {"cut_back_m", joint.cut_back_m},
+          {"blend_start", joint.blend_start},
+          {"blend_end", joint.blend_end},
+          {"blend_length_m", joint.blend_length_m}};
+}
+
+void add_joints(FactSheet& facts, const std::vector<MergedJoint>& joints) {
+  Json list = Json::array();
+  for (const MergedJoint& merged : joints) {
+    facts.add("Joint", joint_text(merged), "", nullptr);
+    list.push_back(joint_json(edge_text(merged.a), edge_text(merged.b), merged.along, merged.joint));
+    list.back()["closes"] = merged.closes;
+  }
+  facts.add("", "", "joints", list);
+}
+
+std::string corner_text(const Joint& corner, bool is_last) {
+  const std::string start = number_text(corner.blend_start), end = number_text(corner.blend_end);
+  if (!corner.bridged) return "an edge" + (is_last ? " at v = " + start : "");
+  return "a fillet of " + short_length_text(corner.blend_length_m) + " along" +
+         (is_last ? " from v = " + start + " to " + end : "");
+}
+
+// Adds the corners between crossing bodies. Only the last one is at constant v in the result, so only its
+// position is reported.
+void add_corners(FactSheet& facts, const std::vector<Joint>& corners) {
+  Json list = Json::array();
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const bool is_last = k + 1 == corners.size();
+    const std::string second = std::to_string(k + 2);
+    facts.add("Joint",
+              (k == 0 ? "1 and " : "before and ") + second + " at " + corner_text(corners[k], is_last), "",
+              nullptr);
+    list.push_back(joint_json("1", second, Direction::v, corners[k]));
+    if (!is_last) list.back()["blend_start"] = list.back()["blend_end"] = nullptr;
+  }
+  facts.add("", "", "joints", list);
+}
+
+// Notes the joints that did not use the requested blend.
+void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::string>& notes) {
+  for (const MergedJoint& merged : joints) {
+    if (merged.joint.cut_back_m > 0.0) continue;
+    notes.push_back("the blend was not applied to " + edges_text(merged.a, merged.b) +
+                    (merged.closes          ? ": their seam is closed within the tolerance"
+                     : merged.joint.bridged ? ": the gap between them is longer"
+                                            : ": they already meet with the requested continuity"));
+  }
+}
+
+// Returns four parameters in every span that overlaps the range, at the centres of its quarters.
+std::vector<double> sample_spans(const KnotVector& knots, double start, double end) {
+  constexpr int parts = 4;
+  const std::vector<double> ends = knots.breakpoints();
+  std::vector<double> parameters;
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    if (ends[k + 1] < start || ends[k] > end) continue;
+    for (int part = 0; part < parts; ++part) {
+      parameters.push_back(ends[k] + (ends[k + 1] - ends[k]) * (part + 0.5) / parts);
+    }
+  }
+  return parameters;
+}
+
+// Returns the smallest concave radius of curvature on the fillet and at its ends.
+double tightest_radius_m(const Surface& merged, const Joint& corner) {
+  double least = std::numeric_limits<double>::infinity();
+  const KnotVector &u = merged.u, &v = merged.v;
+  for (const double at_v : sample_spans(v, corner.blend_start, corner.blend_end)) {
+    for (const double at_u : sample_spans(u, u.domain_start(), u.domain_end())) {
+      const auto curvatures = compute_principal_curvatures(evaluate(merged, at_u, at_v));
+      if (curvatures && curvatures->smallest < 0.0) least = std::min(least, -1.0 / curvatures->smallest);
+    }
+  }
+  return least;
+}
+
+// Notes a fillet that is tighter than requested. `which` distinguishes it from others, like " with patch 3".
+void add_tight_fillet(const Surface& merged, const Joint& corner, const std::string& which, double fillet_m,
+                      int continuity, std::vector<std::string>& notes) {
+  const double least_m = tightest_radius_m(merged, corner);
+  if (!(least_m < tight_fillet_fraction * fillet_m)) return;
+  notes.push_back("the fillet" + which + " has a radius of about " + short_length_text(least_m) +
+                  " at its tightest, less than the requested " + short_length_text(fillet_m) +
+                  (continuity > 1 ? ": an arc cannot be C2 with its neighbours; C1 keeps the radius"
+                                  : "; a smaller tolerance brings it nearer"));
+}
+
+void add_merge_notes(const MergeOptions& options, const MergeOutcome& outcome,
+                     std::vector<std::string>& notes) {
+  if (options.request.join.blend_m > 0.0) add_unused_blends(outcome.merged.joints, notes);
+  for (const auto& [a, b, why] : outcome.merged.left_open) {
+    notes.push_back(edges_text(a, b) + " touch too and stay open: " + why);
+  }
+  const Surface& surface = outcome.merged.surface;
+  if (find_closing(surface).closedness == Closedness::solid && compute_enclosed_mass(surface).volume_m3 < 0.0) {
+    notes.emplace_back("the normals point inwards; reverse u with `spoonbill change`");
+  }
+  for (const std::size_t patch : outcome.reversed_patches) {
+    notes.push_back("the normals of patch " + std::to_string(patch + 1) +
+                    " pointed inwards; it was reversed first");
+  }
+  notes.insert(notes.end(), outcome.tight_fillets.begin(), outcome.tight_fillets.end());
+}
+
+void report_merge(const MergeOptions& options, const MergeParts& parts, const MergeOutcome& outcome,
+                  Console& console) {
   const Merged& merged = outcome.merged;
   FactSheet facts;
   facts.add("File", options.out.string(), "file", options.out.string());
@@ -152,12 +275,12 @@ void report(const MergeOptions& options, const Parts& parts, const Outcome& outc
   } else {
     add_joints(facts, merged.joints);
   }
-  add_remarks(facts, parts.remarks);
+  add_notes(facts, parts.notes);
   facts.print(console.out, options.json);
 }
 
 Document merged_document(const Document& first, const std::vector<Body>& patches, const MergeOptions& options,
-                         Surface surface, std::vector<std::string>& remarks) {
+                         Surface surface, std::vector<std::string>& notes) {
   Document document = first;
   document.name = options.name.empty() ? options.out.stem().string() : options.name;
   Body body = patches[0];
@@ -168,23 +291,24 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   if (!one_solid || find_closing(body.surface).closedness == Closedness::solid) body.solid.clear();
   if (patches.size() > 1) {
     body.name = document.name;
-    document.view = Json::object();  // so that the whole of it is framed
+    document.view = Json::object();  // the default view frames the whole result
   }
-  settle_thickness(body, patches[0].surface, remarks);
+  adapt_thickness(body, patches[0].surface, notes);
   document.scene.bodies = {std::move(body)};
   return document;
 }
 
-Result<Parts> read_parts(const MergeOptions& options) {
-  Parts parts;
+Result<MergeParts> read_parts(const MergeOptions& options) {
+  MergeParts parts;
   for (const auto& model : options.models) {
     auto document = read_document_file(model);
     if (!document) return document.error();
     for (Body& body : document->scene.bodies) {
-      auto whole = untrimmed(body.surface, body.trims, trimmed_share * options.request.join.tolerance_m);
-      if (!whole) return Error{model.string() + ": body \"" + body.name + "\": " + whole.error().message};
+      auto whole =
+          untrimmed(body.surface, body.trims, untrimming_fraction * options.request.join.tolerance_m);
+      if (!whole) return whole.error().in("body \"" + body.name + "\"").in(model.string());
       parts.untrimmed_m = std::max(parts.untrimmed_m, whole->deviation_m);
-      leave_out_shares(body, parts.remarks);
+      drop_surface_features(body, parts.notes);
       parts.bodies.push_back(body);
       parts.patches.push_back(std::move(whole->surface));
     }
@@ -193,20 +317,14 @@ Result<Parts> read_parts(const MergeOptions& options) {
   return parts;
 }
 
-// Those that cross are merged one after the other, each by its share of the tolerance.
-Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options, const Progress& progress) {
+// Merges crossing patches one after the other. Each merge may use an equal part of the tolerance.
+Result<MergeOutcome> merge_crossing_patches(const MergeParts& parts, const MergeOptions& options,
+                                            MergeRequest request, const Progress& progress) {
   const std::vector<Surface>& patches = parts.patches;
-  MergeRequest request = options.request;
-  request.join.continuity = continuity_of(options);
-  request.join.progress = progress;
-  if (!options.crossing) {
-    request.join.spent_m = parts.untrimmed_m;
-    auto merged = merge(patches, request);
-    if (!merged) return merged.error();
-    return Outcome{std::move(merged).value(), {}, {}, {}};
+  if (patches.size() < 2) {
+    return Error{ErrorCode::too_few, "merge: --intersect needs at least two bodies", "--intersect"};
   }
-  if (patches.size() < 2) return Error{"one body alone crosses none; name another one"};
-  Outcome outcome{{patches[0], 0.0, {}}, {}, {}, {}};
+  MergeOutcome outcome{{patches[0], 0.0, {}}, {}, {}, {}};
   Merged& merged = outcome.merged;
   request.join.tolerance_m =
       (request.join.tolerance_m - parts.untrimmed_m) / static_cast<double>(patches.size() - 1);
@@ -214,25 +332,32 @@ Result<Outcome> merged_surface(const Parts& parts, const MergeOptions& options, 
   for (std::size_t p = 1; p < patches.size(); ++p) {
     request.join.progress = progress.part(each * static_cast<double>(p - 1), each * static_cast<double>(p));
     auto next = merge_crossing(merged.surface, patches[p], {request.join, options.fillet_m});
-    if (!next) return Error{"patch " + std::to_string(p + 1) + ": " + next.error().message};
+    if (!next) return next.error().in("patch " + std::to_string(p + 1));
     merged.surface = std::move(next->surface);
     merged.deviation_m += next->deviation_m;
     outcome.corners.push_back(next->corner);
     if (options.fillet_m > 0.0) {
-      // Now, as long as it lies along v.
+      // Measured before the next merge, while the fillet is at constant v.
       const std::string which = patches.size() > 2 ? " with patch " + std::to_string(p + 1) : "";
       add_tight_fillet(merged.surface, next->corner, which, options.fillet_m, request.join.continuity,
                        outcome.tight_fillets);
     }
-    if (next->first_was_inward) outcome.turned.push_back(p - 1);
-    if (next->second_was_inward) outcome.turned.push_back(p);
+    if (next->first_was_inward) outcome.reversed_patches.push_back(p - 1);
+    if (next->second_was_inward) outcome.reversed_patches.push_back(p);
   }
   return outcome;
 }
 
-Result<Outcome> merge_with_progress(const MergeOptions& options, const Parts& parts, Console& console) {
-  WatchedWork work(console, "Merging", options.out);
-  return work.done([&](const Progress& progress) { return merged_surface(parts, options, progress); });
+Result<MergeOutcome> merge_parts(const MergeParts& parts, const MergeOptions& options,
+                                 const Progress& progress) {
+  MergeRequest request = options.request;
+  request.join.continuity = continuity_of(options);
+  request.join.progress = progress;
+  if (options.crossing) return merge_crossing_patches(parts, options, std::move(request), progress);
+  request.join.spent_m = parts.untrimmed_m;
+  auto merged = merge(parts.patches, request);
+  if (!merged) return merged.error();
+  return MergeOutcome{std::move(merged).value(), {}, {}, {}};
 }
 
 Status merge_models(const MergeOptions& options, Console& console) {
@@ -240,36 +365,22 @@ Status merge_models(const MergeOptions& options, Console& console) {
   if (Status few = check_range("the number of models", models, model_count_range); !few) return few;
   auto parts = read_parts(options);
   if (!parts) return parts.error();
-  auto outcome = merge_with_progress(options, parts.value(), console);
+  auto outcome = CancellableJob(console, "Merging", options.out).run([&](const Progress& progress) {
+    return merge_parts(parts.value(), options, progress);
+  });
   if (!outcome) return outcome.error();
   outcome->merged.deviation_m += parts->untrimmed_m;
   const Document document =
-      merged_document(*parts->first, parts->bodies, options, outcome->merged.surface, parts->remarks);
-  add_remarks_of_merging(options, outcome.value(), parts->remarks);
-  // A file becomes whole: what asks to stop now waits for it.
+      merged_document(*parts->first, parts->bodies, options, outcome->merged.surface, parts->notes);
+  add_merge_notes(options, outcome.value(), parts->notes);
+  // Ctrl+C waits until the file is complete.
   const InterruptWatch until_written;
   if (Status written = write_document(document, options.out); !written) return written;
-  report(options, parts.value(), outcome.value(), console);
+  report_merge(options, parts.value(), outcome.value(), console);
   return {};
 }
 
-}  // namespace
-
-CommandEntry add_merge(OptionSet root) {
-  auto options = std::make_shared<MergeOptions>();
-  const OptionSet parser = root.add_command("merge", "Make one surface of several patches");
-  parser.set_footer(
-      "The patches are the bodies of all models, counted from 1, and make a row, a ring or a full grid;\n"
-      "which edges belong together is found by where they lie. Where the last lie on the first, as of a\n"
-      "ring, the result is closed around. Closed bodies that do not touch are opened at their nearest\n"
-      "ends and bridged. Where the continuity is there already the result is exact; elsewhere control\n"
-      "points are added beside the joint until the tolerance holds. Trimmed bodies are resampled up to\n"
-      "their trims, discs and rings about their middle. Material and tool are the first model's;\n"
-      "regions, loads and supports of the patches are left out.\n"
-      "Example: spoonbill merge bowl.json handle.json --continuity C2 --out spoon.json");
-  parser.add_option("MODEL", options->models, "Documents (.json)").require();
-  add_document_output(parser, options->out, "The merged document (.json)").require();
-  parser.add_option("--name", options->name, "Of the result; the file's unless told");
+void add_joint_options(OptionSet parser, const std::shared_ptr<MergeOptions>& options) {
   const JoinRequest& join = options->request.join;
   const auto length_in = [](Range<double> range) {
     return [range](const std::string& text) { return parse_length(text, range); };
@@ -277,21 +388,20 @@ CommandEntry add_merge(OptionSet root) {
   add_parsed_option(
       parser, "--continuity", "C0..C8", parse_continuity,
       [options](int order) { options->continuity = order; },
-      "Of the joints and a ring's seam, C2 unless told; of a fillet C1, for an arc that is to be C2 with "
-      "what it touches gets "
-      "tighter than its radius");
+      "Continuity of joints and of a ring's seam; default: C2, of a fillet C1. A C2 fillet is tighter than "
+      "its radius");
   add_parsed_option(
-      parser, "--tolerance", "LENGTH", length_in(tolerance_range_m),
+      parser, "--tolerance", "LENGTH", length_in(merge_tolerance_range_m),
       [options](double length_m) { options->request.join.tolerance_m = length_m; },
-      "How far the result may leave the patches outside blends, " + short_length_text(join.tolerance_m) +
-          " unless told");
+      "Largest distance from the patches outside blends; default: " + short_length_text(join.tolerance_m) +
+          ", range: " + short_length_text(merge_tolerance_range_m.low) + " to " +
+          short_length_text(merge_tolerance_range_m.high));
   add_parsed_option(
       parser, "--blend", "LENGTH", length_in(blend_range_m),
       [options](double length_m) { options->request.join.blend_m = length_m; },
-      "Cut patches back where they are apart or do not meet as smoothly as asked, for a blend of this "
-      "length; "
-      "without it a kink is rounded within the tolerance, and a small gap that is no straight way on blended "
-      "over a piece between two knots, 10 to 40 times the gap");
+      "Length of blends, up to 1 m; patches that have a gap or a kink between them are cut back for one. "
+      "Default: none; a kink is rounded within the tolerance, a small gap is bridged between two knots over "
+      "10 to 40 times its width");
   parser
       .add_parsed_list(
           "--edges",
@@ -303,26 +413,49 @@ CommandEntry add_merge(OptionSet root) {
             }
             return {};
           },
-          "Join these edges, instead of those found: 1.v_end:2.v_start, or 1.v_end:-2.v_start where the "
-          "second runs against the first and 1.v_end:+2.v_start where along it; once for each joint")
+          "Edges to join instead of those found, once per joint: 1.v_end:2.v_start, with -2.v_start if the "
+          "second runs against the first, +2.v_start if along it")
       .show_as("EDGE:EDGE");
+}
+
+}  // namespace
+
+CommandEntry add_merge(OptionSet root) {
+  auto options = std::make_shared<MergeOptions>();
+  const OptionSet parser = root.add_command("merge", "Merge patches into one surface");
+  parser.set_footer(
+      "The patches are the bodies of all models, numbered from 1. They form a row, a ring or a full grid;\n"
+      "edges that are near each other are joined. If the last patch meets the first, the result is closed.\n"
+      "Closed bodies that do not touch are opened at their nearest ends and bridged. A joint that already\n"
+      "has the requested continuity is exact; elsewhere control points are added beside the joint until\n"
+      "the tolerance holds. Trimmed bodies are resampled up to their trims, discs and rings about their\n"
+      "centre. Material and tool are those of the first model; regions, loads and supports are dropped.\n"
+      "Example: spoonbill merge assets/models/spoon-handle.json assets/models/spoon-bowl.json --out "
+      "spoon.json");
+  parser.add_option("MODEL", options->models, "Documents (.json), 1 to 64").require();
+  add_document_output(parser, options->out).require();
+  parser.add_option("--name", options->name, "Name of the result; default: the name of the --out file");
+  add_joint_options(parser, options);
   CommandOption twist = add_parsed_option(
-      parser, "--twist", "SHARE", parse_twist,
-      [options](double share) { options->request.join.twist = share; },
-      "Turn each ring by this share of a turn from where it fits the one before best");
+      parser, "--twist", "TURNS", parse_twist,
+      [options](double turns) { options->request.join.twist = turns; },
+      "Rotation of each ring against the one before, from the best match, in turns; default: 0, range: -1 to "
+      "1");
   CommandOption crossing = parser.add_flag("--intersect", options->crossing,
-                                           "The patches cross: each keeps what lies before the other");
+                                           "Merge patches that cross: each keeps the part outside the other");
   add_parsed_option(
-      parser, "--fillet", "LENGTH", length_in(fillet_range_m),
+      parser, "--fillet", "LENGTH",
+      [](const std::string& text) { return parse_length(text, fillet_range_m); },
       [options](double length_m) { options->fillet_m = length_m; },
-      "Round the corner in which they cross with this radius")
+      "Radius of the fillet where patches cross, up to 1 m; default: none, a sharp edge")
       .need(crossing);
-  // By then all have been read, in whichever order they came.
+  // The order of these options is free, so this is checked after all of them.
   parser.set_final_check([options]() -> Status {
     if (options->crossing && options->fillet_m == 0.0 && options->continuity.value_or(0) > 0) {
-      return Error{
-          "--continuity: without --fillet bodies that cross meet at an edge, which is C0; give a radius "
-          "with --fillet, or leave it out"};
+      return Error{ErrorCode::inconsistent,
+                   "--continuity: without --fillet crossing bodies meet at a sharp edge, which is C0; add "
+                   "--fillet, or remove --continuity",
+                   "--continuity"};
     }
     return {};
   });

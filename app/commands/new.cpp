@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,30 +10,45 @@
 #include <vector>
 
 #include "app/commands/command.h"
-#include "app/commands/common_options.h"
-#include "app/commands/new_kinds.h"
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
-#include "app/commands/parsed_option.h"
-#include "app/interrupt.h"
+#include "app/files/documents.h"
 #include "app/report/document_facts.h"
-#include "app/report/progress_bar.h"
 #include "app/report/quantity_text.h"
-#include "app/report/surface_extent.h"
-#include "app/start/shipped_materials.h"
-#include "app/start/starting_document.h"
 #include "engine/base/text.h"
 #include "engine/base/progress.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 #include "engine/inspection/mass_properties.h"
+#include "engine/material/lattice/shell_lattice.h"
+#include "engine/scene/scene.h"
+#include "engine/shapes/exact_shape.h"
 #include "engine/shapes/fit_shape.h"
+#include "engine/shapes/lathe.h"
+#include "engine/shapes/swept_shapes.h"
 #include "engine/shapes/stock_shapes.h"
 
 namespace spoonbill {
 namespace {
 
-constexpr Range<int> control_range{4, control_point_count_range.high};
-constexpr Range<double> tolerance_range_m{1e-8, 1e-2};
+constexpr Range<int> new_control_range{4, control_point_count_range.high};
+constexpr Range<double> new_tolerance_range_m{1e-8, 1e-2};
+// Wider than the range of any size: each shape checks its own sizes.
+constexpr Range<double> size_range_m{-1e3, 1e3};
+constexpr double default_shell_thickness_m = 0.002;
+// Fraction of the work that is fitting; the rest is the search for self-intersections.
+constexpr double fit_fraction = 0.8;
+
+struct NewShape {
+  ExactShape shape;
+  std::optional<double> shell_thickness_m = {};  // of an open shape
+  double reach_m = 0.0;                          // see reach_m() of a stock shape; 0 if unknown
+};
+
+// One subcommand of `spoonbill new`, and the function that makes its shape after parsing.
+struct NewKind {
+  OptionSet parser;
+  std::function<Result<NewShape>()> make;
+};
 
 struct NewOptions {
   std::optional<Extent> control;
@@ -42,16 +58,261 @@ struct NewOptions {
   bool json = false;
 };
 
-// Shapes are mostly made at once: a bar for those that keep a person waiting, and Ctrl+C is asked for.
-class Making {
- public:
-  explicit Making(Console& console) : bar_(console, "Making", false) {}
+// The value of a length option, filled by the parser.
+using LengthOption = std::shared_ptr<std::optional<double>>;
 
-  // Refers to this.
+LengthOption add_length(OptionSet parser, const std::string& name, const std::string& help) {
+  auto length = std::make_shared<std::optional<double>>();
+  add_parsed_option(
+      parser, name, "LENGTH", [](const std::string& text) { return parse_length(text, size_range_m); },
+      [length](double value) { *length = value; }, help);
+  return length;
+}
+
+std::shared_ptr<std::vector<double>> add_size(OptionSet parser, std::size_t count, const std::string& help) {
+  auto size = std::make_shared<std::vector<double>>();
+  add_parsed_option(
+      parser, "--size", count == 2 ? "XxZ" : "XxYxZ",
+      [count](const std::string& text) { return parse_lengths(text, count, size_range_m); },
+      [size](const std::vector<double>& lengths) { *size = lengths; }, help)
+      .require();
+  return size;
+}
+
+Result<NewShape> make_stock_shape(const StockShapeSize& size) {
+  auto shape = stock_shape(size);
+  if (!shape) return shape.error();
+  return NewShape{std::move(shape).value(), {}, reach_m(size)};
+}
+
+NewKind add_sphere(OptionSet root) {
+  const OptionSet parser = root.add_command("sphere", "Sphere with its poles at top and bottom");
+  const LengthOption radius = add_length(parser, "--radius", "Radius; default: 30mm");
+  return {parser, [radius] { return make_stock_shape(SphereSize{radius->value_or(SphereSize().radius_m)}); }};
+}
+
+NewKind add_box(OptionSet root) {
+  const OptionSet parser = root.add_command("box", "Box with rounded edges");
+  const auto sides = add_size(parser, 3, "Lengths along x, y and z, such as 60x40x20mm");
+  const LengthOption rounding =
+      add_length(parser, "--rounding",
+                 "Radius of the edges around the two end faces, which are at the ends of the longest side "
+                 "unless slender; the four edges between have twice that. Default: a tenth of the shortest "
+                 "side, at most two fifths of it");
+  return {parser, [=] {
+            BoxSize size{{(*sides)[0], (*sides)[1], (*sides)[2]}};
+            size.rounding_m = rounding->value_or(default_rounding_m(size));
+            return make_stock_shape(size);
+          }};
+}
+
+NewKind add_cylinder(OptionSet root) {
+  const OptionSet parser = root.add_command("cylinder", "Upright cylinder with rounded edges");
+  const LengthOption radius = add_length(parser, "--radius", "Radius; default: 20mm");
+  const LengthOption height = add_length(parser, "--height", "Height from face to face; default: 60mm");
+  const LengthOption rounding =
+      add_length(parser, "--rounding",
+                 "Radius of both edges; default: a tenth of the shorter of diameter "
+                 "and height, at most half of it");
+  return {parser, [=] {
+            CylinderSize size;
+            size.radius_m = radius->value_or(size.radius_m);
+            size.height_m = height->value_or(size.height_m);
+            size.rounding_m = rounding->value_or(default_rounding_m(size));
+            return make_stock_shape(size);
+          }};
+}
+
+NewKind add_cone(OptionSet root) {
+  const OptionSet parser = root.add_command("cone", "Cone or truncated cone, rounded inside the sharp shape");
+  const LengthOption radius = add_length(parser, "--radius", "Radius of the base; default: 30mm");
+  const LengthOption height = add_length(parser, "--height", "Height to the sharp tip or top; default: 60mm");
+  const LengthOption top = add_length(parser, "--top", "Radius of the top; default: 0mm, a tip");
+  const LengthOption rounding = add_length(parser, "--rounding",
+                                           "Radius of edges and tip; default: a tenth of the smallest of its "
+                                           "diameters and its height");
+  return {parser, [=] {
+            ConeSize size;
+            size.radius_m = radius->value_or(size.radius_m);
+            size.height_m = height->value_or(size.height_m);
+            size.top_radius_m = top->value_or(0.0);
+            size.rounding_m = rounding->value_or(default_rounding_m(size));
+            return make_stock_shape(size);
+          }};
+}
+
+NewKind add_plate(OptionSet root) {
+  const OptionSet parser = root.add_command(
+      "plate", "Level plate: a closed slab with a half-round rim, or an open sheet with a thickness");
+  const auto sides = add_size(parser, 2, "Lengths along x and z, such as 100x60mm");
+  const LengthOption thickness = add_length(parser, "--thickness", "Thickness; default: 3mm");
+  const LengthOption corner =
+      add_length(parser, "--corner",
+                 "Radius of the four corners seen from above, at least the thickness; "
+                 "default: a tenth of the width");
+  auto sheet = std::make_shared<bool>(false);
+  parser.add_flag("--sheet", *sheet, "Make an open surface whose body is a shell of the thickness below it")
+      .exclude(parser.option("--corner"));
+  return {parser, [=]() -> Result<NewShape> {
+            PlateSize size{(*sides)[0], (*sides)[1]};
+            size.thickness_m = thickness->value_or(size.thickness_m);
+            size.corner_m = corner->value_or(default_corner_m(size));
+            if (!*sheet) return make_stock_shape(size);
+            if (Status status = check_length("thickness", size.thickness_m, shell_thickness_range_m);
+                !status) {
+              return status.error();
+            }
+            auto open = make_stock_shape(SheetSize{size.x_size_m, size.z_size_m});
+            if (open) open->shell_thickness_m = size.thickness_m;
+            return open;
+          }};
+}
+
+NewKind add_torus(OptionSet root) {
+  const OptionSet parser = root.add_command("torus", "Level ring, closed in both directions");
+  const LengthOption ring = add_length(parser, "--ring", "Radius of the ring's centre line; default: 40mm");
+  const LengthOption tube = add_length(parser, "--tube", "Radius of the tube; default: 10mm");
+  return {parser, [=] {
+            TorusSize size;
+            size.ring_radius_m = ring->value_or(size.ring_radius_m);
+            size.tube_radius_m = tube->value_or(size.tube_radius_m);
+            return make_stock_shape(size);
+          }};
+}
+
+LengthOption add_shell_thickness(OptionSet parser) {
+  return add_length(parser, "--thickness", "Thickness of the shell that an open shape becomes; default: 2mm");
+}
+
+// Makes an open shape a shell. A thickness of a closed shape is an error.
+Result<NewShape> apply_thickness(ExactShape shape, const LengthOption& thickness) {
+  const bool open = !shape.is_closed();
+  if (!open && *thickness) {
+    return Error{ErrorCode::inconsistent,
+                 "--thickness applies to open shapes, and this one is closed; remove it", "--thickness"};
+  }
+  NewShape made{std::move(shape)};
+  if (!open) return made;
+  made.shell_thickness_m = thickness->value_or(default_shell_thickness_m);
+  if (Status status = check_length("thickness", *made.shell_thickness_m, shell_thickness_range_m); !status) {
+    return status.error();
+  }
+  return made;
+}
+
+// `path` is a list of points or the name of a CSV file.
+Result<std::vector<Vector3>> read_path(const std::string& path) {
+  if (path.find(';') != std::string::npos) return parse_points(path);
+  const auto table = read_point_table(path, {"x", "y", "z"}, false);
+  if (!table) return table.error();
+  std::vector<Vector3> points;
+  for (const auto& row : table->rows_m) points.emplace_back(row[0], row[1], row[2]);
+  return points;
+}
+
+NewKind add_tube(OptionSet root) {
+  const OptionSet parser = root.add_command("tube", "Tube along a line, with round ends");
+  auto path = std::make_shared<std::string>();
+  parser
+      .add_option("--path", *path,
+                  "Points on the centre line: a CSV file with the columns x_mm,y_mm,z_mm, or the points "
+                  "themselves, such as '0,0,0;30,10,0;60,0,0mm'")
+      .require()
+      .show_as("FILE|POINTS");
+  const LengthOption radius = add_length(parser, "--radius", "Radius of a round section; default: 5mm");
+  const LengthOption width =
+      add_length(parser, "--width", "Width of an elliptic section, level at the start");
+  const LengthOption height = add_length(parser, "--height", "Height of an elliptic section");
+  const CommandOption round = parser.option("--radius"), wide = parser.option("--width"),
+                      high = parser.option("--height");
+  round.exclude(wide).exclude(high);
+  wide.need(high);
+  high.need(wide);
+  return {parser, [=]() -> Result<NewShape> {
+            const auto points = read_path(*path);
+            if (!points) return points.error();
+            auto centre_line = SmoothCurve::through(points.value(), false);
+            if (!centre_line) return centre_line.error().in("--path");
+            TubeSize size{std::move(centre_line).value()};
+            size.half_width_m = *width ? 0.5 * **width : radius->value_or(size.half_width_m);
+            size.half_height_m = *height ? 0.5 * **height : radius->value_or(size.half_height_m);
+            auto shape = tube_shape(size);
+            if (!shape) return shape.error();
+            return NewShape{std::move(shape).value()};
+          }};
+}
+
+NewKind add_lathe(OptionSet root) {
+  const OptionSet parser = root.add_command("lathe", "Profile revolved about the vertical axis");
+  auto profile = std::make_shared<std::string>();
+  parser
+      .add_option("--profile", *profile,
+                  "CSV file with the columns radius_mm,height_mm: points on the profile. An end of radius 0 "
+                  "closes the shape; a last point equal to the first makes a ring")
+      .require()
+      .show_as("FILE");
+  const LengthOption thickness = add_shell_thickness(parser);
+  return {parser, [=]() -> Result<NewShape> {
+            const auto table = read_point_table(*profile, {"radius", "height"}, false);
+            if (!table) return table.error();
+            std::vector<MeridianPoint> points;
+            for (const auto& row : table->rows_m) points.emplace_back(row[0], row[1]);
+            auto shape = lathe_shape(points);
+            if (!shape) return shape.error().in(*profile);
+            return apply_thickness(std::move(shape).value(), thickness);
+          }};
+}
+
+Result<std::vector<std::vector<Vector3>>> read_sections(const std::string& file) {
+  const auto table = read_point_table(file, {"x", "y", "z"}, true);
+  if (!table) return table.error();
+  std::vector<std::vector<Vector3>> sections;
+  for (std::size_t k = 0; k < table->rows_m.size(); ++k) {
+    if (k == 0 || table->sections[k] != table->sections[k - 1]) sections.emplace_back();
+    const auto& row = table->rows_m[k];
+    sections.back().emplace_back(row[0], row[1], row[2]);
+  }
+  return sections;
+}
+
+NewKind add_loft(OptionSet root) {
+  const OptionSet parser = root.add_command("loft", "Surface through sections");
+  auto file = std::make_shared<std::string>();
+  parser
+      .add_option(
+          "--sections", *file,
+          "CSV file with the columns section,x_mm,y_mm,z_mm: the points of each section in order, rows "
+          "of the same section together. A first or last section of one point is a pole")
+      .require()
+      .show_as("FILE");
+  const auto open = std::make_shared<bool>(false), no_caps = std::make_shared<bool>(false);
+  CommandOption sheet = parser.add_flag("--open", *open, "Treat sections as lines, not rings: makes a sheet");
+  CommandOption pipe = parser.add_flag("--no-caps", *no_caps, "Leave both ends open").exclude(sheet);
+  const LengthOption cap = add_length(
+      parser, "--cap", "Height of the bulge of both ends; default: half the mean radius of the end");
+  parser.option("--cap").exclude(sheet).exclude(pipe);
+  const LengthOption thickness = add_shell_thickness(parser);
+  return {parser, [=]() -> Result<NewShape> {
+            auto sections = read_sections(*file);
+            if (!sections) return sections.error();
+            LoftSections loft{std::move(sections).value(), !*open, *cap, !*no_caps};
+            auto shape = loft_shape(std::move(loft));
+            if (!shape) return shape.error().in(*file);
+            return apply_thickness(std::move(shape).value(), thickness);
+          }};
+}
+
+// Watches for Ctrl+C while a shape is made. The progress bar appears only after half a second, because most
+// shapes are made at once.
+class ShapeJob {
+ public:
+  explicit ShapeJob(Console& console) : bar_(console, "Making", false) {}
+
+  // The returned object refers to this one.
   Progress progress() {
     return Progress([this](double fraction) {
-      constexpr std::chrono::milliseconds patience{500};
-      if (std::chrono::steady_clock::now() - start_ > patience) bar_.show(fraction);
+      constexpr std::chrono::milliseconds bar_delay{500};
+      if (std::chrono::steady_clock::now() - start_ > bar_delay) bar_.show(fraction);
       stopped_ = stopped_ || interrupt_.requested();
       return !stopped_;
     });
@@ -66,22 +327,22 @@ class Making {
   bool stopped_ = false;
 };
 
-// Of the work, where a shape is to be fitted and then looked at for where it meets itself.
-constexpr double fit_share = 0.8;
-
-// Lines and profiles may lead a shape through itself.
-Status check_apart(const Surface& surface, bool closed, Making& making) {
+// Returns an error if the surface passes through itself, as lines and profiles may cause.
+Status check_self_intersection(const Surface& surface, bool closed, ShapeJob& job) {
   const auto grid = make_nested_grid(surface.u, surface.v, 0);
   if (!grid) return grid.error();
   SurfaceSelfCollider collider(grid.value());
   SelfQuery query;
   query.closed = closed;
-  query.progress = making.progress().part(fit_share, 1.0);
+  query.progress = job.progress().part(fit_fraction, 1.0);
   const SelfResult result = collider.collide(surface, query);
   if (result.stopped || !result.touching) return {};
-  if (collider.contacts().empty()) return Error{"the shape passes through itself; make it thinner or wider"};
-  return Error{"the shape passes through itself near " + position_text(collider.contacts()[0].pair.first_m) +
-               "; make it thinner or its line wider there"};
+  if (collider.contacts().empty()) {
+    return Error{ErrorCode::self_intersecting, "the shape passes through itself; make it thinner or wider"};
+  }
+  return Error{ErrorCode::self_intersecting, "the shape passes through itself near " +
+                                                 position_text(collider.contacts()[0].pair.first_m) +
+                                                 "; make it thinner or its line wider there"};
 }
 
 void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShape& fitted,
@@ -98,19 +359,19 @@ void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShap
   if (closed) facts.add("Volume", volume_text(mass.volume_m3), "volume_m3", mass.volume_m3);
 }
 
-Result<FittedShape> fit_with_progress(const NewOptions& options, const NewShape& made, ShapeFit fit,
-                                      Console& console) {
-  Making making(console);
-  fit.progress = making.progress().part(0.0, fit_share);
+Result<FittedShape> fit_new_shape(const NewOptions& options, const NewShape& made, ShapeFit fit,
+                                  Console& console) {
+  ShapeJob job(console);
+  fit.progress = job.progress().part(0.0, fit_fraction);
   auto fitted = fit_shape(made.shape, fit);
-  Status apart;
-  const bool may_meet = fitted && !(fitted->deviation_m < 0.5 * made.reach_m);
-  if (may_meet) apart = check_apart(fitted->surface, made.shape.is_closed(), making);
-  if (making.stopped()) {
-    making.answer();
-    return Error{"stopped; " + options.out.string() + " was not written"};
+  Status checked;
+  const bool may_intersect = fitted && !(fitted->deviation_m < 0.5 * made.reach_m);
+  if (may_intersect) checked = check_self_intersection(fitted->surface, made.shape.is_closed(), job);
+  if (job.stopped()) {
+    job.answer();
+    return stopped_before_writing(options.out);
   }
-  if (!apart) return apart.error();
+  if (!checked) return checked.error();
   return fitted;
 }
 
@@ -122,7 +383,7 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   ShapeFit fit;
   fit.tolerance_m = options.tolerance_m.value_or(default_tolerance_m(made->shape));
   if (options.control) fit.control_counts = {{options.control->width, options.control->height}};
-  auto fitted = fit_with_progress(options, made.value(), fit, console);
+  auto fitted = fit_new_shape(options, made.value(), fit, console);
   if (!fitted) return fitted.error();
   const std::string name = options.name.empty() ? kind.parser.name() : options.name;
   const Document document =
@@ -134,27 +395,35 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   facts.add("Kind", kind.parser.name(), "kind", kind.parser.name());
   add_size_fact(facts, extent_of(fitted->surface));
   add_shape_facts(facts, made->shape, fitted.value(), fit.tolerance_m);
-  std::vector<std::string> remarks;
+  std::vector<std::string> notes;
   if (made->shape.is_closed() && made->shape.v.periodic) {
-    remarks.emplace_back("a ring is sculpted in a box of cells: no lattice can be bent along it");
+    notes.emplace_back("a ring is sculpted in a box of cells: a lattice cannot follow it");
   }
-  add_remarks(facts, remarks);
+  add_notes(facts, notes);
   facts.print(console.out, options.json);
   return {};
 }
 
-void add_fit_options(OptionSet parser, NewOptions& options) {
+void add_shape_options(OptionSet parser, NewOptions& options) {
   add_parsed_option(
       parser, "--control", "UxV",
-      [](const std::string& text) { return parse_extent(text, control_range, "24x24"); },
+      [](const std::string& text) { return parse_extent(text, new_control_range, "24x24"); },
       [&options](const Extent& control) { options.control = control; },
-      "So many control points along u and v; as many as the tolerance needs unless told");
+      "Control points along u and v, each from " + std::to_string(new_control_range.low) + " to " +
+          std::to_string(new_control_range.high) + "; default: as many as the tolerance needs");
   add_parsed_option(
       parser, "--tolerance", "LENGTH",
-      [](const std::string& text) { return parse_length(text, tolerance_range_m); },
+      [](const std::string& text) { return parse_length(text, new_tolerance_range_m); },
       [&options](double tolerance_m) { options.tolerance_m = tolerance_m; },
-      "How far the surface may be from the exact shape; 0.01mm unless told, less below 10mm, more of "
-      "what is larger than 1m every way");
+      "Largest distance from the exact shape; default: 0.01mm, less for shapes below 10mm, more for shapes "
+      "above 1m in every direction; range: " +
+          short_length_text(new_tolerance_range_m.low) + " to " +
+          short_length_text(new_tolerance_range_m.high));
+  parser.add_option("--material", options.material,
+                    "Bundled material or a part of its name; default: modelling-clay");
+  parser.add_option("--name", options.name, "Name of the body and the document; default: the kind of shape");
+  add_document_output(parser, options.out).require();
+  add_json_option(parser, options.json);
 }
 
 }  // namespace
@@ -163,21 +432,15 @@ CommandEntry add_new(OptionSet root) {
   auto options = std::make_shared<NewOptions>();
   const OptionSet parser = root.add_command("new", "Make a shape to start from");
   parser.set_footer(
-      "Each shape is one B-spline surface of real size, about the origin, y up, fitted to the exact shape.\n"
-      "`spoonbill new KIND --help` tells the sizes of a kind; each has a unit: mm, cm, m or in.\n"
+      "Each shape is one B-spline surface of real size, centred at the origin with y up, fitted to the "
+      "exact\n"
+      "shape. `spoonbill new KIND --help` lists the sizes of a kind; each has a unit: mm, cm, m or in.\n"
       "Example: spoonbill new box --size 60x40x20mm --rounding 3mm --out box.json");
   parser.require_command();
-  std::vector<NewKind> kinds = add_lump_kinds(parser);
-  for (NewKind& kind : add_swept_kinds(parser)) kinds.push_back(std::move(kind));
-  for (const NewKind& kind : kinds) {
-    add_fit_options(kind.parser, *options);
-    kind.parser.add_option("--material", options->material,
-                           "One that comes with the program, or a part of its name; modelling-clay unless "
-                           "told");
-    kind.parser.add_option("--name", options->name, "Of the body and the document; its kind unless told");
-    add_document_output(kind.parser, options->out).require();
-    add_json_option(kind.parser, options->json);
-  }
+  std::vector<NewKind> kinds = {add_sphere(parser), add_box(parser),   add_cylinder(parser),
+                                add_cone(parser),   add_plate(parser), add_torus(parser),
+                                add_tube(parser),   add_lathe(parser), add_loft(parser)};
+  for (const NewKind& kind : kinds) add_shape_options(kind.parser, *options);
   return {parser, [options, kinds = std::move(kinds)](Console& console) {
             const auto chosen = std::find_if(kinds.begin(), kinds.end(),
                                              [](const NewKind& kind) { return kind.parser.is_chosen(); });

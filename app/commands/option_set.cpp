@@ -11,12 +11,12 @@
 namespace spoonbill {
 namespace {
 
-// As a person would say it.
-std::string complaint(const CLI::App& parser, const CLI::ParseError& error) {
+// Returns CLI11's message in the program's own words.
+std::string wrong_use_text(const CLI::App& parser, const CLI::ParseError& error) {
   const std::string text = one_line(error.what());
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && parser.get_require_subcommand_min() > 0) {
     const std::vector<std::string> words = parser.remaining();
-    return words.empty() ? "a command is missing" : "'" + excerpt(words.front()) + "' is no command";
+    return words.empty() ? "a command is missing" : "'" + excerpt(words.front()) + "' is not a command";
   }
   const std::size_t twice = text.find(": At Most 1 required but received");
   return twice == std::string::npos ? text : text.substr(0, twice) + " is given more than once";
@@ -29,10 +29,10 @@ std::string explain_wrong_use(const CLI::App& root, const CLI::ParseError& error
     parser = parser->get_subcommands().front();
     command += " " + parser->get_name();
   }
-  return root.get_name() + ": " + complaint(*parser, error) + "; see `" + command + " --help`\n";
+  return root.get_name() + ": " + wrong_use_text(*parser, error) + "; see `" + command + " --help`\n";
 }
 
-// Their names say what they are; that they are text says nothing.
+// Removes the type after the name of positional arguments in --help: "FILE", not "FILE TEXT".
 void hide_types_of_positionals(CLI::App& parser) {
   for (CLI::Option* option : parser.get_options({})) {
     if (option->get_positional()) option->type_name("");
@@ -125,8 +125,8 @@ CommandOption OptionSet::option(const std::string& name) const {
 void OptionSet::set_footer(const std::string& text) const {
   parser_->footer(text);
 }
-void OptionSet::hide() const {
-  parser_->group("");
+void OptionSet::set_group(const std::string& heading) const {
+  parser_->group(heading);
 }
 void OptionSet::require_command() const {
   parser_->require_subcommand(1);

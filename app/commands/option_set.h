@@ -1,14 +1,14 @@
-// The options of the command line. CLI11 parses them, behind this header: it is a library of templates that
-// takes a source eight seconds to compile.
+// The options of the command line. CLI11 parses them behind this header, because its templates take eight
+// seconds to compile.
 //
 //   CommandLine line("Shape B-spline surfaces by touch.", "spoonbill");
-//   OptionSet info = line.options().add_command("info", "Tell what a file holds");
-//   info.add_option("FILE", file, "A document").require();
+//   OptionSet info = line.options().add_command("info", "Describe a file");
+//   info.add_option("FILE", file, "Document (.json)").require();
 //   info.add_flag("--json", json, "Print one JSON object");
 //   const CommandLine::Parsed parsed = line.parse(arguments);
 //
-// The targets that options write to, and all that their functions refer to, must live until parse() has
-// returned. All calls come from one thread.
+// The targets of options, and everything that their functions refer to, must live until parse() has returned.
+// All calls come from one thread.
 #pragma once
 
 #include <cstdint>
@@ -29,32 +29,33 @@ class Option;
 
 namespace spoonbill {
 
-// One option or positional argument. A handle: copies mean the same option, which its CommandLine owns.
+// A handle to one option or positional argument, which its CommandLine owns. Copies refer to the same option.
 class CommandOption {
  public:
   explicit CommandOption(CLI::Option* option) : option_(option) {}
 
-  // The command line must have it.
+  // A command line without this option is wrong use.
   CommandOption require() const;
-  // Replaces the kind of value that --help shows.
+  // Replaces the name of the value's type that --help shows.
   CommandOption show_as(const std::string& form) const;
   // A value outside the range is wrong use.
   CommandOption limit(Range<int> range) const;
   CommandOption limit(Range<double> range) const;
   CommandOption limit(Range<std::uint64_t> range) const;
-  // Wrong use without the other one, or together with it.
+  // This option without the other one is wrong use.
   CommandOption need(CommandOption other) const;
+  // This option together with the other one is wrong use.
   CommandOption exclude(CommandOption other) const;
 
  private:
   CLI::Option* option_;
 };
 
-// The options of the program or of one command, and the commands below it. A handle, as CommandOption is. A
-// name that begins with dashes is an option, any other a positional argument.
+// A handle to the options and subcommands of the program or of one command. A name that begins with dashes
+// is an option, any other a positional argument.
 class OptionSet {
  public:
-  // An error is wrong use; the option's name is put before its message.
+  // Parses one value. An error is wrong use; its message is shown after the option's name.
   using Parse = std::function<Status(const std::string&)>;
   using ParseList = std::function<Status(const std::vector<std::string>&)>;
 
@@ -71,37 +72,56 @@ class OptionSet {
   CommandOption add_option(const std::string& name, std::uint64_t& value, const std::string& help) const;
   CommandOption add_option(const std::string& name, std::optional<double>& value,
                            const std::string& help) const;
-  // The function receives the text, or all texts where the option may be given several times.
+  // Calls `parse` with the text of an option that may be given once.
   CommandOption add_parsed(const std::string& name, const Parse& parse, const std::string& help) const;
+  // Calls `parse` with all texts of an option that may be given several times.
   CommandOption add_parsed_list(const std::string& name, const ParseList& parse,
                                 const std::string& help) const;
 
-  // An option that was added before.
+  // Returns an option that has been added to this set.
   CommandOption option(const std::string& name) const;
-  // The text below the options that --help shows.
+  // Sets the text that --help shows below the options.
   void set_footer(const std::string& text) const;
-  // Not shown by --help.
-  void hide() const;
-  // One of the commands below must be given.
+  // Sets the heading under which --help lists this command; an empty one hides the command.
+  void set_group(const std::string& heading) const;
+  // A command line without a subcommand is wrong use.
   void require_command() const;
-  // Called once all options have been read, in whichever order they came; an error's whole message is what is
-  // said.
+  // Sets a check that runs after all options have been read, whatever their order. An error is wrong use, and
+  // its message is shown as it is.
   void set_final_check(const std::function<Status()>& check) const;
 
   std::string name() const;
-  // Returns true where the command line named this command; valid after parse().
+  // Returns true if the command line named this command. Valid after parse().
   bool is_chosen() const;
 
  private:
   CLI::App* parser_;
 };
 
+// Adds an option whose text `parse` turns into a Result and whose value `store` receives. `form` is the type
+// that --help shows.
+template <class Parse, class Store>
+CommandOption add_parsed_option(OptionSet parser, const std::string& name, const char* form,
+                                const Parse& parse, const Store& store, const std::string& help) {
+  return parser
+      .add_parsed(
+          name,
+          [=](const std::string& text) -> Status {
+            auto value = parse(text);
+            if (!value) return value.error();
+            store(value.value());
+            return {};
+          },
+          help)
+      .show_as(form);
+}
+
 class CommandLine {
  public:
   enum class Outcome {
     parsed,
     answered,  // --help or --version: `text` is the answer
-    wrong_use  // `text` is one line that says what is wrong and where to read on
+    wrong_use  // `text` is one line: what is wrong and which --help to read
   };
   struct Parsed {
     Outcome outcome = Outcome::parsed;
@@ -114,9 +134,9 @@ class CommandLine {
   CommandLine& operator=(const CommandLine&) = delete;
 
   OptionSet options() const;
-  // What --version prints.
+  // Sets the text that --version prints.
   void set_version(const std::string& text);
-  // `arguments` without the program's name.
+  // `arguments` excludes the program's name.
   Parsed parse(const std::vector<std::string>& arguments);
 
  private:

@@ -1,6 +1,8 @@
-// The forms that option values take on the command line. Messages say what was given and what is wanted.
+// Values that people write on the command line and in tables: lengths, poses, lists, points. Every error
+// quotes the text and shows the expected form.
 #pragma once
 
+#include <filesystem>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -20,27 +22,27 @@ struct Extent {
   int height = 0;
 };
 
-// "1280x720", both numbers within the range; the example is what the refusal shows.
+// Parses "1280x720", both numbers within the range. The error message shows `example`.
 Result<Extent> parse_extent(std::string_view text, Range<int> range, const char* example);
 
-// "10mm,0,0,1,0,0,0": x, y and z, each with its unit unless it is 0, within position_range_m; then the turn
-// as a quaternion w,x,y,z of any length but 0.
+// Parses "10mm,0,0,1,0,0,0": x, y and z within position_range_m, each with a unit unless it is 0, then the
+// orientation as a quaternion w,x,y,z of any length but 0.
 Result<Pose> parse_pose(std::string_view text);
 
-// "5mm", "0.2in", "2inch": a length with its unit, unless it is 0, within the range.
+// Parses a length within the range, with a unit unless it is 0: "5mm", "0.2in", "2inch".
 Result<double> parse_length(std::string_view text, Range<double> range_m);
 
-// "60x40x20mm", "6cmx40mmx20mm": so many lengths within the range, the last with its unit, which is that of
-// those before it that have none.
+// Parses `count` lengths within the range: "60x40x20mm", "6cmx40mmx20mm". The last must have a unit; any
+// other without one has the unit of the next that has.
 Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t count, Range<double> range_m);
 
-// "C2": an order of continuity from C0 to C8, which the highest degree can have.
+// Parses an order of continuity, "C0" to "C8", the order that the highest degree allows.
 Result<int> parse_continuity(const std::string& text);
 
-// "1,3-5": places counted from 1, at most 1000 of them, each once and in the order given.
-Result<std::vector<int>> parse_places(std::string_view text);
+// Parses "1,3-5": at most 1000 numbers from 1, in the given order, duplicates removed.
+Result<std::vector<int>> parse_number_list(std::string_view text);
 
-// One of these words, for what it stands for.
+// Returns the value of one of the words.
 template <class Value>
 Result<Value> parse_choice(std::string_view text,
                            std::initializer_list<std::pair<const char*, Value>> choices) {
@@ -49,13 +51,32 @@ Result<Value> parse_choice(std::string_view text,
     if (text == choice.first) return choice.second;
     known += (known.empty() ? "" : ", ") + std::string(choice.first);
   }
-  return Error{"'" + excerpt(text) + "' is none of " + known};
+  return Error{ErrorCode::unknown, "'" + excerpt(text) + "' is unknown; choose from " + known};
 }
 
-// "u_start", "u_end", "v_start" or "v_end".
+// Parses "u_start", "u_end", "v_start" or "v_end".
 Result<Side> parse_side(std::string_view text);
 
-// "mm", "cm", "m" or "in"; "inch" too.
+// Parses "mm", "cm", "m", "in" or "inch".
 Result<LengthUnit> parse_unit(std::string_view text);
+
+// Parses "0,0,0;10,5,0;20,0,0mm": points of three coordinates, the last one with the unit of all.
+Result<std::vector<Vector3>> parse_points(const std::string& text);
+
+// A table of lengths in metres, optionally with a leading column of whole numbers named "section".
+struct PointTable {
+  std::vector<int> sections;                // one per row; empty without the column
+  std::vector<std::vector<double>> rows_m;  // one length per column
+};
+
+// Reads a CSV file of at most 16 MiB and 100,000 rows. The first line names the columns in the given order,
+// each with mm, cm, m or in: "x_mm,y_mm,z_mm". Empty lines, lines that begin with # and a byte order mark are
+// ignored. An error names the line: other columns, too few values, not a number, beyond 100 m.
+Result<PointTable> read_point_table(const std::filesystem::path& file,
+                                    const std::vector<std::string>& columns, bool with_section);
+
+// Parses the content of such a file; `source` names it in messages.
+Result<PointTable> point_table(const std::string& text, const std::string& source,
+                               const std::vector<std::string>& columns, bool with_section);
 
 }  // namespace spoonbill

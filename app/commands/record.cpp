@@ -5,15 +5,12 @@
 #include <string>
 
 #include "app/commands/command.h"
-#include "app/commands/common_options.h"
 #include "app/commands/option_set.h"
-#include "app/files/document_file.h"
-#include "app/interrupt.h"
+#include "app/files/documents.h"
 #include "app/live/performance.h"
+#include "app/report/document_facts.h"
 #include "app/report/fact_sheet.h"
-#include "app/report/hash_text.h"
-#include "app/report/map_progress.h"
-#include "app/report/progress_bar.h"
+#include "app/report/quantity_text.h"
 #include "app/session/lockstep.h"
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
@@ -33,24 +30,28 @@ struct RecordOptions {
   bool json = false;
 };
 
-constexpr std::uint64_t ticks_between_looks = 100;
+constexpr std::uint64_t ticks_between_checks = 100;  // of progress and Ctrl+C
 
-Status run(Lockstep& lockstep, Session& session, Console& console) {
+Error stopped_recording(std::uint64_t ticks) {
+  return Error{ErrorCode::cancelled,
+               "stopped after " + std::to_string(ticks) + " ticks; the recording replays up to there"};
+}
+
+Status run_recording(Lockstep& lockstep, Session& session, Console& console) {
   InterruptWatch interrupt;
   ProgressBar progress(console, "Recording", false);
   while (lockstep.tick() < lockstep.tick_count()) {
-    if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_looks); !ran) return ran;
-    session.marks.clear();  // the replay makes these files
+    if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_checks); !ran) return ran;
+    session.marks.clear();  // the replay writes these files
     progress.show(lockstep.tick(), lockstep.tick_count());
     if (!interrupt.requested()) continue;
     interrupt.answer();
-    return Error{"stopped after " + std::to_string(lockstep.tick()) +
-                 " ticks; the recording replays up to there"};
+    return stopped_recording(lockstep.tick());
   }
   return lockstep.finish();
 }
 
-// `model` names the file of the header's document in messages.
+// Records one session. `model` names the document's file in messages.
 Status record_input(const RecordOptions& options, const RecordingHeader& header, const std::string& model,
                     LockstepInput input, Console& console) {
   if (Status checked = check_commands(input.commands); !checked) return checked;
@@ -59,13 +60,13 @@ Status record_input(const RecordOptions& options, const RecordingHeader& header,
     return Session::make(header.document, model, header.device, options.instruction_set, maps.watch());
   }();
   if (!session) return session.error();
-  for (const std::string& remark : session->simulation.remarks()) console.err << remark << '\n';
+  for (const std::string& note : session->simulation.remarks()) console.err << note << '\n';
   auto writer = RecordingWriter::create(options.out, header);
   if (!writer) return writer.error();
   const std::size_t command_count = input.commands.size();
   Lockstep lockstep(session.value(), std::move(input), &writer.value());
-  if (Status ran = run(lockstep, session.value(), console); !ran) return ran;
-  if (Status placed = writer->commit(); !placed) return placed;
+  if (Status ran = run_recording(lockstep, session.value(), console); !ran) return ran;
+  if (Status committed = writer->commit(); !committed) return committed;
 
   FactSheet facts;
   const double duration_s = tick_s * static_cast<double>(lockstep.tick());
@@ -84,7 +85,7 @@ std::string microseconds_text(double seconds) {
   return number_text(std::round(1e6 * seconds)) + " us";
 }
 
-void add_loop(const LoopFigures& loop, FactSheet& facts) {
+void add_loop_facts(const LoopFigures& loop, FactSheet& facts) {
   facts.add("Ticks", std::to_string(loop.ticks), "ticks", loop.ticks);
   facts.add("Missed", std::to_string(loop.missed), "missed", loop.missed);
   facts.add("", "", "late", loop.late);
@@ -115,13 +116,10 @@ Status record_live(const RecordOptions& options, const Script& script, const Doc
   if (stopped) interrupt.answer();
   if (!report) return report.error();
   for (const Notice& notice : report->notices) console.err << "spoonbill: " << notice.text << '\n';
-  if (stopped) {
-    return Error{"stopped after " + std::to_string(report->loop.ticks) +
-                 " ticks; the recording replays up to there"};
-  }
+  if (stopped) return stopped_recording(report->loop.ticks);
   FactSheet facts;
   facts.add("Recording", options.out.string(), "out", options.out.string());
-  add_loop(report->loop, facts);
+  add_loop_facts(report->loop, facts);
   if (options.draw) facts.add("Frames", std::to_string(report->frames), "frames", report->frames);
   facts.print(console.out, options.json);
   return {};
@@ -132,13 +130,14 @@ Status record_script(const RecordOptions& options, Console& console) {
   if (!script) return script.error();
   std::error_code ignored;
   if (std::filesystem::equivalent(script->model_file, options.out, ignored)) {
-    return Error{options.out.string() + ": is the model of the script; choose another name"};
+    return Error{ErrorCode::inconsistent,
+                 options.out.string() + ": is the model of the script; choose another name", "--out"};
   }
   auto document = read_document(script->model_file);
   if (!document) return document.error();
   if (options.live) return record_live(options, script.value(), document.value(), console);
   auto device = ScriptedDevice::make(script.value());
-  if (!device) return Error{options.source.string() + ": " + device.error().message};
+  if (!device) return device.error().in(options.source.string());
   LockstepInput input;
   input.device = &device.value();
   input.tick_count = script->tick_count();
@@ -148,7 +147,7 @@ Status record_script(const RecordOptions& options, Console& console) {
                       script->model_file.string(), std::move(input), console);
 }
 
-// The readings stay as they were; states and hashes are this version's.
+// Records the device readings of a recording again, with this version's states and hashes.
 Status record_again(const RecordOptions& options, Console& console) {
   const auto recording = read_recording(options.source);
   if (!recording) return recording.error();
@@ -162,21 +161,25 @@ Status record_again(const RecordOptions& options, Console& console) {
   return record_input(options, recording->header, options.source.string(), std::move(input), console);
 }
 
-Status record(const RecordOptions& options, Console& console) {
+Status record_source(const RecordOptions& options, Console& console) {
   if (Status native = check_native_name(options.source); !native) return native;
   const auto format = find_native_format(options.source);
   if (!format) return format.error();
   std::error_code ignored;
   if (std::filesystem::equivalent(options.source, options.out, ignored)) {
-    return Error{options.out.string() + ": is the source itself; choose another name"};
+    return Error{ErrorCode::inconsistent,
+                 options.out.string() + ": is the source itself; choose another name", "--out"};
   }
   if (format.value() == FileFormat::script) return record_script(options, console);
-  if (options.live) return Error{options.source.string() + ": only a script can be performed live"};
+  if (options.live) {
+    return Error{ErrorCode::unsupported,
+                 options.source.string() + ": only a script can be performed live; remove --live", "--live"};
+  }
   if (format.value() == FileFormat::recording) return record_again(options, console);
-  return Error{options.source.string() + ": is neither a script nor a recording"};
+  return Error{ErrorCode::unsupported, options.source.string() + ": is neither a script nor a recording"};
 }
 
-std::string tool_action_lines() {
+std::string list_tool_actions() {
   std::string lines;
   for (const ToolActionRow& row : tool_actions) {
     std::string name = row.name;
@@ -191,25 +194,23 @@ std::string tool_action_lines() {
 CommandEntry add_record(OptionSet root) {
   auto options = std::make_shared<RecordOptions>();
   const OptionSet parser =
-      root.add_command("record", "Play a script of tool motions on the model that it names, and record it");
+      root.add_command("record", "Perform a script of tool motions on its model and record it");
   parser.set_footer(
-      "An imitated hand of known mass and stiffness follows the script and feels the material's force; the "
-      "path\n"
-      "that results is recorded, tick by tick, with the model. A recording as the source keeps its path and "
-      "gets\n"
-      "this version's states: do that when `replay` says that another version made it.\n"
-      "What a tool may do, the \"action\" of a script's `set_tool`:\n" +
-      tool_action_lines() +
+      "A simulated hand of known mass and stiffness follows the script and reacts to the material's force;\n"
+      "its path is recorded tick by tick, with the model. A recording as SOURCE keeps its path and gets "
+      "this\n"
+      "version's states: do that if `replay` reports that another version made it.\n"
+      "Tool actions, the \"action\" of a script's `set_tool`:\n" +
+      list_tool_actions() +
       "Example: spoonbill record assets/recordings/spoon-handle-bend.script.json --out bend.recording.jsonl");
-  parser.add_option("SOURCE", options->source, "A script (.json), or a recording").require();
-  parser.add_option("--out", options->out, "The recording to write").require();
-  CommandOption live =
-      parser.add_flag("--live", options->live,
-                      "Perform the script in real time on the 1 kHz thread, and report how well that held");
-  parser.add_flag("--draw", options->draw, "Draw sixty frames a second beside it, into memory").need(live);
+  parser.add_option("SOURCE", options->source, "Script (.json) or recording").require();
+  parser.add_option("--out", options->out, "Recording to write").require();
+  CommandOption live = parser.add_flag(
+      "--live", options->live, "Perform the script in real time on the 1 kHz thread, and report its timing");
+  parser.add_flag("--draw", options->draw, "Also draw 60 frames per second into memory").need(live);
   add_instruction_set_option(parser, options->instruction_set);
   add_json_option(parser, options->json);
-  return {parser, [options](Console& console) { return record(*options, console); }};
+  return {parser, [options](Console& console) { return record_source(*options, console); }};
 }
 
 }  // namespace spoonbill

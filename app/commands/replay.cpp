@@ -4,18 +4,15 @@
 #include <string>
 
 #include "app/commands/command.h"
-#include "app/commands/common_options.h"
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/frames/marked_files.h"
 #include "app/frames/painting_crew.h"
 #include "app/frames/replay_pictures.h"
-#include "app/interrupt.h"
 #include "app/panel/session_panel.h"
+#include "app/report/document_facts.h"
 #include "app/report/fact_sheet.h"
-#include "app/report/hash_text.h"
-#include "app/report/map_progress.h"
-#include "app/report/progress_bar.h"
+#include "app/report/quantity_text.h"
 #include "app/session/lockstep.h"
 #include "engine/base/geometry.h"
 #include "haptic/virtual_device.h"
@@ -24,7 +21,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr Range<int> picture_side_range{64, 7680};
+constexpr Range<int> picture_size_range{64, 7680};
 
 struct ReplayOptions {
   std::filesystem::path recording;
@@ -46,27 +43,29 @@ struct Replay {
   Console& console;
 };
 
-Error stopped(const Lockstep& lockstep, InterruptWatch& interrupt) {
+Error stopped_replay(const Lockstep& lockstep, InterruptWatch& interrupt) {
   interrupt.answer();
-  return Error{"stopped after " + std::to_string(lockstep.tick()) + " of " +
-               std::to_string(lockstep.tick_count()) + " ticks; the frames that are there are whole"};
+  return Error{ErrorCode::cancelled, "stopped after " + std::to_string(lockstep.tick()) + " of " +
+                                         std::to_string(lockstep.tick_count()) +
+                                         " ticks; the frames written so far are complete"};
 }
 
 Status run_without_pictures(const Replay& replay) {
-  constexpr std::uint64_t ticks_between_looks = 100;
+  constexpr std::uint64_t ticks_between_checks = 100;  // of progress and Ctrl+C
   InterruptWatch interrupt;
   ProgressBar progress(replay.console, "Replaying", replay.options.progress);
   Lockstep& lockstep = replay.lockstep;
   while (lockstep.tick() < lockstep.tick_count()) {
-    if (interrupt.requested()) return stopped(lockstep, interrupt);
-    if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_looks); !ran) return ran;
-    replay.session.marks.clear();  // there is no folder to make files in
+    if (interrupt.requested()) return stopped_replay(lockstep, interrupt);
+    if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_checks); !ran) return ran;
+    replay.session.marks.clear();  // there is no folder for these files
     progress.show(lockstep.tick(), lockstep.tick_count());
   }
   return lockstep.finish();
 }
 
-PictureRequest picture_request(const ReplayOptions& options, const Lockstep& lockstep, Console& console) {
+PictureRequest make_picture_request(const ReplayOptions& options, const Lockstep& lockstep,
+                                    Console& console) {
   PictureRequest request;
   request.width_px = options.size.width;
   request.height_px = options.size.height;
@@ -77,13 +76,14 @@ PictureRequest picture_request(const ReplayOptions& options, const Lockstep& loc
   if (VideoEncoder::available()) {
     request.video = options.video;
   } else {
-    console.err << "spoonbill: no video is made, because ffmpeg is not installed\n";
+    console.err << "spoonbill: no video is made because ffmpeg is not installed\n";
   }
   return request;
 }
 
-// The frame that shows the session as it stands.
-PaintingJob job_of(std::uint64_t frame, Session& session, const Box& framed, const PictureRequest& request) {
+// Returns the job that paints the session's current state.
+PaintingJob make_painting_job(std::uint64_t frame, Session& session, const Box& framed,
+                              const PictureRequest& request) {
   PaintingJob job;
   job.frame = frame;
   write_snapshot(session, job.snapshot);
@@ -95,11 +95,13 @@ PaintingJob job_of(std::uint64_t frame, Session& session, const Box& framed, con
   return job;
 }
 
-Status keep_oldest(PaintingCrew& crew, const PictureRequest& request, ReplayPictures& pictures) {
+// Waits for the oldest frame in progress and writes it.
+Status write_oldest_frame(PaintingCrew& crew, const PictureRequest& request, ReplayPictures& pictures) {
   auto painted = crew.take();
   if (!painted) return painted.error();
   for (const std::string& name : painted->also_as) {
-    if (Status kept = write_marked_picture(painted->picture, name, *request.folder); !kept) return kept;
+    if (Status written = write_marked_picture(painted->picture, name, *request.folder); !written)
+      return written;
   }
   return pictures.add(painted->frame, painted->time_s, std::move(painted->picture));
 }
@@ -116,30 +118,30 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
     if (Status ran = replay.lockstep.run_to(tick_of_frame(frame)); !ran) return ran;
     auto names = take_marks(replay.session, request.folder);
     if (!names) return names.error();
-    PaintingJob job = job_of(frame, replay.session, framed, request);
+    PaintingJob job = make_painting_job(frame, replay.session, framed, request);
     job.also_as = std::move(names).value();
     if (crew.is_full()) {
-      if (Status kept = keep_oldest(crew, request, pictures); !kept) return kept;
+      if (Status written = write_oldest_frame(crew, request, pictures); !written) return written;
     }
     crew.start(std::move(job));
     progress.show(frame + 1, request.frame_count);
   }
   while (crew.in_flight() > 0) {
-    if (Status kept = keep_oldest(crew, request, pictures); !kept) return kept;
+    if (Status written = write_oldest_frame(crew, request, pictures); !written) return written;
   }
   progress.show(1, 1);
   return {};
 }
 
 Status run_with_pictures(const Replay& replay, FactSheet& facts) {
-  const PictureRequest request = picture_request(replay.options, replay.lockstep, replay.console);
+  const PictureRequest request = make_picture_request(replay.options, replay.lockstep, replay.console);
   if (!request.folder && !request.video) return run_without_pictures(replay);
   retain_freed_memory();
   InterruptWatch interrupt;
   auto pictures = ReplayPictures::start(request);
   if (!pictures) return pictures.error();
   if (Status drawn = draw_frames(replay, request, pictures.value(), interrupt); !drawn) return drawn;
-  if (interrupt.requested()) return stopped(replay.lockstep, interrupt);
+  if (interrupt.requested()) return stopped_replay(replay.lockstep, interrupt);
   if (Status finished = replay.lockstep.finish(); !finished) return finished;
   if (auto late = take_marks(replay.session, request.folder); !late) return late.error();
   if (Status finished = pictures->finish(); !finished) return finished;
@@ -184,7 +186,7 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
   facts.add("Ticks", std::to_string(recording.readings.size()), "ticks", recording.readings.size());
   if (Status ran = run_with_pictures({options, session.value(), lockstep, console}, facts); !ran) return ran;
   if (writer) {
-    if (Status placed = writer->commit(); !placed) return placed;
+    if (Status committed = writer->commit(); !committed) return committed;
   }
   const std::string hash = hash_text(state_hash(session.value()));
   facts.add("State hash", hash, "state_hash", hash);
@@ -194,67 +196,72 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
   return {};
 }
 
-Status replay(const ReplayOptions& options, Console& console) {
+Status replay_file(const ReplayOptions& options, Console& console) {
   const auto recording = read_recording(options.recording);
   if (!recording) return recording.error();
   std::error_code ignored;
   if (std::filesystem::equivalent(options.recording, options.rerecord, ignored)) {
-    return Error{options.rerecord.string() + ": is the source itself; choose another name"};
+    return Error{ErrorCode::inconsistent,
+                 options.rerecord.string() + ": is the source itself; choose another name", "--rerecord"};
   }
   if (!recording->notice.empty()) console.err << "spoonbill: " << recording->notice << '\n';
   return replay_recording(options, recording.value(), console);
 }
 
 void add_picture_options(OptionSet parser, const std::shared_ptr<ReplayOptions>& options) {
-  parser.add_option("--out", options->out, "The folder for frame-####.png and contact-sheet.png")
+  parser
+      .add_option("--out", options->out,
+                  "Folder for frame-####.png and contact-sheet.png; required unless --no-frames is given")
       .show_as("DIR");
   parser
       .add_parsed(
           "--size",
           [options](const std::string& text) -> Status {
-            const auto size = parse_extent(text, picture_side_range, "1280x720");
+            const auto size = parse_extent(text, picture_size_range, "1280x720");
             if (!size) return size.error();
             options->size = size.value();
             return {};
           },
-          "The frames' size in pixels; 1280x720 unless told. The panel needs 750x700")
+          "Frame size in pixels, each from 64 to 7680; default: 1280x720. The panel needs 750x700")
       .show_as("WxH");
-  parser.add_option("--every", options->every, "Draw only each N-th frame; 1 unless told")
+  parser
+      .add_option("--every", options->every, "Interval between drawn frames; default: 1, range: 1 to 1000000")
       .limit(Range<std::uint64_t>{1, 1000000})
       .show_as("N");
   parser
       .add_option("--video", options->video,
-                  "Also make a video, when ffmpeg is installed; the ending tells the format")
+                  "Video to write if ffmpeg is installed; its ending selects the format. Default: none")
       .show_as("FILE");
-  parser.add_flag("--no-frames", options->no_frames, "Draw nothing; only compute and compare");
+  parser.add_flag("--no-frames", options->no_frames, "Draw nothing; only compute and compare the states");
 }
 
 }  // namespace
 
 CommandEntry add_replay(OptionSet root) {
   auto options = std::make_shared<ReplayOptions>();
-  const OptionSet parser = root.add_command("replay", "Replay a recording and draw what happened");
+  const OptionSet parser =
+      root.add_command("replay", "Replay a recording, verify its states and draw frames");
   parser.set_footer(
-      "Frame k shows the state after floor(k * 1000 / 60) ticks of 1 ms, on any machine and load. The states "
+      "Frame k shows the state after floor(k * 1000 / 60) ticks of 1 ms, on any machine and load. States "
       "are\n"
-      "compared with those in the recording; a difference is an error that names the tick. A recording that "
-      "was\n"
-      "cut replays up to the cut. Frames of an earlier replay in DIR are replaced.\n"
+      "compared with those in the recording; a difference is an error that names the tick. A truncated\n"
+      "recording replays up to its end. Frames of an earlier replay in DIR are replaced.\n"
       "Example: spoonbill replay assets/recordings/spoon-handle-bend.recording.jsonl --out output/bend");
-  parser.add_option("RECORDING", options->recording, "A recording (.recording.jsonl)").require();
+  parser.add_option("RECORDING", options->recording, "Recording (.recording.jsonl)").require();
   add_picture_options(parser, options);
   parser
       .add_option("--rerecord", options->rerecord,
-                  "Write what was replayed as a recording, the same bytes again")
+                  "Recording of the replay to write, with the same bytes; default: none")
       .show_as("FILE");
   add_instruction_set_option(parser, options->instruction_set);
-  parser.add_flag("--progress", options->progress, "Show the progress even when nobody watches");
+  parser.add_flag("--progress", options->progress, "Show progress even if the output is not a terminal");
   add_json_option(parser, options->json);
   parser.set_final_check([options]() -> Status {
-    if (options->out.empty() && !options->no_frames) return Error{"--out is required"};
+    if (options->out.empty() && !options->no_frames)
+      return Error{ErrorCode::missing, "--out is required", "--out"};
     return {};
   });
-  return {parser, [options](Console& console) { return replay(*options, console); }};
+  return {parser, [options](Console& console) { return replay_file(*options, console); }};
 }
 
 }  // namespace spoonbill

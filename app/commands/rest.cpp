@@ -4,11 +4,9 @@
 #include <string>
 
 #include "app/commands/command.h"
-#include "app/commands/common_options.h"
 #include "app/commands/option_set.h"
-#include "app/files/document_file.h"
+#include "app/files/documents.h"
 #include "app/report/fact_sheet.h"
-#include "app/report/progress_bar.h"
 #include "app/report/quantity_text.h"
 #include "engine/base/text.h"
 #include "engine/base/progress.h"
@@ -22,50 +20,51 @@ struct RestOptions {
   bool json = false;
 };
 
-Json numbers(const Vector3& vector) {
+Json components_json(const Vector3& vector) {
   return Json::array({vector.x(), vector.y(), vector.z()});
 }
 
-void add_if_not_elastic(const Material& material, FactSheet& facts) {
+void add_elastic_note(const Material& material, FactSheet& facts) {
   if (is_linear_elastic(material)) return;
-  facts.add("  Material", material.name + ", as if it were elastic", "", nullptr);
+  facts.add("  Material", material.name + ", treated as elastic", "", nullptr);
 }
 
-void add_body(FactSheet& facts, const Body& body, const RestShape& shape, Json& list) {
+void add_rest_body(FactSheet& facts, const Body& body, const RestShape& shape, Json& list) {
   const auto furthest = static_cast<std::size_t>(shape.furthest_node);
-  const Vector3 displacement = shape.result.displacement_m[furthest], place = shape.mesh.nodes[furthest];
+  const Vector3 displacement = shape.result.displacement_m[furthest], position = shape.mesh.nodes[furthest];
   facts.add("Body", body.name, "", nullptr);
-  facts.add("  Held nodes",
+  facts.add("  Fixed nodes",
             std::to_string(shape.held_nodes) + " of " + std::to_string(shape.mesh.node_count()), "", nullptr);
-  facts.add("  Displaced", "at most " + short_length_text(displacement.norm()) + ", at " + position_text(place),
-            "", nullptr);
+  facts.add("  Displaced",
+            "at most " + short_length_text(displacement.norm()) + ", at " + position_text(position), "",
+            nullptr);
   facts.add("  Loads", newtons_text(shape.load_n.norm()) + " together", "", nullptr);
   facts.add("  Reactions", newtons_text(shape.reaction_n.norm()) + " together", "", nullptr);
   facts.add("  Strain",
             "at most " + percent_text(std::abs(shape.largest_strain)) +
-                (shape.largest_strain < 0.0 ? " pressed" : " stretched") + ", at " +
+                (shape.largest_strain < 0.0 ? " compression" : " tension") + ", at " +
                 position_text(shape.largest_strain_position_m),
             "", nullptr);
-  add_if_not_elastic(body.material, facts);
+  add_elastic_note(body.material, facts);
   for (const MaterialRegion& region : body.regions) {
-    if (region.material) add_if_not_elastic(*region.material, facts);
+    if (region.material) add_elastic_note(*region.material, facts);
   }
   list.push_back({{"name", body.name},
                   {"nodes", shape.mesh.node_count()},
                   {"held_nodes", shape.held_nodes},
                   {"largest_displacement_m", displacement.norm()},
-                  {"displacement_m", numbers(displacement)},
-                  {"displaced_m", numbers(place)},
-                  {"load_n", numbers(shape.load_n)},
-                  {"reaction_n", numbers(shape.reaction_n)},
+                  {"displacement_m", components_json(displacement)},
+                  {"displaced_m", components_json(position)},
+                  {"load_n", components_json(shape.load_n)},
+                  {"reaction_n", components_json(shape.reaction_n)},
                   {"largest_strain", shape.largest_strain},
-                  {"strained_m", numbers(shape.largest_strain_position_m)},
+                  {"strained_m", components_json(shape.largest_strain_position_m)},
                   {"energy_j", shape.result.energy_j},
                   {"newton_steps", shape.result.newton_steps}});
 }
 
-// In the shape that the loads gave them, bodies bear them no more: they would bend twice.
-void leave_unloaded(Scene& scene) {
+// Removes gravity, loads and support motions: bodies stored in their bent shape would bend twice.
+void remove_loads(Scene& scene) {
   scene.sculpting.gravity_m_per_s2.setZero();
   for (Body& body : scene.bodies) {
     body.loads.clear();
@@ -77,9 +76,7 @@ Status rest(const RestOptions& options, Console& console) {
   auto document = read_document_file(options.model);
   if (!document) return document.error();
   Scene& scene = document->scene;
-  if (Status few = check_body_count(scene); !few) {
-    return Error{options.model.string() + ": " + few.error().message};
-  }
+  if (Status few = check_body_count(scene); !few) return few.error().in(options.model.string());
   FactSheet facts;
   facts.add("File", options.model.string(), "file", options.model.string());
   Json list = Json::array();
@@ -91,16 +88,14 @@ Status rest(const RestOptions& options, Console& console) {
                                     bar.show(fraction);
                                     return true;
                                   }));
-    if (!shape) {
-      return Error{options.model.string() + ": body \"" + body.name + "\": " + shape.error().message};
-    }
-    add_body(facts, body, shape.value(), list);
+    if (!shape) return shape.error().in("body \"" + body.name + "\"").in(options.model.string());
+    add_rest_body(facts, body, shape.value(), list);
     bent.push_back(shape->surface);
   }
   facts.add("", "", "bodies", list);
   if (!options.out.empty()) {
     for (std::size_t b = 0; b < bent.size(); ++b) scene.bodies[b].surface = std::move(bent[b]);
-    leave_unloaded(scene);
+    remove_loads(scene);
     if (Status written = write_document(document.value(), options.out); !written) return written;
   }
   facts.print(console.out, options.json);
@@ -111,16 +106,16 @@ Status rest(const RestOptions& options, Console& console) {
 
 CommandEntry add_rest(OptionSet root) {
   auto options = std::make_shared<RestOptions>();
-  const OptionSet parser = root.add_command("rest", "Tell how bodies rest under gravity and their loads");
+  const OptionSet parser = root.add_command("rest", "Compute how bodies bend under gravity and their loads");
   parser.set_footer(
-      "Each body by itself, with the stiffness of its material, in equilibrium under the document's "
-      "gravity,\n"
-      "its loads and its supports: how far it bends, what its supports bear, how much it is strained. The\n"
-      "ground and other bodies do nothing here, and what flows or creeps counts as elastic.\n"
+      "Each body alone, with the stiffness of its material, in equilibrium under the document's gravity, "
+      "its\n"
+      "loads and its supports: displacement, reactions of the supports, strain. The ground and other bodies\n"
+      "have no effect, and materials that flow or creep are treated as elastic.\n"
       "Example: spoonbill rest assets/models/loaded-handle.json");
-  parser.add_option("MODEL", options->model, "A document (.json)").require();
+  parser.add_option("MODEL", options->model, "Document (.json)").require();
   add_document_output(parser, options->out,
-                      "A document with the bodies as they rest, without the loads that bent them");
+                      "Document to write (.json), with the bent bodies and without the loads; default: none");
   add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return rest(*options, console); }};
 }

@@ -8,15 +8,14 @@
 #include "app/commands/command.h"
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
-#include "app/files/document_file.h"
-#include "app/interrupt.h"
+#include "app/files/documents.h"
 #include "engine/base/file.h"
 #include "engine/bspline/evaluate.h"
 
 namespace spoonbill {
 namespace {
 
-constexpr Range<int> grid_side_range{2, 4096};
+constexpr Range<int> sample_grid_range{2, 4096};
 constexpr std::size_t chunk_bytes = 1 << 20;
 
 struct SampleOptions {
@@ -25,7 +24,7 @@ struct SampleOptions {
   std::filesystem::path out;
 };
 
-// A CSV field: in quotes where a comma, a quote or a line break asks for them.
+// Returns the text as a CSV field, quoted if it contains a comma, a quote or a line break (RFC 4180).
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -35,13 +34,13 @@ std::string csv_field(const std::string& text) {
 
 void append_number(std::string& line, double number) {
   std::array<char, 32> text{};
-  // Without a negative zero, which tells a reader nothing.
+  // Adding zero turns a negative zero into a positive one.
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), number + 0.0);
   line += ',';
   line.append(text.data(), end);
 }
 
-// Hands the body's rows to `write` in chunks and stops at its first failure.
+// Passes the rows of a body to `write` in chunks, and stops at its first error.
 template <class Write>
 Status sample_body(const Body& body, Extent counts, Write write) {
   const Surface& surface = body.surface;
@@ -53,11 +52,11 @@ Status sample_body(const Body& body, Extent counts, Write write) {
   GridEvaluator<double> evaluator(grid.value(), best_instruction_set());
   evaluator.points_and_normals(surface.net.x.data(), surface.net.y.data(), surface.net.z.data(), samples);
 
-  const std::string place = csv_field(body.name) + ",0";
+  const std::string row_start = csv_field(body.name) + ",0";
   std::string text;
   for (std::size_t i = 0, sample = 0; i < grid->u.parameters.size(); ++i) {
     for (std::size_t j = 0; j < grid->v.parameters.size(); ++j, ++sample) {
-      text += place;
+      text += row_start;
       for (const double number :
            {grid->u.parameters[i], grid->v.parameters[j], samples.x[sample], samples.y[sample],
             samples.z[sample], samples.nx[sample], samples.ny[sample], samples.nz[sample]}) {
@@ -94,7 +93,8 @@ Status sample(const SampleOptions& options, Console& console) {
   }
   std::error_code ignored;
   if (std::filesystem::equivalent(options.model, options.out, ignored)) {
-    return Error{options.out.string() + ": is the model itself; choose another name"};
+    return Error{ErrorCode::inconsistent, options.out.string() + ": is the model itself; choose another name",
+                 "--out"};
   }
   auto file = OutputFile::create(options.out);
   if (!file) return file.error();
@@ -102,7 +102,7 @@ Status sample(const SampleOptions& options, Console& console) {
   const Status sampled = sample_all(bodies, options.grid, [&](const std::string& text) -> Status {
     if (!interrupt.requested()) return file->write(text);
     interrupt.answer();
-    return Error{"stopped; " + options.out.string() + " was not written"};
+    return stopped_before_writing(options.out);
   });
   return sampled ? file->commit() : sampled;
 }
@@ -114,22 +114,22 @@ CommandEntry add_sample(OptionSet root) {
   const OptionSet parser =
       root.add_command("sample", "Write points and unit normals of a model's surfaces as CSV");
   parser.set_footer(
-      "The grid spans the whole knot domain of each surface, both ends included; the seam of a periodic\n"
-      "direction therefore appears twice. Lengths are metres. Numbers read back to the same bits.\n"
+      "The grid covers the whole knot domain of each surface including both ends, so the seam of a periodic\n"
+      "direction appears twice. Lengths are in metres. Numbers read back to the same bits.\n"
       "Example: spoonbill sample assets/models/spoon-handle.json --grid 50x50 --out points.csv");
-  parser.add_option("MODEL", options->model, "A document (.json)").require();
+  parser.add_option("MODEL", options->model, "Document (.json)").require();
   parser
       .add_parsed(
           "--grid",
           [options](const std::string& text) -> Status {
-            const auto grid = parse_extent(text, grid_side_range, "50x50");
+            const auto grid = parse_extent(text, sample_grid_range, "50x50");
             if (!grid) return grid.error();
             options->grid = grid.value();
             return {};
           },
-          "Points along u and along v; 50x50 unless told")
+          "Points along u and v, each from 2 to 4096; default: 50x50")
       .show_as("UxV");
-  parser.add_option("--out", options->out, "The CSV file, or - for standard output").require();
+  parser.add_option("--out", options->out, "CSV file to write, or - for standard output").require();
   return {parser, [options](Console& console) { return sample(*options, console); }};
 }
 

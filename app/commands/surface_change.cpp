@@ -11,6 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/bspline/change_knots.h"
 #include "engine/bspline/reparameterise.h"
+#include "engine/inspection/surface_check.h"
 #include "engine/merging/tube_ends.h"
 
 namespace spoonbill {
@@ -19,141 +20,154 @@ namespace {
 constexpr int control_points_limit = 200;
 constexpr Range<double> cap_height_range_m{0.0, 1.0};
 
-// What a change may cost.
+// The limits of a change that is not exact.
 struct Allowed {
   double tolerance_m;
   Progress progress;
 };
 
-// What the words after a change's name mean, in their order.
-using Words = std::vector<Status (*)(const std::string& word, AskedChange& asked)>;
+// The parsers of the words after a change's name, in order.
+using WordParsers = std::vector<Status (*)(const std::string& word, ChangeRequest& request)>;
 
 struct Change {
   ChangeKind kind;
-  Words words;
+  WordParsers words;
   std::size_t fewest_words;
-  Result<ChangedSurfaces> (*make)(const Surface& surface, const AskedChange& asked, const Allowed& allowed);
-  // Where the change does not keep the parameters, what becomes of a trim loop; null where that is nothing.
-  TrimLoop (*turn_trim)(const Surface& surface, const AskedChange& asked, const TrimLoop& loop);
-  const char *name, *form, *what;
+  Result<ChangedSurfaces> (*make)(const Surface& surface, const ChangeRequest& request,
+                                  const Allowed& allowed);
+  // Maps a trim loop if the change moves parameters; null if the change cannot keep trims.
+  TrimLoop (*map_trim)(const Surface& surface, const ChangeRequest& request, const TrimLoop& loop);
+  const char *name, *form, *description;
 };
 
 template <class Number>
-std::optional<Number> number_of(std::string_view text) {
+std::optional<Number> parse_whole_text(std::string_view text) {
   Number number{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return number;
 }
 
-Status take_direction(const std::string& word, AskedChange& asked) {
+Status parse_direction_word(const std::string& word, ChangeRequest& request) {
   if (word != "u" && word != "v") {
-    return Error{"'" + excerpt(word) + "' is not a direction; say u or v"};
+    return Error{ErrorCode::unknown, "'" + excerpt(word) + "' is not a direction; choose u or v"};
   }
-  asked.direction = word == "u" ? Direction::u : Direction::v;
+  request.direction = word == "u" ? Direction::u : Direction::v;
   return {};
 }
 
-// "v=0.3"
-Status take_place(const std::string& word, AskedChange& asked) {
-  const auto parameter =
-      word.size() > 2 && word[1] == '=' ? number_of<double>(std::string_view(word).substr(2)) : std::nullopt;
-  if (!parameter || !std::isfinite(*parameter) || !take_direction(word.substr(0, 1), asked)) {
-    return Error{"'" + excerpt(word) + "' is not a place like v=0.3, in the knots' domain"};
+// Parses "v=0.3".
+Status parse_parameter_word(const std::string& word, ChangeRequest& request) {
+  const auto parameter = word.size() > 2 && word[1] == '='
+                             ? parse_whole_text<double>(std::string_view(word).substr(2))
+                             : std::nullopt;
+  if (!parameter || !std::isfinite(*parameter) || !parse_direction_word(word.substr(0, 1), request)) {
+    return Error{ErrorCode::malformed,
+                 "'" + excerpt(word) + "' is not a parameter like v=0.3, in the knot domain"};
   }
-  asked.parameter = *parameter;
+  request.parameter = *parameter;
   return {};
 }
 
-// A degree, or how many times a knot is to be there, which is at most one.
-Status take_number(const std::string& word, AskedChange& asked) {
-  const auto number = number_of<int>(word);
+// Parses a degree or the number of copies of a knot, both at most max_degree.
+Status parse_number_word(const std::string& word, ChangeRequest& request) {
+  const auto number = parse_whole_text<int>(word);
   if (!number || *number < 1 || *number > max_degree) {
-    return Error{"'" + excerpt(word) + "' is not a whole number from 1 to " + std::to_string(max_degree)};
+    return Error{ErrorCode::out_of_range,
+                 "'" + excerpt(word) + "' is not a whole number from 1 to " + std::to_string(max_degree)};
   }
-  asked.number = *number;
+  request.number = *number;
   return {};
 }
 
-Status take_side(const std::string& word, AskedChange& asked) {
+Status parse_side_word(const std::string& word, ChangeRequest& request) {
   const auto side = parse_side(word);
   if (!side) return side.error();
-  asked.side = side.value();
+  request.side = side.value();
   return {};
 }
 
-Status take_height(const std::string& word, AskedChange& asked) {
+Status parse_height_word(const std::string& word, ChangeRequest& request) {
   const auto height_m = parse_length(word, cap_height_range_m);
   if (!height_m) return height_m.error();
-  asked.height_m = height_m.value();
+  request.height_m = height_m.value();
   return {};
 }
 
-Result<ChangedSurfaces> exactly(Result<Surface> surface, bool keeps_parameters) {
+Result<ChangedSurfaces> exact_change(Result<Surface> surface, bool keeps_parameters) {
   if (!surface) return surface.error();
   return ChangedSurfaces{{std::move(surface).value()}, {}, 0.0, keeps_parameters};
 }
 
-Result<ChangedSurfaces> nearly(Result<Approximation> result) {
+Result<ChangedSurfaces> approximate_change(Result<Approximation> result) {
   if (!result) return result.error();
   return ChangedSurfaces{{std::move(result->surface)}, {}, result->deviation_m, true};
 }
 
-Result<ChangedSurfaces> split(const Surface& surface, const AskedChange& asked, const Allowed&) {
-  const KnotVector& knots = knots_along(surface, asked.direction);
+Result<ChangedSurfaces> split_surface(const Surface& surface, const ChangeRequest& request, const Allowed&) {
+  const KnotVector& knots = knots_along(surface, request.direction);
   if (knots.is_periodic()) {
-    // Around a seam there is one cut.
-    return exactly(part_of(surface, asked.direction, asked.parameter,
-                           asked.parameter + knots.domain_end() - knots.domain_start()),
-                   false);
+    // A closed direction opens at a single cut.
+    return exact_change(part_of(surface, request.direction, request.parameter,
+                                request.parameter + knots.domain_end() - knots.domain_start()),
+                        false);
   }
-  auto first = part_of(surface, asked.direction, knots.domain_start(), asked.parameter);
+  auto first = part_of(surface, request.direction, knots.domain_start(), request.parameter);
   if (!first) return first.error();
-  auto second = part_of(surface, asked.direction, asked.parameter, knots.domain_end());
+  auto second = part_of(surface, request.direction, request.parameter, knots.domain_end());
   if (!second) return second.error();
   return ChangedSurfaces{{std::move(first).value(), std::move(second).value()}, {}, 0.0, false};
 }
 
-Result<ChangedSurfaces> insert(const Surface& surface, const AskedChange& asked, const Allowed&) {
-  const KnotVector& knots = knots_along(surface, asked.direction);
+Result<ChangedSurfaces> insert_knot_copies(const Surface& surface, const ChangeRequest& request,
+                                           const Allowed&) {
+  const KnotVector& knots = knots_along(surface, request.direction);
   const double near = same_knot_fraction * (knots.domain_end() - knots.domain_start());
   for (const double knot : knots.breakpoints()) {
-    if (knot == asked.parameter || std::abs(knot - asked.parameter) > near) continue;
-    return Error{"a knot at " + number_text(asked.parameter) + " is too near the one at " +
-                 number_text(knot) + " to be kept apart; insert it there, or farther away"};
+    if (knot == request.parameter || std::abs(knot - request.parameter) > near) continue;
+    return Error{ErrorCode::out_of_range, "a knot at " + number_text(request.parameter) +
+                                              " is too near the one at " + number_text(knot) +
+                                              "; insert it there, or farther away"};
   }
-  return exactly(insert_knot(surface, asked.direction, asked.parameter, asked.number), true);
+  return exact_change(insert_knot(surface, request.direction, request.parameter, request.number), true);
 }
 
-Result<ChangedSurfaces> remove(const Surface& surface, const AskedChange& asked, const Allowed& allowed) {
-  auto fewer = remove_knot(surface, asked.direction, asked.parameter, asked.number);
+Result<ChangedSurfaces> remove_knot_copies(const Surface& surface, const ChangeRequest& request,
+                                           const Allowed& allowed) {
+  auto fewer = remove_knot(surface, request.direction, request.parameter, request.number);
   if (fewer && fewer->deviation_m > allowed.tolerance_m) {
-    return Error{"to take the knot at " + number_text(asked.parameter) + " out leaves a deviation of " +
-                 short_length_text(fewer->deviation_m) + "; allow a larger tolerance than " +
-                 short_length_text(allowed.tolerance_m) + ", or take it out fewer times"};
+    return Error{ErrorCode::not_converged,
+                 "removing the knot at " + number_text(request.parameter) + " leaves a deviation of " +
+                     short_length_text(fewer->deviation_m) + "; allow a larger --tolerance than " +
+                     short_length_text(allowed.tolerance_m) + ", or remove it fewer times",
+                 "--tolerance"};
   }
-  return nearly(std::move(fewer));
+  return approximate_change(std::move(fewer));
 }
 
-Result<ChangedSurfaces> set_degree(const Surface& surface, const AskedChange& asked, const Allowed& allowed) {
-  const KnotVector& knots = knots_along(surface, asked.direction);
-  if (asked.number >= knots.degree()) {
-    const auto higher = elevate_degree(knots, asked.number);
+Result<ChangedSurfaces> set_degree(const Surface& surface, const ChangeRequest& request,
+                                   const Allowed& allowed) {
+  const KnotVector& knots = knots_along(surface, request.direction);
+  if (request.number >= knots.degree()) {
+    const auto higher = elevate_degree(knots, request.number);
     if (!higher) return higher.error();
     if (higher->control_point_count() > control_points_limit) {
-      return Error{"degree " + std::to_string(asked.number) + " takes " +
-                   std::to_string(higher->control_point_count()) + " control points, a document holds " +
-                   std::to_string(control_points_limit) + "; simplify first, or ask for less"};
+      return Error{ErrorCode::too_many, "degree " + std::to_string(request.number) + " needs " +
+                                            std::to_string(higher->control_point_count()) +
+                                            " control points, and a document holds " +
+                                            std::to_string(control_points_limit) +
+                                            "; simplify first, or choose a lower degree"};
     }
-    return exactly(convert_to_finer_knots(surface, asked.direction, higher.value()), true);
+    return exact_change(convert_to_finer_knots(surface, request.direction, higher.value()), true);
   }
-  const auto lower = reduce_degree(knots, asked.number);
+  const auto lower = reduce_degree(knots, request.number);
   if (!lower) return lower.error();
-  return nearly(approximated(surface, asked.direction, lower.value(), allowed.tolerance_m,
-                             control_points_limit, allowed.progress));
+  return approximate_change(approximated(surface, request.direction, lower.value(), allowed.tolerance_m,
+                                         control_points_limit, allowed.progress));
 }
 
-Result<ChangedSurfaces> simplify(const Surface& surface, const AskedChange&, const Allowed& allowed) {
+Result<ChangedSurfaces> remove_spare_knots(const Surface& surface, const ChangeRequest&,
+                                           const Allowed& allowed) {
   auto along_u =
       remove_spare_knots(surface, Direction::u, 0.5 * allowed.tolerance_m, allowed.progress.part(0.0, 0.5));
   if (!along_u) return along_u.error();
@@ -163,132 +177,165 @@ Result<ChangedSurfaces> simplify(const Surface& surface, const AskedChange&, con
   return ChangedSurfaces{{std::move(both->surface)}, {}, along_u->deviation_m + both->deviation_m, true};
 }
 
-Result<ChangedSurfaces> reverse(const Surface& surface, const AskedChange& asked, const Allowed&) {
-  return exactly(reversed(surface, asked.direction), false);
+Result<ChangedSurfaces> reverse_direction(const Surface& surface, const ChangeRequest& request,
+                                          const Allowed&) {
+  return exact_change(reversed(surface, request.direction), false);
 }
 
-Result<ChangedSurfaces> exchange(const Surface& surface, const AskedChange&, const Allowed&) {
-  return exactly(exchanged(surface), false);
+Result<ChangedSurfaces> exchange_directions(const Surface& surface, const ChangeRequest&, const Allowed&) {
+  return exact_change(exchanged(surface), false);
 }
 
-Result<ChangedSurfaces> move_seam(const Surface& surface, const AskedChange& asked, const Allowed&) {
-  return exactly(with_seam_at(surface, asked.direction, asked.parameter), false);
+Result<ChangedSurfaces> move_seam(const Surface& surface, const ChangeRequest& request, const Allowed&) {
+  return exact_change(with_seam_at(surface, request.direction, request.parameter), false);
 }
 
-Result<ChangedSurfaces> close_around(const Surface& surface, const AskedChange& asked,
+Result<ChangedSurfaces> close_around(const Surface& surface, const ChangeRequest& request,
                                      const Allowed& allowed) {
   auto closed =
-      close_around(surface, asked.direction, asked.continuity, allowed.tolerance_m, allowed.progress);
+      close_around(surface, request.direction, request.continuity, allowed.tolerance_m, allowed.progress);
   if (!closed) return closed.error();
   return ChangedSurfaces{{std::move(closed->surface)}, {}, closed->deviation_m, true};
 }
 
-Result<ChangedSurfaces> cap(const Surface& surface, const AskedChange& asked, const Allowed& allowed) {
-  JoinRequest request;
-  request.tolerance_m = allowed.tolerance_m;
-  request.progress = allowed.progress;
-  auto capped = add_cap(surface, asked.side, asked.height_m, request);
+Result<ChangedSurfaces> add_cap(const Surface& surface, const ChangeRequest& request,
+                                const Allowed& allowed) {
+  JoinRequest join;
+  join.tolerance_m = allowed.tolerance_m;
+  join.progress = allowed.progress;
+  auto capped = add_cap(surface, request.side, request.height_m, join);
   if (!capped) return capped.error();
   return ChangedSurfaces{{std::move(capped->surface)}, {}, capped->deviation_m, false};
 }
 
-Result<ChangedSurfaces> open_end(const Surface& surface, const AskedChange& asked, const Allowed&) {
-  return exactly(open_pole(surface, asked.side, HUGE_VAL), false);
+Result<ChangedSurfaces> open_end(const Surface& surface, const ChangeRequest& request, const Allowed&) {
+  return exact_change(open_pole(surface, request.side, HUGE_VAL), false);
 }
 
-TrimLoop reverse_trim(const Surface& surface, const AskedChange& asked, const TrimLoop& loop) {
-  return reversed(loop, asked.direction, knots_along(surface, asked.direction));
+TrimLoop reverse_trim(const Surface& surface, const ChangeRequest& request, const TrimLoop& loop) {
+  return reversed(loop, request.direction, knots_along(surface, request.direction));
 }
 
-TrimLoop exchange_trim(const Surface&, const AskedChange&, const TrimLoop& loop) {
+TrimLoop exchange_trim(const Surface&, const ChangeRequest&, const TrimLoop& loop) {
   return exchanged(loop);
 }
 
-TrimLoop move_trims_seam(const Surface& surface, const AskedChange& asked, const TrimLoop& loop) {
-  return with_seam_at(loop, asked.direction, knots_along(surface, asked.direction), asked.parameter);
+TrimLoop move_trims_seam(const Surface& surface, const ChangeRequest& request, const TrimLoop& loop) {
+  return with_seam_at(loop, request.direction, knots_along(surface, request.direction), request.parameter);
 }
 
-Status turn_trims(const Change& change, const Surface& surface, const AskedChange& asked,
-                  const std::vector<TrimLoop>& trims, ChangedSurfaces& changed) {
+Status map_trims(const Change& change, const Surface& surface, const ChangeRequest& request,
+                 const std::vector<TrimLoop>& trims, ChangedSurfaces& changed) {
   if (trims.empty() || changed.keeps_parameters) {
     changed.trims = trims;
     return {};
   }
-  if (!change.turn_trim) {
-    return Error{std::string("'") + change.name +
-                 "' would lose its trims; make it whole first, by `spoonbill merge` of it alone"};
+  if (!change.map_trim) {
+    return Error{
+        ErrorCode::unsupported,
+        std::string("'") + change.name +
+            "' would lose the surface's trims; resample it without trims first, with `spoonbill merge` "
+            "of this model alone"};
   }
-  for (const TrimLoop& loop : trims) changed.trims.push_back(change.turn_trim(surface, asked, loop));
+  for (const TrimLoop& loop : trims) changed.trims.push_back(change.map_trim(surface, request, loop));
   return {};
 }
 
 const std::vector<Change>& all_changes() {
-  static const Words none, place{take_place}, knots{take_place, take_number}, way{take_direction},
-      degree{take_direction, take_number}, end{take_side}, bulge{take_side, take_height};
+  static const WordParsers none, parameter{parse_parameter_word},
+      knots{parse_parameter_word, parse_number_word}, direction{parse_direction_word},
+      degree{parse_direction_word, parse_number_word}, end{parse_side_word},
+      bulge{parse_side_word, parse_height_word};
   static const std::vector<Change> changes{
-      {ChangeKind::split, place, 1, split, nullptr, "split", "v=0.5",
-       "cut in two there, or open around where it is closed"},
-      {ChangeKind::insert, knots, 1, insert, nullptr, "insert", "v=0.5 [2]", "a knot, so many times; exact"},
-      {ChangeKind::remove, knots, 1, remove, nullptr, "remove", "v=0.5 [2]",
-       "a knot, so many times, within the tolerance"},
+      {ChangeKind::split, parameter, 1, split_surface, nullptr, "split", "v=0.5",
+       "cut in two there, or open a closed direction there"},
+      {ChangeKind::insert, knots, 1, insert_knot_copies, nullptr, "insert", "v=0.5 [2]",
+       "insert a knot, 1 or more times; exact"},
+      {ChangeKind::remove, knots, 1, remove_knot_copies, nullptr, "remove", "v=0.5 [2]",
+       "remove a knot, 1 or more times, within the tolerance"},
       {ChangeKind::degree, degree, 2, set_degree, nullptr, "degree", "v 5",
        "raise the degree (exact) or lower it within the tolerance"},
-      {ChangeKind::simplify, none, 0, simplify, nullptr, "simplify", "",
-       "remove the knots that the tolerance can spare"},
-      {ChangeKind::reverse, way, 1, reverse, reverse_trim, "reverse", "v",
-       "run through a direction backwards; turns the normals"},
-      {ChangeKind::exchange, none, 0, exchange, exchange_trim, "exchange", "",
-       "u becomes v and v becomes u; turns the normals"},
-      {ChangeKind::seam, place, 1, move_seam, move_trims_seam, "seam", "u=0.25",
-       "begin the closed direction there"},
-      {ChangeKind::close, way, 1, close_around, nullptr, "close", "u",
-       "close around where the first and the last edge meet"},
-      {ChangeKind::cap, bulge, 1, cap, nullptr, "cap", "v_end [3mm]",
-       "close an open end of a tube, flat or bulging so far"},
+      {ChangeKind::simplify, none, 0, remove_spare_knots, nullptr, "simplify", "",
+       "remove all knots that the tolerance allows"},
+      {ChangeKind::reverse, direction, 1, reverse_direction, reverse_trim, "reverse", "v",
+       "reverse a direction; flips the normals"},
+      {ChangeKind::exchange, none, 0, exchange_directions, exchange_trim, "exchange", "",
+       "swap u and v; flips the normals"},
+      {ChangeKind::seam, parameter, 1, move_seam, move_trims_seam, "seam", "u=0.25",
+       "move the seam of a closed direction there"},
+      {ChangeKind::close, direction, 1, close_around, nullptr, "close", "u",
+       "close a direction whose first and last edges meet"},
+      {ChangeKind::cap, bulge, 1, add_cap, nullptr, "cap", "v_end [3mm]",
+       "close an open end of a tube, flat or with a bulge of this height"},
       {ChangeKind::open, end, 1, open_end, nullptr, "open", "v_end",
-       "cut the pole off where the sides begin to run straight"}};
+       "cut off the pole where the sides become straight"}};
   return changes;
 }
 
 }  // namespace
 
-Result<AskedChange> parse_change(const std::vector<std::string>& words) {
+Result<ChangeRequest> parse_change(const std::vector<std::string>& words) {
   std::string known;
   for (const Change& change : all_changes()) {
     known += (known.empty() ? "" : ", ") + std::string(change.name);
     if (words.empty() || words[0] != change.name) continue;
     if (words.size() < 1 + change.fewest_words || words.size() > 1 + change.words.size()) {
-      return Error{"'" + words[0] + "' is asked for as: " + change.name + " " + change.form};
+      return Error{ErrorCode::malformed,
+                   "'" + words[0] + "' must have the form: " + change.name + " " + change.form};
     }
-    AskedChange asked{change.kind};
+    ChangeRequest request{change.kind};
     for (std::size_t k = 1; k < words.size(); ++k) {
-      if (Status taken = change.words[k - 1](words[k], asked); !taken) return taken.error();
+      if (Status parsed = change.words[k - 1](words[k], request); !parsed) return parsed.error();
     }
-    return asked;
+    return request;
   }
-  return Error{"'" + (words.empty() ? "" : excerpt(words[0])) + "' is no change; choose from " + known};
+  return Error{ErrorCode::unknown,
+               "'" + (words.empty() ? "" : excerpt(words[0])) + "' is not a change; choose from " + known};
 }
 
-Result<ChangedSurfaces> changed(const Surface& surface, const std::vector<TrimLoop>& trims,
-                                const AskedChange& asked, double tolerance_m, const Progress& progress) {
+Result<ChangedSurfaces> change_surface(const Surface& surface, const std::vector<TrimLoop>& trims,
+                                       const ChangeRequest& request, double tolerance_m,
+                                       const Progress& progress) {
   const auto change = std::find_if(all_changes().begin(), all_changes().end(),
-                                   [&](const Change& one) { return one.kind == asked.kind; });
-  auto result = change->make(surface, asked, {tolerance_m, progress});
+                                   [&](const Change& one) { return one.kind == request.kind; });
+  auto result = change->make(surface, request, {tolerance_m, progress});
   if (!result) return result;
-  if (Status turned = turn_trims(*change, surface, asked, trims, result.value()); !turned) {
-    return turned.error();
+  if (Status mapped = map_trims(*change, surface, request, trims, result.value()); !mapped) {
+    return mapped.error();
   }
   return result;
 }
 
-std::string changes_text() {
+std::string list_changes() {
   std::string text;
   for (const Change& change : all_changes()) {
     std::string left = std::string("  ") + change.name + " " + change.form;
     left.resize(std::max<std::size_t>(left.size() + 2, 24), ' ');
-    text += left + change.what + "\n";
+    text += left + change.description + "\n";
   }
   return text;
+}
+
+void drop_surface_features(Body& body, std::vector<std::string>& notes) {
+  if (!body.regions.empty() || !body.loads.empty() || !body.supports.empty()) {
+    notes.push_back("regions, loads and supports of \"" + body.name +
+                    "\" were dropped: their positions refer to the old surface");
+  }
+  body.regions.clear();
+  body.loads.clear();
+  body.supports.clear();
+}
+
+void adapt_thickness(Body& body, const Surface& before, std::vector<std::string>& notes) {
+  const bool was_solid = find_closing(before).closedness == Closedness::solid;
+  const bool solid = find_closing(body.surface).closedness == Closedness::solid;
+  if (solid == was_solid) return;
+  if (solid && body.shell_thickness_m) {
+    body.shell_thickness_m.reset();
+    notes.push_back("the shell thickness of \"" + body.name + "\" was dropped: the body became a solid");
+  } else if (!solid && !body.shell_thickness_m) {
+    notes.push_back("\"" + body.name + "\" is open; add shell_thickness_mm to its file to sculpt it");
+  }
 }
 
 }  // namespace spoonbill

@@ -1,4 +1,5 @@
-// The changes of a surface that the change command knows, by the words that ask for them. Pure functions.
+// The changes of a surface that the change command offers, and what becomes of a body whose surface is
+// replaced.
 #pragma once
 
 #include <string>
@@ -9,38 +10,49 @@
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
 #include "engine/merging/patch_edge.h"
+#include "engine/scene/scene.h"
 
 namespace spoonbill {
 
 struct ChangedSurfaces {
   std::vector<Surface> surfaces;  // two after a split
   std::vector<TrimLoop> trims = {};
-  double deviation_m = 0.0;      // zero where the change is exact
-  bool keeps_parameters = true;  // so that regions, loads and supports stay where they were
+  double deviation_m = 0.0;      // 0 if the change is exact
+  bool keeps_parameters = true;  // false if regions, loads and supports would move on the surface
 };
 
 enum class ChangeKind { split, insert, remove, degree, simplify, reverse, exchange, seam, close, cap, open };
 
-// What the words mean; only what the kind asks for has a meaning.
-struct AskedChange {
+// A parsed change. Only the members that its kind uses have a meaning.
+struct ChangeRequest {
   ChangeKind kind = ChangeKind::simplify;
   Direction direction = Direction::u;
-  double parameter = 0.0;  // of the direction
-  int number = 1;          // a degree, or how many copies of a knot
+  double parameter = 0.0;  // in the knot domain of the direction
+  int number = 1;          // a degree, or the number of copies of a knot
   Side side = Side::v_end;
-  double height_m = 0.0;  // of a cap
-  int continuity = 2;     // of the seam where a direction is closed
+  double height_m = 0.0;  // height of a cap
+  int continuity = 2;     // continuity of the seam that close makes
 };
 
-// Of words such as {"insert", "v=0.3", "2"}. Refused: those that no surface could make sense of.
-Result<AskedChange> parse_change(const std::vector<std::string>& words);
+// Parses words such as {"insert", "v=0.3", "2"}. Returns an error for words that are invalid on every
+// surface.
+Result<ChangeRequest> parse_change(const std::vector<std::string>& words);
 
-// `tolerance_m` is for the changes that cannot be exact, which can be stopped. Trims stay or turn with
-// the surface; changes that would lose them are refused.
-Result<ChangedSurfaces> changed(const Surface& surface, const std::vector<TrimLoop>& trims,
-                                const AskedChange& asked, double tolerance_m, const Progress& progress = {});
+// Applies the change to a surface and its trims. `tolerance_m` bounds the changes that are not exact, which
+// `progress` can stop. Returns an error if the change would lose the trims.
+Result<ChangedSurfaces> change_surface(const Surface& surface, const std::vector<TrimLoop>& trims,
+                                       const ChangeRequest& request, double tolerance_m,
+                                       const Progress& progress = {});
 
-// One line for each change, for --help.
-std::string changes_text();
+// Returns one line per change for --help.
+std::string list_changes();
+
+// Removes regions, loads and supports, which are fractions of a surface that is being replaced. Adds a note
+// if the body had any.
+void drop_surface_features(Body& body, std::vector<std::string>& notes);
+
+// Adapts the shell thickness to a new surface: a body that became closed loses it. Adds a note if the surface
+// closed or opened.
+void adapt_thickness(Body& body, const Surface& before, std::vector<std::string>& notes);
 
 }  // namespace spoonbill

@@ -8,7 +8,7 @@
 #include "app/assets_folder.h"
 #include "app/edit/editor.h"
 #include "app/live/exporter.h"
-#include "app/start/shipped_materials.h"
+#include "app/files/documents.h"
 #include "render/image.h"
 
 namespace spoonbill {
@@ -79,7 +79,7 @@ void Editor::open_fresh() {
 void Editor::open_lump(const LumpChoice& choice) {
   const auto material = shipped_material("modelling-clay");
   if (!material) return messages_.add_problem(material.error().message);
-  auto document = lump_document(choice, material.value());
+  auto document = make_stock_shape_document(choice, material.value());
   if (!document) return lumps_.refuse(document.error().message);
   const auto view = view_from_json(document->view, "the new lump");
   if (!view) return messages_.add_problem(view.error().message);

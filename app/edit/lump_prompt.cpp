@@ -22,14 +22,14 @@ void LumpPrompt::refuse(std::string problem) {
 }
 
 void LumpPrompt::draw_fields() {
-  const LumpKind& kind = lump_kinds()[choice_.kind];
+  const StockShapeKind& kind = stock_shape_kinds()[choice_.kind];
   if (ImGui::BeginCombo("Kind", kind.name)) {
-    for (std::size_t k = 0; k < lump_kinds().size(); ++k) {
-      if (ImGui::Selectable(lump_kinds()[k].name, k == choice_.kind)) choice_ = usual_choice(k);
+    for (std::size_t k = 0; k < stock_shape_kinds().size(); ++k) {
+      if (ImGui::Selectable(stock_shape_kinds()[k].name, k == choice_.kind)) choice_ = default_stock_shape(k);
     }
     ImGui::EndCombo();
   }
-  const LumpKind& chosen = lump_kinds()[choice_.kind];
+  const StockShapeKind& chosen = stock_shape_kinds()[choice_.kind];
   for (std::size_t f = 0; f < chosen.fields.size(); ++f) {
     ImGui::InputDouble(chosen.fields[f].name, &choice_.sizes_mm[f], 0.0, 0.0, "%.4g mm");
   }

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "app/start/lump_choice.h"
+#include "app/files/documents.h"
 
 namespace spoonbill {
 
@@ -25,7 +25,7 @@ class LumpPrompt {
 
   bool asking_ = false;
   bool appearing_ = false;
-  LumpChoice choice_ = usual_choice(0);
+  LumpChoice choice_ = default_stock_shape(0);
   std::string problem_;
 };
 

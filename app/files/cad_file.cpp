@@ -22,11 +22,11 @@
 namespace spoonbill {
 namespace {
 
-constexpr std::size_t file_bytes_limit = std::size_t{512} << 20;
-// What to do about a file that is too much for the child.
-const char* const smaller = "export fewer or simpler faces";
-const char* const fewer = "write fewer or simpler bodies (--bodies)";
-constexpr std::size_t longest_line = 400;  // of a note, in bytes
+constexpr std::size_t cad_file_bytes_limit = std::size_t{512} << 20;
+// Remedies for files that exceed the child's limits.
+const char* const simpler_export = "export fewer or simpler faces";
+const char* const fewer_bodies = "write fewer or simpler bodies (--bodies)";
+constexpr std::size_t note_bytes_limit = 400;
 constexpr Range<int> note_count_range{0, 2000}, count_range{0, 1000000};
 
 std::string program_of(const CadChild& child) {
@@ -36,56 +36,56 @@ std::string program_of(const CadChild& child) {
   return (self.parent_path() / "spoonbill-cad").string();
 }
 
-ForeignTask task_for(const std::filesystem::path& file, ForeignTask::Work work) {
+ForeignTask cad_task(const std::filesystem::path& file, ForeignTask::Work work) {
   const bool reads = work == ForeignTask::Work::reading;
   ForeignTask task;
   task.file = file;
   task.thing = reads ? "model" : "file";
-  task.remedy = reads ? smaller : fewer;
+  task.remedy = reads ? simpler_export : fewer_bodies;
   task.work = work;
-  task.too_much = "takes more than ";
-  task.not_in_form = "the program that handles CAD files did not answer in its own form; build it anew";
+  task.too_much = "needs more than ";
+  task.invalid_answer = "the CAD converter spoonbill-cad gave an invalid answer; rebuild it";
   task.refusal = [](const std::string& reason) {
-    return clean_cad_name(reason, "the program that handles CAD files refuses it", longest_line);
+    return clean_cad_name(reason, "the CAD converter spoonbill-cad rejects it", note_bytes_limit);
   };
   return task;
 }
 
-// Frames of the child until the last, whose content is returned; take() gets the others and says whether they
-// are welcome.
-template <class Take>
-Result<std::string> listen(ForeignChild& child, const Take& take) {
+// Reads frames until the last, whose content it returns. handle() gets each of the others; its error ends the
+// conversation.
+template <class Handle>
+Result<std::string> read_frames(ForeignChild& child, const Handle& handle) {
   for (;;) {
     const auto head = child.next();
     if (!head) return head.error();
     auto content = child.content(head.value());
     if (!content || head->kind == FrameKind::ending) return content;
     Frame frame{head->kind, std::move(content).value()};
-    if (Status taken = take(frame); !taken) return taken.error();
+    if (Status handled = handle(frame); !handled) return handled.error();
   }
 }
 
-// What the child says last. Whatever a hostile file made of it, its answer is data.
+// Parses the last frame. A hostile file may have taken over the child, so its answer is untrusted input.
 template <class Read>
 Status read_ending(const std::string& text, const std::filesystem::path& file, const ForeignChild& child,
                    const Read& read) {
   const auto json = parse_json(text, file.string());
-  if (!json) return child.not_in_form();
+  if (!json) return child.invalid_answer();
   FieldReader reader(json.value(), file.string());
   read(reader);
   reader.finish();
-  return reader.status() ? Status() : child.not_in_form();
+  return reader.status() ? Status() : child.invalid_answer();
 }
 
 std::vector<std::string> read_notes(FieldReader& reader) {
   std::vector<std::string> notes;
   for (const Json& note : reader.list("notes", note_count_range)) {
-    if (note.is_string()) notes.push_back(clean_cad_name(note.get<std::string>(), "...", longest_line));
+    if (note.is_string()) notes.push_back(clean_cad_name(note.get<std::string>(), "...", note_bytes_limit));
   }
   return notes;
 }
 
-// A file without a name that holds the model for a child to read; -1 where there is none to be had.
+// An anonymous file in memory that holds a model for a child to read. Check complete() before use.
 class ModelInMemory {
  public:
   explicit ModelInMemory(const CadModel& model) : descriptor_(memfd_create("cad-model", MFD_CLOEXEC)) {
@@ -108,7 +108,7 @@ class ModelInMemory {
   }
 
   bool complete() const { return complete_; }
-  int descriptor() const { return descriptor_; }
+  int descriptor() const { return descriptor_; }  // -1 if the file could not be created
 
  private:
   void append(const std::string& text) {
@@ -124,7 +124,7 @@ class ModelInMemory {
   bool complete_ = false;
 };
 
-std::string name_of(FileFormat format) {
+std::string cad_format_name(FileFormat format) {
   return std::string(usual_ending(format));
 }
 
@@ -132,18 +132,18 @@ std::string name_of(FileFormat format) {
 
 Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReading& reading,
                                const CadChild& run) {
-  if (Status status = check_file(file, file_bytes_limit, smaller); !status) return status.error();
+  if (Status status = check_file(file, cad_file_bytes_limit, simpler_export); !status) return status.error();
   auto child = ForeignChild::start(
-      task_for(file, ForeignTask::Work::reading),
-      {program_of(run), "read", name_of(reading.format), std::filesystem::absolute(file).string(),
+      cad_task(file, ForeignTask::Work::reading),
+      {program_of(run), "read", cad_format_name(reading.format), std::filesystem::absolute(file).string(),
        number_text(reading.unit_m), number_text(reading.tolerance_m), std::to_string(reading.face_limit)},
       run.patience);
   if (!child) return child.error();
   child->watch(run.progress);
   CadModel model;
-  const auto ending = listen(child.value(), [&](const Frame& frame) -> Status {
+  const auto ending = read_frames(child.value(), [&](const Frame& frame) -> Status {
     if (frame.kind != FrameKind::surface || model.surfaces.size() >= reading.face_limit) {
-      return child->not_in_form();
+      return child->invalid_answer();
     }
     auto surface = cad_surface_from_json(frame.content, file.string());
     if (!surface) return surface.error();
@@ -159,26 +159,27 @@ Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReadi
   if (!read) return read.error();
   for (const CadSurface& surface : model.surfaces) {
     if (surface.trim_problem.empty()) continue;
-    model.notes.push_back("'" + surface.name + "' is whole, without its trims: " + surface.trim_problem);
+    model.notes.push_back("'" + surface.name + "' is read without its trims: " + surface.trim_problem);
   }
-  if (model.surfaces.empty()) return Error{file.string() + ": holds no surface"};
+  if (model.surfaces.empty()) return Error{ErrorCode::too_few, file.string() + ": holds no surface"};
   return model;
 }
 
 Result<CadFileContent> make_cad_file(const CadModel& model, const CadWriting& writing,
                                      const std::filesystem::path& file, const CadChild& run) {
   const ModelInMemory input(model);
-  if (!input.complete()) return Error{file.string() + ": there is no memory left to write it through"};
-  auto child = ForeignChild::start(task_for(file, ForeignTask::Work::writing),
-                                   {program_of(run), "write", name_of(writing.format),
+  if (!input.complete())
+    return Error{ErrorCode::too_many, file.string() + ": there is not enough memory to write it"};
+  auto child = ForeignChild::start(cad_task(file, ForeignTask::Work::writing),
+                                   {program_of(run), "write", cad_format_name(writing.format),
                                     writing.schema == StepSchema::ap242 ? "ap242" : "ap214", writing.unit},
                                    run.patience, input.descriptor());
   if (!child) return child.error();
   child->watch(run.progress);
   CadFileContent content;
-  const auto ending = listen(child.value(), [&](Frame& frame) -> Status {
+  const auto ending = read_frames(child.value(), [&](Frame& frame) -> Status {
     if (frame.kind != FrameKind::file) {
-      return child->not_in_form();
+      return child->invalid_answer();
     }
     content.text = std::move(frame.content);
     return {};
@@ -190,24 +191,26 @@ Result<CadFileContent> make_cad_file(const CadModel& model, const CadWriting& wr
     content.notes = read_notes(reader);
   });
   if (!read) return read.error();
-  if (content.text.empty()) return Error{file.string() + ": the writer made nothing of it"};
+  if (content.text.empty())
+    return Error{ErrorCode::process_failed, file.string() + ": the writer returned no content"};
   return content;
 }
 
 Result<CadSolids> make_cad_solids(const CadModel& model, const SolidMeshing& meshing,
                                   const std::filesystem::path& file, const CadChild& run) {
   const ModelInMemory input(model);
-  if (!input.complete()) return Error{file.string() + ": there is no memory left to mesh it through"};
+  if (!input.complete())
+    return Error{ErrorCode::too_many, file.string() + ": there is not enough memory to mesh it"};
   auto child = ForeignChild::start(
-      task_for(file, ForeignTask::Work::writing),
+      cad_task(file, ForeignTask::Work::writing),
       {program_of(run), "solids", number_text(meshing.chord_m), std::to_string(meshing.triangle_limit)},
       run.patience, input.descriptor());
   if (!child) return child.error();
   child->watch(run.progress);
   CadSolids found;
-  const auto ending = listen(child.value(), [&](const Frame& frame) -> Status {
+  const auto ending = read_frames(child.value(), [&](const Frame& frame) -> Status {
     if (frame.kind != FrameKind::solid || found.solids.size() >= model.surfaces.size()) {
-      return child->not_in_form();
+      return child->invalid_answer();
     }
     auto solid = cad_solid_from_bytes(frame.content, model.surfaces.size(), file.string());
     if (!solid) return solid.error();

@@ -1,5 +1,5 @@
-// STEP and IGES files, read and made by a child process with limits, which alone loads OpenCASCADE: a hostile
-// file cannot take the session with it.
+// STEP and IGES files, read and written by the child process spoonbill-cad. Only the child loads OpenCASCADE,
+// and its time and memory are limited, so that a hostile file cannot crash the session.
 #pragma once
 
 #include <chrono>
@@ -11,25 +11,25 @@
 
 namespace spoonbill {
 
-// How the child is run.
+// The settings of the child process.
 struct CadChild {
-  std::filesystem::path program;  // beside this one, if empty
-  std::chrono::milliseconds patience{300'000};
-  Progress progress;  // reported several times a second
+  std::filesystem::path program;                // default: spoonbill-cad in this program's folder
+  std::chrono::milliseconds patience{300'000};  // time limit
+  Progress progress;                            // reported several times a second
 };
 
-// Refused, each with one line that names the file: missing, a folder or device, unreadable, empty, above 512
-// MiB; what OpenCASCADE cannot read; what crashes it, takes it longer than the patience or more than 4 GiB;
-// what read_cad() refuses; surfaces that no document could hold; when asked to stop.
+// Reads a CAD file of at most 512 MiB. Every error names the file: a file that is missing, unreadable, empty
+// or malformed; a child that crashes, exceeds its time or 4 GiB; what read_cad() rejects; a surface that no
+// document can hold; a request to stop.
 Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReading& reading,
                                const CadChild& child = {});
 
-// The text of a CAD file, to be written whole. `file` is its name in messages.
+// Returns the content of a CAD file that holds the model. `file` names it in messages; nothing is written.
 Result<CadFileContent> make_cad_file(const CadModel& model, const CadWriting& writing,
                                      const std::filesystem::path& file, const CadChild& child = {});
 
-// Those solids of the model that several of its faces bound, as watertight meshes. `file` is the name of the
-// model in messages. Refused: as make_cad_file() does; more triangles than the limit.
+// Joins the faces of each solid that several surfaces bound, and returns these solids as watertight meshes.
+// `file` names the model in messages. Errors: those of make_cad_file(), more triangles than the limit.
 Result<CadSolids> make_cad_solids(const CadModel& model, const SolidMeshing& meshing,
                                   const std::filesystem::path& file, const CadChild& child = {});
 

@@ -10,13 +10,13 @@
 namespace spoonbill {
 namespace {
 
-double fraction_of(const std::string& thousandths) {
+double parse_thousandths(const std::string& thousandths) {
   int number = 0;
   std::from_chars(thousandths.data(), thousandths.data() + thousandths.size(), number);
   return std::clamp(number, 0, 1000) / 1000.0;
 }
 
-std::string seconds_text(std::chrono::milliseconds time) {
+std::string time_limit_text(std::chrono::milliseconds time) {
   return std::to_string(std::chrono::duration_cast<std::chrono::seconds>(time).count()) + " s";
 }
 
@@ -32,7 +32,7 @@ std::string ForeignTask::printable(const std::string& reason) {
 Result<ForeignChild> ForeignChild::start(ForeignTask task, const std::vector<std::string>& arguments,
                                          std::chrono::milliseconds patience, int input) {
   auto output = ChildOutput::start(arguments, patience, input);
-  if (!output) return Error{task.file.string() + ": " + output.error().message};
+  if (!output) return output.error().in(task.file.string());
   return ForeignChild(std::move(task), std::move(output).value(), patience);
 }
 
@@ -47,18 +47,18 @@ Result<FrameHead> ForeignChild::next() {
   for (;;) {
     FrameHead head;
     if (Status got = read(&head, sizeof head); !got) return got.error();
-    if (!is_known(head.kind)) return not_in_form();
+    if (!is_known(head.kind)) return invalid_answer();
     if (head.kind == FrameKind::failure) return failure(head);
     if (head.kind != FrameKind::progress) return head;
     const auto thousandths = content(head);
     if (!thousandths) return thousandths.error();
-    fraction_ = fraction_of(thousandths.value());
-    if (!progress_.report(fraction_)) return about("stopped");
+    fraction_ = parse_thousandths(thousandths.value());
+    if (!progress_.report(fraction_)) return error(ErrorCode::cancelled, "stopped");
   }
 }
 
 Result<std::string> ForeignChild::content(const FrameHead& head) {
-  if (head.bytes > frame_bytes_limit) return not_in_form();
+  if (head.bytes > frame_bytes_limit) return invalid_answer();
   std::string content(head.bytes, '\0');
   if (Status got = read(content.data(), content.size()); !got) return got.error();
   return content;
@@ -68,36 +68,40 @@ Status ForeignChild::read(void* to, std::size_t bytes) {
   bool stopped = false;
   const auto stops = [&] { return stopped = !progress_.report(fraction_); };
   if (output_.read(to, bytes, progress_.is_watched() ? stops : std::function<bool()>())) return {};
-  return stopped ? about("stopped") : end_without_answer();
+  return stopped ? error(ErrorCode::cancelled, "stopped") : missing_answer();
 }
 
-Error ForeignChild::about(const std::string& message) const {
-  return Error{task_.file.string() + ": " + message};
+Error ForeignChild::error(ErrorCode code, const std::string& message) const {
+  return Error{code, task_.file.string() + ": " + message};
 }
 
-Error ForeignChild::end_without_answer() {
+Error ForeignChild::missing_answer() {
   const ChildEnd end = output_.wait();
   const bool reads = task_.work == ForeignTask::Work::reading;
   if (end.out_of_time) {
-    return about((reads ? "reading" : "writing") + (" it took longer than " + seconds_text(patience_)) +
-                 "; " + task_.remedy);
+    return error(ErrorCode::process_failed, (reads ? "reading" : "writing") +
+                                                (" it took longer than " + time_limit_text(patience_)) +
+                                                "; " + task_.remedy);
   }
   if (end.signal != 0) {
     const std::string signal = "(signal " + std::to_string(end.signal) + "); ";
-    return about(reads ? "the reader crashed on it " + signal + "the file is damaged, export it anew"
+    return error(ErrorCode::process_failed,
+                 reads ? "the reader crashed on it " + signal + "the file is damaged, export it anew"
                        : "the writer crashed " + signal + task_.remedy);
   }
-  return about((reads ? "the reader" : "the writer") + (" ended without a " + task_.thing) + " (exit code " +
-               std::to_string(end.exit_code) + "); " + (reads ? "export it anew" : task_.remedy));
+  return error(ErrorCode::process_failed,
+               (reads ? "the reader" : "the writer") + (" ended without a " + task_.thing) + " (exit code " +
+                   std::to_string(end.exit_code) + "); " + (reads ? "export it anew" : task_.remedy));
 }
 
 Error ForeignChild::failure(const FrameHead& head) {
   const auto reason = content({head.kind, std::min<std::uint64_t>(head.bytes, failure_bytes_limit)});
   if (!reason) return reason.error();
   if (reason->find("bad alloc") != std::string::npos || reason->find("bad_alloc") != std::string::npos) {
-    return about(task_.too_much + std::to_string(ChildOutput::memory_limit >> 30) + " GiB; " + task_.remedy);
+    return error(ErrorCode::too_many,
+                 task_.too_much + std::to_string(ChildOutput::memory_limit >> 30) + " GiB; " + task_.remedy);
   }
-  return about(task_.refusal(reason.value()));
+  return error(ErrorCode::malformed, task_.refusal(reason.value()));
 }
 
 void end_with_parent() {

@@ -1,5 +1,5 @@
-// The conversation with a child process that reads or writes a file of another program, so that a hostile
-// file cannot take the session with it. The child answers with frames (engine/exchange/frame_stream.h).
+// A child process that reads or writes a file in a foreign format, so that a hostile file cannot crash the
+// session. The child answers with frames (engine/exchange/frame_stream.h).
 #pragma once
 
 #include <chrono>
@@ -17,68 +17,68 @@
 
 namespace spoonbill {
 
-// What a child does with which file, and how messages speak of it.
+// The job of a child, and the words of its error messages.
 struct ForeignTask {
   enum class Work { reading, writing };
 
   std::filesystem::path file;
-  std::string thing;   // that it hands back: "mesh"
-  std::string remedy;  // for a file that is too much for it: "reduce the mesh"
+  std::string thing;   // the result: "mesh"
+  std::string remedy;  // for a file that exceeds the limits: "reduce the mesh"
   Work work = Work::reading;
-  // What is said after "FILE: " of a child that has not enough memory, is followed by a number of GiB; of one
-  // that answers in another form; and of the reason that it gives itself, which may be any bytes.
-  std::string too_much = "reading it takes more than ";
-  std::string not_in_form = "the reader did not answer in its own form; build the program anew";
+  // Message after "FILE: " when memory runs out; a number of GiB follows.
+  std::string too_much = "reading it needs more than ";
+  // Message after "FILE: " for an answer that is not a valid frame.
+  std::string invalid_answer = "the reader gave an invalid answer; rebuild the program";
+  // Returns the message after "FILE: " for the child's own reason, which may be any bytes.
   std::function<std::string(const std::string& reason)> refusal = printable;
 
-  // With a blank for every letter that is none of ASCII.
+  // Returns the text with every byte that is not printable ASCII replaced by a blank.
   static std::string printable(const std::string& reason);
 };
 
-// One owner, one thread. Every Error names the file.
+// The parent's side of the conversation. One owner, one thread. Every error names the file.
 class ForeignChild {
  public:
-  // Starts the program `arguments[0]`, whose memory is limited to ChildOutput::memory_limit, and whose time
-  // to the patience. `input` becomes its standard input, nothing if negative.
+  // Starts the program `arguments[0]`. `patience` limits its time, ChildOutput::memory_limit its memory.
+  // `input` becomes its standard input; a negative one gives it none.
   static Result<ForeignChild> start(ForeignTask task, const std::vector<std::string>& arguments,
                                     std::chrono::milliseconds patience, int input = -1);
 
-  // Reports the child's progress from now on, several times a second, and ends the child where that asks it
-  // to stop.
+  // Forwards the child's progress several times a second, and ends the child when `progress` asks to stop.
   void watch(Progress progress);
 
-  // The head of the next frame that is neither progress nor a failure; its content is to be read. Refused:
-  // the child's failure, its end, its time being over, a request to stop, what is no frame.
+  // Returns the head of the next frame that is neither progress nor a failure; the caller reads its content.
+  // Errors: the child fails, ends, exceeds its time or sends an invalid frame; the user stops the work.
   Result<FrameHead> next();
 
-  // The whole content of the frame whose head came last. Refused: as next() does, more than
+  // Returns the whole content of the frame whose head came last. Errors: those of next(), more than
   // frame_bytes_limit.
   Result<std::string> content(const FrameHead& head);
 
-  // A part of that content.
+  // Reads the next bytes of that content.
   Status read(void* to, std::size_t bytes);
   template <class T>
   Status read(std::vector<T>& items) {
     return read(items.data(), items.size() * sizeof(T));
   }
 
-  // That the child did not answer in the form that it should.
-  Error not_in_form() const { return about(task_.not_in_form); }
+  // The error of a child whose answer is not what the protocol demands.
+  Error invalid_answer() const { return error(ErrorCode::process_failed, task_.invalid_answer); }
 
  private:
   ForeignChild(ForeignTask task, ChildOutput output, std::chrono::milliseconds patience);
-  Error about(const std::string& message) const;
-  Error end_without_answer();
+  Error error(ErrorCode code, const std::string& message) const;
+  Error missing_answer();
   Error failure(const FrameHead& head);
 
   ForeignTask task_;
   ChildOutput output_;
   std::chrono::milliseconds patience_;
   Progress progress_;
-  double fraction_ = 0.0;  // that the child last reported
+  double fraction_ = 0.0;  // last reported by the child
 };
 
-// In the child itself: ends it when the program that asked ends, because a file may keep it busy for long.
+// Called in a child: ends it together with its parent, because a file may keep it busy for long.
 void end_with_parent();
 
 }  // namespace spoonbill

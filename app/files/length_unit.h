@@ -1,4 +1,4 @@
-// The units of length that people may name.
+// The units of length that people can name.
 #pragma once
 
 #include <array>
@@ -9,15 +9,15 @@ namespace spoonbill {
 
 struct LengthUnit {
   std::string_view name;
-  double metres;
+  double metres;  // length of one unit
 };
 
 inline constexpr LengthUnit millimetre{"mm", 1e-3}, metre{"m", 1.0};
 inline constexpr std::array<LengthUnit, 4> length_units{millimetre, LengthUnit{"cm", 1e-2}, metre,
                                                         LengthUnit{"in", 0.0254}};
 
-// By its name, or "inch".
-inline std::optional<LengthUnit> unit_named(std::string_view name) {
+// Returns the unit of that name; "inch" is a synonym of "in".
+inline std::optional<LengthUnit> find_length_unit(std::string_view name) {
   if (name == "inch") name = "in";
   for (const LengthUnit& unit : length_units) {
     if (unit.name == name) return unit;

@@ -1,13 +1,16 @@
-// Scans: point clouds and meshes out of files, in metres.
+// Meshes, point clouds and scans read from files. A child process with limits on time and memory parses each
+// file, so that a hostile one cannot crash the session.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 
 #include "app/files/length_unit.h"
-#include "app/files/mesh_file.h"
 #include "engine/base/result.h"
+#include "engine/collision/meshes/triangle_mesh.h"
+#include "engine/exchange/points/point_cloud.h"
 #include "engine/fitting/scan.h"
 
 namespace spoonbill {
@@ -15,17 +18,41 @@ namespace spoonbill {
 // A closed mesh of five million points has twice as many triangles.
 inline constexpr std::size_t scan_triangle_limit = 10'000'000;
 
-struct ScanFile {
-  Scan scan;  // finite, within position_range_m
-  LengthUnit unit = millimetre;
-  std::size_t points_read = 0;
-  std::size_t points_skipped = 0;  // with a coordinate that is no number
+struct MeshReading {
+  // Unit of the file's numbers. Default: metres for PLY and PCD, millimetres for all others.
+  std::optional<LengthUnit> unit;
+  std::size_t triangle_limit = mesh_triangle_limit;
+  // The program whose commands `read-mesh FILE` and `read-points FILE` parse the file. Default: this one; a
+  // test must name it.
+  std::filesystem::path program = "/proc/self/exe";
+  std::chrono::milliseconds patience{60'000};  // time limit of the child
 };
 
-// By the ending of the name: PLY and PCD, in metres if `unit` says nothing; STL, OBJ, XYZ and its like, in
-// millimetres. A child process of the program that `reading` names reads them.
-// Refused, each with one line that names the file: another ending, what cannot be read, more than five
-// million points of a cloud or more triangles than the limit, points at infinity or farther than 100 m.
+struct MeshFile {
+  TriangleMesh mesh;  // in metres; neither cleaned nor checked for invalid indices
+  LengthUnit unit = millimetre;
+};
+
+// Reads an OBJ, STL or PLY file of at most 512 MiB. Every error names the file: another ending; a file that
+// is missing, unreadable, empty, truncated or malformed; a child that crashes, exceeds its time or 4 GiB; too
+// many triangles, or more than three vertices per triangle of the limit.
+Result<MeshFile> read_mesh_file(const std::filesystem::path& file, const MeshReading& reading = {});
+
+// Reads a point cloud of at most 1 GiB in the file's own unit, or nothing if a PLY or OBJ file has faces and
+// so is a mesh. The formats are those of engine/exchange/points/point_cloud.h. Errors are those of
+// read_mesh_file().
+Result<std::optional<PointCloud>> read_cloud_file(const std::filesystem::path& file,
+                                                  const MeshReading& reading = {});
+
+struct ScanFile {
+  Scan scan;  // finite, in metres, within position_range_m
+  LengthUnit unit = millimetre;
+  std::size_t points_read = 0;
+  std::size_t points_skipped = 0;  // points with a coordinate that is not a number
+};
+
+// Reads a scan: a cloud, or a mesh of at most scan_triangle_limit triangles. Errors are those of the
+// functions above, and points at infinity or farther than 100 m.
 Result<ScanFile> read_scan_file(const std::filesystem::path& file, const MeshReading& reading = {});
 
 }  // namespace spoonbill

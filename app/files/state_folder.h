@@ -1,14 +1,34 @@
-// Where the program keeps what is not the person's own files: autosaved documents.
+// The folder of autosaved documents, and locks that keep two processes from using the same file there.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "engine/base/result.h"
 
 namespace spoonbill {
 
-// $XDG_STATE_HOME/spoonbill, or ~/.local/state/spoonbill (XDG Base Directory Specification 0.8), made when it
-// is missing. Refused: neither variable set, a folder that cannot be made.
+// Returns $XDG_STATE_HOME/spoonbill or ~/.local/state/spoonbill (XDG Base Directory Specification 0.8) and
+// creates it if it is missing.
 Result<std::filesystem::path> state_folder();
+
+// An exclusive lock between processes on a lock file, which is deleted with the lock. The system releases it
+// when the process ends, however it ends. One owner; any thread.
+class FileLock {
+ public:
+  // Returns nothing if this or another process holds the lock, or if the file cannot be created.
+  static std::optional<FileLock> take(const std::filesystem::path& file);
+
+  FileLock(FileLock&& other) noexcept;
+  FileLock& operator=(FileLock&& other) noexcept;
+  ~FileLock();
+
+ private:
+  FileLock(std::filesystem::path file, int descriptor);
+  void release();
+
+  std::filesystem::path file_;
+  int descriptor_ = -1;  // -1 after a move
+};
 
 }  // namespace spoonbill

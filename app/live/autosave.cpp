@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-#include "app/report/hash_text.h"
+#include "app/report/quantity_text.h"
 #include "engine/base/file.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/simulation/simulation.h"

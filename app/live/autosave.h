@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "app/files/file_lock.h"
+#include "app/files/state_folder.h"
 #include "engine/base/result.h"
 #include "engine/exchange/document.h"
 

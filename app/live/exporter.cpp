@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "app/convert/conversion.h"
+#include "app/files/conversion.h"
 
 namespace spoonbill {
 

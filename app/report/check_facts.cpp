@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "app/report/closing_text.h"
 #include "app/report/quantity_text.h"
 #include "engine/base/text.h"
 #include "engine/inspection/mass_properties.h"
@@ -13,21 +13,23 @@
 namespace spoonbill {
 namespace {
 
-// Flatter than a kilometre is flat.
+// A surface with a radius above one kilometre counts as flat.
 constexpr double least_curvature_per_m = 1e-3;
 
-Json numbers(const Vector3& vector) {
+constexpr const char* no_walls = "unknown: no two walls face each other";
+
+Json vector_json(const Vector3& vector) {
   return Json::array({vector.x(), vector.y(), vector.z()});
 }
 
-Json place_json(const CurvatureExtreme& place) {
+Json curvature_json(const CurvatureExtreme& place) {
   return {{"per_m", place.curvature_per_m},
           {"u", place.u},
           {"v", place.v},
-          {"point_m", numbers(place.position_m)}};
+          {"point_m", vector_json(place.position_m)}};
 }
 
-// Null where the surface is curved that way nowhere, or by rounding alone.
+// Returns null if the surface has no curvature of that sign, except by rounding.
 Json radius_json(double curvature_per_m) {
   return curvature_per_m > least_curvature_per_m ? Json(1.0 / curvature_per_m) : Json(nullptr);
 }
@@ -40,8 +42,8 @@ void add_radius(FactSheet& facts, const char* label, double curvature_per_m, con
 
 Json curvature_facts(FactSheet& facts, const CurvatureRange& range) {
   add_radius(facts, "  Smallest convex radius", range.largest.curvature_per_m, range.largest);
-  add_radius(facts, "  Smallest hollow radius", -range.smallest.curvature_per_m, range.smallest);
-  return {{"smallest", place_json(range.smallest)}, {"largest", place_json(range.largest)}};
+  add_radius(facts, "  Smallest concave radius", -range.smallest.curvature_per_m, range.smallest);
+  return {{"smallest", curvature_json(range.smallest)}, {"largest", curvature_json(range.largest)}};
 }
 
 void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
@@ -52,16 +54,16 @@ void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
     return;
   }
   const Thickness& thin = *check.thinnest;
-  // Where sides meet, rounding alone is between them.
+  // Where two sides meet, only rounding error separates them.
   const double thickness_m = thin.thickness_m > 1e-12 ? thin.thickness_m : 0.0;
   facts.add("  Thinnest", short_length_text(thickness_m) + " at " + position_text(thin.position_m), "", nullptr);
   json["smallest_thickness_m"] = thin.thickness_m;
   json["thinnest"] = {{"u", thin.u},
                       {"v", thin.v},
-                      {"point_m", numbers(thin.position_m)},
+                      {"point_m", vector_json(thin.position_m)},
                       {"opposite_u", thin.opposite_u},
                       {"opposite_v", thin.opposite_v},
-                      {"opposite_m", numbers(thin.opposite_m)}};
+                      {"opposite_m", vector_json(thin.opposite_m)}};
 }
 
 bool has_material_regions(const Body& body) {
@@ -75,24 +77,25 @@ std::string names_text(const std::vector<std::string>& names) {
   return text;
 }
 
-// Where regions have no cells, and so no share, all is the body's own material.
+// Adds the mass of a body with its material regions. If its regions cannot be evaluated, the body's own
+// material counts everywhere and the line says why.
 void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector3& centre_m, Json& json) {
   MaterialMix mix{body.material.density_kg_per_m3, Vector3::Zero(), {body.material.name}};
-  std::string remark;
+  std::string note;
   if (has_material_regions(body)) {
     const auto found = compute_material_mix(body);
     if (found) mix = found.value();
-    if (!found) remark = ", its regions left out: " + found.error().message;
+    if (!found) note = ", regions ignored: " + found.error().message;
   }
   const double mass_kg = volume_m3 * mix.density_kg_per_m3;
-  const Vector3 centre_m = centre_m + mix.mass_offset_m;
+  const Vector3 mass_centre_m = centre_m + mix.mass_offset_m;
   facts.add("  Volume", volume_text(volume_m3), "", nullptr);
-  facts.add("  Mass", grams_text(mass_kg) + " of " + names_text(mix.materials) + remark, "", nullptr);
-  facts.add("  Centre of mass", position_text(centre_m), "", nullptr);
+  facts.add("  Mass", grams_text(mass_kg) + " of " + names_text(mix.materials) + note, "", nullptr);
+  facts.add("  Centre of mass", position_text(mass_centre_m), "", nullptr);
   json["volume_m3"] = volume_m3;
   json["mass_kg"] = mass_kg;
   json["materials"] = mix.materials;
-  json["centre_of_mass_m"] = numbers(centre_m);
+  json["centre_of_mass_m"] = vector_json(mass_centre_m);
 }
 
 void add_content(FactSheet& facts, const Body& body, CheckedAs as, const TrimmedArea& area,
@@ -111,7 +114,7 @@ void add_content(FactSheet& facts, const Body& body, CheckedAs as, const Trimmed
   add_thickness(facts, check, json);
 }
 
-void add_places(const SurfaceCheck& check, Json& json) {
+void add_faults(const SurfaceCheck& check, Json& json) {
   json["self_intersections"] = Json::array();
   for (const SelfIntersection& meeting : check.self_intersections) {
     json["self_intersections"].push_back({{"u", meeting.u},
@@ -119,13 +122,13 @@ void add_places(const SurfaceCheck& check, Json& json) {
                                           {"other_u", meeting.other_u},
                                           {"other_v", meeting.other_v},
                                           {"depth_m", meeting.depth_m},
-                                          {"point_m", numbers(meeting.position_m)}});
+                                          {"point_m", vector_json(meeting.position_m)}});
   }
   json["self_intersections_complete"] = check.self_intersections_complete;
   json["degenerate"] = Json::array();
   for (const SurfaceDefect& spot : check.surface_defects) {
     json["degenerate"].push_back(
-        {{"u", spot.u}, {"v", spot.v}, {"folds", spot.folds}, {"point_m", numbers(spot.position_m)}});
+        {{"u", spot.u}, {"v", spot.v}, {"folds", spot.folds}, {"point_m", vector_json(spot.position_m)}});
   }
 }
 
@@ -133,18 +136,85 @@ std::vector<std::string> closing_problems(const Body& body, const SurfaceCheck& 
   std::vector<std::string> problems;
   const bool closed = check.closing.closedness == Closedness::solid;
   if (check.is_trimmed && !body.shell_thickness_m) {
-    problems.emplace_back("open where it is trimmed, and no shell with a thickness");
+    problems.emplace_back("open where it is trimmed, and not a shell with a thickness");
   } else if (!closed && !body.shell_thickness_m) {
     problems.push_back("open by " + short_length_text(check.closing.gap_m) +
-                       ", and no shell with a thickness");
+                       ", and not a shell with a thickness");
   }
   if (check.encloses() && !(check.mass.volume_m3 > 0.0)) problems.emplace_back("its normals point inwards");
   return problems;
 }
 
-}  // namespace
+// Gaps up to this are rounding error between faces that meet.
+constexpr double least_gap_m = 1e-8;
 
-std::vector<std::string> problems_of(const Body& body, CheckedAs as, const SurfaceCheck& check) {
+std::string faces_text(std::size_t count) {
+  return "solid of " + count_text(count, "face", "faces");
+}
+
+// Adds the mass of a solid whose faces all have the same material. With several materials it is unknown which
+// part is made of which.
+void add_solid_mass(FactSheet& facts, const CadSolid& solid, const std::vector<Body>& bodies, Json& json) {
+  const Material& material = bodies[solid.places.front()].material;
+  const bool is_same = std::all_of(solid.places.begin(), solid.places.end(), [&](std::size_t body) {
+    const Material& other = bodies[body].material;
+    return other.name == material.name && other.density_kg_per_m3 == material.density_kg_per_m3;
+  });
+  if (!is_same) {
+    facts.add("  Mass", "unknown: its faces have several materials; give them the same", "", nullptr);
+    return;
+  }
+  const double mass_kg = solid.volume_m3 * material.density_kg_per_m3;
+  facts.add("  Mass", grams_text(mass_kg) + " of " + material.name, "", nullptr);
+  json["mass_kg"] = mass_kg;
+  json["materials"] = {material.name};
+}
+
+std::vector<std::string> find_solid_problems(const SolidCheck& check) {
+  std::vector<std::string> problems;
+  if (!check.self_intersections.empty()) {
+    const SolidSelfIntersection& deepest = check.self_intersections.front();
+    problems.push_back("passes through itself at " + position_text(deepest.position_m) + ", by at least " +
+                       short_length_text(deepest.depth_m));
+  }
+  if (!check.self_intersections_complete) {
+    problems.emplace_back(
+        "may pass through itself: it is close to itself at more points than could be searched");
+  }
+  return problems;
+}
+
+void add_self_meetings(const SolidCheck& check, Json& json) {
+  json["self_intersections"] = Json::array();
+  for (const SolidSelfIntersection& meeting : check.self_intersections) {
+    json["self_intersections"].push_back(
+        {{"depth_m", meeting.depth_m}, {"point_m", vector_json(meeting.position_m)}});
+  }
+  json["self_intersections_complete"] = check.self_intersections_complete;
+}
+
+// The mesh may miss the surface by its chord error on both sides of a wall, so another wall may be thinner
+// than it seems by twice that.
+void add_solid_thickness(FactSheet& facts, const CadSolid& solid, const SolidCheck& check, Json& json) {
+  if (!check.thinnest) {
+    facts.add("  Thinnest", no_walls, "", nullptr);
+    json["smallest_thickness_m"] = nullptr;
+    return;
+  }
+  const WallThickness& thin = *check.thinnest;
+  const double error_m = 2.0 * solid.chord_error_m;
+  const std::string within =
+      error_m > least_gap_m ? ", nowhere less by more than " + short_length_text(error_m) : "";
+  facts.add("  Thinnest", short_length_text(thin.thickness_m) + " at " + position_text(thin.position_m) + within,
+            "", nullptr);
+  json["smallest_thickness_m"] = thin.thickness_m;
+  json["thickness_error_m"] = error_m;
+  json["thinnest"] = {{"point_m", vector_json(thin.position_m)},
+                      {"opposite_m", vector_json(thin.opposite_m)}};
+}
+
+// Returns what makes the body unsound, one line each; none if it is sound.
+std::vector<std::string> find_problems(const Body& body, CheckedAs as, const SurfaceCheck& check) {
   std::vector<std::string> problems =
       as == CheckedAs::face ? std::vector<std::string>() : closing_problems(body, check);
   if (!check.self_intersections.empty()) {
@@ -153,7 +223,8 @@ std::vector<std::string> problems_of(const Body& body, CheckedAs as, const Surfa
                        position_text(check.self_intersections[0].position_m));
   }
   if (!check.self_intersections_complete) {
-    problems.emplace_back("may pass through itself: too many places are near each other to be searched");
+    problems.emplace_back(
+        "may pass through itself: it is close to itself at more points than could be searched");
   }
   if (!check.surface_defects.empty()) {
     const SurfaceDefect& spot = check.surface_defects[0];
@@ -168,9 +239,11 @@ std::vector<std::string> problems_of(const Body& body, CheckedAs as, const Surfa
   return problems;
 }
 
+}  // namespace
+
 Json add_check_facts(FactSheet& facts, const Body& body, CheckedAs as, const TrimmedArea& area,
                      const SurfaceCheck& check) {
-  const std::vector<std::string> problems = problems_of(body, as, check);
+  const std::vector<std::string> problems = find_problems(body, as, check);
   Json json = {{"name", body.name}, {"sound", problems.empty()}, {"problems", problems}};
   facts.add("Body", body.name + ": " + (problems.empty() ? "sound" : "not sound"), "", nullptr);
   for (const std::string& problem : problems) facts.add("  Problem", problem, "", nullptr);
@@ -189,12 +262,12 @@ Json add_check_facts(FactSheet& facts, const Body& body, CheckedAs as, const Tri
   json["bending"] = check.bending;
   facts.add("  Bending", number_text(std::round(100.0 * check.bending) / 100.0) + " (a ball has 25.13)", "",
             nullptr);
-  add_places(check, json);
+  add_faults(check, json);
   return json;
 }
 
 Json add_meeting_facts(FactSheet& facts, const BodyOverlap& meeting, const Body& first, const Body& second) {
-  facts.add("In each other",
+  facts.add("Overlap",
             first.name + " and " + second.name + ", " + short_length_text(meeting.depth_m) + " deep at " +
                 position_text(meeting.position_m),
             "", nullptr);
@@ -202,7 +275,48 @@ Json add_meeting_facts(FactSheet& facts, const BodyOverlap& meeting, const Body&
           {"b", second.name},
           {"contained", meeting.contained},
           {"depth_m", meeting.depth_m},
-          {"point_m", numbers(meeting.position_m)}};
+          {"point_m", vector_json(meeting.position_m)}};
+}
+
+Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const SolidCheck& check,
+                           const std::vector<Body>& bodies) {
+  const std::vector<std::string> problems = find_solid_problems(check);
+  Json json = {{"name", solid.name},
+               {"closed", true},
+               {"sound", problems.empty()},
+               {"problems", problems},
+               {"bodies", Json::array()}};
+  for (const std::size_t body : solid.places) json["bodies"].push_back(bodies[body].name);
+  facts.add("Solid", solid.name + ": closed, " + faces_text(solid.places.size()), "", nullptr);
+  for (const std::string& problem : problems) facts.add("  Problem", problem, "", nullptr);
+  if (solid.gap_m > least_gap_m) {
+    facts.add("  Gaps", "up to " + short_length_text(solid.gap_m) + " between faces", "", nullptr);
+  }
+  facts.add("  Area", area_text(solid.area_m2), "", nullptr);
+  facts.add("  Volume", volume_text(solid.volume_m3), "", nullptr);
+  json["gap_m"] = solid.gap_m;
+  json["area_m2"] = solid.area_m2;
+  json["volume_m3"] = solid.volume_m3;
+  add_solid_mass(facts, solid, bodies, json);
+  facts.add("  Centre of mass", position_text(solid.centre_m), "", nullptr);
+  json["centre_of_mass_m"] = vector_json(solid.centre_m);
+  add_solid_thickness(facts, solid, check, json);
+  add_self_meetings(check, json);
+  return json;
+}
+
+Json add_open_solid_facts(FactSheet& facts, const std::vector<std::size_t>& loose,
+                          const std::vector<Body>& bodies) {
+  std::map<std::string, Json> names;
+  for (const std::size_t body : loose) {
+    if (!bodies[body].solid.empty()) names[bodies[body].solid].push_back(bodies[body].name);
+  }
+  Json all = Json::array();
+  for (const auto& [name, faces] : names) {
+    facts.add("Solid", name + ": not closed, " + faces_text(faces.size()), "", nullptr);
+    all.push_back({{"name", name}, {"closed", false}, {"sound", false}, {"bodies", faces}});
+  }
+  return all;
 }
 
 }  // namespace spoonbill

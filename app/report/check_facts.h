@@ -1,31 +1,35 @@
-// What a check found of one body.
+// The report of the check command: bodies, solids that several bodies bound, and bodies that overlap.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "app/report/fact_sheet.h"
+#include "engine/exchange/cad_model.h"
 #include "engine/inspection/solid_check.h"
 #include "engine/inspection/surface_check.h"
 #include "engine/scene/scene.h"
 
 namespace spoonbill {
 
-// Of what has no thickness.
-inline constexpr const char* no_walls = "unknown: nowhere do two walls face each other";
-
-// A face of a closed solid need not close.
+// A face of a closed solid need not be closed itself.
 enum class CheckedAs { body, face };
 
-// What keeps the body from being what it says it is, a line each: none where it is sound.
-std::vector<std::string> problems_of(const Body& body, CheckedAs as, const SurfaceCheck& check);
-
-// Lines go to the sheet, the body's JSON is returned.
-// `area` is what trims keep of the body's surface.
+// Adds the lines of a body and returns its JSON. `area` is the part of the surface that the trims keep.
 Json add_check_facts(FactSheet& facts, const Body& body, CheckedAs as, const TrimmedArea& area,
                      const SurfaceCheck& check);
 
-// Of two bodies that are in each other.
+// Adds the line of two overlapping bodies and returns its JSON.
 Json add_meeting_facts(FactSheet& facts, const BodyOverlap& meeting, const Body& first, const Body& second);
+
+// Adds the lines of a closed solid and returns its JSON. `bodies` are all bodies of the document.
+Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const SolidCheck& check,
+                           const std::vector<Body>& bodies);
+
+// Adds a line for each solid with faces that could not be joined, and returns the JSON list of them. `loose`
+// are the indices of these bodies.
+Json add_open_solid_facts(FactSheet& facts, const std::vector<std::size_t>& loose,
+                          const std::vector<Body>& bodies);
 
 }  // namespace spoonbill

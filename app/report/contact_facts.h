@@ -1,54 +1,61 @@
-// What there is to say about the contact of two things, each a surface or a mesh.
+// The report of the collide command: contacts between two models or within one, and the meshes that were read
+// and cleaned for it.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/files/length_unit.h"
 #include "app/report/fact_sheet.h"
 #include "engine/collision/levels/surface_levels.h"
+#include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/collision/rigid/mesh_pair.h"
 #include "engine/collision/surfaces/surface_pair_collider.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 
 namespace spoonbill {
 
-struct SurfacePlace {
+struct SurfaceParameters {
   double u, v;
-  std::optional<ParameterRange> range;  // of the region of contact
+  std::optional<ParameterRange> range;  // of the contact region around the point
 };
 
-// The nearest or deepest point of one of them.
+// One model's side of a contact or of the nearest pair of points.
 struct ContactSide {
   Vector3 point_m = Vector3::Zero();
-  std::optional<SurfacePlace> place;  // a mesh has none
-  std::string body;                   // whose it is, where a document has several; else empty
+  std::optional<SurfaceParameters> parameters;  // nothing on a mesh
+  std::string body;                             // name of the body; empty if the model has one
 };
 
-struct ContactOfTwo {
-  ContactSide a, b;
-  Vector3 normal = Vector3::UnitY();  // unit, along which A leaves B
+struct ModelContact {
+  ContactSide a, b;                   // deepest points
+  Vector3 normal = Vector3::UnitY();  // unit direction in which A separates from B
   double depth_m = 0.0;
-  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // unit, across the normal
+  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // unit, perpendicular to the normal
 };
 
 struct CollisionAnswer {
   bool touching = false;
-  bool contained = false;  // one is inside the other
-  bool complete = true;    // nothing can be missing
-  double distance_m =
-      0.0;  // where they do not touch; infinite of one with itself, which has no nearest points
+  bool contained = false;  // one model is inside the other
+  bool complete = true;    // false if contacts may be missing
+  // Distance between models that do not touch; infinite for a model with itself.
+  double distance_m = 0.0;
   ContactSide nearest_a, nearest_b;
-  std::vector<ContactOfTwo> contacts;
+  std::vector<ModelContact> contacts;
 };
 
-CollisionAnswer answer_of(const PairResult& result, const std::vector<PairContact>& contacts);
-CollisionAnswer answer_of(const MeshPairResult& result);
-// Of one with itself, A and B its parts.
-CollisionAnswer answer_of(const SelfResult& result, const std::vector<PairContact>& contacts);
+CollisionAnswer make_answer(const PairResult& result, const std::vector<PairContact>& contacts);
+CollisionAnswer make_answer(const MeshPairResult& result);
+// A and B of the answer are two parts of the same surface.
+CollisionAnswer make_answer(const SelfResult& result, const std::vector<PairContact>& contacts);
 
-// Those that touch have a depth, the deepest contact's, and contacts; others the distance between their
-// nearest points.
+// Adds the depth and the contacts of models that touch, or the distance and the nearest points of others.
 void add_contact_facts(FactSheet& facts, const CollisionAnswer& answer);
+
+// Adds the unit, size, cleaning and parts of a mesh, in the JSON under `field`. `suffix` follows each label,
+// such as " of A" when both models are meshes. Open parts are plates of the thickness.
+void add_mesh_facts(FactSheet& facts, const LengthUnit& unit, const CleanMesh& mesh, double sheet_thickness_m,
+                    const std::string& field = "mesh", const std::string& suffix = "");
 
 }  // namespace spoonbill

@@ -4,19 +4,53 @@
 #include <array>
 #include <cstdio>
 
-#include "app/report/closing_text.h"
 #include "app/report/quantity_text.h"
-#include "app/report/region_text.h"
-#include "app/report/surface_extent.h"
 #include "engine/base/text.h"
+#include "engine/bspline/grid.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/exchange/scene_json.h"
+#include "engine/inspection/surface_check.h"
 
 namespace spoonbill {
 namespace {
 
-Json direction_facts(const KnotVector& knots) {
+// Samples per direction. Cutting cells along trim loops is slow; fewer samples suffice because the vertices
+// of the loops count too.
+constexpr int extent_samples = 201, trimmed_extent_samples = 61;
+
+Box extent_within(const Surface& surface, const Grid& grid, const TrimmedArea& area) {
+  const TrimmedGrid trimmed = trim_grid(grid.u, grid.v, area);
+  const auto columns = static_cast<std::size_t>(grid.columns());
+  const std::size_t count = grid.u.parameters.size() * columns;
+  std::vector<bool> kept(count, false);
+  for (const auto& triangle : trimmed.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      if (vertex < count) kept[vertex] = true;
+    }
+  }
+  Box box;
+  for (std::size_t s = 0; s < count; ++s) {
+    if (!kept[s]) continue;
+    box.include(position(surface, grid.u.parameters[s / columns], grid.v.parameters[s % columns]));
+  }
+  for (const CutVertex& cut : trimmed.vertices) box.include(position(surface, cut.u, cut.v));
+  return box;
+}
+
+std::string net_text(const Surface& surface) {
+  return "degrees " + std::to_string(surface.u.degree()) + " and " + std::to_string(surface.v.degree()) +
+         ", " + std::to_string(surface.net.rows) + "x" + std::to_string(surface.net.columns) +
+         " control points";
+}
+
+Json short_direction_json(const KnotVector& knots) {
+  return {{"degree", knots.degree()},
+          {"control_points", knots.control_point_count()},
+          {"periodic", knots.is_periodic()}};
+}
+
+Json direction_json(const KnotVector& knots) {
   return {{"degree", knots.degree()},
           {"control_points", knots.control_point_count()},
           {"periodic", knots.is_periodic()},
@@ -25,8 +59,8 @@ Json direction_facts(const KnotVector& knots) {
           {"domain", {knots.domain_start(), knots.domain_end()}}};
 }
 
-// Short enough to read; the JSON has every digit.
-std::string place_on(double parameter) {
+// Six digits are enough for people; the JSON has all of them.
+std::string parameter_text(double parameter) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.6g", parameter + 0.0);
   return text.data();
@@ -35,19 +69,19 @@ std::string place_on(double parameter) {
 std::string direction_text(const KnotVector& knots) {
   return "degree " + std::to_string(knots.degree()) + ", " + std::to_string(knots.control_point_count()) +
          " control points, " + std::to_string(knots.breakpoints().size() - 1) + " spans, " +
-         (knots.is_periodic() ? "periodic" : "open") + ", from " + place_on(knots.domain_start()) + " to " +
-         place_on(knots.domain_end());
+         (knots.is_periodic() ? "periodic" : "open") + ", from " + parameter_text(knots.domain_start()) +
+         " to " + parameter_text(knots.domain_end());
 }
 
-Json surface_facts(const Surface& surface) {
-  return {{"u", direction_facts(surface.u)}, {"v", direction_facts(surface.v)}};
+Json surface_json(const Surface& surface) {
+  return {{"u", direction_json(surface.u)}, {"v", direction_json(surface.v)}};
 }
 
-std::string kind_text(const Body& body) {
+std::string shell_text(const Body& body) {
   return body.shell_thickness_m ? ", a shell of " + length_text(*body.shell_thickness_m) : "";
 }
 
-Json millimetres_of(const Vector3& size_m) {
+Json size_json(const Vector3& size_m) {
   return {1e3 * size_m.x(), 1e3 * size_m.y(), 1e3 * size_m.z()};
 }
 
@@ -65,13 +99,13 @@ std::string decimals_text(double value, int decimals) {
 void add_trim_facts(FactSheet& facts, const Body& body, Json& json) {
   const auto trim = make_trimmed_area(body);
   if (!trim || !trim.value()) return;
-  const double away = 1.0 - remaining_area_fraction(body.surface, *trim.value());
+  const double removed = 1.0 - remaining_area_fraction(body.surface, *trim.value());
   const std::string loops = body.trims.size() == 1 ? " loop" : " loops";
   facts.add("Trimmed",
-            "by " + std::to_string(body.trims.size()) + loops + ", " + decimals_text(100.0 * away, 1) +
-                " % of the area away",
+            "by " + std::to_string(body.trims.size()) + loops + ", " + decimals_text(100.0 * removed, 1) +
+                " % of the area removed",
             "", nullptr);
-  json["trims"] = {{"loops", body.trims.size()}, {"area_share_away", away}};
+  json["trims"] = {{"loops", body.trims.size()}, {"area_share_away", removed}};
 }
 
 void add_region_facts(FactSheet& facts, const Body& body, Json& json) {
@@ -79,27 +113,27 @@ void add_region_facts(FactSheet& facts, const Body& body, Json& json) {
   add_material_regions(body.regions, json);
   for (std::size_t r = 0; r < body.regions.size(); ++r) {
     const MaterialRegion& region = body.regions[r];
-    facts.add("Region " + std::to_string(r + 1), position_text(region.region) + ": " + made_of_text(region), "",
-              nullptr);
+    facts.add("Region " + std::to_string(r + 1),
+              region_extent_text(region.region) + ": " + region_material_text(region), "", nullptr);
   }
 }
 
-// Lines go to the sheet, the body's JSON is returned.
+// Adds the lines of a body and returns its JSON.
 Json add_body_facts(FactSheet& facts, const std::string& label, const Body& body, const Vector3& size_m,
-                    bool at_length) {
+                    bool detailed) {
   const Closing closing = find_closing(body.surface);
-  Json json = {{"name", body.name}, {"size_mm", millimetres_of(size_m)}};
+  Json json = {{"name", body.name}, {"size_mm", size_json(size_m)}};
   json["closedness"] = name_of(closing.closedness);
   json["material"] = material_to_json(body.material);
   if (body.shell_thickness_m) json["shell_thickness_m"] = *body.shell_thickness_m;
-  std::string text = body.name + kind_text(body);
+  std::string text = body.name + shell_text(body);
   if (label != "Body") text += ", " + size_text(size_m);
   if (!body.solid.empty()) {
     text += ", a face of \"" + body.solid + "\"";
     json["solid"] = body.solid;
   }
   facts.add(label, text, "", nullptr);
-  if (!at_length) return json;
+  if (!detailed) return json;
   facts.add("Along u", direction_text(body.surface.u), "", nullptr);
   facts.add("Along v", direction_text(body.surface.v), "", nullptr);
   facts.add("Surface", closing_text(closing), "", nullptr);
@@ -109,12 +143,12 @@ Json add_body_facts(FactSheet& facts, const std::string& label, const Body& body
   return json;
 }
 
-// What is told of a body that is alone stands in the sheet itself too, where "name" is the document's.
-void add_alone(FactSheet& facts, const Json& told) {
-  for (const auto& [field, value] : told.items()) facts.add("", "", field == "name" ? "body" : field, value);
+// Adds the members of a single body to the top level, where "name" is the document's and "body" the body's.
+void add_single_body(FactSheet& facts, const Json& body) {
+  for (const auto& [field, value] : body.items()) facts.add("", "", field == "name" ? "body" : field, value);
 }
 
-// 1 is a box, 0 a cell about to fold over.
+// A worst Jacobian of 1 means boxes, 0 a cell about to fold over.
 std::string quality_text(const CellQuality& quality) {
   std::array<char, 80> text{};
   std::snprintf(text.data(), text.size(), "worst Jacobian %.2f, volumes vary by %.0f %%",
@@ -122,7 +156,7 @@ std::string quality_text(const CellQuality& quality) {
   return text.data();
 }
 
-Json quality_facts(const CellQuality& quality) {
+Json quality_json(const CellQuality& quality) {
   return {{"worst_jacobian", quality.worst_jacobian}, {"volume_spread", quality.volume_spread}};
 }
 
@@ -131,18 +165,18 @@ std::string three_text(const double (&values)[3], double scale, int decimals) {
          " / " + decimals_text(scale * values[2], decimals);
 }
 
-Json add_simulated_body(FactSheet& facts, const std::string& of, const BodySnapshot& body) {
+Json add_simulated_body(FactSheet& facts, const std::string& suffix, const BodySnapshot& body) {
   const LatticeSnapshot& lattice = body.lattice;
   const auto fixed = std::count(lattice.fixed.begin(), lattice.fixed.end(), std::uint8_t{1});
-  facts.add("Lattice" + of,
+  facts.add("Lattice" + suffix,
             std::to_string(lattice.count[0]) + " x " + std::to_string(lattice.count[1]) + " x " +
                 std::to_string(lattice.count[2]) + " nodes, " + std::to_string(fixed) + " of them fixed",
             "", nullptr);
-  facts.add("Mass" + of, grams_text(body.material.mass_kg) + " (the lattice's)", "", nullptr);
-  facts.add("Felt E" + of, modulus_text(body.material.effective_youngs_modulus_pa), "", nullptr);
+  facts.add("Mass" + suffix, grams_text(body.material.mass_kg) + " (of the lattice)", "", nullptr);
+  facts.add("Effective E" + suffix, modulus_text(body.material.effective_youngs_modulus_pa), "", nullptr);
   const int implicit = body.material.implicit_nodes;
   facts.add(
-      "Solver" + of,
+      "Solver" + suffix,
       implicit > 0 ? "implicit, " + std::to_string(implicit) + " nodes of hexahedra" : "explicit springs", "",
       nullptr);
   const Json counts = {lattice.count[0], lattice.count[1], lattice.count[2]};
@@ -152,20 +186,35 @@ Json add_simulated_body(FactSheet& facts, const std::string& of, const BodySnaps
           {"solver", {{"kind", implicit > 0 ? "implicit" : "explicit"}, {"implicit_nodes", implicit}}}};
 }
 
-Json add_cells_of(FactSheet& facts, const std::string& of, const LatticeMesh& mesh,
-                  const FeatureMapReport* map) {
+Json add_body_cells(FactSheet& facts, const std::string& suffix, const LatticeMesh& mesh,
+                    const FeatureMapReport* map) {
   const CellQuality quality = measure_cell_quality(mesh);
-  Json json = quality_facts(quality);
+  Json json = quality_json(quality);
   if (map) {
-    json["before_feature_map"] = quality_facts(map->before);
+    json["before_feature_map"] = quality_json(map->before);
     json["feature_map_share"] = map->applied_fraction;
-    facts.add("Cells before" + of, quality_text(map->before), "", nullptr);
+    facts.add("Cells before" + suffix, quality_text(map->before), "", nullptr);
   }
-  facts.add((map ? "Cells mapped" : "Cells") + of, quality_text(quality), "", nullptr);
+  facts.add((map ? "Cells mapped" : "Cells") + suffix, quality_text(quality), "", nullptr);
   return json;
 }
 
 }  // namespace
+
+Box extent_of(const Surface& surface, const std::vector<TrimLoop>& trims) {
+  if (!trims.empty()) {
+    const auto area = TrimmedArea::make(surface.u, surface.v, trims);
+    const auto grid = make_grid(surface.u, surface.v, uniform_parameters(surface.u, trimmed_extent_samples),
+                                uniform_parameters(surface.v, trimmed_extent_samples));
+    if (area && grid) return extent_within(surface, grid.value(), area.value());
+  }
+  Box box;
+  const auto v_parameters = uniform_parameters(surface.v, extent_samples);
+  for (const double u : uniform_parameters(surface.u, extent_samples)) {
+    for (const double v : v_parameters) box.include(position(surface, u, v));
+  }
+  return box;
+}
 
 void add_document_facts(FactSheet& facts, const Document& document) {
   const std::vector<Body>& bodies = document.scene.bodies;
@@ -178,15 +227,15 @@ void add_document_facts(FactSheet& facts, const Document& document) {
   for (const Box& extent : extents) all = joined(all, extent);
   add_size_fact(facts, all);
   const bool alone = bodies.size() == 1;
-  const bool at_length = bodies.size() <= static_cast<std::size_t>(sculpted_body_count_range.high);
-  Json told = Json::array(), surfaces = Json::array();
+  const bool detailed = bodies.size() <= static_cast<std::size_t>(sculpted_body_count_range.high);
+  Json list = Json::array(), surfaces = Json::array();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const std::string label = alone ? "Body" : "Body " + std::to_string(b + 1);
-    told.push_back(add_body_facts(facts, label, bodies[b], extents[b].high - extents[b].low, at_length));
-    surfaces.push_back(surface_facts(bodies[b].surface));
+    list.push_back(add_body_facts(facts, label, bodies[b], extents[b].high - extents[b].low, detailed));
+    surfaces.push_back(surface_json(bodies[b].surface));
   }
-  if (alone) add_alone(facts, told.front());
-  facts.add("", "", "bodies", told);
+  if (alone) add_single_body(facts, list.front());
+  facts.add("", "", "bodies", list);
   facts.add("", "", "surfaces", surfaces);
   facts.add("Fixing planes", std::to_string(document.scene.planes.size()), "fixing_planes",
             document.scene.planes.size());
@@ -194,25 +243,59 @@ void add_document_facts(FactSheet& facts, const Document& document) {
 
 void add_size_fact(FactSheet& facts, const Box& extent) {
   const Vector3 size_m = extent.high - extent.low;
-  facts.add("Size", size_text(size_m), "size_mm", millimetres_of(size_m));
+  facts.add("Size", size_text(size_m), "size_mm", size_json(size_m));
 }
 
 void add_material_facts(FactSheet& facts, const Material& material) {
   facts.add("Material", material_text(material), "material", material_to_json(material));
 }
 
+void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces) {
+  Json bodies = Json::array();
+  Box all = extent_of(surfaces.front().surface, surfaces.front().trims);
+  double deviation_m = 0.0;
+  for (const CadSurface& part : surfaces) {
+    const Box extent = extent_of(part.surface, part.trims);
+    const Vector3 size = extent.high - extent.low;
+    all = joined(all, extent);
+    std::string text = size_text(size) + ", " + net_text(part.surface);
+    if (!part.trims.empty()) text += ", trimmed by " + std::to_string(part.trims.size());
+    if (part.deviation_m > 0.0)
+      text += ", approximated within " + millimetres_with_digits(part.deviation_m, 2);
+    const std::string number = surfaces.size() > 1 ? " " + std::to_string(bodies.size() + 1) : "";
+    facts.add("Body" + number, part.name + ": " + text, "", nullptr);
+    bodies.push_back({{"name", part.name},
+                      {"size_mm", size_json(size)},
+                      {"u", short_direction_json(part.surface.u)},
+                      {"v", short_direction_json(part.surface.v)},
+                      {"deviation_m", part.deviation_m},
+                      {"trims", part.trims.size()},
+                      {"trim_problem", part.trim_problem}});
+    deviation_m = std::max(deviation_m, part.deviation_m);
+  }
+  const Vector3 size = all.high - all.low;
+  facts.add("Size", size_text(size), "size_mm", size_json(size));
+  facts.add("", "", "bodies", std::move(bodies));
+  facts.add("", "", "deviation_m", deviation_m);
+}
+
+void add_unit_facts(FactSheet& facts, const std::string& unit, bool declared) {
+  facts.add("Unit read", declared ? unit : unit + " (not declared)", "unit_in", unit);
+  facts.add("", "", "unit_declared", declared);
+}
+
 void add_cell_facts(FactSheet& facts, const Simulation& simulation,
                     const std::vector<FeatureMapReport>& maps) {
   const std::vector<Body>& bodies = simulation.scene().bodies;
-  Json told = Json::array();
+  Json list = Json::array();
   std::size_t mapped = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const bool has_map = bodies[b].lattice.feature_map && mapped < maps.size();
     const FeatureMapReport* map = has_map ? &maps[mapped++] : nullptr;
-    const std::string of = bodies.size() == 1 ? "" : " of " + bodies[b].name;
-    told.push_back(add_cells_of(facts, of, simulation.lattice(static_cast<int>(b)).mesh(), map));
+    const std::string suffix = bodies.size() == 1 ? "" : " of " + bodies[b].name;
+    list.push_back(add_body_cells(facts, suffix, simulation.lattice(static_cast<int>(b)).mesh(), map));
   }
-  facts.add("", "", "cells", bodies.size() == 1 ? told.front() : told);
+  facts.add("", "", "cells", bodies.size() == 1 ? list.front() : list);
 }
 
 void add_elasticity_facts(FactSheet& facts, const Simulation& simulation) {
@@ -220,11 +303,11 @@ void add_elasticity_facts(FactSheet& facts, const Simulation& simulation) {
   const std::vector<Body>& bodies = simulation.scene().bodies;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const LatticeReport& report = simulation.report(static_cast<int>(b));
-    const std::string of = bodies.size() == 1 ? "" : " of " + bodies[b].name;
-    facts.add("Achieved E" + of, three_text(report.youngs_modulus_ratio, 100.0, 1) + " % along x, y, z", "",
-              nullptr);
+    const std::string suffix = bodies.size() == 1 ? "" : " of " + bodies[b].name;
+    facts.add("Achieved E" + suffix, three_text(report.youngs_modulus_ratio, 100.0, 1) + " % along x, y, z",
+              "", nullptr);
     facts.add(
-        "Achieved Poisson" + of,
+        "Achieved Poisson" + suffix,
         three_text(report.poissons_ratio, 1.0, 3) + " of " + decimals_text(report.wanted_poissons_ratio, 3),
         "", nullptr);
     all.push_back({{"body", bodies[b].name},
@@ -236,17 +319,28 @@ void add_elasticity_facts(FactSheet& facts, const Simulation& simulation) {
 }
 
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot, const std::vector<Body>& bodies) {
-  Json told = Json::array();
+  Json list = Json::array();
   double mass_kg = 0.0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const std::string of = bodies.size() == 1 ? "" : " of " + bodies[b].name;
-    told.push_back(add_simulated_body(facts, of, snapshot.bodies[b]));
+    const std::string suffix = bodies.size() == 1 ? "" : " of " + bodies[b].name;
+    list.push_back(add_simulated_body(facts, suffix, snapshot.bodies[b]));
     mass_kg += snapshot.bodies[b].material.mass_kg;
   }
-  if (bodies.size() == 1) add_alone(facts, told.front());
-  for (std::size_t b = 0; b < bodies.size(); ++b) told[b]["body"] = bodies[b].name;
-  facts.add("", "", "simulated", told);
+  if (bodies.size() == 1) add_single_body(facts, list.front());
+  for (std::size_t b = 0; b < bodies.size(); ++b) list[b]["body"] = bodies[b].name;
+  facts.add("", "", "simulated", list);
   facts.add(bodies.size() == 1 ? "" : "Mass", grams_text(mass_kg) + " together", "mass_kg", mass_kg);
+}
+
+MapProgress::MapProgress(Console& console, bool is_forced)
+    : bar_(console, "Distributing lattice nodes", is_forced) {}
+
+FeatureMapWatch MapProgress::watch() {
+  return {Progress([this](double fraction) {
+            bar_.show(fraction);
+            return true;
+          }),
+          [this](const FeatureMapReport& report) { reports_.push_back(report); }};
 }
 
 }  // namespace spoonbill

@@ -1,10 +1,14 @@
-// What there is to say about a document, its material and the simulation made from it.
+// Reports of documents, CAD surfaces, materials and the simulation made of a document.
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "app/console.h"
 #include "app/report/fact_sheet.h"
 #include "engine/base/geometry.h"
+#include "engine/bspline/trim_loop.h"
+#include "engine/exchange/cad_model.h"
 #include "engine/exchange/document.h"
 #include "engine/material/lattice/feature_map.h"
 #include "engine/simulation/simulation.h"
@@ -12,27 +16,53 @@
 
 namespace spoonbill {
 
-// Names the unit of the file's lengths, the size of all bodies together, and what each body is: "bodies" in
-// the JSON, where one that is alone stands in the object itself too. Of more than are sculpted together a
-// line each.
+// Returns the box around a grid of points on the surface, accurate to a thousandth of its size. For a trimmed
+// surface it is the box around the area that the loops keep; invalid loops are ignored.
+Box extent_of(const Surface& surface, const std::vector<TrimLoop>& trims = {});
+
+// Adds the name, the unit of the file, the size of all bodies together and each body. In the JSON these are
+// "bodies"; the members of a single body are also at the top level. With more bodies than can be sculpted
+// together, each has one line.
 void add_document_facts(FactSheet& facts, const Document& document);
 
-// How long along x, y and z.
+// Adds the size of the box along x, y and z.
 void add_size_fact(FactSheet& facts, const Box& extent);
 
 void add_material_facts(FactSheet& facts, const Material& material);
 
-// Young's modulus over the wanted one and Poisson's ratio along x, y and z, of each body: what the cells
-// achieve that step it.
+// Adds each surface of a CAD model, and the size of all of them.
+void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces);
+
+// Adds the unit of a file; `declared` is false if the file does not name one.
+void add_unit_facts(FactSheet& facts, const std::string& unit, bool declared);
+
+// Adds for each body what its cells achieve of the material along x, y and z: Young's modulus as a fraction
+// of the material's, and Poisson's ratio.
 void add_elasticity_facts(FactSheet& facts, const Simulation& simulation);
 
-// Of the snapshot of a simulation of these bodies that has just been built: "simulated" in the JSON, where
-// one that is alone stands in the object itself too.
+// Adds the lattice, mass and solver of each body. `snapshot` is that of the initial state of a simulation of
+// these bodies. In the JSON they are "simulated"; the members of a single body are also at the top level.
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot, const std::vector<Body>& bodies);
 
-// How good the cells of each body's lattice are, and what a feature map made of them where there was one;
-// `maps` are in the order of the bodies that ask for one. "cells" in the JSON: a list, of one body an object.
+// Adds the quality of the cells of each lattice, with and without its feature map. `maps` are the reports of
+// the bodies that have a feature map, in their order. "cells" in the JSON is a list, or one object for one
+// body.
 void add_cell_facts(FactSheet& facts, const Simulation& simulation,
                     const std::vector<FeatureMapReport>& maps);
+
+// A progress bar for the feature maps of a document's lattices, which collects their reports. The console
+// must outlive it, and it must outlive the watch().
+class MapProgress {
+ public:
+  explicit MapProgress(Console& console, bool is_forced = false);
+
+  FeatureMapWatch watch();
+  // The reports of the finished maps, in the order of the bodies that have one.
+  const std::vector<FeatureMapReport>& reports() const { return reports_; }
+
+ private:
+  ProgressBar bar_;
+  std::vector<FeatureMapReport> reports_;
+};
 
 }  // namespace spoonbill

@@ -21,9 +21,9 @@ void FactSheet::print(std::ostream& out, bool as_json) const {
   }
 }
 
-void add_remarks(FactSheet& facts, const std::vector<std::string>& remarks) {
-  for (const std::string& remark : remarks) facts.add("Note", remark, "", nullptr);
-  facts.add("", "", "remarks", remarks);
+void add_notes(FactSheet& facts, const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) facts.add("Note", note, "", nullptr);
+  facts.add("", "", "remarks", notes);
 }
 
 }  // namespace spoonbill

@@ -1,4 +1,4 @@
-// Facts that a command reports: as aligned lines for a person or as one JSON object for a program.
+// The results of a command, printed as aligned lines for people or as one JSON object for programs.
 #pragma once
 
 #include <ostream>
@@ -12,8 +12,8 @@ namespace spoonbill {
 
 class FactSheet {
  public:
-  // `field` and `value` go to the JSON, `label` and `text` to the lines; an empty field or label leaves that
-  // form out.
+  // Adds a line of `label` and `text`, and a JSON member `field` with `value`. An empty label omits the line,
+  // an empty field the member.
   void add(const std::string& label, const std::string& text, const std::string& field, Json value);
 
   void print(std::ostream& out, bool as_json) const;
@@ -23,7 +23,7 @@ class FactSheet {
   Json json_ = Json::object();
 };
 
-// What is to be said besides: a line each, and the field "remarks", a list of them.
-void add_remarks(FactSheet& facts, const std::vector<std::string>& remarks);
+// Adds one line per note, and all of them as the list "remarks" in the JSON.
+void add_notes(FactSheet& facts, const std::vector<std::string>& notes);
 
 }  // namespace spoonbill

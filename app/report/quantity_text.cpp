@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/inspection/surface_check.h"
+#include "engine/material/lattice_materials.h"
 #include "engine/simulation/snapshot.h"
 
 namespace spoonbill {
@@ -17,10 +19,19 @@ std::string with_decimals(double number, int decimals, const char* unit) {
   return text.data();
 }
 
-// Three significant digits.
-std::string with_digits(double number, const char* unit) {
+// Formats with three significant digits.
+std::string with_three_digits(double number, const char* unit) {
   const double size = std::abs(number);
   return with_decimals(number, size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2, unit);
+}
+
+bool is_same_range(const Range<double>& a, const Range<double>& b) {
+  return a.low == b.low && a.high == b.high;
+}
+
+// "50 to 100 %"
+std::string percent_range_text(const Range<double>& fractions) {
+  return number_text(100.0 * fractions.low) + " to " + number_text(100.0 * fractions.high) + " %";
 }
 
 }  // namespace
@@ -29,9 +40,9 @@ std::string modulus_text(double pascals) {
   constexpr std::array<std::pair<double, const char*>, 3> units = {
       {{1e9, "GPa"}, {1e6, "MPa"}, {1e3, "kPa"}}};
   for (const auto& [size, unit] : units) {
-    if (pascals >= 0.9995 * size) return with_digits(pascals / size, unit);
+    if (pascals >= 0.9995 * size) return with_three_digits(pascals / size, unit);
   }
-  return with_digits(pascals, "Pa");
+  return with_three_digits(pascals, "Pa");
 }
 
 std::string millimetres_text(double metres) {
@@ -39,15 +50,15 @@ std::string millimetres_text(double metres) {
 }
 
 std::string area_text(double square_metres) {
-  return with_digits(1e4 * square_metres, "cm\u00b2");
+  return with_three_digits(1e4 * square_metres, "cm\u00b2");
 }
 
 std::string volume_text(double cubic_metres) {
-  return with_digits(1e6 * cubic_metres, "cm\u00b3");
+  return with_three_digits(1e6 * cubic_metres, "cm\u00b3");
 }
 
 std::string grams_text(double kilograms) {
-  return with_digits(1e3 * kilograms, "g");
+  return with_three_digits(1e3 * kilograms, "g");
 }
 
 std::string density_text(double kilograms_per_m3) {
@@ -58,9 +69,9 @@ std::string newtons_text(double newtons) {
   return with_decimals(newtons, 2, "N");
 }
 
-std::string percent_text(double share) {
+std::string percent_text(double fraction) {
   std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), share < 0.1 ? "%.2g %%" : "%.0f %%", 100.0 * share);
+  std::snprintf(text.data(), text.size(), fraction < 0.1 ? "%.2g %%" : "%.0f %%", 100.0 * fraction);
   return text.data();
 }
 
@@ -93,6 +104,51 @@ std::vector<std::string> flag_texts(std::uint32_t flags) {
     if ((flags & flag) != 0) texts.emplace_back(meaning);
   }
   return texts;
+}
+
+const char* name_of(Closedness closedness) {
+  switch (closedness) {
+    case Closedness::solid:
+      return "solid";
+    case Closedness::tube:
+      return "tube";
+    case Closedness::sheet:
+      return "sheet";
+  }
+  return "";
+}
+
+std::string closing_text(const Closing& closing) {
+  switch (closing.closedness) {
+    case Closedness::solid:
+      return "closed";
+    case Closedness::tube:
+      return "a tube, open by " + short_length_text(closing.gap_m) + " at an end";
+    case Closedness::sheet:
+      return "open both ways";
+  }
+  return "";
+}
+
+std::string region_material_text(const MaterialRegion& region) {
+  std::string text = region.material ? region.material->name : "";
+  if (!region.friction && !(region.material && region.material->friction > 0.0)) return text;
+  const double friction = region.friction ? *region.friction : region.material->friction;
+  return text + (text.empty() ? "friction " : ", friction ") + number_text(friction);
+}
+
+std::string region_extent_text(const BodyRegion& region) {
+  const BodyRegion whole;
+  std::string text;
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  if (!is_same_range(region.along, whole.along)) add(percent_range_text(region.along) + " along");
+  if (!is_same_range(region.around, whole.around)) add(percent_range_text(region.around) + " around");
+  if (std::isfinite(region.depth_m.high)) {
+    add(number_text(1e3 * region.depth_m.low) + " to " + millimetres_text(region.depth_m.high) + " deep");
+  } else if (region.depth_m.low != whole.depth_m.low) {
+    add("from " + millimetres_text(region.depth_m.low) + " down");
+  }
+  return text.empty() ? "all of it" : text;
 }
 
 }  // namespace spoonbill

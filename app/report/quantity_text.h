@@ -1,14 +1,21 @@
-// Quantities as the panel and reports show them: three digits or so, in the unit that a designer uses.
+// Quantities, closings, regions and state hashes as the panel and reports show them: about three digits, in
+// the units that a designer uses.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "engine/base/geometry.h"
 
 namespace spoonbill {
+
+struct BodyRegion;
+struct Closing;
+enum class Closedness;
+struct MaterialRegion;
 
 std::string modulus_text(double pascals);           // "1.20 MPa"
 std::string millimetres_text(double metres);        // "8.0 mm"
@@ -18,13 +25,29 @@ std::string volume_text(double cubic_metres);       // "48.0 cm³"
 std::string grams_text(double kilograms);           // "34.2 g"
 std::string density_text(double kilograms_per_m3);  // "1.80 g/cm³"
 std::string newtons_text(double newtons);           // "1.23 N"
-std::string percent_text(double share);             // "12 %", "0.081 %"
-// "1 place", "3 places"
+std::string percent_text(double fraction);          // "12 %", "0.081 %"
+// "1 body", "3 bodies"
 std::string count_text(std::size_t count, const char* one, const char* many);
-// "at most 0.0123 mm"; "none" of what rounding alone leaves, a picometre or less.
+// "at most 0.0123 mm", or "none" up to a picometre, which is rounding error.
 std::string deviation_text(double deviation_m);
 
-// What each set TickFlag means and what to do about it.
+// Returns for each set TickFlag what it means and what to do about it.
 std::vector<std::string> flag_texts(std::uint32_t flags);
+
+// A state hash as recordings and reports show it: sixteen hexadecimal digits.
+inline std::string hash_text(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof(text), "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+const char* name_of(Closedness closedness);        // "solid", "tube", "sheet"
+std::string closing_text(const Closing& closing);  // "a tube, open by 12.0 mm at an end"
+
+// The material and friction of a region: "silicone-soft, friction 0.9", or "friction 0.9" without a material.
+std::string region_material_text(const MaterialRegion& region);
+// The extent of a region: "50 to 100 % along, 0 to 2.0 mm deep". Directions that it spans completely are
+// omitted.
+std::string region_extent_text(const BodyRegion& region);
 
 }  // namespace spoonbill

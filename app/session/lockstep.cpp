@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "app/report/hash_text.h"
+#include "app/report/quantity_text.h"
 #include "engine/base/assert.h"
 
 namespace spoonbill {

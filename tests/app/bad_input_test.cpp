@@ -1,4 +1,4 @@
-// Whatever a file or folder holds, the program answers with one line and lives on.
+// Damaged, hostile and missing input: the program reports every fault in one line and does not crash.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -16,7 +16,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return place == std::string::npos ? text : text.replace(place, what.size(), with);
 }
 
-// How each command fails on the file.
+// Expects every command to fail on the file in one line.
 void expect_refusals(const Workplace& place, const std::string& file) {
   const std::vector<std::vector<std::string>> uses = {
       {"info", file},
@@ -112,7 +112,7 @@ TEST(BadInput, TheModelIsNotRecordedOver) {
   const Workplace place;
   const std::string before = content_of(place.path("model.json"));
   expect_refusal({"edit", place.text("model.json"), "--record", place.text("model.json")},
-                 "is the model, record to another file");
+                 "is the model itself; record to another file");
   EXPECT_EQ(content_of(place.path("model.json")), before);
 }
 

@@ -1,4 +1,4 @@
-// CAD files through the reading program, and everything that can be wrong with either.
+// CAD files read and written by the child process, and faults of the files and of the child.
 #include "app/files/cad_file.h"
 
 #include <gtest/gtest.h>
@@ -55,6 +55,13 @@ class CadFileTest : public testing::Test {
     EXPECT_NE(model.error().message.find(reason), std::string::npos) << model.error().message;
   }
 
+  static void expect_refusal(const std::string& file, ErrorCode code, const CadChild& child = by_program()) {
+    const auto model = read(file, child);
+    ASSERT_FALSE(model) << file;
+    expect_one_line(file, model.error().message);
+    EXPECT_EQ(model.error().code, code) << model.error().message;
+  }
+
   static void expect_one_line(const std::string& file, const std::string& line) {
     EXPECT_TRUE(line.starts_with(file + ": ")) << line;
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;
@@ -67,7 +74,7 @@ class CadFileTest : public testing::Test {
     return content ? content->text : "";
   }
 
-  // A program that reads nothing and does this instead.
+  // Returns settings with a shell script in place of the child program.
   CadChild instead(const std::string& script) const {
     CadChild child;
     child.program = folder_.write("reader", "#!/bin/sh\n" + script + "\n");
@@ -133,7 +140,7 @@ TEST_F(CadFileTest, OtherContentIsRefused) {
   expect_refusal(write("nothing.step", nothing), "holds no");
 }
 
-// Cut anywhere, with bytes changed anywhere: a model or one line, in bounded time.
+// Truncated and changed files give a model or a one-line error, in bounded time.
 TEST_F(CadFileTest, DamagedFilesGiveAModelOrOneLine) {
   Random random(11);
   int refused = 0, read_all_the_same = 0;
@@ -176,7 +183,7 @@ TEST_F(CadFileTest, NumbersBeyondAllBoundsAreRefused) {
     const std::string file = write("beyond.step", text);
     const auto model = read(file);
     if (model) {
-      // What OpenCASCADE takes for another number is a number.
+      // OpenCASCADE may parse the text as another number, which must be in range.
       for (const double x : model->surfaces[0].surface.net.x) EXPECT_LE(std::abs(x), 100.0);
     } else {
       expect_one_line(file, model.error().message);
@@ -184,7 +191,7 @@ TEST_F(CadFileTest, NumbersBeyondAllBoundsAreRefused) {
   }
 }
 
-// One bad face of a hundred is no reason to have none.
+// A single bad face does not make the whole file unreadable.
 TEST_F(CadFileTest, AFaceThatCannotBeTakenIsLeftOutAndNamed) {
   std::string text = text_of(FileFormat::step);
   const std::string begin = "CARTESIAN_POINT('',(";
@@ -209,13 +216,13 @@ TEST_F(CadFileTest, AReaderThatFailsIsExplained) {
   expect_refusal(file, "crashed on it (signal 11)", instead("kill -SEGV $$"));
   expect_refusal(file, "ended without a model (exit code 3)", instead("exit 3"));
   expect_refusal(file, "longer than 2 s", instead("sleep 20"));
-  expect_refusal(file, "did not answer in its own form", instead("echo nonsense of more than sixteen bytes"));
+  expect_refusal(file, "gave an invalid answer", instead("echo nonsense of more than sixteen bytes"));
   CadChild absent;
   absent.program = folder_.path() / "absent";
   expect_refusal(file, "does not start", absent);
 }
 
-// A hostile file that has taken the child over says what it likes.
+// A hostile file may have taken over the child, so any answer is possible.
 TEST_F(CadFileTest, AnswersOfAnotherFormAreRefused) {
   std::ostringstream surface;
   write_frame(surface, FrameKind::surface, json_to_line(cad_surface_to_json(two_tubes().surfaces[0])));
@@ -227,7 +234,7 @@ TEST_F(CadFileTest, AnswersOfAnotherFormAreRefused) {
     std::ostringstream answer;
     answer << surface.str();
     write_frame(answer, FrameKind::ending, ending);
-    expect_refusal(file, "did not answer in its own form",
+    expect_refusal(file, "gave an invalid answer",
                    instead("cat " + folder_.write("answer", answer.str()).string()));
     std::ostringstream made;
     write_frame(made, FrameKind::file, "ISO-10303-21;");
@@ -235,7 +242,7 @@ TEST_F(CadFileTest, AnswersOfAnotherFormAreRefused) {
     const auto content = make_cad_file(two_tubes(), {}, "b.step",
                                        instead("cat " + folder_.write("made", made.str()).string()));
     ASSERT_FALSE(content);
-    EXPECT_NE(content.error().message.find("did not answer in its own form"), std::string::npos);
+    EXPECT_NE(content.error().message.find("gave an invalid answer"), std::string::npos);
   }
 }
 
@@ -256,7 +263,7 @@ TEST_F(CadFileTest, AReaderIsStoppedSoon) {
   child.patience = 20s;
   const auto start = std::chrono::steady_clock::now();
   child.progress = Progress([&](double) { return std::chrono::steady_clock::now() - start <= 100ms; });
-  expect_refusal(file, "stopped", child);
+  expect_refusal(file, ErrorCode::cancelled, child);
   EXPECT_LT(std::chrono::steady_clock::now() - start, 10s);
 }
 

@@ -1,4 +1,4 @@
-// The command that changes a surface.
+// The change command.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -73,7 +73,7 @@ TEST(ChangeCommand, OpenedAndCappedAndClosed) {
   const Outcome outcome =
       run({"change", opened, "cap", "v_end", "2mm", "--out", capped, "--tolerance", "0.05mm"});
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;
-  // Closed again.
+  // Closing the slit again.
   EXPECT_FALSE(json_of(run({"info", capped, "--json"}).out)["lattice"].is_null());
   const std::string slit = place.text("slit.json"), closed = place.text("closed.json");
   ASSERT_EQ(run({"change", handle, "split", "u=0.5", "--out", slit}).code, exit_done);
@@ -87,7 +87,7 @@ TEST(ChangeCommand, OpenedAndCappedAndClosed) {
   EXPECT_EQ(knots_at_seam(), 3);
 }
 
-// A thickness would keep what closed from being sculpted.
+// A closed body with a shell thickness could not be sculpted.
 TEST(ChangeCommand, AShellThatIsCappedIsASolid) {
   const Workplace place;
   const std::string opened = place.text("opened.json"), capped = place.text("capped.json");
@@ -113,12 +113,12 @@ TEST(ChangeCommand, RefusesInOneLine) {
   };
   const std::vector<Case> cases{
       {{"split", "v=500"}, exit_failed, "empty or not within the domain"},
-      {{"split", "w=0.5"}, exit_wrong_use, "not a place like v=0.3"},
-      {{"split", "v=nan"}, exit_wrong_use, "not a place like v=0.3"},
-      {{"split", "v="}, exit_wrong_use, "not a place like v=0.3"},
-      {{"split"}, exit_wrong_use, "is asked for as: split v=0.5"},
-      {{"split", "v=1", "2"}, exit_wrong_use, "is asked for as: split v=0.5"},
-      {{"simplify", "u"}, exit_wrong_use, "is asked for as: simplify"},
+      {{"split", "w=0.5"}, exit_wrong_use, "not a parameter like v=0.3"},
+      {{"split", "v=nan"}, exit_wrong_use, "not a parameter like v=0.3"},
+      {{"split", "v="}, exit_wrong_use, "not a parameter like v=0.3"},
+      {{"split"}, exit_wrong_use, "must have the form: split v=0.5"},
+      {{"split", "v=1", "2"}, exit_wrong_use, "must have the form: split v=0.5"},
+      {{"simplify", "u"}, exit_wrong_use, "must have the form: simplify"},
       {{"degree", "v", "12"}, exit_wrong_use, "'12' is not a whole number from 1 to 9"},
       {{"degree", "v", "2.5"}, exit_wrong_use, "not a whole number"},
       {{"insert", "v=50", "9"}, exit_failed, "multiplicity 9"},
@@ -127,14 +127,14 @@ TEST(ChangeCommand, RefusesInOneLine) {
       {{"remove", "v=0"}, exit_failed, "is an end of the direction"},
       {{"remove", "u=0"}, exit_failed, "the seam needs a knot"},
       {{"remove", "u=0.5"}, exit_failed, "leaves a deviation of"},
-      {{"remove"}, exit_wrong_use, "is asked for as: remove v=0.5"},
+      {{"remove"}, exit_wrong_use, "must have the form: remove v=0.5"},
       {{"insert", "v=50", "0"}, exit_wrong_use, "not a whole number from 1"},
       {{"close", "u"}, exit_failed, "closed already"},
       {{"close", "v"}, exit_failed, "apart"},
       {{"cap", "v_end"}, exit_failed, "not the open end of a tube"},
       {{"cap", "top\nend"}, exit_wrong_use, "edge 'top?end' is unknown"},
       {{"cap", "v_end", "3"}, exit_wrong_use, "not a length with a unit"},
-      {{"me\nlt"}, exit_wrong_use, "'me?lt' is no change; choose from split"}};
+      {{"me\nlt"}, exit_wrong_use, "'me?lt' is not a change; choose from split"}};
   for (const auto& [words, code, told] : cases) {
     std::vector<std::string> arguments{"change", handle};
     arguments.insert(arguments.end(), words.begin(), words.end());
@@ -148,7 +148,8 @@ TEST(ChangeCommand, RefusesInOneLine) {
   const Outcome seamless = run({"change", handle, "--continuity", "C1", "simplify", "--out", out});
   EXPECT_EQ(seamless.code, exit_wrong_use);
   EXPECT_TRUE(is_clean_failure(seamless)) << seamless.err;
-  EXPECT_NE(seamless.err.find("is of the seam that 'close' makes"), std::string::npos) << seamless.err;
+  EXPECT_NE(seamless.err.find("applies only to the seam that 'close' makes"), std::string::npos)
+      << seamless.err;
   const Outcome second = run({"change", handle, "exchange", "--body", "2", "--out", out});
   EXPECT_EQ(second.code, exit_failed);
   EXPECT_NE(second.err.find("has 1 body, and --body names 2"), std::string::npos) << second.err;
@@ -158,10 +159,10 @@ TEST(ChangeCommand, SaysWhatADegreeTakes) {
   const Workplace place;
   const std::string ball = place.text("ball.json");
   ASSERT_EQ(run({"new", "sphere", "--control", "40x40", "--out", ball}).code, exit_done);
-  // 37 spans in v: 36 knots seven times and ten at an end, as many as control points.
+  // The control points follow from 37 spans in v: 36 inner knots of multiplicity seven, and ten at an end.
   const Outcome outcome = run({"change", ball, "degree", "v", "9", "--out", place.text("out.json")});
   EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
-  EXPECT_NE(outcome.err.find("takes 262 control points, a document holds 200"), std::string::npos)
+  EXPECT_NE(outcome.err.find("needs 262 control points, and a document holds 200"), std::string::npos)
       << outcome.err;
 }
 
@@ -173,7 +174,7 @@ TEST(ChangeCommand, SaysWhatItLeavesOut) {
     EXPECT_EQ(outcome.code, exit_done) << outcome.err;
     return json_of(outcome.out)["remarks"].size();
   };
-  // Each half is open now, besides.
+  // A second note says that each half is open.
   EXPECT_EQ(remarks({"change", grip, "split", "v=40", "--out", out, "--json"}), 3U);
   EXPECT_EQ(remarks({"change", grip, "insert", "v=40", "--out", out, "--json"}), 0U);
   EXPECT_EQ(remarks({"change", handle, "split", "v=40", "--out", out, "--json"}), 2U);

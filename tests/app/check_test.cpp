@@ -1,4 +1,4 @@
-// The command that tells whether bodies are sound.
+// The check command.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -51,7 +51,7 @@ TEST(Check, MeasuresATorus) {
   EXPECT_TRUE(body["degenerate"].empty());
 }
 
-// Straight along, it is curved one way and by rounding alone the other.
+// A straight tube is curved in one direction only, except by rounding.
 TEST(Check, AStraightTubeHasNoHollowRadius) {
   const Workplace place;
   place.write("profile.csv", "radius_mm,height_mm\n10,0\n10,20\n10,40\n");
@@ -91,7 +91,7 @@ TEST(Check, SaysWhatIsWrongAndEndsWellAllTheSame) {
   EXPECT_NE(lines.out.find("not sound"), std::string::npos);
 }
 
-// A hole of an eighth.
+// The hole removes an eighth of the area.
 TEST(Check, TakesTrimsIntoAccount) {
   const Workplace place;
   Document document = made(place, {"new", "plate", "--size", "100x60mm", "--sheet"});
@@ -106,7 +106,7 @@ TEST(Check, TakesTrimsIntoAccount) {
   EXPECT_NEAR(facts["volume_m3"], 0.875 * 0.006 * 0.003, 1e-12);
   EXPECT_NEAR(facts["mass_kg"], 1700.0 * 0.875 * 0.006 * 0.003, 1e-9);
   EXPECT_NE(run({"check", place.text("trimmed.json")}).out.find("trimmed by 1 loop"), std::string::npos);
-  // Closed but for the hole, it holds nothing by itself.
+  // A closed surface with a hole encloses nothing.
   Document ball = made(place, {"new", "sphere"});
   Body& cut = ball.scene.bodies[0];
   cut.trims = {make_polygon_loop(cut.surface.u, cut.surface.v, hole).value()};
@@ -116,7 +116,7 @@ TEST(Check, TakesTrimsIntoAccount) {
   EXPECT_FALSE(open.contains("volume_m3"));
 }
 
-// The lower half of a cylinder is half as dense.
+// The lower half of the cylinder has half the density.
 TEST(Check, WeighsRegionsByWhatTheyAreMadeOf) {
   const Workplace place;
   Document document = made(place, {"new", "cylinder"});
@@ -131,7 +131,7 @@ TEST(Check, WeighsRegionsByWhatTheyAreMadeOf) {
   save(place, "grip.json", document);
   const Json plain = check_of(place, "plain.json")["bodies"][0],
              grip = check_of(place, "grip.json")["bodies"][0];
-  // Cells are whole of one material: half of one layer of ten or more.
+  // A cell has one material, which shifts the boundary by at most half of one of ten or more layers.
   EXPECT_NEAR(grip["mass_kg"].get<double>() / plain["mass_kg"].get<double>(), 0.75, 0.03);
   EXPECT_EQ(grip["materials"], Json::array({"modelling-clay", "light"}));
   EXPECT_GT(grip["centre_of_mass_m"][1], 0.003);
@@ -174,7 +174,7 @@ TEST(Check, TellsWhichBodiesAreInEachOther) {
   bodies.resize(3, bodies[0]);
   for (int b = 0; b < 3; ++b) {
     bodies[static_cast<std::size_t>(b)].name = std::string(1, static_cast<char>('a' + b));
-    // The second a tenth into the first, the third as far beside the second.
+    // The second ball overlaps the first by a tenth; the third is a tenth away from the second.
     for (double& x : bodies[static_cast<std::size_t>(b)].surface.net.x)
       x += std::array{0.0, 0.9, 2.0}[b] * size;
   }

@@ -69,9 +69,9 @@ TEST(CommandLine, SaysWhatIsWrongAndWhereHelpIs) {
   const std::string model = place.text("model.json"), out = place.text("out.json");
   const std::vector<std::pair<std::vector<std::string>, const char*>> wrong = {
       {{}, "a command is missing; see `spoonbill --help`"},
-      {{"carve"}, "'carve' is no command; see `spoonbill --help`"},
+      {{"carve"}, "'carve' is not a command; see `spoonbill --help`"},
       {{"new"}, "a command is missing; see `spoonbill new --help`"},
-      {{"new", "dodecahedron"}, "'dodecahedron' is no command; see `spoonbill new --help`"},
+      {{"new", "dodecahedron"}, "'dodecahedron' is not a command; see `spoonbill new --help`"},
       {{"new", "box", "--out", out}, "--size is required; see `spoonbill new box --help`"},
       {{"sample", model, "--out", out, "--out", out}, "--out is given more than once"},
       {{"sample", model, "--out", out, "--grid", "7"}, "'7' is not two numbers like 50x50, each from 2"},
@@ -90,7 +90,7 @@ TEST(CommandLine, SaysWhatIsWrongAndWhereHelpIs) {
   }
 }
 
-// A document under another name would take the place of a scan or a CAD file.
+// A document written under another ending could replace a scan or a CAD file.
 TEST(CommandLine, DocumentsAreWrittenAsJsonAlone) {
   const Workplace place;
   const std::string model = place.text("model.json");
@@ -114,7 +114,7 @@ TEST(CommandLine, DocumentsAreWrittenAsJsonAlone) {
   EXPECT_EQ(run({"new", "sphere", "--out", place.text("ball.JSON")}).code, exit_done);
 }
 
-// Which file is meant, and what makes a document of it.
+// The error names the file and the command that converts it to a document.
 TEST(CommandLine, SaysWhatTakesForeignFiles) {
   const Workplace place;
   const std::string cad = place.write("a.step", "ISO-10303-21;").string();
@@ -126,7 +126,7 @@ TEST(CommandLine, SaysWhatTakesForeignFiles) {
   EXPECT_NE(run({"info", mesh}).err.find("`spoonbill fit`"), std::string::npos);
 }
 
-// Every body has its rows.
+// Every body of a document has rows in the table.
 TEST(CommandLine, SampleTakesAllBodies) {
   const Workplace place;
   Document two = read_document(place.path("model.json")).value();

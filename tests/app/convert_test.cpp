@@ -1,4 +1,4 @@
-// The command that converts, as from a shell.
+// The convert command, run as a process.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -81,7 +81,7 @@ TEST_F(ConvertTest, AHandleGoesOutToCadAndComesBack) {
       EXPECT_EQ(back["bodies"][0]["name"], "handle");
       EXPECT_EQ(back["deviation_m"], 0.0);
       EXPECT_LT(largest_distance_m(handle_, place_.path("back.json")), 1e-9);
-      // What comes back is a body that a simulation takes.
+      // The converted body can be simulated.
       const Outcome info = run_process(SPOONBILL_PROGRAM, {"info", place_.text("back.json"), "--json"});
       ASSERT_EQ(info.code, exit_done) << info.err;
       EXPECT_FALSE(json_of(info.out)["lattice"].is_null()) << info.out;
@@ -167,7 +167,7 @@ TEST_F(ConvertTest, ATrimmedSurfaceStaysTrimmed) {
   Json& surface = document["body"]["surface"];
   const auto domain = read_document(place_.path("model.json"))->scene.bodies[0].surface;
   const double low = domain.v.domain_start(), high = domain.v.domain_end();
-  // A clockwise hole.
+  // A hole, whose loop runs clockwise.
   const auto at = [&](double u, double v) {
     const double start = domain.u.domain_start(), end = domain.u.domain_end();
     return Json::array({start + u * (end - start), low + v * (high - low)});
@@ -210,16 +210,17 @@ TEST_F(ConvertTest, InfoTellsWhatACadFileHolds) {
 }
 
 TEST_F(ConvertTest, WhatMakesNoSenseIsRefused) {
-  expect_failure({handle_, place_.text("a.txt")}, "names no format");
-  expect_failure({place_.text("script.json.txt"), place_.text("a.step")}, "is no model by its name");
+  expect_failure({handle_, place_.text("a.txt")}, "does not have the ending of a format that is written");
+  expect_failure({place_.text("script.json.txt"), place_.text("a.step")},
+                 "does not have the ending of a model");
   expect_failure({place_.text("a.stl"), place_.text("a.step")}, "is a mesh");
-  expect_failure({handle_, place_.text("a.json")}, "is a document like the one that is read");
+  expect_failure({handle_, place_.text("a.json")}, "is a document, as the input is");
   expect_failure({place_.text("missing.step"), place_.text("a.json")}, "no such file");
   expect_failure({handle_, place_.text("nowhere/a.step")}, "cannot be written");
-  expect_failure({handle_, place_.text("a.step"), "--chord", "1mm"}, "has no chord error");
-  expect_failure({handle_, place_.text("a.stl"), "--schema", "ap242"}, "is no STEP file");
-  expect_failure({handle_, place_.text("a.iges"), "--schema", "ap242"}, "is no STEP file");
-  expect_failure({handle_, place_.text("a.step"), "--tolerance", "1mm"}, "is taken exactly");
+  expect_failure({handle_, place_.text("a.step"), "--chord", "1mm"}, "only meshes have a chord error");
+  expect_failure({handle_, place_.text("a.stl"), "--schema", "ap242"}, "is not a STEP file");
+  expect_failure({handle_, place_.text("a.iges"), "--schema", "ap242"}, "is not a STEP file");
+  expect_failure({handle_, place_.text("a.step"), "--tolerance", "1mm"}, "is converted exactly");
   expect_failure({handle_, place_.text("a.3mf"), "--unit", "in"}, "is written in millimetres");
   expect_failure({handle_, place_.text("a.stl"), "--chord", "5"}, "is not a length", exit_wrong_use);
   expect_failure({handle_, place_.text("a.stl"), "--chord", "0mm"}, "must be 0.0001 mm to 100 mm",
@@ -242,13 +243,13 @@ TEST_F(ConvertTest, AnOlderFileStaysWhenAConversionFails) {
     EXPECT_EQ(failed.code, exit_failed);
     EXPECT_EQ(content_of(place_.path(name)), "precious");
   }
-  // Nothing half made lies beside them.
+  // No temporary files remain.
   for (const auto& entry : std::filesystem::directory_iterator(place_.path(""))) {
     EXPECT_EQ(entry.path().string().find("unfinished"), std::string::npos) << entry.path();
   }
 }
 
-// Otherwise a CAD system takes two products of one name for one product.
+// A CAD system would treat two products of the same name as one.
 TEST_F(ConvertTest, BodiesOfOneNameAreToldApart) {
   Json document = json_of(two_bodies());
   document["other_bodies"][0]["name"] = document["body"]["name"];
@@ -272,14 +273,14 @@ TEST_F(ConvertTest, WhatDoesNotGoOutIsSaid) {
   const std::string name = document["body"]["name"].get<std::string>();
   for (const char* out : {"a.step", "a.igs"}) {
     const Json facts = convert_for_facts({place_.text("shell.json"), place_.text(out)});
-    EXPECT_EQ(facts["notes"],
-              Json::array({"'" + name +
-                           "' is a shell of 0.5 mm; the surface that it lies behind is written, without the "
-                           "thickness"}));
+    EXPECT_EQ(facts["notes"], Json::array({"'" + name +
+                                           "' is a shell of 0.5 mm; its surface is written without the "
+                                           "thickness"}));
   }
 }
 
-// Both faces and the walls along all edges, those of holes too; too thick, the surface alone.
+// A shell has both faces and walls along all edges, including holes; one that is too thick has only its
+// surface.
 TEST_F(ConvertTest, AShellGoesOutAsAMeshOfItsThickness) {
   const std::string plate = std::string(SPOONBILL_ASSETS) + "/models/trimmed-plate.json";
   Json document = json_of(content_of(plate));
@@ -321,10 +322,11 @@ TEST_F(ConvertTest, ALinkIsFollowedAndPermissionsStay) {
 TEST_F(ConvertTest, NoMessageCommandsTheTerminal) {
   const Outcome outcome = convert({place_.text("\x1b[31mred\xc2\x9b.txt"), place_.text("a.step")});
   EXPECT_EQ(outcome.code, exit_failed);
-  EXPECT_NE(outcome.err.find("?[31mred?.txt: is no model by its name"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("?[31mred?.txt: does not have the ending of a model"), std::string::npos)
+      << outcome.err;
 }
 
-// With Ctrl+C pressed before it begins, which waits for the first place where it can stop.
+// Ctrl+C is pressed before the work begins and takes effect at the first check.
 int exit_code_when_interrupted(const std::string& in, const std::string& out) {
   const pid_t process = fork();
   if (process == 0) {

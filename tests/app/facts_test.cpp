@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "app/program.h"
-#include "app/report/surface_extent.h"
+#include "app/report/document_facts.h"
 #include "engine/bspline/surface.h"
 #include "engine/exchange/document.h"
 #include "engine/simulation/simulation.h"
@@ -38,7 +38,7 @@ TEST(Info, TellsOfAModel) {
   EXPECT_NE(run({"info", place.text("model.json")}).out.find("Size"), std::string::npos);
 }
 
-// What can be split and chosen: every body, and where its parameters begin and end.
+// Every body is listed with the domain of its parameters, which `change` and `--bodies` need.
 TEST(Info, TellsOfEveryBody) {
   const Workplace place;
   Document two = read_document(place.path("model.json")).value();
@@ -66,7 +66,7 @@ TEST(Info, TellsOfEveryBody) {
   EXPECT_NE(lines.find("periodic, from 0 to "), std::string::npos) << lines;
 }
 
-// A handle of which a loop keeps the side of a quarter of its length is as long as that.
+// The size of a handle that a loop trims to a part of its length is that of the part.
 TEST(Info, TheSizeOfATrimmedBodyIsOfWhatIsKept) {
   const Workplace place;
   Document model = read_document(place.path("model.json")).value();
@@ -86,7 +86,7 @@ TEST(Info, TheSizeOfATrimmedBodyIsOfWhatIsKept) {
   EXPECT_NEAR(facts["size_mm"][0], 1e3 * (kept.high - kept.low).x(), 1e-6);
 }
 
-// The lattice's own report, and the regions as the document has them.
+// The facts repeat the lattice's report and the document's regions.
 TEST(Info, TellsOfRegionsAndOfWhatABodyAchieves) {
   const Workplace place;
   auto document = read_document(place.path("model.json"));
@@ -139,7 +139,7 @@ TEST(Info, TellsOfRecordingScriptAndMaterial) {
   EXPECT_EQ(material["material"]["youngs_modulus_pa"], document->scene.bodies[0].material.youngs_modulus_pa);
 }
 
-// A handle, and one bent round so far that its ends are in each other.
+// A straight handle, and one bent around until its ends overlap.
 TEST(Collide, TellsOfOneModelWhetherItPassesThroughItself) {
   const Workplace place;
   const Json straight = json_of(run({"collide", place.text("model.json"), "--json"}).out);
@@ -164,7 +164,7 @@ TEST(Collide, TellsOfOneModelWhetherItPassesThroughItself) {
 
   const auto refused = run({"collide", place.text("model.json"), "--pose", "0,1mm,0,1,0,0,0"});
   EXPECT_EQ(refused.code, exit_failed);
-  EXPECT_NE(refused.err.find("name B"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("add B"), std::string::npos) << refused.err;
 }
 
 TEST(Collide, TellsTheDistanceAndThenTheDepth) {
@@ -180,14 +180,14 @@ TEST(Collide, TellsTheDistanceAndThenTheDepth) {
   EXPECT_NEAR(nearest["b"]["point_m"][1].get<double>() - nearest["a"]["point_m"][1].get<double>(), distance,
               1e-9);
 
-  // Brought nearer by the distance and a tenth of a millimetre.
+  // Moved closer by the distance plus a tenth of a millimetre.
   const std::string pose = std::to_string(1000.0 - distance * 1e3 - 0.1) + "mm,";
   const Json deep =
       json_of(run({"collide", model, model, "--pose", "0," + pose + "0,1,0,0,0", "--json"}).out);
   EXPECT_EQ(deep["touching"], true);
   EXPECT_EQ(deep["contained"], false);
   EXPECT_FALSE(deep.contains("distance_m"));
-  // The pose above has six decimals of a millimetre.
+  // The pose above is rounded to six decimals of a millimetre.
   EXPECT_NEAR(deep["depth_m"].get<double>(), 1e-4, 1e-9);
   const Json& contact = deep["contacts"][0];
   EXPECT_NEAR(contact["normal"][1].get<double>(), -1.0, 1e-6);
@@ -208,7 +208,7 @@ TEST(Collide, TellsTheDistanceAndThenTheDepth) {
   }
   const std::string text = run({"collide", model, model, "--pose", "0," + pose + "0,1,0,0,0"}).out;
   EXPECT_NE(text.find("Depth     0.1 mm"), std::string::npos) << text;
-  EXPECT_NE(text.find("way out"), std::string::npos) << text;
+  EXPECT_NE(text.find("separating direction"), std::string::npos) << text;
 }
 
 TEST(Collide, OneModelInsideAnother) {

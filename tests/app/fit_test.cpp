@@ -1,4 +1,4 @@
-// Fits from the command line: from a scan's file to a document that the program opens.
+// The fit command, from the file of a scan to a document that the program opens.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "app/report/fit_facts.h"
+#include "app/report/fit_report.h"
 #include "engine/exchange/document.h"
 #include "tests/app/mesh_texts.h"
 #include "tests/app/process.h"
@@ -93,7 +93,7 @@ TEST_F(FitTest, MoreIslandsThanAreSculptedTogetherAreKeptAndToldOf) {
 TEST_F(FitTest, SaysWhereTheSurfaceCannotFollow) {
   const Scan waves = random_cloud(4000, 5, [](double s, double t) { return on_waves(s, t, 0.1, 0.02); });
   const std::string scan = write("waves.xyz", xyz_of(waves, 1e3));
-  const std::string loose = "further off than a hundredth of its size";
+  const std::string loose = "farther from the surface than a hundredth of its size";
   EXPECT_NE(json_of_fit(scan, {"--control", "4x4"}).at("remarks").dump().find(loose), std::string::npos);
   EXPECT_EQ(json_of_fit(scan, {"--control", "24x24"}).at("remarks").dump().find(loose), std::string::npos);
 }
@@ -110,7 +110,7 @@ TEST_F(FitTest, SaysWhetherTheToleranceIsHeld) {
   EXPECT_EQ(coarse.at("within_tolerance"), false);
   EXPECT_TRUE(says(coarse, missed)) << coarse.at("remarks");
   EXPECT_TRUE(says(coarse, "not 0.001 mm")) << coarse.at("remarks");
-  // A hundredth of their height is more than the fit of this many control points misses.
+  // The fit with this many control points misses the scan by less than the tolerance.
   const Json held = json_of_fit(scan, {"--control", "24x24", "--tolerance", "0.2mm"});
   EXPECT_EQ(held.at("within_tolerance"), true);
   EXPECT_FALSE(says(held, missed)) << held.at("remarks");
@@ -119,7 +119,7 @@ TEST_F(FitTest, SaysWhetherTheToleranceIsHeld) {
   EXPECT_FALSE(says(none, missed)) << none.at("remarks");
 }
 
-// A ball is no tube, the pipe beside it is one.
+// The ball cannot be fitted as a tube; the pipe beside it can.
 TEST_F(FitTest, AnIslandThatCannotBeFittedIsLeftOutAndNamed) {
   const std::vector<std::string> as_tubes{"--islands", "all", "--control", "8x8", "--kind", "tube"};
   const Scan ball = ellipsoid_cloud(4000, {0.01, 0.01, 0.01});
@@ -129,7 +129,7 @@ TEST_F(FitTest, AnIslandThatCannotBeFittedIsLeftOutAndNamed) {
   EXPECT_EQ(json.at("bodies").size(), 1U);
   EXPECT_EQ(json.at("kind"), "tube");
   EXPECT_TRUE(says(json, "the island of 20.0 x 20.0 x 20.0 mm about 100.0 mm, ")) << json.at("remarks");
-  EXPECT_TRUE(says(json, "was left out, with 4000 points: a tube needs two open ends")) << json.at("remarks");
+  EXPECT_TRUE(says(json, "was skipped, with 4000 points: a tube needs two open ends")) << json.at("remarks");
   EXPECT_EQ(json.at("points_left_out").at("other_islands"), 4000);
 
   Scan balls = ball;
@@ -145,14 +145,14 @@ TEST(FitFacts, SaysOfFoldsWhichBodyHasThem) {
   ScanFit fit;
   fit.bodies.resize(2);
   fit.bodies[1].folds.samples = 640;
-  EXPECT_TRUE(shortcoming_remarks(fit, 0.0).empty());
+  EXPECT_TRUE(find_fit_shortcomings(fit, 0.0).empty());
   fit.bodies[1].folds.folds = 3;
-  const std::vector<std::string> remarks = shortcoming_remarks(fit, 0.0);
+  const std::vector<std::string> remarks = find_fit_shortcomings(fit, 0.0);
   ASSERT_EQ(remarks.size(), 1U);
   EXPECT_TRUE(remarks[0].starts_with("the surface of body 2 folds at 3 of 640 samples")) << remarks[0];
 }
 
-// Two halves of a pipe are no pillow; two caps of a ball are one ball.
+// Two halves of a pipe need caps at their open ends; two caps of a ball close each other.
 TEST_F(FitTest, SaysWhichIslandsBridgingCaps) {
   const auto bridged = [&](const Scan& scan) {
     return json_of_fit(write("islands.xyz", xyz_of(scan, 1e3)),
@@ -201,7 +201,7 @@ TEST_F(FitTest, MeshIsReadByTheChildAndItsErrorsAreColoured) {
   EXPECT_EQ(first, "ply");
 }
 
-// Five million points, which have twice as many triangles.
+// A mesh of five million points has twice as many triangles.
 TEST_F(FitTest, AMeshOfFiveMillionPointsIsFitted) {
   if (std::getenv("SPOONBILL_FULL") == nullptr) GTEST_SKIP() << "SPOONBILL_FULL asks for what takes long";
   const TriangleMesh ball = ball_mesh(1580, 3160, 0.02);
@@ -266,7 +266,7 @@ TEST_F(FitTest, PointsOnALineAreNoSurface) {
   }
 }
 
-// An STL file has each vertex once for every triangle at it.
+// An STL file repeats each vertex for every triangle around it.
 TEST_F(FitTest, WhatBecameOfThePointsAddsUp) {
   const Json json = json_of_fit(write("ball.stl", binary_stl(ball_mesh(24, 48, 20.0))), {"--control", "8x8"});
   const Json& left = json.at("points_left_out");
@@ -312,7 +312,7 @@ TEST_F(FitTest, WrongUseIsExitTwo) {
   }
 }
 
-// Scans that lie where the environment says: see README.
+// Real scans, in the folder that an environment variable names; see README.
 class RealScans : public FitTest {
  protected:
   void SetUp() override {
@@ -320,7 +320,7 @@ class RealScans : public FitTest {
     if (folder == nullptr) GTEST_SKIP() << "SPOONBILL_SCANS names no folder with scans";
     scans_ = folder;
   }
-  // Of the bodies of a scan, each within a millimetre and a hundredth of the object's size, nowhere folded.
+  // Expects every body to be within a millimetre and a hundredth of the object's size, without folds.
   void expect_good(const std::string& name, const std::vector<std::string>& options, double size_m,
                    std::size_t bodies) {
     const Json json = json_of_fit((scans_ / name).string(), options);
@@ -352,7 +352,7 @@ TEST_F(RealScans, SpoonAsTwoBodiesWithinAMillimetre) {
   expect_good("ycb_031_spoon.ply", {"--islands", "all"}, 0.184, 2);
 }
 
-// The scanner lost the neck: handle and bowl are fitted, bridged and merged into one closed body.
+// The scan lacks the neck of the spoon: handle and bowl are bridged into one closed body.
 TEST_F(RealScans, SpoonsHandleAndBowlAreMerged) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   json_of_fit((scans_ / "ycb_031_spoon.ply").string(), {"--islands", "all"});
@@ -374,7 +374,7 @@ TEST_F(RealScans, SpoonBridgedIsOneBodyWithinAMillimetre) {
   expect_good("ycb_031_spoon.ply", {"--islands", "bridge"}, 0.184, 1);
 }
 
-// Whatever was scanned can be pressed: bowls with their wall lie in a box of cells.
+// Every fitted scan can be sculpted; bowls with a wall get a box of cells.
 TEST_F(RealScans, AllHoldALattice) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const auto& [scan, in_box] : {std::pair("ycb_024_bowl.ply", true), {"ycb_016_pear.ply", false}}) {

@@ -1,4 +1,4 @@
-// Documents whose bodies are faces of one solid, as CAD parts come in: converted and checked as that solid.
+// Documents whose bodies are faces of one solid, as parts from CAD are, converted and checked as that solid.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double metres_per_mm = 1e-3;
 
-// From a corner along two sides, whose cross product points outwards.
+// Returns the parallelogram at a corner. The cross product of its sides points outwards.
 Surface plate(const Vector3& corner_mm, const Vector3& u_mm, const Vector3& v_mm) {
   ControlNet net(2, 2);
   for (int i = 0; i < 2; ++i) {
@@ -26,7 +26,7 @@ Surface plate(const Vector3& corner_mm, const Vector3& u_mm, const Vector3& v_mm
   return make_surface(knots, knots, std::move(net)).value();
 }
 
-// Of 30 x 20 x 10 mm, six bodies; the top is that much too high.
+// Returns a box of 30 x 20 x 10 mm as six bodies, whose top is too high by the given length.
 Document box_of_faces(double too_high_mm = 0.0) {
   const Vector3 x(30, 0, 0), y(0, 20, 0), z(0, 0, 10), none = Vector3::Zero();
   const std::array<Surface, 6> faces = {plate(z + Vector3(0, 0, too_high_mm), x, y),
@@ -68,7 +68,7 @@ class JoinedSolids : public testing::Test {
   Workplace place_;
 };
 
-// In the file's own unit; -1 where some edge is not in two triangles, once each way round.
+// Returns the volume in the file's unit, or -1 unless every edge is in two triangles of opposite direction.
 double volume_of_watertight_obj(const std::string& text) {
   std::istringstream lines(text);
   std::vector<Vector3> points;
@@ -106,7 +106,7 @@ TEST_F(JoinedSolids, LeaveAsOneWatertightMesh) {
       EXPECT_EQ(facts["meshes"], 1);
       EXPECT_EQ(facts["closed_meshes"], 1);
       EXPECT_EQ(facts["triangles"], 12);
-      // Of what comes in alone.
+      // The note is about the import.
       EXPECT_EQ(facts["notes"].size(), std::string(in) == "box.step" ? 1u : 0u) << facts["notes"];
     }
     EXPECT_NEAR(volume_of_watertight_obj(content_of(place_.path("box.obj"))), 6000.0, 1e-6);
@@ -133,10 +133,10 @@ TEST_F(JoinedSolids, FacesThatDoNotCloseAreMeshesEachWithANote) {
   EXPECT_EQ(facts["meshes"], 5);
   EXPECT_EQ(facts["closed_meshes"], 0);
   EXPECT_EQ(facts["notes"], Json::array({"5 of the 5 faces of 'bracket' enclose nothing together",
-                                         "faces that are joined to no solid: 5, each a mesh of its own"}));
+                                         "faces that are not part of a solid: 5, each a separate mesh"}));
 }
 
-// Beyond what two approximated faces may miss each other by.
+// The gap is larger than the error of two approximated faces.
 TEST_F(JoinedSolids, AGapThatIsBridgedIsSaid) {
   save("gap.json", box_of_faces(0.05));
   for (const char* out : {"gap.step", "gap.igs", "gap.stl"}) {
@@ -160,7 +160,7 @@ TEST_F(JoinedSolids, AreCheckedAsOne) {
   EXPECT_EQ(solid["name"], "bracket");
   EXPECT_EQ(solid["closed"], true);
   EXPECT_EQ(solid["bodies"].size(), 6u);
-  // Integrals of planes are exact but for rounding.
+  // Integrals over planes are exact up to rounding.
   EXPECT_NEAR(solid["volume_m3"], 6000e-9, 1e-15);
   EXPECT_NEAR(solid["area_m2"], 2200e-6, 1e-12);
   const double density = box_of_faces().scene.bodies[0].material.density_kg_per_m3;
@@ -176,11 +176,11 @@ TEST_F(JoinedSolids, AreCheckedAsOne) {
   EXPECT_NE(lines.out.find("bracket: closed, solid of 6 faces"), std::string::npos) << lines.out;
 }
 
-// The box with a top that sags in its middle by so much, and leaves its rim level.
+// Returns the box with a top that sags at its centre by the given length, with straight edges.
 Document sagging_box(double by_mm) {
   Document document = box_of_faces();
   ControlNet net(5, 5);
-  // Of the middle control point in the middle: (6 / 16)^2.
+  // Weight of the central control point at the centre: (6 / 16)^2.
   constexpr double share = 0.140625;
   for (int i = 0; i < 5; ++i) {
     for (int j = 0; j < 5; ++j) {
@@ -198,7 +198,7 @@ TEST_F(JoinedSolids, AreAsThickAsBetweenTwoFaces) {
   const Json facts = facts_of({"check", place_.text("thin.json")});
   EXPECT_EQ(facts["sound"], true) << facts["solids"];
   const Json& solid = facts["solids"][0];
-  // By the surfaces themselves; the mesh is coarser than that.
+  // The thickness is measured on the surfaces; the mesh is coarser.
   EXPECT_NEAR(solid["smallest_thickness_m"], 0.001, 1e-8);
   EXPECT_GT(solid["thickness_error_m"], 1e-6);
   EXPECT_NEAR(solid["thinnest"]["point_m"][0], 0.015, 5e-4);

@@ -1,4 +1,4 @@
-// Documents of more bodies than are sculpted together, as CAD parts of many faces become.
+// Documents with more bodies than can be sculpted together, such as CAD parts with many faces.
 #include <gtest/gtest.h>
 
 #include "app/program.h"
@@ -12,7 +12,7 @@ constexpr int most_together = 8;
 
 class ManyBodies : public testing::Test {
  protected:
-  // Bodies of a solid each, but for two that share one.
+  // Each body is a solid of its own, except two that are faces of the same solid.
   void SetUp() override {
     Document document = read_document(place_.path("model.json")).value();
     const Body first = document.scene.bodies[0];
@@ -76,7 +76,7 @@ TEST_F(ManyBodies, SomeAreChosenAsTheyAre) {
   const Outcome same_unit =
       run({"convert", many_, place_.text("some.json"), "--bodies", "1", "--unit", "mm"});
   EXPECT_EQ(same_unit.code, exit_failed);
-  EXPECT_NE(same_unit.err.find("leave --unit out"), std::string::npos) << same_unit.err;
+  EXPECT_NE(same_unit.err.find("remove --unit"), std::string::npos) << same_unit.err;
 }
 
 TEST_F(ManyBodies, AreCheckedSampledAndChanged) {

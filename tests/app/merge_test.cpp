@@ -1,4 +1,4 @@
-// The command that merges surfaces.
+// The merge command.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -32,11 +32,11 @@ TEST(MergeCommand, BowlAndHandleBecomeASpoon) {
   EXPECT_TRUE(joint["bridged"]);
 
   const Surface spoon = surface_of(place.path("spoon.json"));
-  // C2: no knot inside is more than once there.
+  // C2 allows inner knots of multiplicity one only.
   for (const auto& [knot, multiplicity] : knot_multiplicities(spoon.v)) {
     EXPECT_TRUE(knot == spoon.v.domain_start() || multiplicity == 1) << knot;
   }
-  // Outside the blend the spoon is the handle: v is its own parameter there, u that of the handle.
+  // Outside the blend the spoon equals the handle, with the same u and a different v.
   const Surface part = surface_of(handle);
   const double end = joint["blend_start"];
   EXPECT_GT(end, 90.0);
@@ -119,7 +119,7 @@ TEST(MergeCommand, NormalsThatPointInwardsAreToldOf) {
   }
 }
 
-// What closes by itself is a face of nothing.
+// A closed body is not a face of a solid.
 TEST(MergeCommand, FacesOfOneSolidStayAFaceOfItWhileOpen) {
   const Workplace place;
   const auto solid_of_merged = [&](const std::string& whole, const std::string& other) {
@@ -144,7 +144,7 @@ Vector3 middle_of(const std::string& ball) {
          (position(sphere, 0.0, sphere.v.domain_start()) + position(sphere, 0.0, sphere.v.domain_end()));
 }
 
-// rod.json of the workplace upright in the ball's middle.
+// Places rod.json of the workplace upright at the centre of the ball.
 void stand_in_middle(const Workplace& place, const std::string& ball) {
   Document moved = read_document(place.path("rod.json")).value();
   Vector3 low = moved.scene.bodies[0].surface.net.point(0, 0);
@@ -185,10 +185,9 @@ TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   const Outcome turned =
       run({"merge", rod, inward, "--intersect", "--out", place.text("turned.json"), "--json"});
   ASSERT_EQ(turned.code, exit_done) << turned.err;
-  EXPECT_NE(turned.out.find("the normals of patch 2 pointed inwards; it was turned around"),
-            std::string::npos)
+  EXPECT_NE(turned.out.find("the normals of patch 2 pointed inwards; it was reversed"), std::string::npos)
       << turned.out;
-  // The first fillet of three bodies is told of as well as the last.
+  // There is a note on the first fillet of three bodies as well as on the last.
   Document third = read_document(rod).value();
   third.scene.bodies[0].surface =
       placed(third.scene.bodies[0].surface,
@@ -198,14 +197,14 @@ TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
       run({"merge", rod, ball, place.text("third.json"), "--intersect", "--fillet", "3mm", "--continuity",
            "C2", "--tolerance", "0.4mm", "--out", place.text("both.json"), "--json"});
   ASSERT_EQ(both.code, exit_done) << both.err;
-  EXPECT_NE(both.out.find("the fillet with patch 2 is as tight"), std::string::npos) << both.out;
-  EXPECT_NE(both.out.find("the fillet with patch 3 is as tight"), std::string::npos) << both.out;
-  // The hollow is as wide as asked where nothing bends more.
+  EXPECT_NE(both.out.find("the fillet with patch 2 has a radius"), std::string::npos) << both.out;
+  EXPECT_NE(both.out.find("the fillet with patch 3 has a radius"), std::string::npos) << both.out;
+  // The smallest concave radius is that of the fillet.
   const Json curved = json_of(run({"check", knob, "--json"}).out)["bodies"][0];
   EXPECT_NEAR(curved["smallest_concave_radius_m"].get<double>(), 0.003, 2e-4);
   const Json body = json_of(run({"check", knob, "--json"}).out)["bodies"][0];
-  // The ball and the rod above the plane in which they cross, of which the ball holds a cap already; the
-  // rod's rounded end takes away as little as the fillet adds.
+  // The volume is that of the ball and of the rod above their plane of intersection, minus the ball's cap
+  // there; the rounding of the rod's end and the fillet are negligible.
   const double ball_m3 = 4.0 / 3.0 * M_PI * 8e-6, plane_m = std::sqrt(4e-4 - 36e-6), cap_m = 0.02 - plane_m;
   const double rod_m3 = M_PI * 36e-6 * (0.06 - plane_m), cap_m3 = M_PI * cap_m * cap_m * (0.02 - cap_m / 3.0);
   EXPECT_NEAR(body["volume_m3"].get<double>(), ball_m3 + rod_m3 - cap_m3, 0.01 * rod_m3);
@@ -240,7 +239,7 @@ TEST(MergeCommand, RefusesInOneLine) {
        "closed around there"},
       {{"merge", handle, bowl, "--twist", "nan", "--out", out},
        exit_wrong_use,
-       "'nan' is not a share of a turn from -1 to 1"},
+       "'nan' is not a fraction of a turn from -1 to 1"},
       {{"merge", handle, bowl, "--continuity", "C\n2", "--out", out},
        exit_wrong_use,
        "'C?2' is not a continuity"},
@@ -249,8 +248,8 @@ TEST(MergeCommand, RefusesInOneLine) {
        "edge 'v?end' is unknown"},
       {{"merge", handle, bowl, "--intersect", "--continuity", "C2", "--out", out},
        exit_wrong_use,
-       "give a radius with --fillet"},
-      {{"merge", handle, "--intersect", "--out", out}, exit_failed, "name another one"},
+       "add --fillet"},
+      {{"merge", handle, "--intersect", "--out", out}, exit_failed, "needs at least two bodies"},
       {{"merge", place.text("none.json"), "--out", out}, exit_failed, "none.json"},
       {{"merge", "--out", out}, exit_wrong_use, "MODEL"}};
   for (const Case& one : cases) {
@@ -262,7 +261,7 @@ TEST(MergeCommand, RefusesInOneLine) {
   }
 }
 
-// Of a person who watches, and who presses Ctrl+C as soon as the bar shows some progress.
+// Stands in for a terminal whose user presses Ctrl+C as soon as the progress bar moves.
 class ImpatientTerminal : public std::stringbuf {
  public:
   int shown_percent() const { return shown_percent_; }

@@ -1,5 +1,5 @@
-// `spoonbill collide` of a document and a mesh, and of two meshes. By the built program: reading starts it a
-// second time.
+// The collide command with a document and a mesh, and with two meshes. Run as a process, because reading a
+// mesh starts the program a second time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ Json facts_of(std::vector<std::string> arguments) {
   return json_of(outcome.out);
 }
 
-// Of the model's surface from a point, by samples.
+// Returns the distance of a point from the model's surface, by dense sampling.
 double sampled_distance(const Workplace& place, const Vector3& point) {
   const auto document = read_document(place.path("model.json"));
   EXPECT_TRUE(document);
@@ -48,7 +48,8 @@ std::string above(double millimetres) {
   return "30mm," + std::to_string(millimetres) + "mm,0,1,0,0,0";
 }
 
-// A ball of 8 mm whose corners lie on the sphere; between them it is flatter by up to 8 mm (1 - cos(pi/100)).
+// A ball of 8 mm radius with its vertices on the sphere; its edges are inside by up to 8 mm (1 -
+// cos(pi/100)).
 constexpr double flatter_m = 8e-3 * 5e-4;
 const TriangleMesh ball = ball_mesh(100, 200, 8.0);
 
@@ -62,7 +63,7 @@ TEST(MeshCollide, TheDistanceIsThatOfASphere) {
   EXPECT_EQ(facts["touching"], false);
   EXPECT_EQ(facts["complete"], true);
   EXPECT_TRUE(facts["contacts"].empty());
-  // Proven to 2e-5 m; polished it is far better.
+  // The search guarantees 2e-5 m; Newton iteration refines the result.
   EXPECT_NEAR(facts["distance_m"].get<double>(), expected, 2.0 * flatter_m);
   EXPECT_TRUE(facts["nearest"]["a"].contains("u"));
   EXPECT_FALSE(facts["nearest"]["b"].contains("u"));
@@ -81,7 +82,7 @@ TEST(MeshCollide, EitherMayBeTheMesh) {
   const Json second = facts_of({model, mesh, "--pose", above(height)});
   EXPECT_EQ(second["touching"], true);
   EXPECT_EQ(second["contained"], false);
-  // The top is flat over the width of a contact, to the tolerance of the search.
+  // The top is flat over the width of the contact, within the tolerance of the search.
   EXPECT_NEAR(second["depth_m"].get<double>(), 5e-4, 3e-5);
   ASSERT_EQ(second["contacts"].size(), 1U);
   const Json& contact = second["contacts"][0];
@@ -92,7 +93,7 @@ TEST(MeshCollide, EitherMayBeTheMesh) {
   const double reached = contact["a"]["point_m"][1].get<double>() - contact["b"]["point_m"][1].get<double>();
   EXPECT_NEAR(reached, contact["depth_m"].get<double>(), 1e-5);
 
-  // The mesh first: the model moves the other way.
+  // With the mesh as A, the model moves in the opposite direction.
   const std::string moved = "-30mm," + std::to_string(-height) + "mm,0,1,0,0,0";
   const Json first = facts_of({mesh, model, "--pose", moved});
   EXPECT_NEAR(first["depth_m"].get<double>(), second["depth_m"].get<double>(), 1e-9);
@@ -139,7 +140,7 @@ TEST(MeshCollide, TwoMeshesAreAsFarApartAsTheyAre) {
   EXPECT_EQ(apart["mesh_a"]["cleaning"]["vertices_joined"], 28);
   EXPECT_EQ(apart["mesh_b"]["cleaning"]["vertices_joined"], 28);
 
-  // In centimetres, ten times as large and as far inside.
+  // In centimetres the ball is ten times as large and as deep inside.
   const Json deep = facts_of({box, cube, "--unit", "cm", "--pose", "14cm,20mm,0,1,0,0,0"});
   EXPECT_EQ(deep["touching"], true);
   EXPECT_EQ(deep["contained"], false);
@@ -163,7 +164,7 @@ TEST(MeshCollide, TwoMeshesAreAsFarApartAsTheyAre) {
   }
 }
 
-// A document of two bodies, the second the first's copy 20 mm above it.
+// Returns a document of two bodies, the second a copy of the first 20 mm above it.
 std::string two_bodies(const Workplace& place) {
   place.text("model.json");
   auto document = read_document(place.path("model.json"));
@@ -183,7 +184,7 @@ TEST(MeshCollide, AllBodiesOfADocumentCount) {
   const Workplace place;
   const std::string model = place.text("model.json"), two = two_bodies(place);
   const std::string mesh = place.write("ball.stl", binary_stl(ball)).string();
-  // Over the upper one, which stands 20 mm higher than the only one of the model.
+  // Above the upper body, which is 20 mm higher than the model's single body.
   const Json one = facts_of({model, mesh, "--pose", above(25)}),
              upper = facts_of({two, mesh, "--pose", above(45)});
   EXPECT_EQ(upper["touching"], false);
@@ -192,7 +193,7 @@ TEST(MeshCollide, AllBodiesOfADocumentCount) {
   EXPECT_FALSE(upper["nearest"]["b"].contains("body"));
   EXPECT_FALSE(one["nearest"]["a"].contains("body"));
 
-  // A copy of the model between both, 1 mm below the upper one and so deep in it.
+  // A copy of the model between both bodies, 1 mm below the upper one and overlapping it.
   const Json alone = facts_of({model, model, "--pose", "0,-1mm,0,1,0,0,0"});
   const Json between = facts_of({two, model, "--pose", "0,19mm,0,1,0,0,0"});
   EXPECT_EQ(between["touching"], true);
@@ -210,14 +211,13 @@ TEST(MeshCollide, TellsAPersonWhatTheMeshIs) {
   mesh.triangles.erase(mesh.triangles.begin() + 11, mesh.triangles.begin() + 13);
   const std::string file = place.write("holed.obj", obj_text(mesh)).string();
   const std::string text = collide({place.text("model.json"), file, "--unit", "cm"}).out;
-  for (const char* words :
-       {"Unit       cm", "Size       16.0 x 16.0 x 16.0 mm", "holes filled: 1", "turned round: 1",
-        "open edges found: 4", "Parts      1 closed", "Touching   yes"}) {
+  for (const char* words : {"Unit       cm", "Size       16.0 x 16.0 x 16.0 mm", "holes filled: 1",
+                            "reversed: 1", "open edges found: 4", "Parts      1 closed", "Touching   yes"}) {
     EXPECT_NE(text.find(words), std::string::npos) << words << " in\n" << text;
   }
   const std::string sheet = place.write("sheet.ply", ply_text(sheet_mesh(4, 0.0))).string();
   const std::string plate = collide({place.text("model.json"), sheet}).out;
-  EXPECT_NE(plate.find("1 open, taken as plates 1.0 mm thick"), std::string::npos) << plate;
+  EXPECT_NE(plate.find("1 open, treated as plates 1.0 mm thick"), std::string::npos) << plate;
 }
 
 TEST(MeshCollide, OurOwnEggIsClosed) {
@@ -235,9 +235,9 @@ TEST(MeshCollide, WhatCannotBeIsOneLine) {
                     good = place.write("ball.stl", binary_stl(ball)).string();
   const std::string text = binary_stl(ball);
   const std::vector<std::pair<std::vector<std::string>, std::string>> uses = {
-      {{good}, "name a document or a mesh"},
+      {{good}, "add a document or a mesh"},
       {{good, place.text("missing.stl")}, "missing.stl: no such file"},
-      {{model, model, "--unit", "mm"}, "leave --unit out"},
+      {{model, model, "--unit", "mm"}, "remove --unit"},
       {{model, place.text("missing.stl")}, "missing.stl: no such file"},
       {{place.write("empty.ply", "").string(), model}, "empty.ply: is empty"},
       {{model, place.write("cut.stl", text.substr(0, 500)).string()}, "cut.stl: cannot be read as STL"},

@@ -1,6 +1,4 @@
-// Mesh files through the reading program, and everything that can be wrong with either.
-#include "app/files/mesh_file.h"
-
+// Mesh files and clouds read by the child process, and faults of the files and of the child.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -11,7 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "app/files/cloud_file.h"
+#include "app/files/scan_file.h"
 #include "tests/app/mesh_texts.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
 #include "tests/engine/effort.h"
@@ -34,7 +32,7 @@ class MeshFileTest : public testing::Test {
     return folder_.write(name, content).string();
   }
 
-  // A program that reads nothing and does this instead.
+  // Returns settings with a shell script in place of the child program.
   MeshReading instead(const std::string& script) const {
     const auto program = folder_.write("reader", "#!/bin/sh\n" + script + "\n");
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
@@ -57,7 +55,14 @@ void expect_refusal(const std::string& file, const std::string& reason,
   EXPECT_EQ(line.find('\n'), std::string::npos) << line;
 }
 
-// Two triangles, their corners lists of two kinds: cut anywhere, it says so, and does not crash the reader.
+void expect_refusal(const std::string& file, ErrorCode code) {
+  const auto mesh = read_mesh_file(file, by_program());
+  ASSERT_FALSE(mesh) << file;
+  EXPECT_TRUE(mesh.error().message.starts_with(file + ": ")) << mesh.error().message;
+  EXPECT_EQ(mesh.error().code, code) << mesh.error().message;
+}
+
+// Two triangles with two list types: a file truncated anywhere is reported and does not crash the reader.
 TEST_F(MeshFileTest, ACutBinaryPlyIsToldOfItsCut) {
   for (const bool big : {false, true}) {
     const std::string header = std::string("ply\nformat binary_") + (big ? "big" : "little") +
@@ -92,7 +97,7 @@ TEST_F(MeshFileTest, ACutBinaryPlyIsToldOfItsCut) {
   }
 }
 
-// Wherever a text is cut, Assimp takes the rest for the whole.
+// Assimp accepts a truncated text as complete, wherever it ends.
 TEST_F(MeshFileTest, ACutTextStlIsToldOfItsCut) {
   TriangleMesh one;
   one.vertices_m = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
@@ -137,7 +142,7 @@ void expect_box(const std::string& file, const Vector3& size_m, const MeshReadin
   EXPECT_EQ(clean->mesh.triangles.size(), 12u);
   EXPECT_EQ(clean->mesh.vertices_m.size(), 8u);
   EXPECT_EQ(clean->report.closed_parts, 1u);
-  // Files keep single precision, of which a test changes the last of three bytes.
+  // Files have single precision, and one test changes the lowest byte.
   EXPECT_LT((clean->report.size_m - size_m).norm(), 2e-5 * size_m.norm());
 }
 
@@ -154,7 +159,7 @@ TEST_F(MeshFileTest, EveryFormatGivesTheBoxInItsUnit) {
   expect_box(write("box.ply", ply_text(small)), in_mm);
   expect_box(write("binary.ply", binary_ply(small)), in_mm);
 
-  // Whatever byte its numbers begin with.
+  // The first byte of the numbers may have any value.
   for (const int first : {'\n', '\r', ' ', '\0', 'e'}) {
     TriangleMesh mesh = small;
     auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(mesh.vertices_m[0].x()));
@@ -188,8 +193,8 @@ TEST_F(MeshFileTest, PolygonsAreCutAndPointsLinesAndOtherFilesLeftOut) {
 
 TEST_F(MeshFileTest, WhatIsNoFileIsRefused) {
   expect_refusal((folder_.path() / "missing.stl").string(), "no such file");
-  expect_refusal(write("model.json", "{}"), "is no mesh by its name");
-  expect_refusal(write("model", "solid"), "is no mesh by its name");
+  expect_refusal(write("model.json", "{}"), ErrorCode::unsupported);
+  expect_refusal(write("model", "solid"), ErrorCode::unsupported);
   expect_refusal(write("empty.obj", ""), "is empty");
   const auto folder = folder_.path() / "folder.ply";
   std::filesystem::create_directory(folder);
@@ -234,7 +239,7 @@ TEST_F(MeshFileTest, DamagedContentIsRefused) {
   }
 }
 
-// Whatever Assimp makes of it, what comes out is a mesh that the cleaning takes, or one line.
+// Damaged content gives a mesh that can be cleaned, or a one-line error.
 TEST_F(MeshFileTest, DamagedContentNeverBecomesAWildMesh) {
   const auto one_line = [&](const std::string& name, const std::string& content, const std::string& reason) {
     const std::string file = write(name, content);
@@ -300,7 +305,7 @@ TEST_F(MeshFileTest, AReaderThatFailsIsOneLine) {
   expect_refusal(file, "crashed on it (signal 9)", instead("printf spnlmesh; kill -KILL $$"));
   expect_refusal(file, "ended without a mesh (exit code 3)", instead("exit 3"));
   expect_refusal(file, "ended without a mesh (exit code 0)", instead("printf 'spnlmesh'"));
-  expect_refusal(file, "did not answer in its own form", instead("exec head -c 1000000 /dev/zero"));
+  expect_refusal(file, "gave an invalid answer", instead("exec head -c 1000000 /dev/zero"));
   expect_refusal(file, "18446744073709551615 triangles",
                  instead("printf 'spnlmesh'; head -c 24 /dev/zero | tr '\\000' '\\377'"));
   expect_refusal(
@@ -316,7 +321,7 @@ TEST_F(MeshFileTest, AReaderThatFailsIsOneLine) {
   expect_refusal(file, "does not start", missing);
 }
 
-// Clouds are read by a child as well; whatever becomes of it, there is a line.
+// Clouds are read by a child process too; every failure of it gives a one-line error.
 TEST_F(MeshFileTest, AReaderOfPointsThatFailsIsOneLine) {
   const std::string file = write("cloud.xyz", "1 2 3\n4 5 6\n");
   const auto expect_no_cloud = [&](const std::string& reason, const MeshReading& reading) {
@@ -336,8 +341,8 @@ TEST_F(MeshFileTest, AReaderOfPointsThatFailsIsOneLine) {
   expect_no_cloud("took longer than", hanging);
   expect_no_cloud("crashed on it (signal 11)", instead("kill -SEGV $$"));
   expect_no_cloud("ended without a cloud (exit code 3)", instead("exit 3"));
-  expect_no_cloud("did not answer in its own form", instead("exec head -c 1000000 /dev/zero"));
-  expect_no_cloud("did not answer in its own form",
+  expect_no_cloud("gave an invalid answer", instead("exec head -c 1000000 /dev/zero"));
+  expect_no_cloud("gave an invalid answer",
                   instead("printf 'spnlclud'; head -c 32 /dev/zero | tr '\\000' '\\377'"));
   expect_no_cloud("ended without a cloud",
                   instead("printf 'spnlclud\\140\\0\\0\\0\\0\\0\\0\\0\\003\\0\\0\\0\\0\\0\\0\\0'; head -c 16 "
@@ -349,12 +354,12 @@ TEST_F(MeshFileTest, AReaderOfPointsThatFailsIsOneLine) {
 
 TEST_F(MeshFileTest, TheReaderHasFourGibibytes) {
   if (sanitized) GTEST_SKIP() << "a sanitizer's memory knows no limit";
-  // Late enough that the limit has been set; seven letters: 4194304 kibibytes.
+  // The delay lets the parent set the limit first. The answer has seven characters: 4194304 kibibytes.
   expect_refusal(write("box.stl", binary_stl(box)), "(4194304)",
                  instead("sleep 0.3; printf 'spnlfail\\007\\0\\0\\0\\0\\0\\0\\0'; ulimit -v"));
 }
 
-// A ball of many triangles: in the full run five million, against the limit that holds.
+// A ball of many triangles: five million in the full run, with the real limit.
 TEST_F(MeshFileTest, ManyTrianglesAreReadUpToTheLimit) {
   const bool full = std::getenv("SPOONBILL_FULL") != nullptr;
   MeshReading reading = by_program();
@@ -384,7 +389,7 @@ TEST_F(MeshFileTest, APearFromAScannerIsATool) {
   const auto clean = clean_mesh(read->mesh, file);
   ASSERT_TRUE(clean) << clean.error().message;
   EXPECT_EQ(clean->report.vertices_read, 35016u);
-  // 6,091 distinct ones, a few of them a hair apart.
+  // The file has 6,091 distinct vertices, a few of them almost equal.
   EXPECT_NEAR(static_cast<double>(clean->mesh.vertices_m.size()), 6000.0, 100.0);
   EXPECT_EQ(clean->report.sheets, 1u);  // its underside was never seen
   EXPECT_NEAR(clean->report.size_m.maxCoeff(), 0.088, 0.001);

@@ -1,4 +1,4 @@
-// Mesh files as other programs write them.
+// Texts of mesh files as other programs write them.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace spoonbill {
 
-// With the numbers as they stand in the mesh.
+// All numbers are written as they are in the mesh, without a change of unit.
 std::string binary_stl(const TriangleMesh& mesh);
 std::string ascii_stl(const TriangleMesh& mesh);
 std::string obj_text(const TriangleMesh& mesh);

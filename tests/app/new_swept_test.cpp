@@ -1,4 +1,4 @@
-// The shapes that are made from points in files.
+// Shapes made from points in files: tube, lathe, loft.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,7 +54,7 @@ TEST(NewTube, RefusesOneThatPassesThroughItself) {
   EXPECT_NE(outcome.err.find("through itself"), std::string::npos) << outcome.err;
 }
 
-// What the message asks for suffices.
+// A radius that follows the advice of the error works.
 TEST(NewTube, SaysHowWideItMayBe) {
   const Workplace place;
   const auto made = [&](const std::string& radius) {

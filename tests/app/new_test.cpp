@@ -1,4 +1,4 @@
-// The command that makes shapes to start from.
+// The new command.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ TEST(New, TakesCountsMaterialAndUnits) {
 
 class Lumps : public testing::TestWithParam<std::vector<std::string>> {};
 
-// A script presses the ball that comes with each into its top; what is recorded replays.
+// A script presses each document's ball tool into the top of its shape; the recording replays.
 TEST_P(Lumps, CanBePressed) {
   const Workplace place;
   const Outcome made = run(with(GetParam(), {"--out", place.text("lump.json"), "--json"}));
@@ -76,8 +76,8 @@ TEST_P(Lumps, CanBePressed) {
   EXPECT_EQ(json_of(replayed.out)["state_hash"], json_of(recorded.out)["state_hash"]);
 }
 
-// The ball pressed in by a tenth of its radius: it is pushed back with what a hand feels, and the surface
-// gives way by some of that and by nothing wild.
+// The ball is pressed in by a tenth of its radius: the reaction is perceptible, and the surface yields by a
+// plausible fraction of that.
 TEST_P(Lumps, GiveWayToTheirTool) {
   const Workplace place;
   ASSERT_EQ(run(with(GetParam(), {"--out", place.text("lump.json")})).code, exit_done);
@@ -181,7 +181,7 @@ TEST(New, RefusesWhatMakesNoShape) {
   EXPECT_EQ(content_of(place.path("old.json")), "precious");
 }
 
-// An inch by either name, before other lengths without a unit of their own too.
+// Both names of the inch work, also for lengths that take the unit of the last one.
 TEST(New, TakesInchesByBothNames) {
   const Workplace place;
   for (const char* size : {"2inchx40x20mm", "2inx40x20mm", "50.8x40x20mm", "50.8mmx40x20mm"}) {
@@ -206,7 +206,7 @@ TEST(New, StopsWhenAskedTo) {
   EXPECT_EQ(content_of(place.path("old.json")), "precious");
 }
 
-// Of thin and wide lumps it is known that they meet themselves nowhere; looking would take minutes.
+// Stock shapes cannot intersect themselves; searching thin and wide ones for it would take minutes.
 TEST(New, MakesWideThinLumpsAtOnce) {
   const Workplace place;
   for (const std::vector<std::string>& lump :

@@ -1,8 +1,8 @@
-#include "app/start/point_table.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "app/commands/option_values.h"
 
 namespace spoonbill {
 namespace {
@@ -21,7 +21,7 @@ TEST(PointTable, ReadsUnitsOfItsColumns) {
   EXPECT_DOUBLE_EQ(table->rows_m[1][0], 0.01);
 }
 
-// As spreadsheets write it.
+// Spreadsheets write both.
 TEST(PointTable, ReadsAByteOrderMarkAndPluses) {
   const auto table = read("\xEF\xBB\xBFx_mm,y_mm,z_inch\r\n+1,-2,+1\r\n");
   ASSERT_TRUE(table.ok()) << table.error().message;
@@ -40,11 +40,12 @@ TEST(PointTable, ReadsSections) {
 }
 
 TEST(PointTable, SaysWhereAFileIsWrong) {
-  const auto message = [](const std::string& text, bool with_section = false) {
+  const auto refusal = [](const std::string& text, bool with_section = false) {
     const auto table = read(text, with_section);
     EXPECT_FALSE(table.ok()) << text;
-    return table.ok() ? "" : table.error().message;
+    return table.ok() ? Error{""} : table.error();
   };
+  const auto message = [&](const std::string& text) { return refusal(text).message; };
   EXPECT_EQ(message(""), "points.csv: holds no points");
   EXPECT_EQ(message("x_mm,y_mm,z_mm\n"), "points.csv: holds no points");
   EXPECT_NE(message("1,2,3\n").find("points.csv:1: names the columns"), std::string::npos);
@@ -56,14 +57,16 @@ TEST(PointTable, SaysWhereAFileIsWrong) {
               std::string::npos)
         << bad;
   }
-  EXPECT_NE(message("section,x_mm,y_mm,z_mm\n1.5,0,0,0\n", true).find("whole number"), std::string::npos);
+  const Error section = refusal("section,x_mm,y_mm,z_mm\n1.5,0,0,0\n", true);
+  EXPECT_EQ(section.code, ErrorCode::malformed);
+  EXPECT_EQ(section.field, "section");
   std::string many = "x_m,y_m,z_m\n";
   for (int k = 0; k < 100001; ++k) many += "0,0,0\n";
-  EXPECT_NE(message(many).find("beyond the 100000 points"), std::string::npos);
+  EXPECT_EQ(refusal(many).code, ErrorCode::too_many);
   EXPECT_EQ(message(std::string(1000, ',') + "\n\n").find('\n'), std::string::npos);
 }
 
-// Anything at all is a table or one line about it.
+// Any bytes give a table or a one-line error.
 TEST(PointTable, NothingThatIsReadDoesHarm) {
   std::mt19937 random(3);
   const std::string whole = "section,x_mm,y_mm,z_mm\n1,0,0.5,1e1\n1,-3,4,5\n2,1,1,1\n";

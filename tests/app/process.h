@@ -1,4 +1,4 @@
-// The built program as a process of its own, for what only a process can show.
+// Runs the built program as a separate process.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace spoonbill {
 
-// `settings` are put before the program in the shell ("LP_NUM_THREADS=1"); arguments are quoted for it.
+// `settings` precede the program in the shell command, such as "LP_NUM_THREADS=1"; arguments are quoted.
 Outcome run_process(const std::string& program, const std::vector<std::string>& arguments,
                     const std::string& settings = "");
 

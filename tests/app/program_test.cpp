@@ -1,4 +1,4 @@
-// What only the built program can show: the same state in every build and with any number of drawing threads,
+// Properties of the built program: the same state in every build and with any number of drawing threads,
 // a recording that survives a kill, a standard output that is full.
 #include "app/program.h"
 
@@ -92,8 +92,8 @@ TEST(Program, AKilledRecordingReplaysUpToTheCut) {
   EXPECT_EQ(facts["ticks"].get<int>() % 100, 0);
 }
 
-// A file may grow to 12 KiB here; what is performed takes more, also where half of the ticks are missed, and
-// its header less.
+// The limit on file size is 12 KiB: more than the recording's header, less than the performance even if half
+// of the ticks are missed.
 TEST(Program, ALiveRecordingThatIsCutIsAFailure) {
   const Workplace place;
   place.write("live.json", R"({"spoonbill_script": 1, "model": "model.json",
@@ -105,7 +105,7 @@ TEST(Program, ALiveRecordingThatIsCutIsAFailure) {
   EXPECT_NE(outcome.err.find("the recording has ended: "), std::string::npos) << outcome.err;
 }
 
-// What may not grow any further fails by a line, and what stood there stays.
+// A file that hits the size limit is a one-line error, and an existing file stays.
 TEST(Program, AFileThatMayNotGrowIsAFailureThatLeavesNothing) {
   const Workplace place;
   place.write("kept.json", "old");

@@ -46,7 +46,7 @@ TEST(Replay, MakesTheFilesThatTheRecordingAskedFor) {
   ASSERT_TRUE(saved) << saved.error().message;
   EXPECT_EQ(saved->scene.bodies[0].surface.net.x,
             read_document(place.path("model.json"))->scene.bodies[0].surface.net.x);
-  // The screenshot stands at tick 50, which frame 3 shows.
+  // The screenshot is taken at tick 50, which frame 3 shows.
   const auto picture = read_png(place.path("out/picture-first.png"));
   const auto frame = read_png(place.path("out/frame-0003.png"));
   ASSERT_TRUE(picture && frame);

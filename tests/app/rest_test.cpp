@@ -1,4 +1,4 @@
-// The command that tells how bodies rest.
+// The rest command.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Outcome rest_of(const Workplace& place, const Document& document, std::vector<st
   return run(arguments);
 }
 
-// Half the force bends half as far, the reactions bear the load, and weight counts too.
+// Half the force gives half the displacement, the reactions balance the load, and weight counts too.
 TEST(Rest, TellsWhatALoadDoes) {
   const Workplace place;
   Document document = elastic_document(place);
@@ -107,7 +107,7 @@ TEST(Rest, TellsAPersonInLines) {
   place.write("loaded.json", json_to_page(document_to_json(document)));
   const Outcome outcome = run({"rest", place.text("loaded.json")});
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;
-  for (const char* text : {"Held nodes", "Displaced", "Reactions", "Strain", "as if it were elastic"}) {
+  for (const char* text : {"Fixed nodes", "Displaced", "Reactions", "Strain", "treated as elastic"}) {
     EXPECT_NE(outcome.out.find(text), std::string::npos) << text;
   }
 }

@@ -1,4 +1,4 @@
-// What the tests of the commands that merge and change surfaces share.
+// Models shared by the tests of the merge and change commands.
 #pragma once
 
 #include <cstddef>

@@ -1,10 +1,10 @@
-// state_hash RECORDING...: replays each without drawing and prints its state hash on a line of its own. Built
-// in Debug too, where it spares the rest of the program.
+// state_hash RECORDING...: replays each recording without drawing and prints its state hash on a line. Built
+// in Debug too, without the rest of the program.
 #include <cstdio>
 #include <optional>
 #include <utility>
 
-#include "app/report/hash_text.h"
+#include "app/report/quantity_text.h"
 #include "app/session/lockstep.h"
 #include "haptic/virtual_device.h"
 

@@ -1,5 +1,5 @@
-// What the tests of the program work on: a small model, a script and a recording in a folder of their own,
-// and the program run as from a shell.
+// A temporary folder with a small model, a script and a recording for tests of the program,
+// and functions that run the program.
 #pragma once
 
 #include <filesystem>
@@ -17,10 +17,10 @@ struct Outcome {
   std::string err;
 };
 
-// The program in this process.
+// Runs the program in this process.
 Outcome run(const std::vector<std::string>& arguments);
 
-// A failure as the command line promises it: exit code 1 or 2 and one line that begins with the program's
+// Returns true for exit code 1 or 2 and exactly one line of error that begins with the program's
 // name.
 bool is_clean_failure(const Outcome& outcome);
 
@@ -28,7 +28,7 @@ Json json_of(const std::string& text);
 
 class Workplace {
  public:
-  Workplace();  // with model.json, and script.json on it
+  Workplace();  // writes model.json, and script.json for it
 
   std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
   std::string text(const std::string& name) const { return path(name).string(); }

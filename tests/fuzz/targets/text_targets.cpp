@@ -3,7 +3,6 @@
 #include <string>
 
 #include "app/commands/option_values.h"
-#include "app/start/point_table.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/targets/targets.h"
 

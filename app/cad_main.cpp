@@ -1,9 +1,10 @@
-// spoonbill-cad: the child of spoonbill that alone loads OpenCASCADE. It answers with frames (frame_stream.h)
-// on its standard output:
+// spoonbill-cad: the child process of spoonbill that converts CAD files. Only this program loads OpenCASCADE.
+// It answers with frames (frame_stream.h) on its standard output:
 //
-//   spoonbill-cad read step|iges FILE UNIT_M TOLERANCE_M FACE_LIMIT      UNIT_M 0: as the file declares
-//   spoonbill-cad write step|iges ap214|ap242 mm|cm|m|in                 with frames on its standard input
-//   spoonbill-cad solids CHORD_M TRIANGLE_LIMIT                          the same, and no text but meshes
+//   spoonbill-cad read step|iges FILE UNIT_M TOLERANCE_M FACE_LIMIT      UNIT_M 0: the unit that FILE
+//   declares spoonbill-cad write step|iges ap214|ap242 mm|cm|m|in                 reads a model's frames from
+//   its input spoonbill-cad solids CHORD_M TRIANGLE_LIMIT                          reads the same, answers
+//   with meshes
 #include <fcntl.h>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -29,12 +30,13 @@
 namespace spoonbill {
 namespace {
 
-constexpr int wrong_use = 2;
+constexpr int exit_wrong_use = 2;
 
-// The standard output that the program was started with, which nobody else writes to: OpenCASCADE prints.
-class Answers : public std::streambuf {
+// The standard output that the program was started with. Everything that OpenCASCADE prints goes to
+// /dev/null, so that it cannot corrupt the frames.
+class AnswerStream : public std::streambuf {
  public:
-  Answers() : descriptor_(dup(STDOUT_FILENO)) {
+  AnswerStream() : descriptor_(dup(STDOUT_FILENO)) {
     const int nowhere = open("/dev/null", O_WRONLY);
     dup2(nowhere, STDOUT_FILENO);
     dup2(nowhere, STDERR_FILENO);
@@ -70,7 +72,7 @@ FileFormat format_named(const std::string& name) {
   return name == "iges" ? FileFormat::iges : FileFormat::step;
 }
 
-Progress shown_on(std::ostream& out) {
+Progress report_to(std::ostream& out) {
   return Progress([&out](double fraction) {
     write_progress(out, fraction);
     return true;
@@ -84,20 +86,20 @@ void answer_read(const std::vector<std::string>& arguments, CadReading reading, 
       [&](const CadSurface& surface) {
         write_frame(out, FrameKind::surface, json_to_line(cad_surface_to_json(surface)));
       },
-      shown_on(out));
+      report_to(out));
   if (!model) return write_failure(out, model.error().message);
   const Json ending = {
       {"unit", model->unit}, {"unit_declared", model->unit_declared}, {"notes", model->notes}};
   write_frame(out, FrameKind::ending, json_to_line(ending));
 }
 
-Result<CadModel> model_of(std::istream& in) {
+Result<CadModel> read_model(std::istream& in) {
   CadModel model;
   for (;;) {
     const auto frame = read_frame([&](void* to, std::size_t bytes) {
       return static_cast<bool>(in.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)));
     });
-    if (!frame) return Error{"the model ends early"};
+    if (!frame) return Error{ErrorCode::malformed, "the model is incomplete"};
     if (frame->kind == FrameKind::ending) return model;
     auto surface = cad_surface_from_json(frame->content, "model");
     if (!surface) return surface.error();
@@ -106,13 +108,13 @@ Result<CadModel> model_of(std::istream& in) {
 }
 
 void answer_write(const std::vector<std::string>& arguments, std::ostream& out) {
-  const auto model = model_of(std::cin);
+  const auto model = read_model(std::cin);
   if (!model) return write_failure(out, model.error().message);
   CadWriting writing;
   writing.format = format_named(arguments[1]);
   writing.schema = arguments[2] == "ap242" ? StepSchema::ap242 : StepSchema::ap214;
   writing.unit = arguments[3];
-  const auto content = write_cad(model.value(), writing, shown_on(out));
+  const auto content = write_cad(model.value(), writing, report_to(out));
   if (!content) return write_failure(out, content.error().message);
   write_frame(out, FrameKind::file, content->text);
   const Json ending = {
@@ -120,11 +122,11 @@ void answer_write(const std::vector<std::string>& arguments, std::ostream& out) 
   write_frame(out, FrameKind::ending, json_to_line(ending));
 }
 
-// Each solid, then which surfaces are in none.
+// Sends one frame per solid, then the indices of the surfaces that are in none.
 void answer_solids(const SolidMeshing& meshing, std::ostream& out) {
-  const auto model = model_of(std::cin);
+  const auto model = read_model(std::cin);
   if (!model) return write_failure(out, model.error().message);
-  const auto found = mesh_solids(model.value(), meshing, shown_on(out));
+  const auto found = mesh_solids(model.value(), meshing, report_to(out));
   if (!found) return write_failure(out, found.error().message);
   for (const CadSolid& solid : found->solids) {
     write_frame(out, FrameKind::solid, cad_solid_to_bytes(solid));
@@ -142,10 +144,10 @@ int serve(const std::vector<std::string>& arguments) {
   const bool meshes = arguments.size() == 3 && arguments[0] == "solids" &&
                       parse(arguments[1], meshing.chord_m) && parse(arguments[2], meshing.triangle_limit);
   if (!reads && !writes && !meshes) {
-    std::cerr << "spoonbill-cad: is run by spoonbill itself; see `spoonbill convert --help`\n";
-    return wrong_use;
+    std::cerr << "spoonbill-cad: for use by spoonbill only; see `spoonbill convert --help`\n";
+    return exit_wrong_use;
   }
-  Answers answers;
+  AnswerStream answers;
   std::ostream out(&answers);
   set_assertion_handler(throw_failed_assertion);
   try {
@@ -165,7 +167,7 @@ int serve(const std::vector<std::string>& arguments) {
 }  // namespace spoonbill
 
 int main(int argc, char** argv) {
-  // Whoever asked may be stopped while a file keeps this one busy.
+  // The parent may end while a file keeps this process busy.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   return spoonbill::serve(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
 }

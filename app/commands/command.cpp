@@ -1,8 +1,7 @@
-#include "app/commands/common_options.h"
+#include "app/commands/command.h"
 
 #include <string>
 
-#include "app/commands/option_set.h"
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 
@@ -13,14 +12,16 @@ void add_json_option(OptionSet parser, bool& json) {
 }
 
 CommandOption add_document_output(OptionSet parser, std::filesystem::path& out, const std::string& help) {
-  const auto take = [&out](const std::string& text) -> Status {
+  const auto parse = [&out](const std::string& text) -> Status {
     out = text;
     if (format_from_name(out) == FileFormat::document) return {};
-    return Error{"'" + excerpt(text) +
-                 "' does not end in .json, as documents do; `spoonbill convert` "
-                 "makes CAD files and meshes of them"};
+    return Error{ErrorCode::unsupported,
+                 "'" + excerpt(text) +
+                     "' does not end in .json, as a document must; `spoonbill convert` writes CAD files and "
+                     "meshes",
+                 "--out"};
   };
-  return parser.add_parsed("--out", take, help).show_as("FILE");
+  return parser.add_parsed("--out", parse, help).show_as("FILE");
 }
 
 void add_instruction_set_option(OptionSet parser, InstructionSet& set) {
@@ -34,12 +35,14 @@ void add_instruction_set_option(OptionSet parser, InstructionSet& set) {
       set = available;
       return {};
     }
-    return Error{"'" + name + "' is not one that this processor has: " + names};
+    return Error{ErrorCode::unavailable,
+                 "'" + excerpt(name) + "' is not an instruction set of this processor; choose from " + names,
+                 "--instruction-set"};
   };
   parser
       .add_parsed("--instruction-set", choose,
-                  "Vector instructions to compute with (" + names +
-                      "); the widest unless told. The result is the same")
+                  "Vector instructions to compute with: " + names +
+                      "; default: the widest. The result is the same for each")
       .show_as("NAME");
 }
 

@@ -1,0 +1,99 @@
+// The internal commands read-mesh and read-points: the child processes that parse meshes and point clouds.
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "app/commands/command.h"
+#include "app/commands/option_set.h"
+#include "app/files/foreign_child.h"
+#include "engine/base/file.h"
+#include "engine/exchange/file_format.h"
+#include "engine/exchange/frame_stream.h"
+#include "engine/exchange/mesh_import.h"
+#include "engine/exchange/points/point_cloud.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr std::size_t ply_header_bytes = 65536;
+
+Result<TriangleMesh> import_within_memory(const std::filesystem::path& file) {
+  try {
+    return import_mesh(file);
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorCode::too_many, bad_allocation};
+  }
+}
+
+Status send_mesh(const std::filesystem::path& file, Console& console) {
+  const auto mesh = import_within_memory(file);
+  if (mesh) {
+    write_mesh(console.out, mesh.value());
+    return {};
+  }
+  write_failure(console.out, mesh.error().message);
+  return mesh.error().in(file.string());
+}
+
+// Sends a cloud, or a frame of kind `faces` for a mesh.
+Status send_cloud(const std::filesystem::path& file, Console& console) {
+  const FileFormat format = format_from_name(file);
+  // The header alone says whether a PLY file has faces; the rest may be large.
+  if (format == FileFormat::ply && ply_face_count(read_first_bytes(file, ply_header_bytes)) > 0) {
+    write_frame(console.out, FrameKind::faces, {});
+    return {};
+  }
+  const auto bytes = read_file(file, point_file_bytes_limit);
+  if (!bytes) return bytes.error();
+  if (format == FileFormat::obj && obj_has_faces(bytes.value())) {
+    write_frame(console.out, FrameKind::faces, {});
+    return {};
+  }
+  const auto cloud = points_of(bytes.value(), file);
+  if (!cloud) return cloud.error();
+  write_cloud(console.out, cloud.value());
+  return {};
+}
+
+// Removes "FILE: " from the start: the parent adds it, and a long name would crowd out the message.
+std::string without_name(const std::string& message, const std::filesystem::path& file) {
+  const std::string name = file.string() + ": ";
+  return message.starts_with(name) ? message.substr(name.size()) : message;
+}
+
+Status send_points(const std::filesystem::path& file, Console& console) {
+  try {
+    Status sent = send_cloud(file, console);
+    if (!sent) write_failure(console.out, without_name(sent.error().message, file));
+    return sent;
+  } catch (const std::bad_alloc&) {
+    write_failure(console.out, bad_allocation);
+    return Error{ErrorCode::too_many, file.string() + ": " + bad_allocation};
+  }
+}
+
+CommandEntry add_reader(OptionSet root, const char* name, const char* description, const char* file_help,
+                        Status (*send)(const std::filesystem::path& file, Console& console)) {
+  auto file = std::make_shared<std::filesystem::path>();
+  const OptionSet parser = root.add_command(name, description);
+  parser.add_option("FILE", *file, file_help).require();
+  return {parser, [file, send](Console& console) {
+            end_with_parent();
+            return send(*file, console);
+          }};
+}
+
+}  // namespace
+
+CommandEntry add_read_mesh(OptionSet root) {
+  return add_reader(root, "read-mesh", "Send the triangles of a mesh file to the parent process",
+                    "Mesh (.obj, .stl or .ply)", send_mesh);
+}
+
+CommandEntry add_read_points(OptionSet root) {
+  return add_reader(root, "read-points", "Send the points of a cloud to the parent process",
+                    "Cloud (.ply, .pcd, .xyz, .txt, .csv, .asc, .pts or .obj)", send_points);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,56 @@
+// Conversion between model files: documents and CAD files are read and written, meshes are written.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/files/cad_file.h"
+#include "app/files/length_unit.h"
+#include "engine/base/progress.h"
+#include "engine/base/result.h"
+#include "engine/exchange/cad_model.h"
+#include "engine/scene/scene.h"
+
+namespace spoonbill {
+
+struct ConversionRequest {
+  std::filesystem::path in, out;
+  // Unit of the numbers in the CAD file that is read, whatever it declares, or in the file that is written.
+  std::optional<LengthUnit> unit;
+  std::optional<double> chord_m;      // chord error of meshes; default: 0.05 mm
+  std::optional<double> tolerance_m;  // of CAD geometry that is not a B-spline; default: 0.01 mm
+  std::optional<StepSchema> schema;   // default: AP214
+  std::vector<int> bodies;            // bodies to convert, numbered from 1; all if empty
+  std::filesystem::path cad_program;  // see CadChild::program
+};
+
+struct ConversionReport {
+  std::string unit_in, unit_out;
+  bool unit_declared = true;  // false if the CAD file declared no unit
+  std::vector<CadSurface> surfaces;
+  std::optional<int> solids, open_shells;                       // in the CAD file that was written
+  std::optional<std::size_t> triangles, meshes, closed_meshes;  // in the mesh file that was written
+  double chord_error_m = 0.0;                                   // bound for all meshes
+  std::vector<std::string> notes;
+};
+
+// Converts a file to another format. The ending selects the format: .json; .step, .stp, .iges, .igs; .stl,
+// .obj, .ply, .3mf.
+//
+// Faces of one solid are joined to that solid in CAD files and meshes if they close; otherwise a note says
+// so. `out` appears complete or not at all; on an error an existing file stays as it is. Errors: a mesh as
+// input; two documents without a choice of bodies; options that have no effect on these formats; those of the
+// readers and writers.
+Result<ConversionReport> convert_file(const ConversionRequest& request, const Progress& progress);
+
+// Returns true if the ending is that of a CAD file or a mesh.
+bool is_exported_to(const std::filesystem::path& file);
+
+// Writes bodies in memory as convert_file() writes those of a document.
+Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::filesystem::path& out,
+                                       const Progress& progress);
+
+}  // namespace spoonbill

@@ -1,0 +1,82 @@
+// Documents as the program reads and makes them: with a hint for files of other formats, and new ones around
+// a surface, a stock shape, a CAD model or a fitted scan.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/exchange/document.h"
+#include "engine/scene/material.h"
+
+namespace spoonbill {
+
+struct CadModel;
+struct ScanFit;
+
+// Returns an error for the name of a CAD file, a mesh or a scan; it names the command that converts the file.
+Status check_native_name(const std::filesystem::path& file);
+
+// Reads a document after check_native_name().
+Result<Document> read_document_file(const std::filesystem::path& file);
+
+// Returns the names of the materials that come with the program, sorted.
+std::vector<std::string> shipped_material_names();
+
+// Reads a material that comes with the program, by its name or a part of it that no other has: "clay" for
+// modelling-clay. The error lists all names.
+Result<Material> shipped_material(const std::string& name);
+
+// Returns a document with one body around the surface. A plane fixes a tenth of the body: at its foot, or at
+// the left end of a flat one. The radius of the ball tool follows from the body's size, and the force scale
+// makes its forces perceptible. `shell_thickness_m`: see Body.
+Document starting_document(const std::string& name, Surface surface, const Material& material,
+                           std::optional<double> shell_thickness_m = {});
+
+// A stock shape of the window's New shape prompt.
+struct StockShapeField {
+  const char* name;
+  double default_mm;
+};
+
+struct StockShapeKind {
+  const char* name;  // "Sphere"
+  std::vector<StockShapeField> fields;
+};
+
+// Returns the stock shapes that a lattice can fill.
+std::span<const StockShapeKind> stock_shape_kinds();
+
+struct StockShapeChoice {
+  std::size_t kind = 0;          // index into stock_shape_kinds()
+  std::vector<double> sizes_mm;  // one per field
+};
+
+using LumpChoice = StockShapeChoice;  // former name, used in app/edit
+
+StockShapeChoice default_stock_shape(std::size_t kind);
+
+// Returns a document around the stock shape, fitted within 0.1 mm: few enough control points for ticks of one
+// millisecond. The error names a size that is out of range.
+Result<Document> make_stock_shape_document(const StockShapeChoice& choice, const Material& material);
+
+// Returns a document with one body of modelling clay per surface. All other settings are those of
+// starting_document() for the first. Returns an error for more surfaces than a document can have bodies.
+Result<Document> make_cad_document(const CadModel& model, const std::string& name);
+
+struct FittedDocument {
+  Document document;
+  std::vector<std::string> notes;  // bodies that cannot be simulated, or only in a box of cells
+};
+
+// Returns a starting_document() of clay bodies for a fitted scan. Closed surfaces become solids. Others
+// become shells of a hundredth of their size, at most 2 mm, thinner where their curvature demands it. Returns
+// an error for more bodies than a document can have.
+Result<FittedDocument> make_fitted_document(const ScanFit& fit, const std::string& name,
+                                            const Material& clay);
+
+}  // namespace spoonbill

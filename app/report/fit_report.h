@@ -1,0 +1,40 @@
+// The report of the fit command: facts, notes, and the cloud of coloured errors.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/files/scan_file.h"
+#include "app/report/fact_sheet.h"
+#include "engine/base/result.h"
+#include "engine/fitting/fit_scan.h"
+
+namespace spoonbill {
+
+// Returns the maximum, 95th percentile and mean of the distances of all bodies' points except strays.
+Deviation deviation_of_all(const ScanFit& fit);
+
+// Returns a note for a scan that is implausibly small or large, whose unit may be wrong.
+std::optional<std::string> find_size_note(const ScanFile& file, const ScanFit& fit);
+
+// Returns a note for a scan that the surface does not follow closely: it has a handle or a hole, or more
+// detail than the control points allow.
+std::optional<std::string> find_detail_note(const ScanFit& fit);
+
+// Returns notes on bodies that miss the tolerance or fold, on normals that were flipped, and on islands that
+// were skipped or capped. A tolerance of 0 means none.
+std::vector<std::string> find_fit_shortcomings(const ScanFit& fit, double tolerance_m);
+
+// Adds the unit and size of the scan, and how many of its points were used.
+void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
+
+// Adds each body with its errors, and in the JSON the errors of all bodies together.
+void add_fit_facts(FactSheet& facts, const ScanFit& fit, double tolerance_m);
+
+// Writes a binary PLY file in metres. Each point of the scan (for a mesh, points all over it) has its
+// distance_mm and a colour from dark blue (0) over green to yellow (`full_m` and beyond).
+Status write_error_cloud(const ScanFit& fit, double full_m, const std::filesystem::path& file);
+
+}  // namespace spoonbill
