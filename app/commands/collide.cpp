@@ -353,7 +353,8 @@ Status check_use(const CollideOptions& options, bool mesh_is_a, bool mesh_is_b) 
 }
 
 Status collide_models(const CollideOptions& options, Console& console) {
-  const bool mesh_is_a = is_mesh(format_from_name(options.first)), mesh_is_b = is_mesh(format_from_name(options.second));
+  const bool mesh_is_a = is_mesh(format_from_name(options.first)),
+             mesh_is_b = is_mesh(format_from_name(options.second));
   if (Status use = check_use(options, mesh_is_a, mesh_is_b); !use) return use.error();
   const bool both = mesh_is_a && mesh_is_b;
   FactSheet facts = begin_facts(options);

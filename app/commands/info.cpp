@@ -14,9 +14,9 @@
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 #include "engine/material/lattice/body_lattice.h"
-#include "haptic/virtual_device.h"
 #include "haptic/recording.h"
 #include "haptic/script.h"
+#include "haptic/virtual_device.h"
 
 namespace spoonbill {
 namespace {

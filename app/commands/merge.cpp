@@ -19,9 +19,9 @@
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
 #include "engine/base/text.h"
-#include "engine/inspection/surface_check.h"
 #include "engine/inspection/curvature.h"
 #include "engine/inspection/mass_properties.h"
+#include "engine/inspection/surface_check.h"
 #include "engine/merging/intersection_merge.h"
 #include "engine/merging/trimmed_patch.h"
 
@@ -242,7 +242,8 @@ void add_merge_notes(const MergeOptions& options, const MergeOutcome& outcome,
     notes.push_back(edges_text(a, b) + " touch too and stay open: " + why);
   }
   const Surface& surface = outcome.merged.surface;
-  if (find_closing(surface).closedness == Closedness::solid && compute_enclosed_mass(surface).volume_m3 < 0.0) {
+  if (find_closing(surface).closedness == Closedness::solid &&
+      compute_enclosed_mass(surface).volume_m3 < 0.0) {
     notes.emplace_back("the normals point inwards; reverse u with `spoonbill change`");
   }
   for (const std::size_t patch : outcome.reversed_patches) {

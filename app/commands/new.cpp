@@ -15,8 +15,8 @@
 #include "app/files/documents.h"
 #include "app/report/document_facts.h"
 #include "app/report/quantity_text.h"
-#include "engine/base/text.h"
 #include "engine/base/progress.h"
+#include "engine/base/text.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 #include "engine/inspection/mass_properties.h"
 #include "engine/material/lattice/shell_lattice.h"
@@ -24,8 +24,8 @@
 #include "engine/shapes/exact_shape.h"
 #include "engine/shapes/fit_shape.h"
 #include "engine/shapes/lathe.h"
-#include "engine/shapes/swept_shapes.h"
 #include "engine/shapes/stock_shapes.h"
+#include "engine/shapes/swept_shapes.h"
 
 namespace spoonbill {
 namespace {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "app/files/length_unit.h"
-#include "engine/base/text.h"
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
+#include "engine/base/text.h"
 #include "engine/merging/patch_edge.h"
 
 namespace spoonbill {

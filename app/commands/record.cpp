@@ -15,8 +15,8 @@
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 #include "engine/scene/tool.h"
-#include "haptic/virtual_device.h"
 #include "haptic/script.h"
+#include "haptic/virtual_device.h"
 
 namespace spoonbill {
 namespace {

@@ -8,8 +8,8 @@
 #include "app/files/documents.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
-#include "engine/base/text.h"
 #include "engine/base/progress.h"
+#include "engine/base/text.h"
 #include "engine/simulation/rest_shape.h"
 
 namespace spoonbill {
@@ -85,9 +85,9 @@ Status rest(const RestOptions& options, Console& console) {
     const Body& body = scene.bodies[b];
     ProgressBar bar(console, "Bending " + body.name, false);
     const auto shape = compute_rest_shape(scene, static_cast<int>(b), Progress([&](double fraction) {
-                                    bar.show(fraction);
-                                    return true;
-                                  }));
+                                            bar.show(fraction);
+                                            return true;
+                                          }));
     if (!shape) return shape.error().in("body \"" + body.name + "\"").in(options.model.string());
     add_rest_body(facts, body, shape.value(), list);
     bent.push_back(shape->surface);

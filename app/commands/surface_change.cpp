@@ -172,7 +172,7 @@ Result<ChangedSurfaces> remove_spare_knots(const Surface& surface, const ChangeR
       remove_spare_knots(surface, Direction::u, 0.5 * allowed.tolerance_m, allowed.progress.part(0.0, 0.5));
   if (!along_u) return along_u.error();
   auto both = remove_spare_knots(along_u->surface, Direction::v, 0.5 * allowed.tolerance_m,
-                                  allowed.progress.part(0.5, 1.0));
+                                 allowed.progress.part(0.5, 1.0));
   if (!both) return both.error();
   return ChangedSurfaces{{std::move(both->surface)}, {}, along_u->deviation_m + both->deviation_m, true};
 }

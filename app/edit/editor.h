@@ -21,8 +21,8 @@
 #include "app/view/shown_stages.h"
 #include "app/view/view_choice.h"
 #include "engine/base/geometry.h"
-#include "haptic/virtual_device.h"
 #include "haptic/space_mouse.h"
+#include "haptic/virtual_device.h"
 #include "render/view_settings.h"
 
 namespace spoonbill {

@@ -7,8 +7,8 @@
 
 #include "app/assets_folder.h"
 #include "app/edit/editor.h"
-#include "app/live/exporter.h"
 #include "app/files/documents.h"
+#include "app/live/exporter.h"
 #include "render/image.h"
 
 namespace spoonbill {

@@ -10,8 +10,8 @@
 
 #include "app/files/documents.h"
 #include "app/report/quantity_text.h"
-#include "engine/base/text.h"
 #include "engine/base/file.h"
+#include "engine/base/text.h"
 #include "engine/exchange/cad_model.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/file_format.h"

@@ -14,9 +14,9 @@
 #include "engine/exchange/file_format.h"
 #include "engine/fitting/fit_scan.h"
 #include "engine/material/lattice/body_lattice.h"
+#include "engine/shapes/exact_shape.h"
 #include "engine/shapes/fit_shape.h"
 #include "engine/shapes/stock_shapes.h"
-#include "engine/shapes/exact_shape.h"
 
 namespace spoonbill {
 namespace {
@@ -112,7 +112,8 @@ double find_shell_thickness(Body body, double size_m) {
 }
 
 bool has_lattice_along(const Body& body) {
-  return body.shell_thickness_m ? make_body_lattice(body).ok() : tube_lattice(body.surface, body.lattice).ok();
+  return body.shell_thickness_m ? make_body_lattice(body).ok()
+                                : tube_lattice(body.surface, body.lattice).ok();
 }
 
 // Sets the largest node budget with which a lattice can follow the body: in details of a scan, cells of the

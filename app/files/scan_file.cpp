@@ -7,8 +7,8 @@
 
 #include "app/files/foreign_child.h"
 #include "engine/base/file.h"
-#include "engine/base/text.h"
 #include "engine/base/geometry.h"
+#include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 
 namespace spoonbill {

@@ -19,8 +19,8 @@
 #include "app/live/live_frame.h"
 #include "app/live/session_worker.h"
 #include "engine/base/assert.h"
-#include "haptic/lock_free.h"
 #include "haptic/haptic_loop.h"
+#include "haptic/lock_free.h"
 #include "haptic/safe_device.h"
 
 namespace spoonbill {

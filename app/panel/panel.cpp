@@ -49,12 +49,12 @@ bool field_row(const Field<Object>& field, Object& object, std::string& refusal,
   const FieldForm& form = field.form;
   if (form.slider.label == nullptr) return false;
   const auto shown = [&](const std::string& own) { return text == nullptr ? own : std::string(text); };
-  if (const auto* number = std::get_if<double Object::*>(&field.member)) {
-    double& value = object.**number;
+  if (const auto number = field.member.template pointer_to<double>()) {
+    double& value = object.*number;
     return quantity_row(form, value, shown(quantity_text(form, value)), refusal);
   }
-  if (const auto* number = std::get_if<int Object::*>(&field.member)) {
-    int& value = object.**number;
+  if (const auto number = field.member.template pointer_to<int>()) {
+    int& value = object.*number;
     const char* unit = form.unit == FieldUnit::per_tick ? " a tick" : "";
     return slider_row(form, value, shown(std::to_string(value) + unit));
   }
@@ -63,8 +63,7 @@ bool field_row(const Field<Object>& field, Object& object, std::string& refusal,
 
 template <class Object, class Value>
 bool is_field(const Field<Object>& field, Value Object::*member) {
-  const auto* found = std::get_if<Value Object::*>(&field.member);
-  return found != nullptr && *found == member;
+  return field.member.template pointer_to<Value>() == member;
 }
 
 // Only a sphere shows its radius, whatever the action.

@@ -56,7 +56,8 @@ void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
   const Thickness& thin = *check.thinnest;
   // Where two sides meet, only rounding error separates them.
   const double thickness_m = thin.thickness_m > 1e-12 ? thin.thickness_m : 0.0;
-  facts.add("  Thinnest", short_length_text(thickness_m) + " at " + position_text(thin.position_m), "", nullptr);
+  facts.add("  Thinnest", short_length_text(thickness_m) + " at " + position_text(thin.position_m), "",
+            nullptr);
   json["smallest_thickness_m"] = thin.thickness_m;
   json["thinnest"] = {{"u", thin.u},
                       {"v", thin.v},
@@ -205,8 +206,9 @@ void add_solid_thickness(FactSheet& facts, const CadSolid& solid, const SolidChe
   const double error_m = 2.0 * solid.chord_error_m;
   const std::string within =
       error_m > least_gap_m ? ", nowhere less by more than " + short_length_text(error_m) : "";
-  facts.add("  Thinnest", short_length_text(thin.thickness_m) + " at " + position_text(thin.position_m) + within,
-            "", nullptr);
+  facts.add("  Thinnest",
+            short_length_text(thin.thickness_m) + " at " + position_text(thin.position_m) + within, "",
+            nullptr);
   json["smallest_thickness_m"] = thin.thickness_m;
   json["thickness_error_m"] = error_m;
   json["thinnest"] = {{"point_m", vector_json(thin.position_m)},

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "app/report/quantity_text.h"
+#include "engine/base/file.h"
 #include "engine/base/geometry.h"
 #include "engine/base/text.h"
-#include "engine/base/file.h"
 
 namespace spoonbill {
 namespace {

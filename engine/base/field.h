@@ -88,13 +88,69 @@ struct ChoiceMember {
   void (*set)(Object&, std::size_t);
 };
 
+// A pointer to the field in its struct. A union rather than a std::variant, which every source that includes
+// a table would instantiate for each struct.
+template <class Object>
+class FieldMember {
+ public:
+  constexpr FieldMember(std::string Object::*member) : kind_(Kind::text), text_(member) {}
+  constexpr FieldMember(bool Object::*member) : kind_(Kind::flag), flag_(member) {}
+  constexpr FieldMember(double Object::*member) : kind_(Kind::number), number_(member) {}
+  constexpr FieldMember(int Object::*member) : kind_(Kind::whole_number), whole_number_(member) {}
+  constexpr FieldMember(std::uint32_t Object::*member) : kind_(Kind::count), count_(member) {}
+  constexpr FieldMember(Vector3 Object::*member) : kind_(Kind::vector), vector_(member) {}
+  constexpr FieldMember(ChoiceMember<Object> member) : kind_(Kind::choice), choice_(member) {}
+
+  // Calls `visitor` with the pointer to the member, or with the ChoiceMember.
+  template <class Visitor>
+  constexpr decltype(auto) visit(Visitor&& visitor) const {
+    switch (kind_) {
+      case Kind::text:
+        return visitor(text_);
+      case Kind::flag:
+        return visitor(flag_);
+      case Kind::number:
+        return visitor(number_);
+      case Kind::whole_number:
+        return visitor(whole_number_);
+      case Kind::count:
+        return visitor(count_);
+      case Kind::vector:
+        return visitor(vector_);
+      case Kind::choice:
+        break;
+    }
+    return visitor(choice_);
+  }
+
+  // The pointer to a member of this type; null where the field has another type.
+  template <class Value>
+  constexpr Value Object::*pointer_to() const {
+    Value Object::*found = nullptr;
+    visit([&](auto member) {
+      if constexpr (std::is_same_v<decltype(member), Value Object::*>) found = member;
+    });
+    return found;
+  }
+
+ private:
+  enum class Kind { text, flag, number, whole_number, count, vector, choice };
+  Kind kind_;
+  union {
+    std::string Object::*text_;
+    bool Object::*flag_;
+    double Object::*number_;
+    int Object::*whole_number_;
+    std::uint32_t Object::*count_;
+    Vector3 Object::*vector_;
+    ChoiceMember<Object> choice_;
+  };
+};
+
 template <class Object>
 struct Field {
-  using Member = std::variant<std::string Object::*, bool Object::*, double Object::*, int Object::*,
-                              std::uint32_t Object::*, Vector3 Object::*, ChoiceMember<Object>>;
-
   FieldForm form;
-  Member member;
+  FieldMember<Object> member;
   // Returns the number's range where it depends on the object's other fields; null if it does not.
   Range<double> (*range_by_object)(const Object&) = nullptr;
   // Returns whether this object has the field at all; null if every object has it.
@@ -243,8 +299,7 @@ constexpr auto choice_field(const char* name, std::span<const char* const> names
 template <class Object, class Value>
 consteval const Field<Object>& field_of(Value Object::*member) {
   for (const Field<Object>& field : fields_of<Object>) {
-    const auto* found = std::get_if<Value Object::*>(&field.member);
-    if (found != nullptr && *found == member) return field;
+    if (field.member.template pointer_to<Value>() == member) return field;
   }
   throw "the table of the struct has no such field";
 }
@@ -274,7 +329,7 @@ Status check_fields(const std::string& about, const Object& object) {
   };
   for (const Field<Object>& field : fields_of<Object>) {
     if (!field.applies(object)) continue;
-    const Status status = std::visit([&](auto member) { return check(field, member); }, field.member);
+    const Status status = field.member.visit([&](auto member) { return check(field, member); });
     if (!status.ok()) return status;
   }
   return {};

@@ -45,7 +45,7 @@ void read_fields(FieldReader& reader, Object& object) {
         read_value(reader, field.form, field.range_for(object), object.*member);
       }
     };
-    std::visit(read, field.member);
+    field.member.visit(read);
   }
 }
 
@@ -71,7 +71,7 @@ void add_fields(const Object& object, Json& json) {
         json[form.name] = value_to_json(form, object.*member);
       }
     };
-    std::visit(add, field.member);
+    field.member.visit(add);
   }
 }
 

@@ -21,8 +21,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/text.h"
 #include "engine/base/file.h"
+#include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 
 namespace spoonbill {

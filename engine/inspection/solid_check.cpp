@@ -8,8 +8,8 @@
 
 #include "engine/base/assert.h"
 #include "engine/collision/meshes/box_tree.h"
-#include "engine/collision/meshes/triangle.h"
 #include "engine/collision/meshes/mesh_edges.h"
+#include "engine/collision/meshes/triangle.h"
 #include "engine/collision/rigid/body_tree.h"
 #include "engine/collision/surfaces/surface_pair_collider.h"
 

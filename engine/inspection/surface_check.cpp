@@ -199,7 +199,8 @@ void find_self_intersections(const Surface& surface, const TrimmedArea& area, co
   for (const PairContact& contact : collider.contacts()) {
     const PairParameters& at = contact.pair.at;
     if (!area.contains(at.u, at.v) || !area.contains(at.s, at.t)) continue;
-    check.self_intersections.push_back({at.u, at.v, at.s, at.t, contact.depth_m, position(surface, at.u, at.v)});
+    check.self_intersections.push_back(
+        {at.u, at.v, at.s, at.t, contact.depth_m, position(surface, at.u, at.v)});
   }
 }
 

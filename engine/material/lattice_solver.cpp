@@ -369,9 +369,9 @@ void creep(Relaxation& relaxation, std::uint64_t turn, double tick_time_s) {
     const Material& material = lattice.material();
     if (!lattice.creeps() || !relaxation.has_springs(at)) continue;
     const double step = 1.0 / (1.0 + material.relaxation_time_s / time_s);
-    lattice.kernels().creep(
-        relaxation.view[at], direction,
-        {static_cast<float>(material.relaxing_fraction), static_cast<float>(step), static_cast<float>(time_s)});
+    lattice.kernels().creep(relaxation.view[at], direction,
+                            {static_cast<float>(material.relaxing_fraction), static_cast<float>(step),
+                             static_cast<float>(time_s)});
   }
 }
 

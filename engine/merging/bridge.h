@@ -55,9 +55,9 @@ std::optional<Vector3> find_fold(const Surface& surface);
 std::optional<Vector3> find_fold_between(const Surface& surface, double start, double end);
 
 // Length of a bridge. Both patches cross the gap at one speed, from the chords between the edges and the mean
-// derivatives there. The parameter length is reduce_degree until the bridge does not fold; between rings also, to a
-// quarter at most, until it is nowhere narrower than both rings. Fails for edges without a direction across
-// v, and for bridges that fold at any length unless `may_fold` is set.
+// derivatives there. The parameter length is reduce_degree until the bridge does not fold; between rings
+// also, to a quarter at most, until it is nowhere narrower than both rings. Fails for edges without a
+// direction across v, and for bridges that fold at any length unless `may_fold` is set.
 struct BridgeLength {
   double parameter = 0.0;
   double stretch_of_after = 1.0;

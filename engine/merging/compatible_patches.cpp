@@ -89,8 +89,9 @@ SnappedKnots snap_knots(const Surface& surface, const KnotVector& knots, double 
   SnappedKnots result{{std::move(u).value(), surface.v, surface.net}, 0.0};
   constexpr int samples_in_piece = 5;
   result.deviation_m = largest_deviation_m(
-      result.surface, sample_grid_points(surface, nested_parameters(surface.u, samples_in_piece, 0).parameters,
-                                 nested_parameters(surface.v, samples_in_piece, 0).parameters));
+      result.surface,
+      sample_grid_points(surface, nested_parameters(surface.u, samples_in_piece, 0).parameters,
+                         nested_parameters(surface.v, samples_in_piece, 0).parameters));
   return result.deviation_m <= most_m ? result : SnappedKnots{surface, 0.0};
 }
 

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/text.h"
 #include "engine/base/result.h"
+#include "engine/base/text.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/bspline/surface.h"

@@ -10,8 +10,8 @@
 
 #include "engine/bspline/surface.h"
 #include "engine/collision/proximity/mesh_proximity.h"
-#include "engine/collision/proximity/surface_proximity.h"
 #include "engine/collision/proximity/self_proximity.h"
+#include "engine/collision/proximity/surface_proximity.h"
 #include "engine/collision/solids/surface_contact.h"
 #include "engine/material/contact/body_contacts.h"
 #include "engine/simulation/body_state.h"

@@ -9,9 +9,9 @@
 #include "engine/base/result.h"
 #include "engine/material/implicit/implicit_solver.h"
 #include "engine/material/lattice/embedded_point.h"
+#include "engine/material/lattice_solver.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "engine/material/statics/static_body.h"
-#include "engine/material/lattice_solver.h"
 #include "engine/scene/loads.h"
 
 namespace spoonbill {

@@ -43,12 +43,11 @@ Result<SpringLattice> make_sculpting_lattice(const LatticeMesh& mesh, const Latt
 }
 
 Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& lattice,
-                                                         const std::vector<Vector3>& rest_m,
-                                                         InstructionSet set) {
+                                                           const std::vector<Vector3>& rest_m,
+                                                           InstructionSet set) {
   const LatticeMaterials& materials = lattice.materials();
   const bool for_springs = max_youngs_modulus_pa(materials) < stiff_youngs_modulus_pa &&
-                           !lattice.mesh().thin &&
-                           min_poissons_ratio(materials) >= min_spring_poissons_ratio;
+                           !lattice.mesh().thin && min_poissons_ratio(materials) >= min_spring_poissons_ratio;
   if (!are_linear_elastic(materials) || for_springs) return std::optional<ImplicitSolver>();
   Result<ImplicitSolver> solver = ImplicitSolver::make(lattice.mesh(), rest_m, materials, set);
   if (!solver.ok()) return solver.error();

@@ -28,7 +28,7 @@ struct BodyState {
   SpringLattice lattice;
   std::variant<BodyMapping, MeshMapping> skin;
   Smoothing smoothing;
-  std::vector<std::uint8_t> fixed, touched;          // one byte a node
+  std::vector<std::uint8_t> fixed, touched;            // one byte a node
   std::optional<ImplicitSolver> implicit_solver = {};  // for materials too stiff for the lattice's springs
   bool implicit_suspended = false;
   BodyLoads loads = {};
@@ -110,8 +110,8 @@ inline constexpr double stiff_youngs_modulus_pa = 1e6;
 // linear elastic and whose stiffest reaches stiff_youngs_modulus_pa. It also steps elastic shells, which a
 // single layer of springs would make twice too stiff in bending. Empty for bodies that their springs step.
 Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& lattice,
-                                                         const std::vector<Vector3>& rest_m,
-                                                         InstructionSet set);
+                                                           const std::vector<Vector3>& rest_m,
+                                                           InstructionSet set);
 
 // Largest relative error of a lattice's Young's modulus along an axis without a warning. Cells too slender
 // for springs exceed it.

@@ -135,7 +135,8 @@ Status CommandApplier::operator()(const KeepShape&) {
     Result<BodyMapping> mapping =
         BodyMapping::make(surface, surface, lattice.value(), state.scene.planes, state.set);
     if (!mapping.ok()) return mapping.error();
-    Result<std::optional<ImplicitSolver>> solver = make_implicit_solver(lattice.value(), mesh.nodes, state.set);
+    Result<std::optional<ImplicitSolver>> solver =
+        make_implicit_solver(lattice.value(), mesh.nodes, state.set);
     if (!solver.ok()) return solver.error();
     solvers.push_back(std::move(solver).value());
     lattices.push_back(std::move(lattice).value());

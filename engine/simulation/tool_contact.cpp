@@ -5,8 +5,8 @@
 
 #include "engine/base/assert.h"
 #include "engine/collision/meshes/mesh_distance.h"
-#include "engine/collision/meshes/mesh_parts.h"
 #include "engine/collision/meshes/mesh_edges.h"
+#include "engine/collision/meshes/mesh_parts.h"
 #include "engine/material/lattice/box_lattice.h"
 #include "engine/material/lattice/lattice_mesh.h"
 #include "engine/simulation/body_contact.h"

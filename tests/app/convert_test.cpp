@@ -301,7 +301,8 @@ TEST_F(ConvertTest, AShellGoesOutAsAMeshOfItsThickness) {
   place_.write("thick.json", json_to_page(document));
   const Json too_thick = convert_for_facts({place_.text("thick.json"), place_.text("thick.obj")});
   ASSERT_EQ(too_thick["notes"].size(), 1u);
-  EXPECT_NE(too_thick["notes"][0].get<std::string>().find("a shell of 100 mm is thicker than the radius of curvature"),
+  EXPECT_NE(too_thick["notes"][0].get<std::string>().find(
+                "a shell of 100 mm is thicker than the radius of curvature"),
             std::string::npos)
       << too_thick["notes"];
   EXPECT_EQ(too_thick["closed_meshes"], 0);

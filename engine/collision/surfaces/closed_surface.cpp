@@ -6,8 +6,8 @@
 
 #include "engine/base/assert.h"
 #include "engine/bspline/grid.h"
-#include "engine/bspline/tube_rings.h"
 #include "engine/bspline/surface.h"
+#include "engine/bspline/tube_rings.h"
 #include "engine/collision/meshes/mesh_parts.h"
 
 namespace spoonbill {

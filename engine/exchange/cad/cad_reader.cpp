@@ -25,8 +25,8 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/text.h"
 #include "engine/base/geometry.h"
+#include "engine/base/text.h"
 #include "engine/exchange/cad/cad.h"
 #include "engine/exchange/cad/face_surface.h"
 #include "engine/exchange/cad/file_report.h"

@@ -143,7 +143,7 @@ std::vector<BodyCoordinates> find_node_coordinates(const LatticeMesh& mesh) {
 }
 
 BodyCoordinates mean_coordinates(const LatticeMesh& mesh, const std::vector<BodyCoordinates>& nodes,
-                           std::span<const int> selected) {
+                                 std::span<const int> selected) {
   SPOONBILL_ASSERT(!selected.empty() && nodes.size() == static_cast<std::size_t>(mesh.node_count()));
   BodyCoordinates location;
   double weights = 0.0, heaviest = 0.0, reference = 0.0;

@@ -22,7 +22,7 @@ std::vector<BodyCoordinates> find_node_coordinates(const LatticeMesh& mesh);
 // Uses sums only: the C library's trigonometric functions differ between processors, and the cells of a
 // region are part of the state.
 BodyCoordinates mean_coordinates(const LatticeMesh& mesh, const std::vector<BodyCoordinates>& nodes,
-                           std::span<const int> selected);
+                                 std::span<const int> selected);
 
 // Returns the body coordinates of each cell's centre, by LatticeMesh::cell_index(): its own depth and the
 // mean_coordinates() of its corners. In a box about a surface, returns LatticeMesh::cell_centres.

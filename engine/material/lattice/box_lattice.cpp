@@ -11,10 +11,10 @@
 
 #include "engine/base/assert.h"
 #include "engine/base/text.h"
-#include "engine/bspline/tube_rings.h"
 #include "engine/bspline/surface.h"
-#include "engine/collision/meshes/mesh_parts.h"
+#include "engine/bspline/tube_rings.h"
 #include "engine/collision/meshes/mesh_distance.h"
+#include "engine/collision/meshes/mesh_parts.h"
 #include "engine/collision/surfaces/closed_surface.h"
 #include "engine/material/lattice/lattice_mesh.h"
 

@@ -9,8 +9,8 @@
 
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
-#include "engine/scene/material.h"
 #include "engine/scene/body.h"
+#include "engine/scene/material.h"
 
 namespace spoonbill {
 

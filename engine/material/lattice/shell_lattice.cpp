@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "engine/base/assert.h"
-#include "engine/base/text.h"
 #include "engine/base/result.h"
-#include "engine/bspline/tube_rings.h"
+#include "engine/base/text.h"
 #include "engine/bspline/surface.h"
+#include "engine/bspline/tube_rings.h"
 #include "engine/material/lattice/lattice_mesh.h"
 #include "engine/scene/scene.h"
 
@@ -184,7 +184,7 @@ constexpr double farthest_tolerance = 1.0 - 1e-6;
 // Table of arc length, the mean over several lines, against the fractions of the stations.
 template <class PositionAt>
 LinearTable length_to_fraction(const ShellSurface& face, const std::vector<double>& stations,
-                              const std::vector<double>& over, const PositionAt& position_at) {
+                               const std::vector<double>& over, const PositionAt& position_at) {
   LinearTable table{{0.0}, {stations.front()}};
   for (std::size_t s = 1; s < stations.size(); ++s) {
     double sum = 0.0;

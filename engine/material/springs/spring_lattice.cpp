@@ -493,9 +493,10 @@ void SpringLattice::store_flow_and_creep(const Assembly& sum) {
                           return std::array<double, 4>{material.plastic ? 1.0 : 0.0, material.yield_strain,
                                                        material.flow_rate_per_s, material.hardening};
                         });
-  const bool own_creep = creeps_ && differ(materials_, [](const Material& material) {
-                           return std::array<double, 2>{material.relaxing_fraction, material.relaxation_time_s};
-                         });
+  const bool own_creep =
+      creeps_ && differ(materials_, [](const Material& material) {
+        return std::array<double, 2>{material.relaxing_fraction, material.relaxation_time_s};
+      });
   if (!own_flow && !own_creep) return;
   for (std::size_t d = 0; d < lattice_direction_count; ++d) {
     const std::size_t size = stiffness_[d].size();

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/base/containers.h"
-#include "engine/base/processor.h"
 #include "engine/base/geometry.h"
+#include "engine/base/processor.h"
 #include "engine/base/result.h"
 #include "engine/material/cells/cell_elasticity.h"
 #include "engine/material/lattice/lattice_mesh.h"

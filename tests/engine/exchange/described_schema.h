@@ -83,8 +83,7 @@ Json object_schema(const Object& object, const Json& first = Json::object()) {
     const FieldForm& form = field.form;
     if (!field.applies(object)) continue;
     if (!properties.contains(form.name)) require(form, json);
-    const Json value =
-        std::visit([&](auto member) { return value_schema<Object>(form, member); }, field.member);
+    const Json value = field.member.visit([&](auto member) { return value_schema<Object>(form, member); });
     if (!properties.contains(form.name)) properties[form.name] = with_help(form.help, value);
     if (form.alias.name == nullptr) continue;
     const FieldAlias& alias = form.alias;
@@ -103,7 +102,9 @@ Json choice_schema() {
   Json json;
   for (std::size_t value = 0; value < choice.form.choices.size(); ++value) {
     Object object;
-    std::get<ChoiceMember<Object>>(choice.member).set(object, value);
+    choice.member.visit([&](auto member) {
+      if constexpr (std::is_same_v<decltype(member), ChoiceMember<Object>>) member.set(object, value);
+    });
     const Json kind{{"const", choice.form.choices[value]}};
     append(json["oneOf"], object_schema(object, {{choice.form.name, kind}}));
   }

@@ -14,10 +14,11 @@ Document loaded_document() {
   Document document = sample_document();
   Body& body = document.scene.bodies[0];
   const double inf = std::numeric_limits<double>::infinity();
-  body.loads = {PressureLoad{{{0.5, 1.0}, {0.9, 0.1}, {0.0, 0.002}}, -150.5},
-                ForceLoad{{{0.9, 1.0}}, Vector3(0, -2, 0.25), ForceDistribution::volume},
-                ForceLoad{{{0.0, 1.0}, {0.0, 1.0}, {0.0013, inf}}, Vector3(1, 0, 0), ForceDistribution::surface},
-                PointLoad{0.1, 0.2, Vector3(0, 0, 1.0 / 3.0)}};
+  body.loads = {
+      PressureLoad{{{0.5, 1.0}, {0.9, 0.1}, {0.0, 0.002}}, -150.5},
+      ForceLoad{{{0.9, 1.0}}, Vector3(0, -2, 0.25), ForceDistribution::volume},
+      ForceLoad{{{0.0, 1.0}, {0.0, 1.0}, {0.0013, inf}}, Vector3(1, 0, 0), ForceDistribution::surface},
+      PointLoad{0.1, 0.2, Vector3(0, 0, 1.0 / 3.0)}};
   body.supports = {{{{0.0, 0.1}}, {}},
                    {{{0.9, 1.0}}, SupportMotion{MotionKind::ramp, Vector3(0.0, 0.0052, 0.0), 2.5}},
                    {{{0.5, 0.6}}, SupportMotion{MotionKind::oscillation, Vector3(0.001, 0, 0), 1.0, 12.5}}};
@@ -129,7 +130,8 @@ TEST(LoadJson, NamesWhatIsWrongWithAMotionOrTheGround) {
     j["body"]["supports"][1]["motion"]["duration_s"] = 0.01;
   });
   EXPECT_EQ(too_fast.substr(0, 45), "sample.json: body.supports[1] motion reaches ");
-  EXPECT_NE(too_fast.find("m/s, must stay below 5; shorten the displacement or allow more time"), std::string::npos);
+  EXPECT_NE(too_fast.find("m/s, must stay below 5; shorten the displacement or allow more time"),
+            std::string::npos);
   EXPECT_EQ(refusal([](Json& j) { j["ground"]["friction"] = -0.1; }),
             "sample.json: ground.friction is -0.1, must be 0 to 5");
   EXPECT_EQ(refusal([](Json& j) { j["ground"].erase("normal"); }), "sample.json: ground.normal is missing");

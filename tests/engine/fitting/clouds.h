@@ -14,8 +14,9 @@ Scan ellipsoid_cloud(int count, const Vector3& semi_axes_m);
 Scan random_cloud(int count, std::uint64_t seed, const std::function<Vector3(double, double)>& place);
 
 Vector3 on_cylinder(double s, double t, double radius_m, double length_m);  // open, along z from 0
-Vector3 on_torus_sector(double s, double t, double displacement_m, double tube_m);   // open, a quarter turn about z
-Vector3 on_waves(double s, double t, double width_m, double height_m);      // over x and y
+Vector3 on_torus_sector(double s, double t, double displacement_m,
+                        double tube_m);                                 // open, a quarter turn about z
+Vector3 on_waves(double s, double t, double width_m, double height_m);  // over x and y
 double waves_height(double x_m, double y_m, double width_m, double height_m);
 
 void add_noise(Scan& scan, std::uint64_t seed, double deviation_m);

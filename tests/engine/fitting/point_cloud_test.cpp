@@ -78,23 +78,28 @@ TEST(PlyPoints, RefusesEachDamageWithItsReason) {
   expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 3\n"), "no end");
   expect_refusal(parse_ply_points(ply_header("ascii", "4000000000")), "cut or damaged");
   expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\n"
-                            "property float y\nproperty float z\nend_header\n1 2 3\n"),
+                                  "property float y\nproperty float z\nend_header\n1 2 3\n"),
                  "more than the 5000000");
-  expect_refusal(parse_ply_points("ply\nformat binary_little_endian 1.0\nelement vertex 4999999\nproperty float x\n"
-                            "property float y\nproperty float z\nend_header\n1 2 3\n"),
-                 "cut or damaged");
-  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
-                            "property float z\nend_header\n"),
-                 "has no points");
-  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                            "end_header\n1 2\n"),
-                 "no x, y and z");
-  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                            "property float z\nend_header\nnan nan nan\n"),
-                 "no number");
-  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                            "property float z\nend_header\n1 inf 2\n"),
-                 "infinity");
+  expect_refusal(
+      parse_ply_points("ply\nformat binary_little_endian 1.0\nelement vertex 4999999\nproperty float x\n"
+                       "property float y\nproperty float z\nend_header\n1 2 3\n"),
+      "cut or damaged");
+  expect_refusal(
+      parse_ply_points("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+                       "property float z\nend_header\n"),
+      "has no points");
+  expect_refusal(
+      parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                       "end_header\n1 2\n"),
+      "no x, y and z");
+  expect_refusal(
+      parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                       "property float z\nend_header\nnan nan nan\n"),
+      "no number");
+  expect_refusal(
+      parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                       "property float z\nend_header\n1 inf 2\n"),
+      "infinity");
   const std::string whole = binary_ply_points(false);
   expect_refusal(parse_ply_points(std::string_view(whole).substr(0, whole.size() - 1)), "cut or damaged");
 }
@@ -102,9 +107,10 @@ TEST(PlyPoints, RefusesEachDamageWithItsReason) {
 const std::string pcd_fields = "VERSION .7\nFIELDS x y z rgb\nSIZE 8 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\n";
 
 TEST(PcdPoints, TextBinaryAndCompressed) {
-  expect_two_points(parse_pcd_points("# .PCD v.6\n" + pcd_fields +
-                               "WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n1.5 -2.25 3 9\n2.5 -2.25 3 9\n"),
-                    false);
+  expect_two_points(
+      parse_pcd_points("# .PCD v.6\n" + pcd_fields +
+                       "WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n1.5 -2.25 3 9\n2.5 -2.25 3 9\n"),
+      false);
   std::string rows = pcd_fields + "WIDTH 1\nHEIGHT 2\nDATA binary\n";
   for (int k = 0; k < 2; ++k) {
     put(rows, 1.5 + k);
@@ -136,21 +142,23 @@ TEST(PcdPoints, TextBinaryAndCompressed) {
 
 TEST(PcdPoints, RefusesEachDamageWithItsReason) {
   expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\n"), "no DATA");
-  expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"), "as many");
+  expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
+                 "as many");
   expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 3 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
                  "field y");
   expect_refusal(parse_pcd_points("FIELDS x y w\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n"),
                  "no x, y and z");
   for (const char* data : {"ascii", "binary", "binary_compressed"}) {
     expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 4000000000\nDATA " +
-                              std::string(data) + "\n1 2 3\n"),
+                                    std::string(data) + "\n1 2 3\n"),
                    "more than the 5000000");
     expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 4999999\nDATA " +
-                              std::string(data) + "\n1 2 3 4 5 6 7 8 9\n"),
+                                    std::string(data) + "\n1 2 3 4 5 6 7 8 9\n"),
                    "cut or damaged");
   }
-  expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 six\n"),
-                 "point 2 of 2");
+  expect_refusal(
+      parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 six\n"),
+      "point 2 of 2");
   expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA zipped\n"), "zipped");
 }
 
@@ -196,11 +204,13 @@ TEST(TextPoints, RefusesCommasThatMayPartNumbersOrNot) {
     expect_refusal(parse_text_points(std::string(line) + "\n"), "line 1 has commas");
   }
   expect_refusal(parse_obj_points("v 12,345 67,890 1,234\n"), "line 1 is no point");
-  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                            "property float z\nend_header\n1,5 2,5 3,5\n"),
-                 "vertex 1 of 1 has '1,5', a number with a comma");
-  expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1,5 2,5 3,5\n"),
-                 "point 1 has '1,5', a number with a comma");
+  expect_refusal(
+      parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                       "property float z\nend_header\n1,5 2,5 3,5\n"),
+      "vertex 1 of 1 has '1,5', a number with a comma");
+  expect_refusal(
+      parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1,5 2,5 3,5\n"),
+      "point 1 has '1,5', a number with a comma");
 }
 
 TEST(TextPoints, RefusesEachDamageWithItsReason) {
@@ -241,7 +251,8 @@ TEST(PointFiles, AnyBytesGiveAnAnswer) {
       }
       if (bytes.empty()) bytes = "p";
     }
-    for (const auto& cloud : {parse_ply_points(bytes), parse_pcd_points(bytes), parse_text_points(bytes), parse_obj_points(bytes)}) {
+    for (const auto& cloud : {parse_ply_points(bytes), parse_pcd_points(bytes), parse_text_points(bytes),
+                              parse_obj_points(bytes)}) {
       if (cloud) {
         EXPECT_FALSE(cloud->points.empty());
       } else {

@@ -17,7 +17,8 @@ using Vector2 = Eigen::Vector2d;
 constexpr double pi = std::numbers::pi;
 
 bool is_clean(const SurfaceCheck& check) {
-  return check.surface_defects.empty() && check.self_intersections.empty() && check.self_intersections_complete;
+  return check.surface_defects.empty() && check.self_intersections.empty() &&
+         check.self_intersections_complete;
 }
 
 TEST(SurfaceCheck, StartingShapesAreSound) {

@@ -251,7 +251,7 @@ TEST(IntersectionMerge, LinesLeadAwayFromACrossingBesideThePole) {
     EXPECT_LE(merged->deviation_m, tolerance_m);
     EXPECT_FALSE(find_fold(merged->surface).has_value());
     const PointGrid points = sample_grid_points(merged->surface, uniform_parameters(merged->surface.u, 60),
-                                        uniform_parameters(merged->surface.v, 120));
+                                                uniform_parameters(merged->surface.v, 120));
     double farthest = 0.0, deepest = 0.0;
     for (const Vector3& p : points.points_m) {
       const Vector3 of_rod = p - shift;

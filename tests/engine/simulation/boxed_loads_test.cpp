@@ -246,7 +246,8 @@ TEST(BoxedLoads, RestTellsWhatTheBodyDoes) {
   const std::vector<Vector3>& moved = rest->result.displacement_m;
   const auto furthest = std::max_element(
       moved.begin(), moved.end(), [](const Vector3& a, const Vector3& b) { return a.norm() < b.norm(); });
-  ASSERT_EQ(mesh.node_locations[static_cast<std::size_t>(furthest - moved.begin())], NodeLocation::outside_body);
+  ASSERT_EQ(mesh.node_locations[static_cast<std::size_t>(furthest - moved.begin())],
+            NodeLocation::outside_body);
   EXPECT_NE(mesh.node_locations[static_cast<std::size_t>(rest->furthest_node)], NodeLocation::outside_body);
   const double from_tube = std::hypot(
       std::hypot(rest->largest_strain_position_m.x(), rest->largest_strain_position_m.z()) - ring_m,

@@ -14,7 +14,8 @@ LoadedBlock::LoadedBlock(const Vector3& size_m, std::array<int, 3> counts, const
                          Stepping stepping)
     : lattice(block(size_m, counts, material)) {
   if (stepping == Stepping::springs) return;
-  core = ImplicitSolver::make(lattice.mesh(), lattice.mesh().nodes, material, InstructionSet::baseline).value();
+  core =
+      ImplicitSolver::make(lattice.mesh(), lattice.mesh().nodes, material, InstructionSet::baseline).value();
   lattice.set_contact_inverse_mass(core->contact_inverse_mass());
 }
 

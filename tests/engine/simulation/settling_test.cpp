@@ -1,10 +1,9 @@
 // Sculpting without ringing.
-#include "engine/material/lattice_solver.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "engine/material/lattice_solver.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/material/block.h"

@@ -11,8 +11,8 @@
 #include <gp_Ax2.hxx>
 
 #include "engine/exchange/cad/cad.h"
-#include "engine/inspection/surface_check.h"
 #include "engine/inspection/mass_properties.h"
+#include "engine/inspection/surface_check.h"
 #include "engine/merging/merge.h"
 #include "engine/merging/trimmed_patch.h"
 #include "tests/engine/exchange/sample_document.h"
