@@ -60,7 +60,7 @@ CommandEntry add_edit(OptionSet root) {
       .add_parsed(
           "--navigation",
           [settings](const std::string& text) -> Status {
-            const auto preset = navigation_named(text);
+            const auto preset = find_navigation(text);
             if (!preset) return preset.error();
             settings->navigation = preset.value();
             return {};

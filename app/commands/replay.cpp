@@ -6,10 +6,9 @@
 #include "app/commands/command.h"
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
-#include "app/frames/marked_files.h"
-#include "app/frames/painting_crew.h"
 #include "app/frames/replay_pictures.h"
-#include "app/panel/session_panel.h"
+#include "app/frames/frame_painter.h"
+#include "app/panel/panel.h"
 #include "app/report/document_facts.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
@@ -91,15 +90,15 @@ PaintingJob make_painting_job(std::uint64_t frame, Session& session, const Box& 
   job.view = frame_view(session.view, framed, request.width_px, request.height_px);
   SessionFacts facts;
   write_facts(session, facts);
-  job.panel = panel_of(facts, job.snapshot, job.view);
+  job.panel = make_panel_model(facts, job.snapshot, job.view);
   return job;
 }
 
 // Waits for the oldest frame in progress and writes it.
 Status write_oldest_frame(PaintingCrew& crew, const PictureRequest& request, ReplayPictures& pictures) {
-  auto painted = crew.take();
+  auto painted = crew.receive();
   if (!painted) return painted.error();
-  for (const std::string& name : painted->also_as) {
+  for (const std::string& name : painted->extra_names) {
     if (Status written = write_marked_picture(painted->picture, name, *request.folder); !written)
       return written;
   }
@@ -115,11 +114,11 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
   ProgressBar progress(replay.console, "Drawing", replay.options.progress);
   for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested();
        frame += request.every) {
-    if (Status ran = replay.lockstep.run_to(tick_of_frame(frame)); !ran) return ran;
-    auto names = take_marks(replay.session, request.folder);
+    if (Status ran = replay.lockstep.run_to(frame_tick(frame)); !ran) return ran;
+    auto names = consume_marks(replay.session, request.folder);
     if (!names) return names.error();
     PaintingJob job = make_painting_job(frame, replay.session, framed, request);
-    job.also_as = std::move(names).value();
+    job.extra_names = std::move(names).value();
     if (crew.is_full()) {
       if (Status written = write_oldest_frame(crew, request, pictures); !written) return written;
     }
@@ -143,7 +142,7 @@ Status run_with_pictures(const Replay& replay, FactSheet& facts) {
   if (Status drawn = draw_frames(replay, request, pictures.value(), interrupt); !drawn) return drawn;
   if (interrupt.requested()) return stopped_replay(replay.lockstep, interrupt);
   if (Status finished = replay.lockstep.finish(); !finished) return finished;
-  if (auto late = take_marks(replay.session, request.folder); !late) return late.error();
+  if (auto late = consume_marks(replay.session, request.folder); !late) return late.error();
   if (Status finished = pictures->finish(); !finished) return finished;
 
   facts.add("Frames", std::to_string(pictures->count()), "frames", pictures->count());

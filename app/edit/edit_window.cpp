@@ -6,13 +6,14 @@
 #include <cmath>
 #include <utility>
 
-#include "app/panel/font_file.h"
+#include "app/panel/interface_context.h"
+#include "engine/exchange/json.h"
 
 namespace spoonbill {
 namespace {
 
-// Whole and half steps: letters are sharp at these.
-double stepped(double scale) {
+// Rounds to whole and half steps, at which letters are sharp.
+double round_scale(double scale) {
   return std::clamp(std::round(2.0 * scale) / 2.0, 1.0, 4.0);
 }
 
@@ -28,7 +29,7 @@ struct EditWindow::Backend {
 Result<EditWindow> EditWindow::make(int width, int height, std::optional<double> scale) {
   auto window = GlfwWindow::make(width, height, "Spoonbill");
   if (!window) return window.error();
-  const double at = stepped(scale.value_or(window.value()->scale()));
+  const double at = round_scale(scale.value_or(window.value()->scale()));
   auto interface = InterfaceContext::make(font_file, at);
   if (!interface) return interface.error();
   auto renderer = Renderer::make(*window.value());
@@ -54,11 +55,11 @@ EditWindow::~EditWindow() = default;
 
 Status EditWindow::begin_frame() {
   window_->poll_events();
-  const double wanted = stepped(chosen_scale_.value_or(window_->scale()));
-  if (wanted != scale_) {
-    if (Status rescaled = interface_.rescale(wanted); !rescaled) return rescaled;
+  const double new_scale = round_scale(chosen_scale_.value_or(window_->scale()));
+  if (new_scale != scale_) {
+    if (Status rescaled = interface_.rescale(new_scale); !rescaled) return rescaled;
     renderer_.upload_fonts(interface_.fonts());
-    scale_ = wanted;
+    scale_ = new_scale;
   }
   interface_.make_current();
   ImGui_ImplGlfw_NewFrame();
@@ -72,6 +73,32 @@ Status EditWindow::end_frame(const Snapshot& snapshot, const ViewSettings& view)
   if (Status drawn = renderer_.draw(snapshot, view, &interface); !drawn) return drawn;
   renderer_.present();
   return {};
+}
+
+Result<FrameLog> FrameLog::open(const std::filesystem::path& file) {
+  std::ofstream out(file, std::ios::trunc);
+  if (!out)
+    return Error{ErrorCode::unwritable,
+                 file.string() + " cannot be written: check the folder and its permissions"};
+  return FrameLog(std::move(out));
+}
+
+void FrameLog::add(const ShownFrame& shown) {
+  const Json line = {{"frame", ++frames_},
+                     {"tick", shown.tick},
+                     {"session", shown.session},
+                     {"deed", shown.edit_count},
+                     {"recording", shown.recording},
+                     {"in_stroke", shown.in_stroke},
+                     {"can_undo", shown.can_undo},
+                     {"can_redo", shown.can_redo},
+                     {"pressing", shown.pressing},
+                     {"prompt", shown.prompt},
+                     {"typed", shown.typed},
+                     {"pointer_x_px", shown.pointer_x_px},
+                     {"pointer_y_px", shown.pointer_y_px},
+                     {"hand_lag_m", shown.hand_lag_m}};
+  out_ << line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" << std::flush;
 }
 
 }  // namespace spoonbill

@@ -1,21 +1,28 @@
-// The window with what draws in it: GL, interface and renderer, kept at the display's scale. One owner; the
-// program's main thread.
+// The editor's window: GL context, interface and renderer at the display's scale, and a log of the frames
+// shown.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "app/panel/interface_context.h"
+#include "engine/base/result.h"
 #include "render/gl/glfw_window.h"
 #include "render/image.h"
 #include "render/renderer.h"
 
 namespace spoonbill {
 
+// The window and all that draws in it. One owner: the program's main thread.
 class EditWindow {
  public:
-  // `scale` overrides the display's, for those that report none. Refused: no display, no GL, no font.
+  // `scale` overrides the display's scale, which some displays do not report. Returns an error without a
+  // display, GL or the font.
   static Result<EditWindow> make(int width, int height, std::optional<double> scale);
 
   EditWindow(EditWindow&&) noexcept;
@@ -28,16 +35,17 @@ class EditWindow {
   int width_px() const { return window_->width_px(); }
   int height_px() const { return window_->height_px(); }
 
-  // Handles events and begins the interface's frame. Refused: fonts that cannot be read at a new scale.
+  // Handles events and begins the interface's frame. Returns an error if the fonts cannot be read at a new
+  // scale.
   Status begin_frame();
-  // Ends it, draws and shows.
+  // Ends the frame, draws the scene and presents it.
   Status end_frame(const Snapshot& snapshot, const ViewSettings& view);
 
-  // The last frame.
+  // Reads the pixels of the last frame.
   void read_pixels(Image& image) const { renderer_.read_pixels(image); }
 
  private:
-  struct Backend;  // ImGui's way to the window's events
+  struct Backend;  // connects ImGui to the window's events
   EditWindow(std::unique_ptr<GlfwWindow> window, InterfaceContext interface, Renderer renderer, double scale,
              std::optional<double> chosen_scale);
 
@@ -47,6 +55,42 @@ class EditWindow {
   std::unique_ptr<Backend> backend_;
   double scale_;
   std::optional<double> chosen_scale_;
+};
+
+// State of the editor in a frame. Each member is a field of the same name in the log line; the line also has
+// the frame's number.
+struct ShownFrame {
+  std::uint64_t tick = 0;
+  std::uint64_t session = 0;     // number of sessions opened so far
+  std::uint64_t edit_count = 0;  // number of touched ticks and commands so far
+  bool recording = false;
+  bool in_stroke = false;
+  bool can_undo = false;
+  bool can_redo = false;
+  bool pressing = false;  // the stroke button is down on the picture
+  std::string prompt;     // "file", "lump", "question", or empty
+  std::string typed;      // text of the file prompt
+  double pointer_x_px = 0.0;
+  double pointer_y_px = 0.0;
+  double hand_lag_m = 0.0;  // distance from the device to the target of the mouse
+};
+
+// Log of the frames shown, one JSON object per line, for a program that controls the window from outside and
+// must know its state: `spoonbill edit` with SPOONBILL_FRAME_LOG=FILE in the environment. One owner: the
+// thread that draws.
+class FrameLog {
+ public:
+  // Opens the log and replaces an existing file. Returns an error if the file cannot be written.
+  static Result<FrameLog> open(const std::filesystem::path& file);
+
+  // Adds a frame that was presented. The line is in the file on return. A full disk is not reported.
+  void add(const ShownFrame& shown);
+
+ private:
+  explicit FrameLog(std::ofstream out) : out_(std::move(out)) {}
+
+  std::ofstream out_;
+  std::uint64_t frames_ = 0;
 };
 
 }  // namespace spoonbill

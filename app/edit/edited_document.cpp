@@ -14,41 +14,41 @@ std::optional<Autosave> EditedDocument::autosave() const {
 
 std::optional<AutosaveClaim> EditedDocument::claim() const {
   if (!state_folder_) return std::nullopt;
-  return AutosaveClaim::take(*state_folder_, file_);
+  return AutosaveClaim::acquire(*state_folder_, file_);
 }
 
-Result<std::optional<Document>> EditedDocument::left_over() const {
-  const auto place = autosave();
-  if (!place) return std::optional<Document>();
-  return place->left_over();
+Result<std::optional<Document>> EditedDocument::recovered_document() const {
+  const auto file = autosave();
+  if (!file) return std::optional<Document>();
+  return file->recovered_document();
 }
 
-void EditedDocument::discard_left_over() const {
-  if (const auto place = autosave()) place->remove();
+void EditedDocument::discard_recovered() const {
+  if (const auto file = autosave()) file->remove();
 }
 
-void EditedDocument::set_left_over_aside() const {
-  if (const auto place = autosave()) place->set_aside();
+void EditedDocument::set_recovered_aside() const {
+  if (const auto file = autosave()) file->set_aside();
 }
 
-void EditedDocument::turn_to(std::filesystem::path file, LiveSession& live) {
+void EditedDocument::switch_to(std::filesystem::path file, LiveSession& live) {
   file_ = std::move(file);
   document_ = live.last_frame().document;
-  saved_deed_ = live.last_frame().deed;
-  recovered_ = false;
+  saved_edit_count_ = live.last_frame().edit_count;
+  is_recovered_ = false;
   live.set_autosave(std::nullopt);
-  claim_.reset();  // first, for a file that is opened again
+  claim_.reset();  // released first, because the same file may be opened again
   claim_ = claim();
 }
 
 void EditedDocument::begin(LiveSession& live) {
-  saved_deed_ = live.last_frame().deed;
+  saved_edit_count_ = live.last_frame().edit_count;
   live.set_autosave(autosave());
 }
 
 void EditedDocument::begin_recovered(LiveSession& live) {
   document_ = live.last_frame().document;
-  recovered_ = true;
+  is_recovered_ = true;
   live.set_autosave(autosave());
 }
 
@@ -56,8 +56,8 @@ void EditedDocument::note_saved(const SavedDocument& saved, LiveSession& live) {
   if (saved.document != document_) return;
   const bool renamed = saved.file != file_;
   file_ = saved.file;
-  saved_deed_ = saved.deed;
-  recovered_ = false;
+  saved_edit_count_ = saved.edit_count;
+  is_recovered_ = false;
   if (!renamed) return;
   auto next = claim();
   live.set_autosave(next ? std::optional(next->autosave()) : std::nullopt);

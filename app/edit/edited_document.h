@@ -1,5 +1,5 @@
-// The document in the window as the person sees it: which file it is, whether it has unsaved changes, and
-// what a crash may have left of it. One owner; the program's main thread.
+// The document in the window as the user sees it: its file, its unsaved changes, and the document recovered
+// after a crash.
 #pragma once
 
 #include <filesystem>
@@ -11,34 +11,38 @@
 
 namespace spoonbill {
 
+// File, unsaved changes and autosave of the document that is edited. One owner: the program's main thread.
 class EditedDocument {
  public:
-  // `state_folder`: nothing where there is no place to autosave.
+  // `state_folder` is empty if the program has no folder for autosaves.
   EditedDocument(std::optional<std::filesystem::path> state_folder, std::filesystem::path file);
 
-  // Empty for one that was never saved.
+  // Returns the document's file; empty for a document that was never saved.
   const std::filesystem::path& file() const { return file_; }
 
-  // What a session that was cut short has left of this file; nothing for most.
-  Result<std::optional<Document>> left_over() const;
+  // Returns the document that an interrupted session of this file left; usually none.
+  Result<std::optional<Document>> recovered_document() const;
 
-  void discard_left_over() const;
-  // One that cannot be read must not keep this session's work from being autosaved.
-  void set_left_over_aside() const;
+  void discard_recovered() const;
+  // Renames a recovered document that cannot be read, so that this session can autosave.
+  void set_recovered_aside() const;
 
-  // The session shows this file from now on; nothing is autosaved until begin(), when it is known what
-  // becomes of what was left over.
-  void turn_to(std::filesystem::path file, LiveSession& live);
+  // Switches to a file that the session has opened. Nothing is autosaved before begin(), because the
+  // recovered document must be kept until the user has decided on it.
+  void switch_to(std::filesystem::path file, LiveSession& live);
 
-  // As it is now it has no change; work is autosaved.
+  // Marks the document as unchanged and starts to autosave.
   void begin(LiveSession& live);
-  // What was left over has taken its place: it counts as changed.
+  // Starts with the recovered document, which counts as changed.
   void begin_recovered(LiveSession& live);
 
+  // Updates file and changes after the session has saved a document.
   void note_saved(const SavedDocument& saved, LiveSession& live);
-  bool has_unsaved_changes(const LiveFrame& frame) const { return recovered_ || frame.deed != saved_deed_; }
+  bool has_unsaved_changes(const LiveFrame& frame) const {
+    return is_recovered_ || frame.edit_count != saved_edit_count_;
+  }
 
-  // "spoon-handle.json *": the star stands for unsaved changes.
+  // Returns the title of the window, such as "spoon-handle.json *"; the star stands for unsaved changes.
   std::string title(const LiveFrame& frame) const;
 
  private:
@@ -49,8 +53,8 @@ class EditedDocument {
   std::filesystem::path file_;
   std::optional<AutosaveClaim> claim_;
   std::uint64_t document_ = 0;  // as in LiveFrame
-  std::uint64_t saved_deed_ = 0;
-  bool recovered_ = false;
+  std::uint64_t saved_edit_count_ = 0;
+  bool is_recovered_ = false;
 };
 
 }  // namespace spoonbill

@@ -1,20 +1,28 @@
 #include "app/edit/editor.h"
 
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
 #include "app/assets_folder.h"
 #include "app/files/state_folder.h"
+#include "app/live/journal.h"
 #include "app/panel/panel.h"
-#include "app/panel/session_panel.h"
+#include "app/files/documents.h"
 #include "engine/base/assert.h"
 #include "engine/base/geometry.h"
 #include "haptic/safe_device.h"
 #include "render/gl/context.h"
+#include "render/image.h"
 #include "render/overlay/overlays.h"
 #include "render/tessellation/tessellated_surface.h"
 
@@ -25,12 +33,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::microseconds frame_time{16667};
 
-std::filesystem::path model_of(const EditSettings& settings) {
+std::filesystem::path find_model(const EditSettings& settings) {
   if (!settings.model.empty()) return settings.model;
   return std::filesystem::path(assets_folder) / "models" / "spoon-handle.json";
 }
 
-// All that can be read of the materials that come with the program, by name.
+// Reads the materials that come with the program, sorted by name; skips unreadable ones.
 std::vector<Material> read_presets() {
   std::vector<Material> presets;
   std::error_code problem;
@@ -44,18 +52,61 @@ std::vector<Material> read_presets() {
   return presets;
 }
 
-// Above the model, where it touches nothing.
-Vector3 resting_place(const Surface& surface) {
+// Returns a position above the model where the tool touches nothing.
+Vector3 rest_position(const Surface& surface) {
   const Box box = bounding_box(surface.net);
-  Vector3 place = box.centre();
-  place.y() = box.high.y() + 0.25 * box.size();
-  return place;
+  Vector3 position = box.centre();
+  position.y() = box.high.y() + 0.25 * box.size();
+  return position;
+}
+
+constexpr Range<double> strength_range_m{0.0002, 0.02};
+constexpr double drag_growth_per_px = 0.01;
+
+bool is_key_down(int key) {
+  return ImGui::IsKeyDown(key);
+}
+
+double scale_by_drag(double value, double moved_px, Range<double> range) {
+  return std::clamp(value * std::exp(drag_growth_per_px * moved_px), range.low, range.high);
+}
+
+// Returns the action of a stroke with modifier keys: Shift smooths, Ctrl inverts push and pull.
+ToolAction action_for_stroke(ToolAction action, const Pointer& pointer) {
+  if (pointer.shift) return ToolAction::smooth;
+  return pointer.ctrl ? row_of(action).inverse : action;
+}
+
+constexpr int numbered_files_limit = 9999;
+
+std::filesystem::path parent_folder(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+// Returns the first of NAME-0001.ENDING, NAME-0002.ENDING... that does not exist.
+std::filesystem::path find_free_file(const std::filesystem::path& folder, const std::string& name,
+                                     const std::string& ending) {
+  std::filesystem::path file;
+  std::error_code ignored;
+  for (int number = 1; number <= numbered_files_limit; ++number) {
+    std::array<char, 16> digits{};
+    std::snprintf(digits.data(), digits.size(), "-%04d", number);
+    std::string file_name = name;
+    file_name.append(digits.data()).append(ending);
+    file = folder / file_name;
+    if (!std::filesystem::exists(file, ignored)) break;
+  }
+  return file;
+}
+
+std::string document_stem(const std::filesystem::path& file) {
+  return file.empty() ? "untitled" : file.stem().string();
 }
 
 }  // namespace
 
 Result<std::unique_ptr<Editor>> Editor::make(const EditSettings& settings) {
-  const std::filesystem::path model = model_of(settings);
+  const std::filesystem::path model = find_model(settings);
   const auto document = read_document(model);
   if (!document) return document.error();
   auto view = view_from_json(document->view, model.string());
@@ -66,7 +117,7 @@ Result<std::unique_ptr<Editor>> Editor::make(const EditSettings& settings) {
   live_settings.instruction_set = settings.instruction_set;
   live_settings.real_time = settings.real_time;
   HandTarget start;
-  start.pose.position_m = resting_place(document->scene.bodies[0].surface);
+  start.pose.position_m = rest_position(document->scene.bodies[0].surface);
   auto device = SteeredDevice::make(Hand{}, start);
   if (!device) return device.error();
   const std::shared_ptr<TargetMailbox> mailbox = device.value()->mailbox();
@@ -103,8 +154,9 @@ Status Editor::run() {
   try {
     return run_frames();
   } catch (const FailedAssertion& failure) {
-    // The live session ends with the editor and autosaves what the last tick left.
-    return Error{std::string(failure.what()) + "; unsaved work is autosaved, and `edit` offers it again"};
+    // The destructor of the live session autosaves the state of the last tick.
+    return Error{ErrorCode::internal, std::string(failure.what()) +
+                                          "; unsaved work is autosaved, and `edit` will offer to recover it"};
   }
 }
 
@@ -113,7 +165,7 @@ Status Editor::run_frames() {
   start();
   window_.window().show();
   auto last = Clock::now();
-  while (!left_) {
+  while (!is_finished_) {
     const auto now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - last).count();
     last = now;
@@ -128,35 +180,35 @@ Status Editor::run_frames() {
 
 void Editor::start() {
   const LiveFrame& frame = live_->frame();
-  body_ = drawn_bounds(frame.snapshot);
-  hand_ = MouseHand(body_.centre());
+  body_bounds_ = drawn_bounds(frame.snapshot);
+  hand_ = MouseHand(body_bounds_.centre());
   shown_ = view_settings(0.0);
   if (auto cap = SpaceMouse::open()) space_mouse_.emplace(std::move(cap).value());
   if (frame.snapshot.planes.empty()) {
-    messages_.add(
-        {Notice::Kind::information, "Nothing is held: P fixes the model behind the tool. F1 shows the keys"});
+    messages_.add({Notice::Kind::information,
+                   "Nothing is fixed: P adds a fixing plane at the tool. F1 lists the keys"});
   }
-  look_for_left_over();
+  offer_recovery();
   if (settings_.recording.empty()) return;
   live_->start_recording(settings_.recording, view_);
-  asked_.emplace_back(std::nullopt);
+  pending_jobs_.emplace_back(std::nullopt);
 }
 
 Status Editor::frame(double seconds) {
-  if (Status begun = window_.begin_frame(); !begun) return begun;
+  if (Status started = window_.begin_frame(); !started) return started;
   const LiveFrame& frame = live_->frame();
-  take_news(frame, seconds);
-  take_keys(frame);
-  if (Status laid = lay_out(frame, seconds); !laid) return laid;
-  take_pointer(frame, seconds);
+  receive_updates(frame, seconds);
+  handle_keys(frame);
+  if (Status laid_out = lay_out(frame, seconds); !laid_out) return laid_out;
+  handle_pointer(frame, seconds);
   if (space_mouse_) inputs_.update(*space_mouse_, seconds);
   budget_.apply(shown_);
   if (Status drawn = window_.end_frame(frame.snapshot, shown_); !drawn) return drawn;
   if (log_) log_->add(shown_frame(frame));
   if (screenshot_due_) write_screenshot();
-  if (window_.window().should_close() && !unsaved_.asking()) {
+  if (window_.window().should_close() && !unsaved_.is_open()) {
     window_.window().set_should_close(false);
-    leave(Leave::quit);
+    finish_document(NextStep::quit);
   }
   return {};
 }
@@ -165,17 +217,17 @@ ShownFrame Editor::shown_frame(const LiveFrame& frame) const {
   ShownFrame shown;
   shown.tick = frame.snapshot.tick;
   shown.session = frame.session;
-  shown.deed = frame.deed;
+  shown.edit_count = frame.edit_count;
   shown.recording = frame.recording;
   shown.in_stroke = frame.facts.in_stroke;
   shown.can_undo = frame.facts.can_undo;
   shown.can_redo = frame.facts.can_redo;
-  shown.pressing = hand_.pressing();
-  shown.prompt = files_.asking()                            ? "file"
-                 : lumps_.asking()                          ? "lump"
-                 : unsaved_.asking() || left_over_.asking() ? "question"
-                                                            : "";
-  if (files_.asking()) shown.typed = files_.typed();
+  shown.pressing = hand_.is_pressing();
+  shown.prompt = file_prompt_.is_open()                      ? "file"
+                 : shape_prompt_.is_open()                   ? "lump"
+                 : unsaved_.is_open() || recovery_.is_open() ? "question"
+                                                             : "";
+  if (file_prompt_.is_open()) shown.typed = file_prompt_.typed();
   const ImVec2 pointer = ImGui::GetIO().MousePos;
   if (ImGui::IsMousePosValid(&pointer)) {
     shown.pointer_x_px = pointer.x;
@@ -185,37 +237,37 @@ ShownFrame Editor::shown_frame(const LiveFrame& frame) const {
   return shown;
 }
 
-void Editor::take_news(const LiveFrame& frame, double seconds) {
-  for (Notice& notice : live_->take_notices()) messages_.add(std::move(notice));
-  live_->take_forces(forces_n_);
+void Editor::receive_updates(const LiveFrame& frame, double seconds) {
+  for (Notice& notice : live_->consume_notices()) messages_.add(std::move(notice));
+  live_->consume_forces(forces_n_);
   plots_.add(forces_n_, live_->figures(), seconds);
-  take_answers(frame);
+  handle_completed_jobs(frame);
   if (frame.session != session_) {
     session_ = frame.session;
-    body_ = drawn_bounds(frame.snapshot);
+    body_bounds_ = drawn_bounds(frame.snapshot);
   }
-  if (const auto saved = live_->take_saved()) {
+  if (const auto saved = live_->consume_saved_document()) {
     document_.note_saved(*saved, *live_);
-    // An earlier save's answer is not the one that is waited for.
-    if (leave_when_saved_ && frame.deed <= saved->deed) leave_now(leaving_);
+    // The result of an earlier save does not count.
+    if (continues_after_save_ && frame.edit_count <= saved->edit_count) start_next_step(next_step_);
   }
 }
 
-// Work is answered in the order in which it was asked for.
-void Editor::take_answers(const LiveFrame& frame) {
-  for (; works_ < frame.works && !asked_.empty(); ++works_) {
-    const bool failed = ((frame.failed_works >> (works_ % 64)) & 1U) != 0;
-    const std::optional<AskedOpen> asked = asked_.front();
-    asked_.erase(asked_.begin());
-    if (!asked) continue;
-    if (failed && asked->recovered) begin_without_left_over();
+// Jobs are completed in the order of their requests.
+void Editor::handle_completed_jobs(const LiveFrame& frame) {
+  for (; completed_jobs_ < frame.completed_jobs && !pending_jobs_.empty(); ++completed_jobs_) {
+    const bool failed = ((frame.failed_jobs >> (completed_jobs_ % 64)) & 1U) != 0;
+    const std::optional<PendingOpen> opened = pending_jobs_.front();
+    pending_jobs_.erase(pending_jobs_.begin());
+    if (!opened) continue;
+    if (failed && opened->recovered) begin_without_recovery();
     if (failed) continue;
-    view_ = asked->view;
-    if (asked->recovered) {
+    view_ = opened->view;
+    if (opened->recovered) {
       document_.begin_recovered(*live_);
     } else {
-      document_.turn_to(asked->file, *live_);
-      look_for_left_over();
+      document_.switch_to(opened->file, *live_);
+      offer_recovery();
     }
   }
 }
@@ -224,7 +276,7 @@ ViewSettings Editor::view_settings(double top_px) const {
   const int width = window_.width_px();
   const int height = window_.height_px();
   const Rectangle panel = panel_rectangle(width, height, window_.scale(), top_px);
-  return settings_for(view_, body_, width, height, panel, window_.scale());
+  return make_view_settings(view_, body_bounds_, width, height, panel, window_.scale());
 }
 
 Status Editor::lay_out(const LiveFrame& frame, double seconds) {
@@ -243,7 +295,7 @@ Status Editor::lay_out(const LiveFrame& frame, double seconds) {
   for (const EditAction action : choice.actions) act(action, frame);
   set_overlays(choice);
   shown_ = view_settings(choice.height_px);
-  stages_.fill(frame.snapshot, shown_);
+  stage_finder_.fill(frame.snapshot, shown_);
   const int width = window_.width_px();
   const int height = window_.height_px();
   draw_labels(overlay_labels(frame.snapshot, shown_, width, height), shown_, width, height, *theme.fonts.body,
@@ -253,15 +305,15 @@ Status Editor::lay_out(const LiveFrame& frame, double seconds) {
   messages_.draw(theme, ImVec2(left, static_cast<float>(height)), seconds);
   plots_.draw(theme, ImVec2(static_cast<float>(width), choice.height_px),
               frame.snapshot.device.force_limit_n);
-  if (keys_shown_) keys_shown_ = draw_keys(theme);
-  lay_out_questions();
+  if (shows_keys_) shows_keys_ = draw_keys(theme);
+  lay_out_prompts();
   ImGui::PopFont();
   return {};
 }
 
 void Editor::lay_out_panel(const LiveFrame& frame) {
   if (shown_.panel_px.width <= 0.0) return;
-  PanelModel model = panel_of(frame.facts, frame.snapshot, shown_);
+  PanelModel model = make_panel_model(frame.facts, frame.snapshot, shown_);
   const LoopFigures figures = live_->figures();
   model.title = document_.title(frame);
   model.presets = presets_;
@@ -273,46 +325,396 @@ void Editor::lay_out_panel(const LiveFrame& frame) {
   if (!answer.refusal.empty()) messages_.add_problem(std::move(answer.refusal));
   for (Request& request : answer.requests) {
     if (const auto* change = std::get_if<ChangeView>(&request)) {
-      if (Status seen = apply_view_command(change->command, "panel", view_); !seen) continue;
+      if (Status applied = apply_view_command(change->command, "panel", view_); !applied) continue;
     }
-    ask(std::move(request));
+    send(std::move(request));
   }
 }
 
-void Editor::lay_out_questions() {
-  if (const auto file = files_.draw()) {
-    if (files_.purpose() == FilePurpose::open_model) {
+void Editor::lay_out_prompts() {
+  if (const auto file = file_prompt_.draw()) {
+    if (file_prompt_.purpose() == FilePurpose::open_model) {
       open(*file);
-    } else if (files_.purpose() == FilePurpose::export_model) {
+    } else if (file_prompt_.purpose() == FilePurpose::export_model) {
       export_to(*file);
     } else {
       save_as(*file);
     }
   }
-  if (const auto lump = lumps_.draw()) open_lump(*lump);
+  if (const auto shape = shape_prompt_.draw()) open_shape(*shape);
   if (const auto answer = unsaved_.draw()) {
     if (*answer == 0) {
-      leave_when_saved_ = true;
+      continues_after_save_ = true;
       save();
     } else if (*answer == 1) {
-      leave_now(leaving_);
+      start_next_step(next_step_);
     } else {
-      leaving_ = Leave::none;
+      next_step_ = NextStep::none;
     }
   }
-  if (const auto answer = left_over_.draw()) {
+  if (const auto answer = recovery_.draw()) {
     if (*answer == 0) {
       recover();
     } else {
-      document_.discard_left_over();
+      document_.discard_recovered();
       document_.begin(*live_);
     }
   }
 }
 
-void Editor::ask(Request request) {
+void Editor::send(Request request) {
   if (live_->ask(std::move(request))) return;
-  messages_.add_problem("The haptic thread is busy: ask again");
+  messages_.add_problem("The haptic thread is busy: try again");
+}
+
+Pointer Editor::read_pointer() const {
+  const ImGuiIO& io = ImGui::GetIO();
+  Pointer pointer;
+  pointer.position_px = {io.MousePos.x, io.MousePos.y};
+  pointer.moved_px = {io.MouseDelta.x, io.MouseDelta.y};
+  pointer.wheel = io.MouseWheel;
+  pointer.left = io.MouseDown[0];
+  pointer.right = io.MouseDown[1];
+  pointer.middle = io.MouseDown[2];
+  pointer.ctrl = io.KeyCtrl;
+  pointer.shift = io.KeyShift;
+  return pointer;
+}
+
+void Editor::handle_keys(const LiveFrame& frame) {
+  const std::vector<GlfwWindow::KeyPress> presses = window_.window().consume_key_presses();
+  if (unsaved_.is_open() || recovery_.is_open()) return;
+  for (const GlfwWindow::KeyPress& press : presses) {
+    // Esc is the only command while text is typed.
+    if (ImGui::GetIO().WantTextInput && press.key != GLFW_KEY_ESCAPE) continue;
+    for (const KeyBinding& binding : key_bindings()) {
+      const bool meant =
+          binding.key == press.key && binding.ctrl == press.ctrl && binding.shift == press.shift;
+      if (!meant) continue;
+      if (binding.action == EditAction::choose_tool) {
+        set_tool(frame, binding.kind, binding.tool_action);
+      } else {
+        act(binding.action, frame);
+      }
+    }
+  }
+}
+
+void Editor::handle_pointer(const LiveFrame& frame, double seconds) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const Pointer pointer = read_pointer();
+  const Viewport viewport = make_viewport(window_.width_px(), window_.height_px(), shown_.panel_px);
+  const bool over_picture = !io.WantCaptureMouse && std::isfinite(io.MousePos.x) && io.MousePos.x >= 0.0F;
+  if (is_key_down(GLFW_KEY_F) && !io.WantTextInput) return drag_setting(pointer, frame);
+  const CameraMotion motion = camera_motion(settings_.navigation, pointer, hand_.on_model());
+  if (over_picture && motion != CameraMotion::none && !hand_.is_pressing()) {
+    return move_camera(pointer, motion, viewport);
+  }
+  if (over_picture && pointer.wheel != 0.0 && !hand_.is_pressing()) {
+    view_.camera = zoom_camera(shown_.camera, pointer.wheel);
+    view_.shows_whole_body = false;
+    show_camera();
+  }
+  if (pointer.left && ImGui::IsMouseClicked(0)) stroke_began_here_ = over_picture;
+  if (!pointer.left) stroke_began_here_ = false;
+  if (over_picture || hand_.is_pressing()) stroke(pointer, frame, viewport, seconds);
+}
+
+void Editor::drag_setting(const Pointer& pointer, const LiveFrame& frame) {
+  if (pointer.moved_px.x() == 0.0) return;
+  if (pointer.shift) {
+    strength_m_ = scale_by_drag(strength_m_, pointer.moved_px.x(), strength_range_m);
+    return;
+  }
+  Tool tool = frame.facts.tool;
+  if (tool.kind == ToolKind::point) return;
+  tool.radius_m =
+      scale_by_drag(tool.radius_m, pointer.moved_px.x(), field_of(&Tool::radius_m).form.slider.range);
+  send(Command(SetTool{tool}));
+}
+
+void Editor::move_camera(const Pointer& pointer, CameraMotion motion, const Viewport& viewport) {
+  if (pointer.moved_px.isZero()) return;
+  view_.camera = move_camera_by(shown_.camera, motion, pointer.moved_px, viewport);
+  view_.shows_whole_body = false;
+  show_camera();
+}
+
+void Editor::show_camera() {
+  live_->set_view(view_to_json(view_));
+  send(ChangeView{camera_command(view_)});
+}
+
+void Editor::stroke(const Pointer& pointer, const LiveFrame& frame, const Viewport& viewport,
+                    double seconds) {
+  const bool is_stroking = pointer.left && stroke_began_here_;
+  Tool tool = frame.facts.tool;
+  const ToolAction stroke_action = action_for_stroke(tool.action, pointer);
+  if (is_stroking && !hand_.is_pressing() && stroke_action != tool.action && !before_stroke_) {
+    before_stroke_ = tool;
+    tool.action = stroke_action;
+    send(Command(SetTool{tool}));
+  }
+  if (!is_stroking && before_stroke_) {
+    send(Command(SetTool{*before_stroke_}));
+    before_stroke_.reset();
+  }
+  if (!hand_.is_pressing()) pick_.update(frame.snapshot);
+  const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
+  hand_.set_frame({pointer,
+                   is_stroking,
+                   shown_.camera,
+                   viewport,
+                   &pick_,
+                   {radius, strength_m_, row_of(tool.action).grips}});
+  inputs_.update(hand_, seconds);
+}
+
+void Editor::act(EditAction action, const LiveFrame& frame) {
+  switch (action) {
+    case EditAction::show_keys:
+      shows_keys_ = !shows_keys_;
+      break;
+    case EditAction::new_document:
+      finish_document(NextStep::spoon_handle);
+      break;
+    case EditAction::new_shape:
+      finish_document(NextStep::new_shape);
+      break;
+    case EditAction::open:
+      finish_document(NextStep::open);
+      break;
+    case EditAction::quit:
+      finish_document(NextStep::quit);
+      break;
+    case EditAction::save:
+      continues_after_save_ = false;
+      save();
+      break;
+    case EditAction::export_model:
+      file_prompt_.ask(FilePurpose::export_model, default_export_file());
+      break;
+    case EditAction::save_as:
+      continues_after_save_ = false;
+      file_prompt_.ask(FilePurpose::save_model, document_.file());
+      break;
+    case EditAction::undo:
+      send(UndoStroke{});
+      break;
+    case EditAction::redo:
+      send(RedoStroke{});
+      break;
+    case EditAction::cancel:
+      if (file_prompt_.is_open()) {
+        file_prompt_.close();
+      } else if (shape_prompt_.is_open()) {
+        shape_prompt_.close();
+      } else if (shows_keys_) {
+        shows_keys_ = false;
+      } else {
+        hand_.release_press();
+        send(CancelStroke{});
+      }
+      break;
+    case EditAction::toggle_symmetry: {
+      Symmetry symmetry = frame.facts.symmetry;
+      symmetry.on = !symmetry.on;
+      send(Command(SetSymmetry{symmetry}));
+      break;
+    }
+    case EditAction::toggle_recording:
+      toggle_recording(frame);
+      break;
+    case EditAction::screenshot:
+      screenshot_due_ = true;
+      break;
+    case EditAction::place_plane:
+      place_plane(frame);
+      break;
+    case EditAction::remove_planes:
+      send(Command(RemovePlanes{}));
+      break;
+    case EditAction::keep_shape:
+      send(Command(KeepShape{}));
+      break;
+    default:
+      act_on_view(action);
+  }
+}
+
+void Editor::act_on_view(EditAction action) {
+  Camera camera = view_.camera;
+  switch (action) {
+    case EditAction::view_front:
+      camera = look_from(camera, StandardView::front);
+      break;
+    case EditAction::view_right:
+      camera = look_from(camera, StandardView::right);
+      break;
+    case EditAction::view_top:
+      camera = look_from(camera, StandardView::top);
+      break;
+    case EditAction::view_perspective:
+      camera = look_from(camera, StandardView::perspective);
+      break;
+    default:
+      break;
+  }
+  view_.camera = camera;
+  view_.shows_whole_body = true;
+  show_camera();
+}
+
+void Editor::set_tool(const LiveFrame& frame, ToolKind kind, ToolAction tool_action) {
+  Tool tool = frame.facts.tool;
+  tool.kind = kind;
+  tool.action = tool_action;
+  send(Command(SetTool{tool}));
+}
+
+// Adds a plane across the longest direction of the model, at the tool; it fixes the shorter part.
+void Editor::place_plane(const LiveFrame& frame) {
+  const Vector3 size = body_bounds_.extent();
+  int axis = 0;
+  size.maxCoeff(&axis);
+  FixingPlane plane;
+  plane.point_m = frame.snapshot.tool.proxy.position_m;
+  const double centre = 0.5 * (body_bounds_.low[axis] + body_bounds_.high[axis]);
+  plane.normal = Vector3::Zero();
+  plane.normal[axis] = plane.point_m[axis] <= centre ? 1.0 : -1.0;
+  send(Command(PlacePlane{plane}));
+}
+
+void Editor::set_overlays(const MenuChoice& choice) {
+  const Json before = overlays_command(view_.overlays, view_.see_through_body);
+  const Json after = overlays_command(choice.overlays, choice.see_through_body);
+  if (after == before) return;
+  view_.overlays = choice.overlays;
+  view_.see_through_body = choice.see_through_body;
+  send(ChangeView{after});
+}
+
+void Editor::finish_document(NextStep step) {
+  next_step_ = step;
+  if (!document_.has_unsaved_changes(live_->last_frame())) return start_next_step(step);
+  unsaved_.ask("Save the changes to " + document_stem(document_.file()) + "?");
+}
+
+void Editor::start_next_step(NextStep step) {
+  next_step_ = NextStep::none;
+  continues_after_save_ = false;
+  if (step == NextStep::quit) is_finished_ = true;
+  if (step == NextStep::spoon_handle) open_spoon_handle();
+  if (step == NextStep::new_shape) shape_prompt_.ask();
+  if (step == NextStep::open) file_prompt_.ask(FilePurpose::open_model, document_.file());
+}
+
+void Editor::open(const std::filesystem::path& file) {
+  auto document = read_document(file);
+  if (!document) return messages_.add_problem(document.error().message);
+  auto view = view_from_json(document->view, file.string());
+  if (!view) return messages_.add_problem(view.error().message);
+  if (!live_->open(std::move(document).value(), file.string())) return;
+  pending_jobs_.emplace_back(PendingOpen{file, view.value()});
+}
+
+void Editor::open_spoon_handle() {
+  const std::filesystem::path file = std::filesystem::path(assets_folder) / "models" / "spoon-handle.json";
+  auto document = read_document(file);
+  if (!document) return messages_.add_problem(document.error().message);
+  auto view = view_from_json(document->view, file.string());
+  if (!view) return messages_.add_problem(view.error().message);
+  if (!live_->open(std::move(document).value(), file.string())) return;
+  pending_jobs_.emplace_back(PendingOpen{{}, view.value()});
+}
+
+void Editor::open_shape(const LumpChoice& choice) {
+  const auto material = shipped_material("modelling-clay");
+  if (!material) return messages_.add_problem(material.error().message);
+  auto document = make_stock_shape_document(choice, material.value());
+  if (!document) return shape_prompt_.refuse(document.error().message);
+  const auto view = view_from_json(document->view, "the new shape");
+  if (!view) return messages_.add_problem(view.error().message);
+  if (!live_->open(std::move(document).value(), "the new shape")) return;
+  pending_jobs_.emplace_back(PendingOpen{{}, view.value()});
+}
+
+void Editor::offer_recovery() {
+  const auto found = document_.recovered_document();
+  if (!found) {
+    messages_.add_problem(found.error().message);
+    return begin_without_recovery();
+  }
+  if (!found.value()) return document_.begin(*live_);
+  recovery_.ask("An earlier session of " + document_stem(document_.file()) +
+                " ended without saving.\nIts unsaved changes can be recovered.");
+}
+
+void Editor::begin_without_recovery() {
+  document_.set_recovered_aside();
+  document_.begin(*live_);
+}
+
+void Editor::recover() {
+  auto found = document_.recovered_document();
+  if (!found || !found.value()) return begin_without_recovery();
+  auto view = view_from_json(found.value()->view, "the recovered document");
+  if (!view || !live_->open(std::move(*found.value()), "the recovered document")) {
+    return begin_without_recovery();
+  }
+  pending_jobs_.emplace_back(PendingOpen{document_.file(), view.value(), true});
+}
+
+void Editor::save() {
+  if (document_.file().empty()) return file_prompt_.ask(FilePurpose::save_model, "untitled.json");
+  save_as(document_.file());
+}
+
+void Editor::save_as(const std::filesystem::path& file) {
+  live_->set_view(view_to_json(view_));
+  live_->save(file);
+  send(MarkFile{FileMarkKind::document, make_mark_name(document_stem(file))});
+}
+
+// Returns a STEP file beside the document; another extension may be typed.
+std::filesystem::path Editor::default_export_file() const {
+  return parent_folder(document_.file()) / (document_stem(document_.file()) + ".step");
+}
+
+void Editor::export_to(const std::filesystem::path& file) {
+  if (!Exporter::has_export_extension(file)) {
+    return messages_.add_problem("not exported: the file name must end in " +
+                                 std::string(Exporter::extensions_text()));
+  }
+  live_->save(file);
+}
+
+void Editor::toggle_recording(const LiveFrame& frame) {
+  if (frame.recording) {
+    live_->stop_recording();
+    return;
+  }
+  const bool is_requested =
+      std::any_of(pending_jobs_.begin(), pending_jobs_.end(), [](const auto& job) { return !job; });
+  if (is_requested) return;  // already requested
+  const std::filesystem::path file =
+      find_free_file(parent_folder(document_.file()), document_stem(document_.file()), ".recording.jsonl");
+  if (!live_->start_recording(file, view_)) return;
+  pending_jobs_.emplace_back(std::nullopt);
+  messages_.add({Notice::Kind::information, "recording to " + file.filename().string()});
+}
+
+void Editor::write_screenshot() {
+  screenshot_due_ = false;
+  Image picture;
+  window_.read_pixels(picture);
+  const std::filesystem::path file =
+      find_free_file(parent_folder(document_.file()), document_stem(document_.file()), ".png");
+  if (Status written = write_png(file, picture); !written) {
+    return messages_.add_problem(written.error().message);
+  }
+  messages_.add({Notice::Kind::information, "wrote " + file.filename().string()});
+  send(MarkFile{FileMarkKind::picture, make_mark_name(file.stem().string())});
 }
 
 }  // namespace spoonbill

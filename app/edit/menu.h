@@ -1,15 +1,67 @@
-// The menu bar of the window. Draws, and returns what was chosen.
+// Keys and menu of the window: the table of key bindings, the menu bar and the list of keys.
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "app/edit/key_bindings.h"
-#include "app/edit/navigation.h"
-#include "app/panel/theme.h"
+#include "app/edit/mouse.h"
+#include "app/panel/interface_context.h"
+#include "engine/scene/tool.h"
 #include "render/view_settings.h"
 
 namespace spoonbill {
 
+// Actions of keys and menu items.
+enum class EditAction {
+  show_keys,
+  new_document,
+  new_shape,
+  open,
+  save,
+  save_as,
+  export_model,
+  undo,
+  redo,
+  cancel,
+  toggle_symmetry,
+  toggle_recording,
+  screenshot,
+  place_plane,
+  remove_planes,
+  keep_shape,
+  frame_model,
+  view_front,
+  view_right,
+  view_top,
+  view_perspective,
+  choose_tool,
+  quit,
+};
+
+// A key with its action and the texts of the list of keys. Keys of tools come from the table of tool actions.
+struct KeyBinding {
+  EditAction action;
+  int key;  // GLFW_KEY_
+  bool ctrl;
+  bool shift;
+  const char* chord;  // as shown, such as "Ctrl+S"
+  const char* text;
+  // Used by choose_tool only.
+  ToolKind kind = ToolKind::sphere;
+  ToolAction tool_action = ToolAction::push;
+};
+
+// Returns all bindings in the order of the list of keys.
+std::span<const KeyBinding> key_bindings();
+
+// Mouse buttons and modifier keys, for the list of keys only.
+struct HeldInput {
+  const char* chord;
+  const char* text;
+};
+std::span<const HeldInput> held_inputs();
+
+// State that the menu shows.
 struct MenuState {
   bool can_undo = false;
   bool can_redo = false;
@@ -21,6 +73,7 @@ struct MenuState {
   bool see_through_body = false;
 };
 
+// Choices of one frame, and the height of the menu bar.
 struct MenuChoice {
   std::vector<EditAction> actions;
   NavigationPreset navigation;
@@ -29,10 +82,10 @@ struct MenuChoice {
   float height_px = 0.0F;
 };
 
-// Between begin_frame() and end_frame().
+// Draws the menu bar, between begin_frame() and end_frame().
 MenuChoice draw_menu(const MenuState& state);
 
-// The keys of F1, as a window over the picture; false when it was closed.
+// Draws the list of keys over the picture. Returns false when the user closes it.
 bool draw_keys(const Theme& theme);
 
 }  // namespace spoonbill

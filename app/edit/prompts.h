@@ -1,9 +1,15 @@
-// Questions that must be answered before anything else: each draws a modal window while it is asked. One
-// owner; the thread that draws.
+// Modal prompts: a question, a file, a stock shape. Each draws a window until it is answered. One owner: the
+// thread that draws.
 #pragma once
 
+#include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include "app/files/documents.h"
 
 namespace spoonbill {
 
@@ -15,19 +21,70 @@ class Question {
 
   void ask(std::string text) {
     text_ = std::move(text);
-    asking_ = appearing_ = true;
+    is_open_ = appearing_ = true;
   }
-  bool asking() const { return asking_; }
+  bool is_open() const { return is_open_; }
 
-  // Between begin_frame() and end_frame(). The number of the answer, 0 to 2, once.
+  // Draws the question, between begin_frame() and end_frame(). Returns the index of the answer, 0 to 2, once.
   std::optional<int> draw();
 
  private:
   const char* title_;
   const char* answers_[3];
   std::string text_;
-  bool asking_ = false;
+  bool is_open_ = false;
   bool appearing_ = false;
+};
+
+// Purpose of the file prompt.
+enum class FilePurpose { open_model, save_model, export_model };
+
+// Prompt for a file: a text field and a list of the folder's models.
+class FilePrompt {
+ public:
+  // Opens the prompt with the next draw(), with this file or folder.
+  void ask(FilePurpose purpose, const std::filesystem::path& start);
+  void close() { is_open_ = false; }
+  bool is_open() const { return is_open_; }
+  FilePurpose purpose() const { return purpose_; }
+  const char* typed() const { return text_.data(); }
+
+  // Draws the prompt, between begin_frame() and end_frame(). Returns the chosen file once.
+  std::optional<std::filesystem::path> draw();
+
+ private:
+  void list_folder();
+  std::optional<std::filesystem::path> confirm_text();
+
+  FilePurpose purpose_ = FilePurpose::open_model;
+  bool is_open_ = false;
+  bool appearing_ = false;
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path> entries_;  // folders first
+  std::array<char, 1024> text_{};
+  std::string problem_;
+};
+
+// Prompt for a new stock shape: its kind and sizes.
+class ShapePrompt {
+ public:
+  // Opens the prompt with the next draw(), with the previous choice.
+  void ask();
+  void close() { is_open_ = false; }
+  bool is_open() const { return is_open_; }
+  // Reopens the prompt with the reason why the choice cannot be made.
+  void refuse(std::string problem);
+
+  // Draws the prompt, between begin_frame() and end_frame(). Returns the choice once.
+  std::optional<LumpChoice> draw();
+
+ private:
+  void draw_fields();
+
+  bool is_open_ = false;
+  bool appearing_ = false;
+  LumpChoice choice_ = default_stock_shape(0);
+  std::string problem_;
 };
 
 }  // namespace spoonbill

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/process/child_output.h"
+#include "app/child_process.h"
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/exchange/frame_stream.h"

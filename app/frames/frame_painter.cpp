@@ -1,16 +1,21 @@
 #include "app/frames/frame_painter.h"
 
+#include <condition_variable>
+#include <deque>
+#include <optional>
+#include <thread>
 #include <utility>
 
-#include "app/panel/font_file.h"
+#include "app/panel/interface_context.h"
 #include "app/panel/panel.h"
+#include "engine/base/assert.h"
 #include "engine/base/geometry.h"
 #include "render/overlay/overlays.h"
 
 namespace spoonbill {
 namespace {
 
-std::unique_lock<std::mutex> take_turn(std::mutex* interface_turn) {
+std::unique_lock<std::mutex> lock_interface(std::mutex* interface_turn) {
   return interface_turn != nullptr ? std::unique_lock(*interface_turn) : std::unique_lock<std::mutex>();
 }
 
@@ -32,14 +37,14 @@ Box framed_box(const Snapshot& start) {
 
 ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_px, int height_px) {
   ViewSettings view =
-      settings_for(choice, framed, width_px, height_px, picture_panel_rectangle(width_px, height_px),
-                   interface_scale_for(height_px));
+      make_view_settings(choice, framed, width_px, height_px, picture_panel_rectangle(width_px, height_px),
+                         interface_scale_for(height_px));
   view.keep_level = false;
   return view;
 }
 
 Result<FramePainter> FramePainter::make(int width_px, int height_px, std::mutex* interface_turn) {
-  const auto turn = take_turn(interface_turn);
+  const auto turn = lock_interface(interface_turn);
   auto context = OsmesaContext::make(width_px, height_px);
   if (!context) return context.error();
   auto interface = InterfaceContext::make(font_file, panel_scale(height_px));
@@ -53,7 +58,7 @@ Result<FramePainter> FramePainter::make(int width_px, int height_px, std::mutex*
 
 FramePainter::~FramePainter() {
   if (!context_) return;  // moved from
-  const auto turn = take_turn(interface_turn_);
+  const auto turn = lock_interface(interface_turn_);
   interface_.reset();
 }
 
@@ -70,13 +75,120 @@ const ImDrawData& FramePainter::lay_out(const Snapshot& snapshot, const ViewSett
                                         const PanelModel& panel) {
   const int width = context_->width_px();
   const int height = context_->height_px();
-  const auto turn = take_turn(interface_turn_);
+  const auto turn = lock_interface(interface_turn_);
   interface_->begin_frame(width, height);
   draw_labels(overlay_labels(snapshot, view, width, height), view, width, height,
               *interface_->theme().fonts.body, *ImGui::GetBackgroundDrawList());
-  // Nobody can press anything in a picture.
+  // Pictures have no input, so the answer of the panel is ignored.
   if (view.panel_px.width > 0.0) draw_panel(panel, interface_->theme(), view.panel_px);
   return interface_->end_frame();
+}
+
+namespace {
+
+// Number of painters. Constant, because a painter reuses what it drew before.
+constexpr std::size_t painter_count = 3;
+
+// Jobs per painter: one in progress and one waiting.
+constexpr std::size_t jobs_per_painter = 2;
+
+}  // namespace
+
+class PaintingCrew::Painter {
+ public:
+  Painter(int width_px, int height_px, std::mutex& interface_turn)
+      : width_px_(width_px),
+        height_px_(height_px),
+        interface_turn_(interface_turn),
+        thread_([this] { paint_jobs(); }) {}
+
+  ~Painter() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+      jobs_.clear();
+      changed_.notify_all();
+    }
+    thread_.join();
+  }
+
+  void add(PaintingJob job) {
+    const std::lock_guard lock(mutex_);
+    jobs_.push_back(std::move(job));
+    changed_.notify_all();
+  }
+
+  Result<PaintedFrame> receive() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return !done_.empty() || failure_; });
+    if (done_.empty()) return *failure_;
+    PaintedFrame frame = std::move(done_.front());
+    done_.pop_front();
+    return frame;
+  }
+
+ private:
+  // Waits for the next job. Returns nothing when the painter stops.
+  std::optional<PaintingJob> next_job() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return !jobs_.empty() || stopping_; });
+    if (stopping_) return {};
+    PaintingJob job = std::move(jobs_.front());
+    jobs_.pop_front();
+    return job;
+  }
+
+  void fail(Error error) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::move(error);
+    changed_.notify_all();
+  }
+
+  void paint_jobs() {
+    auto painter = FramePainter::make(width_px_, height_px_, &interface_turn_);
+    if (!painter) return fail(painter.error());
+    while (auto job = next_job()) {
+      PaintedFrame frame{job->frame, job->snapshot.time_s(), {}, std::move(job->extra_names)};
+      const Status painted = painter->paint(job->snapshot, job->view, job->panel, frame.picture);
+      if (!painted) return fail(painted.error());
+      const std::lock_guard lock(mutex_);
+      done_.push_back(std::move(frame));
+      changed_.notify_all();
+    }
+  }
+
+  const int width_px_;
+  const int height_px_;
+  std::mutex& interface_turn_;
+  std::mutex mutex_;  // guards the members below
+  std::condition_variable changed_;
+  std::deque<PaintingJob> jobs_;
+  std::deque<PaintedFrame> done_;
+  std::optional<Error> failure_;
+  bool stopping_ = false;
+  std::thread thread_;  // declared last, because it uses all members above
+};
+
+PaintingCrew::PaintingCrew(int width_px, int height_px) {
+  for (std::size_t i = 0; i < painter_count; ++i) {
+    painters_.push_back(std::make_unique<Painter>(width_px, height_px, interface_turn_));
+  }
+}
+
+PaintingCrew::~PaintingCrew() = default;
+
+bool PaintingCrew::is_full() const {
+  return started_ - received_ >= painter_count * jobs_per_painter;
+}
+
+void PaintingCrew::start(PaintingJob job) {
+  SPOONBILL_ASSERT(!is_full());
+  painters_[started_++ % painter_count]->add(std::move(job));
+}
+
+Result<PaintedFrame> PaintingCrew::receive() {
+  SPOONBILL_ASSERT(received_ < started_);
+  return painters_[received_++ % painter_count]->receive();
 }
 
 }  // namespace spoonbill

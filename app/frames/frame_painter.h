@@ -1,14 +1,17 @@
-// Paints snapshots with the panel beside them, offscreen. One owner; the thread that made it.
+// Offscreen painting of snapshots with the panel beside them: by one painter, or by a crew of painters on
+// threads.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "app/panel/interface_context.h"
-#include "app/panel/panel_model.h"
-#include "app/view/shown_stages.h"
-#include "app/view/view_choice.h"
+#include "app/panel/panel.h"
+#include "app/session/view_choice.h"
 #include "engine/base/geometry.h"
 #include "render/gl/context.h"
 #include "render/image.h"
@@ -16,25 +19,27 @@
 
 namespace spoonbill {
 
-// What the camera and the ground go by: the box around the control nets of a snapshot, taken before the body
-// was touched.
+// Returns the box around all control nets and meshes of a snapshot. Taken before the first touch, it places
+// the camera and the ground.
 Box framed_box(const Snapshot& start);
 
-// How a frame of this size shows the choice, with room for the panel. Its picture does not depend on the
-// frames before.
+// Returns the settings that show the choice in a frame of this size, with room for the panel. The picture
+// does not depend on earlier frames.
 ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_px, int height_px);
 
+// Paints snapshots into images. One owner; used on the thread that made it.
 class FramePainter {
  public:
-  // Dear ImGui knows one current context in a process: painters on several threads share `interface_turn`,
-  // which each holds while it lays out its interface. Null for a painter that is alone.
+  // Makes a painter with its own GL context. Dear ImGui has one current context per process: painters on
+  // several threads share `interface_turn`, which each locks while it lays out its interface. Null for a
+  // single painter.
   static Result<FramePainter> make(int width_px, int height_px, std::mutex* interface_turn = nullptr);
 
   FramePainter(FramePainter&&) noexcept = default;
   FramePainter& operator=(FramePainter&&) = delete;
   ~FramePainter();
 
-  // The panel is left out where the frame is too small for it.
+  // Paints one frame. The panel is omitted where the frame is too small for it.
   Status paint(const Snapshot& snapshot, const ViewSettings& view, const PanelModel& panel, Image& image);
 
  private:
@@ -47,10 +52,61 @@ class FramePainter {
   const ImDrawData& lay_out(const Snapshot& snapshot, const ViewSettings& view, const PanelModel& panel);
 
   std::unique_ptr<OsmesaContext> context_;
-  std::optional<InterfaceContext> interface_;  // empty only in its last moment
-  Renderer renderer_;                          // after the context, which it needs to the end
+  std::optional<InterfaceContext> interface_;  // empty only while it is destroyed
+  Renderer renderer_;                          // declared after the context, which must outlive it
   std::mutex* interface_turn_;
-  ShownStages stages_;
+  StageFinder stages_;
+};
+
+// All that a frame shows, as values, so that the session can continue.
+struct PaintingJob {
+  std::uint64_t frame = 0;
+  Snapshot snapshot;
+  ViewSettings view;
+  PanelModel panel;
+  std::vector<std::string> extra_names;  // names of further files of this picture
+};
+
+// A painted frame.
+struct PaintedFrame {
+  std::uint64_t frame = 0;
+  double time_s = 0.0;
+  Image picture;
+  std::vector<std::string> extra_names;
+};
+
+// Paints frames on several threads while the owner prepares the next ones. Frames are assigned to the
+// painters in a fixed order, so the result is the same on any machine. One owner, one thread:
+//
+//  while (more) {
+//    if (crew.is_full()) use(crew.receive());
+//    crew.start(job);
+//  }
+//  while (crew.in_flight() > 0) use(crew.receive());
+class PaintingCrew {
+ public:
+  PaintingCrew(int width_px, int height_px);
+  ~PaintingCrew();  // discards frames that were not received
+  PaintingCrew(const PaintingCrew&) = delete;
+  PaintingCrew& operator=(const PaintingCrew&) = delete;
+
+  bool is_full() const;
+  int in_flight() const { return static_cast<int>(started_ - received_); }
+
+  // Queues a job. The crew must not be full.
+  void start(PaintingJob job);
+
+  // Waits for the oldest started frame; there must be one. After an error of its painter the crew is
+  // unusable.
+  Result<PaintedFrame> receive();
+
+ private:
+  class Painter;
+
+  std::mutex interface_turn_;  // shared by the painters, see FramePainter::make()
+  std::vector<std::unique_ptr<Painter>> painters_;
+  std::uint64_t started_ = 0;
+  std::uint64_t received_ = 0;
 };
 
 }  // namespace spoonbill

@@ -1,14 +1,250 @@
 #include "app/frames/replay_pictures.h"
 
-#include <array>
-#include <cstdio>
-#include <utility>
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include "app/panel/font_file.h"
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "app/child_process.h"
+#include "app/panel/interface_context.h"
 #include "app/session/lockstep.h"
+#include "engine/base/assert.h"
+#include "engine/base/file.h"
 #include "render/image.h"
 
 namespace spoonbill {
+
+Result<std::vector<std::string>> consume_marks(Session& session,
+                                               const std::optional<std::filesystem::path>& folder) {
+  const std::vector<FileMark> marks = std::exchange(session.marks, {});
+  std::vector<std::string> pictures;
+  if (!folder) return pictures;
+  for (const FileMark& mark : marks) {
+    if (!mark.document) {
+      pictures.push_back(mark.mark.name);
+      continue;
+    }
+    const std::filesystem::path file = *folder / ("saved-" + mark.mark.name + ".json");
+    if (Status written = write_document(*mark.document, file); !written) return written.error();
+  }
+  return pictures;
+}
+
+Status write_marked_picture(const Image& picture, const std::string& name,
+                            const std::filesystem::path& folder) {
+  return write_png(folder / ("picture-" + name + ".png"), picture);
+}
+
+namespace {
+
+// Largest number of queued frames: enough to even out the pace of drawing without holding much memory.
+constexpr std::size_t queue_limit = 3;
+
+bool is_output_of_earlier_run(const std::string& name) {
+  if (name == "contact-sheet.png") return true;
+  constexpr std::string_view start = "frame-";
+  constexpr std::string_view end = ".png";
+  if (!name.starts_with(start) || !name.ends_with(end)) return false;
+  const std::string number = name.substr(start.size(), name.size() - start.size() - end.size());
+  return !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
+}
+
+}  // namespace
+
+std::string frame_file_name(int number) {
+  char name[32];
+  std::snprintf(name, sizeof(name), "frame-%04d.png", number);
+  return name;
+}
+
+Status prepare_frame_folder(const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    return Error{ErrorCode::unwritable, folder.string() + ": cannot create the folder: " + error.message()};
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    return Error{ErrorCode::unwritable,
+                 folder.string() + ": cannot write to the folder: " + std::generic_category().message(errno)};
+  }
+  std::vector<fs::path> old;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (is_output_of_earlier_run(entry.path().filename().string())) old.push_back(entry.path());
+  }
+  for (const fs::path& file : old) {
+    if (!error) fs::remove(file, error);
+  }
+  if (error)
+    return Error{ErrorCode::unwritable, folder.string() + ": cannot remove old frames: " + error.message()};
+  return {};
+}
+
+FrameWriter::FrameWriter(std::filesystem::path folder)
+    : folder_(std::move(folder)), thread_([this] { write_frames(); }) {}
+
+FrameWriter::~FrameWriter() {
+  [[maybe_unused]] const Status finished = finish();
+}
+
+Status FrameWriter::add(int number, Image frame) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return queue_.size() < queue_limit || !failure_; });
+  if (!failure_) return failure_;
+  queue_.emplace_back(number, std::move(frame));
+  changed_.notify_all();
+  return {};
+}
+
+Status FrameWriter::finish() {
+  {
+    const std::lock_guard lock(mutex_);
+    finishing_ = true;
+    changed_.notify_all();
+  }
+  if (!thread_.joinable()) return failure_;
+  thread_.join();
+  return failure_ ? flush_to_disk(folder_) : failure_;
+}
+
+void FrameWriter::write_frames() {
+  PngEncoder encoder;
+  while (true) {
+    std::pair<int, Image> frame;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return !queue_.empty() || finishing_; });
+      if (queue_.empty()) return;
+      frame = std::move(queue_.front());
+      queue_.pop_front();
+      changed_.notify_all();
+    }
+    const Status written =
+        write_png(folder_ / frame_file_name(frame.first), frame.second, encoder, Durability::later);
+    if (!written) {
+      const std::lock_guard lock(mutex_);
+      failure_ = written;
+      changed_.notify_all();
+      return;
+    }
+  }
+}
+
+namespace {
+
+std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& file, const std::string& size,
+                                          const std::string& rate) {
+  // Most players need even side lengths, hence the padding.
+  return {"ffmpeg",
+          "-y",
+          "-loglevel",
+          "error",
+          "-f",
+          "rawvideo",
+          "-pix_fmt",
+          "rgba",
+          "-s",
+          size,
+          "-r",
+          rate,
+          "-i",
+          "pipe:0",
+          "-vf",
+          "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+          "-pix_fmt",
+          "yuv420p",
+          "file:" + file.string()};
+}
+
+}  // namespace
+
+bool VideoEncoder::available() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (access((folder + "/ffmpeg").c_str(), X_OK) == 0) return true;
+  }
+  return false;
+}
+
+Result<VideoEncoder> VideoEncoder::start(const std::filesystem::path& file, int width_px, int height_px,
+                                         int rate_numerator, int rate_denominator) {
+  SPOONBILL_ASSERT(width_px > 0 && height_px > 0);
+  SPOONBILL_ASSERT(rate_numerator > 0 && rate_denominator > 0);
+  // ffmpeg derives the format from the extension, which must therefore remain last.
+  std::filesystem::path unfinished = file;
+  unfinished.replace_filename(file.stem().string() + ".unfinished" + file.extension().string());
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    return Error{ErrorCode::unavailable, std::string("no pipe to ffmpeg: ") + std::strerror(errno)};
+  const pid_t process =
+      start_process(ffmpeg_arguments(unfinished, std::to_string(width_px) + "x" + std::to_string(height_px),
+                                     std::to_string(rate_numerator) + "/" + std::to_string(rate_denominator)),
+                    ends[0], -1);
+  close(ends[0]);
+  if (process < 0) {
+    close(ends[1]);
+    return Error{ErrorCode::unavailable, "ffmpeg does not start: install ffmpeg or omit --video", "video"};
+  }
+  return VideoEncoder(file, std::move(unfinished), process, ends[1]);
+}
+
+VideoEncoder::VideoEncoder(VideoEncoder&& other) noexcept
+    : file_(std::move(other.file_)),
+      unfinished_(std::move(other.unfinished_)),
+      process_(std::exchange(other.process_, -1)),
+      pipe_(std::exchange(other.pipe_, -1)) {}
+
+VideoEncoder::~VideoEncoder() {
+  if (process_ < 0) return;
+  close_and_wait();
+  std::error_code ignored;
+  std::filesystem::remove(unfinished_, ignored);
+}
+
+int VideoEncoder::close_and_wait() {
+  if (pipe_ >= 0) close(std::exchange(pipe_, -1));
+  const int state = wait_for_process(std::exchange(process_, -1));
+  return WIFEXITED(state) ? WEXITSTATUS(state) : -1;
+}
+
+Status VideoEncoder::add(const Image& frame) {
+  std::size_t sent = 0;
+  while (sent < frame.rgba.size()) {
+    const ssize_t count = write(pipe_, frame.rgba.data() + sent, frame.rgba.size() - sent);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) {
+      return Error{
+          ErrorCode::process_failed,
+          file_.string() + ": ffmpeg stopped: check that the folder is writable and the extension known"};
+    }
+    sent += static_cast<std::size_t>(count);
+  }
+  return {};
+}
+
+Status VideoEncoder::finish() {
+  std::error_code ignored;
+  if (const int code = close_and_wait(); code != 0) {
+    std::filesystem::remove(unfinished_, ignored);
+    return Error{ErrorCode::process_failed,
+                 file_.string() + ": ffmpeg failed with exit code " + std::to_string(code) +
+                     ": check that the folder is writable and the extension known"};
+  }
+  Status published = publish_file(unfinished_, file_);
+  if (!published) std::filesystem::remove(unfinished_, ignored);
+  return published;
+}
+
 namespace {
 
 constexpr std::uint64_t sheet_cells = 12;
@@ -64,7 +300,7 @@ Status ReplayPictures::add(std::uint64_t frame, double time_s, Image picture) {
 bool ReplayPictures::belongs_on_sheet(std::uint64_t index) const {
   const std::uint64_t drawn = (request_.frame_count + request_.every - 1) / request_.every;
   if (drawn <= sheet_cells) return true;
-  // The first, the last, and the others evenly between.
+  // The sheet shows the first frame, the last, and others at even intervals.
   constexpr std::uint64_t steps = sheet_cells - 1;
   for (std::uint64_t cell = 0; cell <= steps; ++cell) {
     if (index == cell * (drawn - 1) / steps) return true;

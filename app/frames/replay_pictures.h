@@ -1,33 +1,116 @@
-// What a replay leaves behind to look at: numbered frames and a contact sheet in a folder, and a video. One
-// owner, one thread.
+// Files that a replay writes: requested documents and screenshots, numbered frames with a contact sheet, and
+// a video.
 #pragma once
 
+#include <sys/types.h>
+
+#include <condition_variable>
+#include <deque>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
 
-#include "app/frames/frame_writer.h"
-#include "app/frames/video_encoder.h"
+#include "app/session/session.h"
 #include "engine/base/result.h"
 #include "render/contact_sheet.h"
+#include "render/image.h"
 
 namespace spoonbill {
 
+// Consumes the session's marks: writes the requested documents into the folder and returns the names of the
+// requested screenshots of the next frame. Without a folder, writes nothing and returns no name.
+Result<std::vector<std::string>> consume_marks(Session& session,
+                                               const std::optional<std::filesystem::path>& folder);
+
+// Writes picture-NAME.png into the folder.
+Status write_marked_picture(const Image& picture, const std::string& name,
+                            const std::filesystem::path& folder);
+
+// Returns "frame-0042.png" for 42.
+std::string frame_file_name(int number);
+
+// Makes the folder, or removes the frames and the contact sheet of an earlier run from it; other files stay.
+// Returns an error with the folder's name if it cannot be made or written.
+Status prepare_frame_folder(const std::filesystem::path& folder);
+
+// Writes numbered frames as PNG files on its own thread, so that encoding does not delay drawing. One thread
+// adds frames; the queue is bounded, and add() waits while it is full.
+class FrameWriter {
+ public:
+  explicit FrameWriter(std::filesystem::path folder);
+  ~FrameWriter();  // writes all frames that were added
+  FrameWriter(const FrameWriter&) = delete;
+  FrameWriter& operator=(const FrameWriter&) = delete;
+
+  // Both return the first failure of any frame so far. After a failure nothing more is written.
+  Status add(int number, Image frame);
+  Status finish();  // waits until all frames are on the disk; ends adding
+
+ private:
+  void write_frames();
+
+  const std::filesystem::path folder_;
+  std::mutex mutex_;  // guards the members below
+  std::condition_variable changed_;
+  std::deque<std::pair<int, Image>> queue_;
+  bool finishing_ = false;
+  Status failure_;
+  std::thread thread_;  // declared last, because it uses all members above
+};
+
+// A video file that an ffmpeg process encodes from raw pictures. The file appears under its name in finish(),
+// or not at all. One owner, one thread. The program must ignore SIGPIPE (see main).
+class VideoEncoder {
+ public:
+  // Returns true if ffmpeg is on the PATH.
+  static bool available();
+
+  // Starts ffmpeg. The file extension selects the format. The frame rate is rate_numerator / rate_denominator
+  // frames per second.
+  static Result<VideoEncoder> start(const std::filesystem::path& file, int width_px, int height_px,
+                                    int rate_numerator, int rate_denominator);
+
+  VideoEncoder(VideoEncoder&& other) noexcept;
+  VideoEncoder& operator=(VideoEncoder&&) = delete;
+  ~VideoEncoder();  // removes an unfinished video
+
+  // Adds a picture of the size given to start().
+  Status add(const Image& frame);
+  Status finish();
+
+ private:
+  VideoEncoder(std::filesystem::path file, std::filesystem::path unfinished, pid_t process, int pipe)
+      : file_(std::move(file)), unfinished_(std::move(unfinished)), process_(process), pipe_(pipe) {}
+  int close_and_wait();
+
+  std::filesystem::path file_;
+  std::filesystem::path unfinished_;
+  pid_t process_;  // -1 when no process runs
+  int pipe_;       // -1 when closed
+};
+
+// Frames and files that a replay is to write.
 struct PictureRequest {
   int width_px = 0;
   int height_px = 0;
-  std::uint64_t frame_count = 0;                // of the whole replay, 60 for each second
-  std::uint64_t every = 1;                      // only each so many-th of them is drawn
-  std::optional<std::filesystem::path> folder;  // of frames and contact sheet
+  std::uint64_t frame_count = 0;                // of the whole replay, 60 per second
+  std::uint64_t every = 1;                      // interval between drawn frames
+  std::optional<std::filesystem::path> folder;  // for frames and contact sheet
   std::optional<std::filesystem::path> video;
 };
 
+// Writes the pictures of a replay. One owner, one thread.
 class ReplayPictures {
  public:
   // Prepares the folder and starts the video.
   static Result<ReplayPictures> start(const PictureRequest& request);
 
-  // Frame number `frame`, a multiple of `every`, shown at `time_s`.
+  // Adds frame number `frame`, a multiple of `every`, at time `time_s`.
   Status add(std::uint64_t frame, double time_s, Image picture);
 
   // Waits until everything is written.
@@ -41,7 +124,7 @@ class ReplayPictures {
   bool belongs_on_sheet(std::uint64_t index) const;
 
   PictureRequest request_;
-  std::unique_ptr<FrameWriter> frames_;  // none without a folder
+  std::unique_ptr<FrameWriter> frames_;  // null without a folder
   std::optional<VideoEncoder> video_;
   ContactSheet sheet_;
   std::uint64_t count_ = 0;

@@ -10,11 +10,12 @@
 namespace spoonbill {
 namespace {
 
-constexpr std::size_t bytes_limit = std::size_t{65} << 20;  // a document's, and a little
+constexpr std::size_t bytes_limit = std::size_t{65}
+                                    << 20;  // largest document plus the fields of the autosave
 constexpr int autosave_version = 1;
-constexpr int most_windows = 99;  // that show one document
+constexpr int windows_limit = 99;  // largest number of windows that show the same document
 
-// Documents of one name in different folders must not share an autosave.
+// The hash of the path keeps documents of the same name in different folders apart.
 std::string file_name_for(const std::filesystem::path& of, int number) {
   const std::string ending = (number > 1 ? "-" + std::to_string(number) : "") + ".autosave.json";
   if (of.empty()) return "untitled" + ending;
@@ -23,10 +24,10 @@ std::string file_name_for(const std::filesystem::path& of, int number) {
   return of.stem().string() + "-" + hash_text(hash.value()) + ending;
 }
 
-std::filesystem::path whole_path(const std::filesystem::path& path) {
+std::filesystem::path canonical_path(const std::filesystem::path& path) {
   std::error_code problem;
-  const std::filesystem::path whole = std::filesystem::weakly_canonical(path, problem);
-  return problem ? path : whole;
+  const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, problem);
+  return problem ? path : canonical;
 }
 
 bool is_older(const std::filesystem::path& one, const std::filesystem::path& other) {
@@ -39,7 +40,7 @@ bool is_older(const std::filesystem::path& one, const std::filesystem::path& oth
 }  // namespace
 
 Autosave::Autosave(const std::filesystem::path& folder, const std::filesystem::path& of, int number)
-    : of_(of.empty() ? of : whole_path(of)), file_(folder / file_name_for(of_, number)) {}
+    : of_(of.empty() ? of : canonical_path(of)), file_(folder / file_name_for(of_, number)) {}
 
 Status Autosave::write(const Document& document) const {
   Json json{{"spoonbill_autosave", autosave_version}, {"of", of_.string()}};
@@ -47,7 +48,7 @@ Status Autosave::write(const Document& document) const {
   return replace_file(file_, json_to_page(json));
 }
 
-Result<std::optional<Document>> Autosave::left_over() const {
+Result<std::optional<Document>> Autosave::recovered_document() const {
   std::error_code problem;
   if (!std::filesystem::exists(file_, problem)) return std::optional<Document>();
   if (!of_.empty() && is_older(file_, of_)) return std::optional<Document>();
@@ -78,16 +79,16 @@ void Autosave::remove() const {
   std::filesystem::remove(file_.string() + ".bak", ignored);
 }
 
-AutosaveClaim AutosaveClaim::take(const std::filesystem::path& folder, const std::filesystem::path& of) {
+AutosaveClaim AutosaveClaim::acquire(const std::filesystem::path& folder, const std::filesystem::path& of) {
   std::optional<AutosaveClaim> first_free;
-  for (int number = 1; number <= most_windows; ++number) {
+  for (int number = 1; number <= windows_limit; ++number) {
     Autosave autosave(folder, of, number);
     auto lock = FileLock::take(autosave.file().string() + ".lock");
     if (!lock) continue;
     std::error_code problem;
-    const bool left_over = std::filesystem::exists(autosave.file(), problem);
+    const bool exists = std::filesystem::exists(autosave.file(), problem);
     AutosaveClaim claim(std::move(autosave), std::move(lock));
-    if (left_over) return claim;
+    if (exists) return claim;
     if (!first_free) first_free = std::move(claim);
   }
   if (first_free) return std::move(*first_free);

@@ -1,7 +1,7 @@
-// Autosaved documents: what a crash leaves of unsaved work. One file a window, in the program's state
-// folder, gone again once the document is saved or closed in order.
+// Autosaved documents: unsaved work that survives a crash. Each window has one file in the program's state
+// folder, which is removed when the document is saved or closed normally.
 //
-//   {"spoonbill_autosave": 1, "of": "/home/ada/spoon.json", "document": {...}}
+//  {"spoonbill_autosave": 1, "of": "/home/ada/spoon.json", "document": {...}}
 #pragma once
 
 #include <filesystem>
@@ -15,23 +15,23 @@
 
 namespace spoonbill {
 
-// One document's autosave. Plain value; used by one thread at a time.
+// The autosave file of one document. Plain value; used by one thread at a time.
 class Autosave {
  public:
-  // `of` names the document's file; empty for one that has none yet. Windows that show one document number
-  // their autosaves, from 1 on.
+  // `of` names the document's file; empty for an unsaved document. Windows that show the same document have
+  // different numbers, from 1.
   Autosave(const std::filesystem::path& folder, const std::filesystem::path& of, int number = 1);
 
-  // Whole or not at all, as every document; the one before stays until then.
+  // Replaces the file as a whole; after an error the previous one remains.
   Status write(const Document& document) const;
 
-  // What a session that did not end in order has left; nothing when there is none, or when it is older than
-  // the document's file itself. One that cannot be read is an error, which leaves it where it is.
-  Result<std::optional<Document>> left_over() const;
+  // Returns the document that an interrupted session left; nothing if there is none, or if it is older than
+  // the document's file. A file that cannot be read is an error and remains.
+  Result<std::optional<Document>> recovered_document() const;
 
-  // Without one, nothing happens.
+  // Removes the file. Does nothing if there is none.
   void remove() const;
-  // Out of the way of the next ones, for whoever can still read it.
+  // Renames the file, so that later autosaves do not overwrite it.
   void set_aside() const;
 
   const std::filesystem::path& file() const { return file_; }
@@ -41,12 +41,11 @@ class Autosave {
   std::filesystem::path file_;
 };
 
-// A window's right to one autosave of a document, which no other window uses as long as this lives. One
-// owner.
+// A window's exclusive right to one autosave file, for the lifetime of the object. One owner.
 class AutosaveClaim {
  public:
-  // An autosave that was left over and belongs to nobody, else the first that is free.
-  static AutosaveClaim take(const std::filesystem::path& folder, const std::filesystem::path& of);
+  // Claims an unclaimed autosave that an interrupted session left, otherwise the first free one.
+  static AutosaveClaim acquire(const std::filesystem::path& folder, const std::filesystem::path& of);
 
   const Autosave& autosave() const { return autosave_; }
 
@@ -55,7 +54,7 @@ class AutosaveClaim {
       : autosave_(std::move(autosave)), lock_(std::move(lock)) {}
 
   Autosave autosave_;
-  std::optional<FileLock> lock_;  // nothing where the folder takes no lock
+  std::optional<FileLock> lock_;  // empty where the folder does not support locks
 };
 
 }  // namespace spoonbill

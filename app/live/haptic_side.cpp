@@ -1,19 +1,72 @@
 #include "app/live/haptic_side.h"
 
 #include <algorithm>
+#include <exception>
+#include <string>
 #include <utility>
 
 namespace spoonbill {
 namespace {
 
+// Exceptions of the standard library, mostly a lack of memory, end here: the thread must survive.
+Status run_job(LiveCommand& command, LentSession& lent) {
+  try {
+    if (auto* queued = std::get_if<QueuedRequest>(&command)) {
+      return apply_request(*lent.session, queued->request);
+    }
+    if (auto* queued = std::get_if<QueuedJob>(&command)) return queued->job(lent);
+  } catch (const std::exception& exception) {
+    return Error{ErrorCode::internal, std::string("not done: ") + exception.what()};
+  }
+  return {};
+}
+
+}  // namespace
+
+SessionWorker::SessionWorker(Notices& notices) : notices_(&notices), thread_([this] { run(); }) {}
+
+SessionWorker::~SessionWorker() {
+  stopping_.store(true, std::memory_order_release);
+  pending_.release();
+  thread_.join();
+}
+
+void SessionWorker::lend(LentSession lent, LiveCommand job) {
+  lent_ = std::move(lent);
+  job_ = std::move(job);
+  finished_.store(false, std::memory_order_relaxed);
+  pending_.release();
+}
+
+bool SessionWorker::take_back(LentSession& lent, LiveCommand& job, bool& is_done) {
+  if (!finished_.exchange(false, std::memory_order_acquire)) return false;
+  lent = std::move(lent_);
+  job = std::move(job_);
+  is_done = is_done_;
+  return true;
+}
+
+void SessionWorker::run() {
+  while (true) {
+    pending_.acquire();
+    if (stopping_.load(std::memory_order_acquire)) return;
+    const Status status = run_job(job_, lent_);
+    if (!status) notices_->add(Notice::Kind::problem, status.error().message);
+    is_done_ = status.ok();
+    finished_.store(true, std::memory_order_release);
+  }
+}
+
+namespace {
+
 constexpr std::uint64_t ticks_between_frames = 4;
 constexpr int ticks_between_scenes = 400;
 
-// A body goes on moving after it was let go; what it does for so long is saved too.
-constexpr int settling_ticks = 3000;
+// Number of ticks after the last touch in which motion counts as a change to save.
+constexpr int after_motion_ticks = 3000;
 
-// The main thread draws and writes files itself; what is left to do is to record that it did.
-bool concerns_the_main_thread_alone(const Request& request) {
+// Requests that the main thread carries out itself; the haptic thread only records them.
+bool is_main_thread_request(const Request& request) {
   return std::holds_alternative<ChangeView>(request) || std::holds_alternative<MarkFile>(request);
 }
 
@@ -29,7 +82,7 @@ HapticSide::HapticSide(std::unique_ptr<Session> session, std::unique_ptr<Device>
   safe_device_.set_workspace_centre(session->reading.pose().position_m);
   safe_device_.set_workspace_radius(session->device.workspace_radius_m);
   lent_.session = std::move(session);
-  ticks_since_change_ = settling_ticks;
+  ticks_since_change_ = after_motion_ticks;
 }
 
 void HapticSide::tick(const LoopTick& tick) noexcept {
@@ -37,11 +90,11 @@ void HapticSide::tick(const LoopTick& tick) noexcept {
     run_tick(tick);
     last_tick_failed_ = false;
   } catch (const FailedAssertion& failure) {
-    give_up_tick(failure, tick.dropped);
+    abandon_tick(failure, tick.dropped);
   }
 }
 
-void HapticSide::give_up_tick(const FailedAssertion& failure, std::uint64_t dropped) {
+void HapticSide::abandon_tick(const FailedAssertion& failure, std::uint64_t dropped) {
   safe_device_.give_none(dropped);
   safe_device_.request_proxy_reset();
   if (lent_.session != nullptr) lent_.session->flags |= tick_flag_failed;
@@ -51,12 +104,12 @@ void HapticSide::give_up_tick(const FailedAssertion& failure, std::uint64_t drop
 }
 
 void HapticSide::run_tick(const LoopTick& tick) {
-  if (journal_->take_gave_up()) recording_ = false;
+  if (journal_->consume_recording_failure()) recording_ = false;
   const DeviceReading reading = safe_device_.read();
   if (lent_.session == nullptr) take_back_if_done();
   if (lent_.session != nullptr) {
     record_state_when_due();
-    do_commands();
+    run_commands();
   }
   if (lent_.session == nullptr) return safe_device_.give_none(tick.dropped);
   advance_session(reading, tick.dropped);
@@ -67,32 +120,32 @@ void HapticSide::close() {
   safe_device_.give_none(0);
   if (lent_.session == nullptr) return;
   if (recording_) end_recording();
-  // The newest work, for the autosave of a session that ends in a fault.
+  // Passes on the newest state, for the autosave of a session that ends in a fault.
   if (published_change_ != change_) publish_scene();
 }
 
-void HapticSide::do_commands() {
+void HapticSide::run_commands() {
   while (lent_.session != nullptr && exchange_->commands.pop(command_)) {
-    if (!do_command()) return;
+    if (!run_command()) return;
   }
 }
 
-// False when the session is on loan now.
-bool HapticSide::do_command() {
-  if (auto* asked = std::get_if<AskedRequest>(&command_)) {
-    if (concerns_the_main_thread_alone(asked->request)) {
-      record(std::move(asked->json));
-    } else if (rebuilds(*lent_.session, asked->request)) {
+// Runs command_. Returns false if the session is on loan afterwards.
+bool HapticSide::run_command() {
+  if (auto* queued = std::get_if<QueuedRequest>(&command_)) {
+    if (is_main_thread_request(queued->request)) {
+      record(std::move(queued->json));
+    } else if (needs_rebuild(*lent_.session, queued->request)) {
       lend();
       return false;
     } else {
-      apply_now(*asked);
+      apply_now(*queued);
     }
-  } else if (auto* work = std::get_if<AskedWork>(&command_)) {
-    if (work->ends_recording) end_recording();
+  } else if (auto* job = std::get_if<QueuedJob>(&command_)) {
+    if (job->ends_recording) end_recording();
     lend();
     return false;
-  } else if (const auto* scene = std::get_if<AskedScene>(&command_)) {
+  } else if (const auto* scene = std::get_if<SceneRequest>(&command_)) {
     request_ = scene->request;
     publish_scene();
   } else if (std::holds_alternative<EndRecording>(command_)) {
@@ -107,44 +160,44 @@ void HapticSide::lend() {
 }
 
 void HapticSide::take_back_if_done() {
-  bool done = false;
-  if (!worker_->take_back(lent_, command_, done)) return;
-  if (lent_.begun_anew) {
+  bool is_done = false;
+  if (!worker_->take_back(lent_, command_, is_done)) return;
+  if (lent_.is_new_session) {
     ++session_count_;
     safe_device_.set_workspace_radius(lent_.session->device.workspace_radius_m);
-    lent_.begun_anew = false;
+    lent_.is_new_session = false;
   }
-  if (lent_.other_document) {
+  if (lent_.is_other_document) {
     ++document_count_;
-    // A virtual handle's workspace moves along to the body that is shaped now.
+    // The workspace of a virtual handle moves to the new body.
     if (lent_.session->device.workspace_follows_model) {
       const Box box = bounding_box(lent_.session->simulation.surface().net);
       safe_device_.set_workspace_centre(box.centre());
     }
-    lent_.other_document = false;
+    lent_.is_other_document = false;
   }
-  if (lent_.recording != nullptr) begin_recording(std::move(lent_.recording));
-  if (auto* asked = std::get_if<AskedRequest>(&command_); asked != nullptr && done) {
-    record(std::move(asked->json));
-    note_change();
+  if (lent_.recording != nullptr) start_recording(std::move(lent_.recording));
+  if (auto* queued = std::get_if<QueuedRequest>(&command_); queued != nullptr && is_done) {
+    record(std::move(queued->json));
+    count_edit();
   }
-  if (std::holds_alternative<AskedWork>(command_)) answer_work(done);
+  if (std::holds_alternative<QueuedJob>(command_)) report_job(is_done);
   safe_device_.request_proxy_reset();
 }
 
-void HapticSide::answer_work(bool done) {
-  const std::uint64_t bit = std::uint64_t{1} << (works_++ % 64);
-  failed_works_ = done ? failed_works_ & ~bit : failed_works_ | bit;
+void HapticSide::report_job(bool is_done) {
+  const std::uint64_t bit = std::uint64_t{1} << (completed_jobs_++ % 64);
+  failed_jobs_ = is_done ? failed_jobs_ & ~bit : failed_jobs_ | bit;
 }
 
-void HapticSide::apply_now(AskedRequest& asked) {
+void HapticSide::apply_now(QueuedRequest& queued) {
   const bool does_nothing =
-      std::holds_alternative<CancelStroke>(asked.request) && !lent_.session->history.in_stroke();
+      std::holds_alternative<CancelStroke>(queued.request) && !lent_.session->history.in_stroke();
   if (does_nothing) return;
-  const Status applied = apply_request(*lent_.session, asked.request);
+  const Status applied = apply_request(*lent_.session, queued.request);
   if (!applied) return;
-  record(std::move(asked.json));
-  note_change();
+  record(std::move(queued.json));
+  count_edit();
 }
 
 void HapticSide::record(Json&& command) {
@@ -156,11 +209,11 @@ void HapticSide::reset_proxy() {
   if (recording_) push(RecordedReset{});
 }
 
-void HapticSide::begin_recording(std::unique_ptr<RecordingWriter> recording) {
+void HapticSide::start_recording(std::unique_ptr<RecordingWriter> recording) {
   recording_ = true;
   recorded_ticks_ = 0;
   state_recorded_ = false;
-  push(RecordingBegun{std::move(recording)});
+  push(RecordingStart{std::move(recording)});
   record_state_when_due();
 }
 
@@ -178,7 +231,7 @@ void HapticSide::record_state_when_due() {
 
 void HapticSide::push(JournalEntry&& entry) {
   if (journal_->push(std::move(entry)) || !recording_) return;
-  // What is lost cannot be replayed: the recording ends where the disk could not follow.
+  // A recording with a gap cannot be replayed, so it ends at the last entry that fitted.
   recording_ = false;
   exchange_->recordings_lost.fetch_add(1, std::memory_order_relaxed);
 }
@@ -193,16 +246,16 @@ void HapticSide::advance_session(const DeviceReading& reading, std::uint64_t dro
   const TickResult result = advance(*lent_.session, reading);
   const Vector3 force_n = safe_device_.give(result.force_n, dropped);
   exchange_->forces.push(ForceSample{static_cast<float>(force_n.norm())});
-  if (result.touching) note_change();
+  if (result.touching) count_edit();
 }
 
-void HapticSide::note_change() {
+void HapticSide::count_edit() {
   ticks_since_change_ = 0;
-  ++deed_;
+  ++edit_count_;
 }
 
 void HapticSide::publish(std::uint64_t index) {
-  if (ticks_since_change_ < settling_ticks) {
+  if (ticks_since_change_ < after_motion_ticks) {
     ++ticks_since_change_;
     ++change_;
   }
@@ -215,10 +268,10 @@ void HapticSide::publish(std::uint64_t index) {
   frame.safety_flags = safe_device_.flags();
   frame.recording = recording_;
   frame.session = session_count_;
-  frame.deed = deed_;
+  frame.edit_count = edit_count_;
   frame.document = document_count_;
-  frame.works = works_;
-  frame.failed_works = failed_works_;
+  frame.completed_jobs = completed_jobs_;
+  frame.failed_jobs = failed_jobs_;
   exchange_->frames.publish();
 }
 
@@ -230,7 +283,7 @@ void HapticSide::publish_scene() {
   lent_.session->simulation.write_scene(scene.scene);
   scene.document = document_count_;
   scene.change = change_;
-  scene.deed = deed_;
+  scene.edit_count = edit_count_;
   scene.request = request_;
   journal_->publish_scene();
 }

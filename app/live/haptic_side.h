@@ -1,31 +1,110 @@
-// Everything that the haptic thread owns while a live session runs, and what it does each tick: read the
-// device, do what was asked, advance the session, give the device its force, hand over what others need.
+// The haptic thread's part of a live session. Each tick it reads the device, applies commands, advances the
+// session, sends the force to the device and passes data to the other threads.
 //
-//   main thread --commands--> [ haptic thread, device ] --frames, forces--> main thread
-//                                        |        ^
-//                        entries, scenes v        | a session on loan, and back
-//                                     journal   worker
+//  main thread --commands--> [ haptic thread, device ] --frames, forces--> main thread
+//                                       |        ^
+//                       entries, scenes v        | a session on loan, and back
+//                                    journal   worker
 //
-// tick() neither waits nor reads a clock. It allocates only in the first frames after a session was built
-// anew, when the sizes of snapshots change.
+// tick() does not wait or read a clock. It allocates only in the first frames of a new session, when the
+// sizes of snapshots change.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <semaphore>
+#include <string>
+#include <thread>
+#include <variant>
 
 #include "app/live/journal.h"
-#include "app/live/live_command.h"
-#include "app/live/live_frame.h"
-#include "app/live/session_worker.h"
+#include "app/session/session.h"
 #include "engine/base/assert.h"
-#include "haptic/haptic_loop.h"
+#include "engine/simulation/snapshot.h"
 #include "haptic/lock_free.h"
+#include "haptic/haptic_loop.h"
+#include "haptic/recording.h"
 #include "haptic/safe_device.h"
 
 namespace spoonbill {
 
-// Where the drawing thread and the haptic one meet. Made before the thread and outlives it.
+// A session on loan to the worker, with the results of the job.
+struct LentSession {
+  std::unique_ptr<Session> session;
+  bool is_new_session = false;                 // replaced by a new session
+  bool is_other_document = false;              // the new session shows another document
+  std::unique_ptr<RecordingWriter> recording;  // starts with the session's next tick
+};
+
+// A job that may take long. It runs on the worker's thread while the haptic thread ticks its device without
+// force. An error leaves the session unchanged.
+using SessionJob = std::function<Status(LentSession&)>;
+
+// A request with its JSON, which the main thread makes so that the haptic thread need not allocate.
+struct QueuedRequest {
+  Request request;
+  Json json;
+};
+struct QueuedJob {
+  SessionJob job;
+  bool ends_recording = false;
+};
+struct SceneRequest {
+  std::uint64_t request = 0;
+};
+struct EndRecording {};
+
+using LiveCommand = std::variant<std::monostate, QueuedRequest, QueuedJob, SceneRequest, EndRecording>;
+
+// One tick of a live session for the thread that draws. Plain data.
+struct LiveFrame {
+  Snapshot snapshot;
+  SessionFacts facts;
+  std::uint32_t safety_flags = 0;  // SafetyFlag bits of the last tick
+  bool recording = false;
+  std::uint64_t session = 0;         // number of sessions opened or restarted so far
+  std::uint64_t edit_count = 0;      // number of touched ticks and commands so far: edits worth saving
+  std::uint64_t document = 0;        // number of documents opened so far
+  std::uint64_t completed_jobs = 0;  // number of completed jobs: open, start recording
+  std::uint64_t failed_jobs = 0;     // bit n % 64: job n failed, counted from 0
+};
+
+// Force on the device at one tick, for a plot.
+struct ForceSample {
+  float force_n = 0.0F;
+};
+
+// Runs jobs that take milliseconds and allocate, on a thread that may wait, while the haptic thread
+// continues. Has at most one session at a time.
+class SessionWorker {
+ public:
+  // The notices must outlive the worker. An error of a job becomes a notice.
+  explicit SessionWorker(Notices& notices);
+  ~SessionWorker();  // finishes the current job first
+
+  // Called by the haptic thread; they do not wait or allocate. After lend(), no other lend() until
+  // take_back() has returned true, once per loan. `job` is the command, `is_done` is true if it succeeded.
+  void lend(LentSession lent, LiveCommand job);
+  bool take_back(LentSession& lent, LiveCommand& job, bool& is_done);
+
+ private:
+  void run();
+
+  Notices* notices_;
+  LentSession lent_;
+  LiveCommand job_;
+  bool is_done_ = false;
+  std::atomic<bool> finished_{false};
+  std::atomic<bool> stopping_{false};
+  std::counting_semaphore<2> pending_{0};  // released for a loan and for the stop
+  std::thread thread_;
+};
+
+// Queues and buffers between the main thread and the haptic thread. Made before the thread and outlives it.
 struct LiveExchange {
   static constexpr std::size_t command_capacity = 256;
   static constexpr std::size_t force_capacity = 4096;
@@ -36,69 +115,71 @@ struct LiveExchange {
 
   BoundedQueue<LiveCommand> commands;             // main -> haptic
   TripleBuffer<LiveFrame> frames;                 // haptic -> main
-  BoundedQueue<ForceSample> forces;               // haptic -> main; those that find no room are not plotted
-  std::atomic<std::uint64_t> recordings_lost{0};  // ended because the disk could not follow
-  BoundedQueue<std::optional<FailedAssertion>>
-      failures;  // haptic -> main: the first of each row of failed ticks
+  BoundedQueue<ForceSample> forces;               // haptic -> main; dropped when full
+  std::atomic<std::uint64_t> recordings_lost{0};  // recordings that ended because the disk was too slow
+  // haptic -> main: the first failure of each series of failed ticks.
+  BoundedQueue<std::optional<FailedAssertion>> failures;
 };
 
+// State and functions of the haptic thread.
 class HapticSide {
  public:
-  // Exchange, journal and worker must outlive it. The device's workspace is centred on the session's reading.
+  // Exchange, journal and worker must outlive the object. The device's workspace is centred on the session's
+  // reading.
   HapticSide(std::unique_ptr<Session> session, std::unique_ptr<Device> device, LiveExchange& exchange,
              Journal& journal, SessionWorker& worker);
 
-  // By the haptic thread alone, once a period. A failed assert gives up this tick: the hand gets no force,
-  // what was left to do is skipped, the frame that follows bears tick_flag_failed, and a recording ends, as
-  // its replay would not know where the tick broke off.
+  // Called by the haptic thread, once per period. A failed assertion abandons the tick: the device gets no
+  // force and the next frame has tick_flag_failed. A recording ends, because its replay could not stop at the
+  // same point.
   void tick(const LoopTick& tick) noexcept;
 
-  // When the thread has stopped: leaves the device without force, ends a recording as stop_recording does,
-  // and hands the journal the last changes.
+  // Called after the thread has stopped: leaves the device without force, ends a recording as
+  // stop_recording() does, and passes the last changes to the journal.
   void close();
 
   const Session* session() const { return lent_.session.get(); }
 
  private:
   void run_tick(const LoopTick& tick);
-  void give_up_tick(const FailedAssertion& failure, std::uint64_t dropped);
-  void do_commands();
-  bool do_command();
+  void abandon_tick(const FailedAssertion& failure, std::uint64_t dropped);
+  void run_commands();
+  bool run_command();
   void lend();
   void take_back_if_done();
-  void answer_work(bool done);
-  void apply_now(AskedRequest& asked);
+  void report_job(bool is_done);
+  void apply_now(QueuedRequest& queued);
   void record(Json&& command);
   void reset_proxy();
-  void begin_recording(std::unique_ptr<RecordingWriter> recording);
+  void start_recording(std::unique_ptr<RecordingWriter> recording);
   void end_recording();
   void record_state_when_due();
   void push(JournalEntry&& entry);
   void advance_session(const DeviceReading& reading, std::uint64_t dropped);
-  void note_change();
+  void count_edit();
   void publish(std::uint64_t index);
   void publish_scene();
 
-  LentSession lent_;  // its session is null while the worker has it
+  LentSession lent_;  // the session is null while the worker has it
   std::unique_ptr<Device> device_;
-  SafeDevice safe_device_;  // the device, for all that reads it or gives it a force
+  SafeDevice safe_device_;  // the only access to the device
 
   LiveExchange* exchange_;
   Journal* journal_;
   SessionWorker* worker_;
-  LiveCommand command_;  // the one that is being done
+  LiveCommand command_;  // the command in progress
 
   bool last_tick_failed_ = false;
   bool recording_ = false;
   std::uint64_t recorded_ticks_ = 0;
-  bool state_recorded_ = false;  // of recorded_ticks_
+  bool state_recorded_ = false;  // at recorded_ticks_
 
   std::uint64_t session_count_ = 0;
   std::uint64_t document_count_ = 0;
-  std::uint64_t works_ = 0;
-  std::uint64_t failed_works_ = 0;
+  std::uint64_t completed_jobs_ = 0;
+  std::uint64_t failed_jobs_ = 0;
   std::uint64_t change_ = 0;
-  std::uint64_t deed_ = 0;
+  std::uint64_t edit_count_ = 0;
   std::uint64_t request_ = 0;
   int ticks_since_change_ = 0;
   int ticks_since_scene_ = 0;

@@ -2,12 +2,49 @@
 
 #include <chrono>
 #include <exception>
+#include <string>
 #include <utility>
 
+#include "app/files/conversion.h"
+
 namespace spoonbill {
+
+Exporter::~Exporter() {
+  stopping_.store(true);
+  if (thread_.joinable()) thread_.join();
+}
+
+bool Exporter::has_export_extension(const std::filesystem::path& file) {
+  return is_exported_to(file);
+}
+
+const char* Exporter::extensions_text() {
+  return ".step, .iges, .stl, .obj, .ply or .3mf";
+}
+
+void Exporter::begin(std::vector<Body> bodies, std::filesystem::path file) {
+  if (busy_.exchange(true)) {
+    return notices_->add(Notice::Kind::problem, "not exported: another export is still running");
+  }
+  if (thread_.joinable()) thread_.join();
+  thread_ = std::thread([this, bodies = std::move(bodies), file = std::move(file)]() mutable {
+    run(std::move(bodies), file);
+    busy_.store(false);
+  });
+}
+
+void Exporter::run(std::vector<Body> bodies, const std::filesystem::path& file) {
+  const auto report =
+      export_bodies(std::move(bodies), file, Progress([this](double) { return !stopping_.load(); }));
+  if (!report) return notices_->add(Notice::Kind::problem, "not exported: " + report.error().message);
+  notices_->add(Notice::Kind::information,
+                "exported " + file.filename().string() + ", in " + report->unit_out);
+  for (const std::string& note : report->notes) notices_->add(Notice::Kind::information, note);
+}
+
 namespace {
 
-constexpr std::chrono::milliseconds pause_between_looks{5};
+constexpr std::chrono::milliseconds poll_interval{5};
 
 }  // namespace
 
@@ -37,12 +74,12 @@ void Journal::set_autosave(std::optional<Autosave> autosave) {
   ++autosave_count_;
 }
 
-void Journal::save(AskedSave save) {
+void Journal::save(SaveRequest save) {
   const std::lock_guard lock(mutex_);
   save_ = std::move(save);
 }
 
-std::optional<SavedDocument> Journal::take_saved() {
+std::optional<SavedDocument> Journal::consume_saved_document() {
   const std::lock_guard lock(mutex_);
   return std::exchange(saved_, std::nullopt);
 }
@@ -51,39 +88,39 @@ void Journal::run() {
   while (true) {
     const bool stopping = stopping_.load(std::memory_order_acquire);
     try {
-      while (work()) {
+      while (process_pending()) {
       }
     } catch (const std::exception& exception) {
-      // For want of memory above all: the thread must live on, to save what can be saved later.
-      give_up_recording(Error{exception.what()});
+      // Mostly a lack of memory: the thread must survive, so that later documents can be saved.
+      abandon_recording(Error{ErrorCode::internal, exception.what()});
     }
     if (stopping) return;
-    std::this_thread::sleep_for(pause_between_looks);
+    std::this_thread::sleep_for(poll_interval);
   }
 }
 
-bool Journal::work() {
+bool Journal::process_pending() {
   JournalEntry entry;
-  bool did = false;
+  bool worked = false;
   for (int i = 0; i < 1000 && entries_.pop(entry); ++i) {
     write(entry);
-    entry = std::monostate{};  // freed here: the queue hands it back to the haptic thread
-    did = true;
+    entry = std::monostate{};  // freed here, because the queue returns the slot to the haptic thread
+    worked = true;
   }
-  if (!scenes_.take()) return did;
-  keep(scenes_.reading());
+  if (!scenes_.take()) return worked;
+  store(scenes_.reading());
   return true;
 }
 
 void Journal::write(JournalEntry& entry) {
-  if (auto* begun = std::get_if<RecordingBegun>(&entry)) {
-    recording_ = std::move(begun->recording);
-    last_is_whole_ = false;
-    gave_up_.store(false, std::memory_order_release);
+  if (auto* start = std::get_if<RecordingStart>(&entry)) {
+    recording_ = std::move(start->recording);
+    is_last_complete_ = false;
+    recording_failed_.store(false, std::memory_order_release);
     return;
   }
   if (recording_ == nullptr) return;
-  if (Status written = write_to_recording(entry); !written) give_up_recording(written.error());
+  if (Status written = write_to_recording(entry); !written) abandon_recording(written.error());
 }
 
 Status Journal::write_to_recording(JournalEntry& entry) {
@@ -98,42 +135,42 @@ Status Journal::write_to_recording(JournalEntry& entry) {
   if (!state->last) return writer.checkpoint(state->state_hash);
   const std::uint64_t ticks = writer.tick();
   if (Status finished = writer.finish(state->state_hash); !finished) return finished;
-  if (Status placed = writer.commit(); !placed) return placed;
+  if (Status published = writer.commit(); !published) return published;
   notices_->add(Notice::Kind::information, "recorded " + std::to_string(ticks / 1000) + " s");
   recording_.reset();
-  last_is_whole_ = true;
+  is_last_complete_ = true;
   return {};
 }
 
-void Journal::give_up_recording(const Error& error) {
+void Journal::abandon_recording(const Error& error) {
   const bool recorded = recording_ != nullptr;
   recording_.reset();
   notices_->add(Notice::Kind::problem,
                 (recorded ? "the recording has ended: " : "not saved: ") + error.message);
-  gave_up_.store(true, std::memory_order_release);
+  recording_failed_.store(true, std::memory_order_release);
 }
 
-void Journal::keep(const LiveScene& scene) {
-  std::optional<AskedSave> save;
+void Journal::store(const LiveScene& scene) {
+  std::optional<SaveRequest> save;
   {
     const std::lock_guard lock(mutex_);
     if (save_ && save_->request <= scene.request) save = std::exchange(save_, std::nullopt);
   }
   if (!save) return autosave(scene);
   if (save->document != scene.document) {
-    return notices_->add(Notice::Kind::problem, "not saved: another document was opened meanwhile");
+    return notices_->add(Notice::Kind::problem, "not saved: another document was opened in the meantime");
   }
-  if (Exporter::writes(save->file)) return exporter_.begin(scene.scene.bodies, save->file);
-  const Status written = write_document(document_of(scene), save->file);
+  if (Exporter::has_export_extension(save->file)) return exporter_.begin(scene.scene.bodies, save->file);
+  const Status written = write_document(make_document(scene), save->file);
   if (!written) return notices_->add(Notice::Kind::problem, "not saved: " + written.error().message);
   notices_->add(Notice::Kind::information, "saved " + save->file.filename().string());
   const std::lock_guard lock(mutex_);
-  saved_ = SavedDocument{save->file, scene.document, scene.deed};
-  settled_change_ = scene.change;
+  saved_ = SavedDocument{save->file, scene.document, scene.edit_count};
+  saved_change_ = scene.change;
   if (autosave_) autosave_->remove();
 }
 
-Document Journal::document_of(const LiveScene& scene) {
+Document Journal::make_document(const LiveScene& scene) {
   const std::lock_guard lock(mutex_);
   return {scene.title, scene.scene, view_};
 }
@@ -144,19 +181,19 @@ bool Journal::was_superseded(std::uint64_t autosave_count) {
 }
 
 void Journal::autosave(const LiveScene& scene) {
-  std::optional<Autosave> place;
+  std::optional<Autosave> target;
   std::uint64_t count = 0;
   {
     const std::lock_guard lock(mutex_);
-    if (scene.change <= settled_change_) return;
-    place = autosave_;
+    if (scene.change <= saved_change_) return;
+    target = autosave_;
     count = autosave_count_;
   }
-  if (!place || scene.change == autosaved_change_) return;
-  const Status written = place->write(document_of(scene));
-  if (was_superseded(count)) return place->remove();  // while it was being written
+  if (!target || scene.change == autosaved_change_) return;
+  const Status written = target->write(make_document(scene));
+  if (was_superseded(count)) return target->remove();  // replaced during the write
   if (written) autosaved_change_ = scene.change;
-  // Once is enough: a full disk would fill the panel with the same line.
+  // One notice is enough, because every later autosave fails in the same way.
   if (!written && !autosave_failed_) {
     notices_->add(Notice::Kind::problem, "not autosaved: " + written.error().message);
   }

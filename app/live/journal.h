@@ -1,5 +1,5 @@
-// The journal: writes what the haptic thread hands over, on a thread that may wait for the disk. Recordings
-// as they happen, documents when they are asked for, and an autosave at most a second behind the hand.
+// The journal of a live session: writes recordings, documents and autosaves on a thread that
+// may wait for the disk. With it, the notices to the user and the exporter to foreign formats.
 #pragma once
 
 #include <atomic>
@@ -7,20 +7,73 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "app/live/autosave.h"
-#include "app/live/exporter.h"
-#include "app/live/live_frame.h"
-#include "app/live/notices.h"
+#include "engine/scene/scene.h"
 #include "haptic/lock_free.h"
 #include "haptic/recording.h"
 
 namespace spoonbill {
 
-// What happened, in its order. A command that was not recorded travels here too, to be freed.
-struct RecordingBegun {
+// A one-line message to the user.
+struct Notice {
+  enum class Kind { information, problem };
+  Kind kind = Kind::information;
+  std::string text;
+};
+
+// Messages from the threads that may wait; the haptic thread never adds one. Thread-safe.
+class Notices {
+ public:
+  void add(Notice::Kind kind, std::string text) {
+    const std::lock_guard lock(mutex_);
+    all_.push_back({kind, std::move(text)});
+  }
+
+  // Returns the messages since the last call.
+  std::vector<Notice> consume() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(all_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Notice> all_;
+};
+
+// Writes bodies as CAD files and meshes on its own thread, so that neither autosaving nor drawing waits for
+// it. One owner; one thread calls begin().
+class Exporter {
+ public:
+  // The notices must outlive the exporter.
+  explicit Exporter(Notices& notices) : notices_(&notices) {}
+  ~Exporter();  // cancels an export; an older file of that name remains
+  Exporter(const Exporter&) = delete;
+  Exporter& operator=(const Exporter&) = delete;
+
+  // Returns true if the file name has the extension of an export format.
+  static bool has_export_extension(const std::filesystem::path& file);
+  static const char* extensions_text();
+
+  // Starts an export. A notice reports its end or its error, also if another export is still running.
+  void begin(std::vector<Body> bodies, std::filesystem::path file);
+
+ private:
+  void run(std::vector<Body> bodies, const std::filesystem::path& file);
+
+  Notices* notices_;
+  std::atomic<bool> busy_{false}, stopping_{false};
+  std::thread thread_;
+};
+
+// Entries of a recording, in order. Commands that are not recorded are also passed, to be freed outside the
+// haptic thread.
+struct RecordingStart {
   std::unique_ptr<RecordingWriter> recording;
 };
 struct RecordedReading {
@@ -30,68 +83,80 @@ struct RecordedCommand {
   Json command;
   bool recorded = true;
 };
-struct RecordedReset {};  // of the proxy, after a pause
+struct RecordedReset {};  // reset of the proxy after a pause
 struct RecordedState {
   std::uint64_t state_hash = 0;
-  bool last = false;  // the recording ends with it
+  bool last = false;  // ends the recording
 };
-using JournalEntry = std::variant<std::monostate, RecordingBegun, RecordedReading, RecordedCommand,
+using JournalEntry = std::variant<std::monostate, RecordingStart, RecordedReading, RecordedCommand,
                                   RecordedReset, RecordedState>;
+
+// A document's scene at one tick, passed from the haptic thread to be saved.
+struct LiveScene {
+  std::string title;
+  Scene scene;
+  std::uint64_t document = 0;    // as in LiveFrame
+  std::uint64_t change = 0;      // counts all changes of the scene, including motion after a touch
+  std::uint64_t edit_count = 0;  // as in LiveFrame
+  std::uint64_t request = 0;     // number of the last save request before this scene was written
+};
 
 // A document that was saved.
 struct SavedDocument {
   std::filesystem::path file;
   std::uint64_t document = 0;  // as in LiveFrame
-  std::uint64_t deed = 0;
+  std::uint64_t edit_count = 0;
 };
 
-struct AskedSave {
+// A request to save or export the document that is shown.
+struct SaveRequest {
   std::uint64_t request = 0;
-  std::uint64_t document = 0;  // that was to be seen when it was asked for
+  std::uint64_t document = 0;  // the document shown at the time of the request
   std::filesystem::path file;
 };
 
+// Writer of one live session. Its autosave is at most a second older than the simulation.
 class Journal {
  public:
-  // How many ticks the disk may keep us waiting before a recording is given up.
+  // Number of entries that may wait for the disk before a recording is abandoned, about one per tick.
   static constexpr std::size_t entry_capacity = 16384;
 
-  // The notices must outlive the journal. `first` gives the scenes' sizes.
+  // The notices must outlive the journal. `first` sets the sizes of the scenes.
   Journal(Notices& notices, const LiveScene& first);
   ~Journal();
 
-  // Writes what was handed over and ends the thread; a recording that goes on is left without its end. By the
-  // thread that made the journal, when no more is handed over.
+  // Writes all pending entries and ends the thread; an unfinished recording remains without its end. Called
+  // by the thread that made the journal, after the last push().
   void stop();
-  // After stop(): whether the last recording got its end and its place.
-  bool last_recording_is_whole() const { return last_is_whole_; }
+  // After stop(): true if the last recording was written to its end and published.
+  bool is_last_recording_complete() const { return is_last_complete_; }
 
-  // By the haptic thread: neither waits nor allocates. False when full.
+  // Called by the haptic thread: does not wait or allocate. Returns false when the queue is full.
   bool push(JournalEntry&& entry) { return entries_.push(std::move(entry)); }
-  // The slot to write a scene into, and the word that it is whole.
+  // The slot for the next scene, and its publication once it is complete. Called by the haptic thread.
   LiveScene& scene() { return scenes_.writing(); }
   void publish_scene() { scenes_.publish(); }
-  // Whether a recording was given up since the last call.
-  bool take_gave_up() { return gave_up_.exchange(false, std::memory_order_acq_rel); }
+  // Returns true if a recording was abandoned since the last call.
+  bool consume_recording_failure() { return recording_failed_.exchange(false, std::memory_order_acq_rel); }
 
-  // By the program's main thread. How the next documents are looked at.
+  // Sets the view that is saved with documents. Called by the main thread, as are the functions below.
   void set_view(Json view);
-  // Where unsaved work goes from now on; nothing for nowhere. The one before is removed.
+  // Sets the autosave; nothing disables it. The previous file is removed.
   void set_autosave(std::optional<Autosave> autosave);
-  // Writes the scene that answers this request, or a newer one of the same document, to the file. Where its
-  // ending is one that the exporter writes, it is exported, which saves nothing.
-  void save(AskedSave save);
-  // The last document that was saved since the last call.
-  std::optional<SavedDocument> take_saved();
+  // Saves the scene that answers this request, or a newer one of the same document. A file with the extension
+  // of an export format is exported, which does not count as saving.
+  void save(SaveRequest save);
+  // Returns the last document that was saved since the last call.
+  std::optional<SavedDocument> consume_saved_document();
 
  private:
   void run();
-  bool work();
+  bool process_pending();
   void write(JournalEntry& entry);
   Status write_to_recording(JournalEntry& entry);
-  void give_up_recording(const Error& error);
-  void keep(const LiveScene& scene);
-  Document document_of(const LiveScene& scene);
+  void abandon_recording(const Error& error);
+  void store(const LiveScene& scene);
+  Document make_document(const LiveScene& scene);
   void autosave(const LiveScene& scene);
   bool was_superseded(std::uint64_t autosave_count);
 
@@ -100,20 +165,20 @@ class Journal {
   BoundedQueue<JournalEntry> entries_;
   TripleBuffer<LiveScene> scenes_;
 
-  std::mutex mutex_;  // for the six below, which the main thread sets
+  std::mutex mutex_;  // guards the six members below
   Json view_ = Json::object();
   std::optional<Autosave> autosave_;
-  std::optional<AskedSave> save_;
+  std::optional<SaveRequest> save_;
   std::optional<SavedDocument> saved_;
-  std::uint64_t autosave_count_ = 0;  // of the places that were set
-  std::uint64_t settled_change_ = 0;  // in the file, or as it was opened: need not be autosaved
+  std::uint64_t autosave_count_ = 0;  // number of set_autosave() calls
+  std::uint64_t saved_change_ = 0;    // last change that is already in the file
 
-  std::unique_ptr<RecordingWriter> recording_;  // the journal's thread only, as all below
+  std::unique_ptr<RecordingWriter> recording_;  // used by the journal's thread only, as the members below
   std::uint64_t autosaved_change_ = 0;
   bool autosave_failed_ = false;
-  bool last_is_whole_ = false;
+  bool is_last_complete_ = false;
 
-  std::atomic<bool> gave_up_{false};
+  std::atomic<bool> recording_failed_{false};
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };

@@ -8,8 +8,8 @@
 namespace spoonbill {
 namespace {
 
-// A virtual handle reaches as far as the body needs.
-DeviceSpecification fitted(DeviceSpecification device, const Surface& surface) {
+// Returns the device with a workspace that contains the body, if it is a virtual handle.
+DeviceSpecification with_fitted_workspace(DeviceSpecification device, const Surface& surface) {
   if (!device.workspace_follows_model) return device;
   const Box box = bounding_box(surface.net);
   const double reach = box.size();
@@ -19,28 +19,29 @@ DeviceSpecification fitted(DeviceSpecification device, const Surface& surface) {
 
 Result<std::unique_ptr<Session>> make_session(const Document& document, const std::string& source,
                                               const DeviceSpecification& device, InstructionSet set) {
-  auto session = Session::make(document, source, fitted(device, document.scene.bodies[0].surface), set);
+  auto session =
+      Session::make(document, source, with_fitted_workspace(device, document.scene.bodies[0].surface), set);
   if (!session) return session.error();
   return std::make_unique<Session>(std::move(session).value());
 }
 
-// The session anew, from the shape it has.
-Status begin_anew(LentSession& lent, const DeviceSpecification& device, InstructionSet set) {
-  auto session = make_session(document_of(*lent.session), "the present shape", device, set);
+// Restarts the session from its current shape.
+Status restart_session(LentSession& lent, const DeviceSpecification& device, InstructionSet set) {
+  auto session = make_session(make_session_document(*lent.session), "the current shape", device, set);
   if (!session) return session.error();
   session.value()->reading = lent.session->reading;
   lent.session = std::move(session).value();
-  lent.begun_anew = true;
+  lent.is_new_session = true;
   return {};
 }
 
-Status begin_recording(LentSession& lent, const std::filesystem::path& file, const ViewChoice& view,
-                       const DeviceSpecification& device, InstructionSet set) {
+Status restart_and_record(LentSession& lent, const std::filesystem::path& file, const ViewChoice& view,
+                          const DeviceSpecification& device, InstructionSet set) {
   lent.session->view = view;
-  const RecordingHeader header{lent.session->device, document_of(*lent.session)};
+  const RecordingHeader header{lent.session->device, make_session_document(*lent.session)};
   auto recording = RecordingWriter::create(file, header);
   if (!recording) return recording.error();
-  if (Status anew = begin_anew(lent, device, set); !anew) return anew;
+  if (Status restarted = restart_session(lent, device, set); !restarted) return restarted;
   lent.recording = std::make_unique<RecordingWriter>(std::move(recording).value());
   return {};
 }
@@ -54,7 +55,8 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
   const DeviceSpecification& specification = device->specification();
   if (Status checked = check_specification(specification); !checked) return checked.error();
   const std::optional<DeviceReading> reading = device->read();
-  if (!reading || !reading->is_valid()) return Error{"device " + specification.name + ": does not answer"};
+  if (!reading || !reading->is_valid())
+    return Error{ErrorCode::unreadable, "device " + specification.name + ": does not answer"};
   auto session = make_session(document, source, specification, settings.instruction_set);
   if (!session) return session.error();
   Session& made = *session.value();
@@ -62,8 +64,8 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
   LiveFrame first;
   write_snapshot(made, first.snapshot);
   write_facts(made, first.facts);
-  const std::vector<std::string> remarks = made.simulation.remarks();
-  const LiveScene first_scene{made.title, document_of(made).scene};
+  const std::vector<std::string> notes = made.simulation.remarks();
+  const LiveScene first_scene{made.title, make_session_document(made).scene};
   std::unique_ptr<LiveSession> live(
       new LiveSession(std::move(session).value(), std::move(device), settings, first, first_scene));
   LoopSettings loop_settings;
@@ -75,7 +77,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
   if (const std::string notice = live->loop_->figures().notice; !notice.empty()) {
     live->notices_.add(Notice::Kind::information, notice);
   }
-  for (const std::string& remark : remarks) live->notices_.add(Notice::Kind::problem, remark);
+  for (const std::string& note : notes) live->notices_.add(Notice::Kind::problem, note);
   return live;
 }
 
@@ -109,18 +111,18 @@ bool LiveSession::send(LiveCommand command) {
 
 bool LiveSession::ask(Request request) {
   Json json = request_to_json(request);
-  return send(AskedRequest{std::move(request), std::move(json)});
+  return send(QueuedRequest{std::move(request), std::move(json)});
 }
 
 bool LiveSession::open(Document document, std::string source) {
   const InstructionSet set = settings_.instruction_set;
-  return send(AskedWork{
+  return send(QueuedJob{
       [document = std::move(document), source = std::move(source), device = device_, set](LentSession& lent) {
         auto session = make_session(document, source, device, set);
         if (!session) return Status(session.error());
         lent.session = std::move(session).value();
-        lent.begun_anew = true;
-        lent.other_document = true;
+        lent.is_new_session = true;
+        lent.is_other_document = true;
         return Status();
       },
       true});
@@ -128,8 +130,8 @@ bool LiveSession::open(Document document, std::string source) {
 
 bool LiveSession::start_recording(std::filesystem::path file, const ViewChoice& view) {
   const InstructionSet set = settings_.instruction_set;
-  return send(AskedWork{[file = std::move(file), view, device = device_, set](LentSession& lent) {
-                          return begin_recording(lent, file, view, device, set);
+  return send(QueuedJob{[file = std::move(file), view, device = device_, set](LentSession& lent) {
+                          return restart_and_record(lent, file, view, device, set);
                         },
                         true});
 }
@@ -141,7 +143,7 @@ bool LiveSession::stop_recording() {
 bool LiveSession::save(std::filesystem::path file) {
   const std::uint64_t request = ++saves_;
   journal_.save({request, last_frame().document, std::move(file)});
-  return send(AskedScene{request});
+  return send(SceneRequest{request});
 }
 
 const LiveFrame& LiveSession::frame() {
@@ -149,13 +151,13 @@ const LiveFrame& LiveSession::frame() {
   return exchange_.frames.reading();
 }
 
-void LiveSession::take_forces(std::vector<float>& forces_n) {
+void LiveSession::consume_forces(std::vector<float>& forces_n) {
   forces_n.clear();
   ForceSample sample;
   while (exchange_.forces.pop(sample)) forces_n.push_back(sample.force_n);
 }
 
-std::vector<Notice> LiveSession::take_notices() {
+std::vector<Notice> LiveSession::consume_notices() {
   const std::uint64_t lost = exchange_.recordings_lost.load(std::memory_order_relaxed);
   if (lost != recordings_lost_) {
     recordings_lost_ = lost;
@@ -165,7 +167,7 @@ std::vector<Notice> LiveSession::take_notices() {
   while (exchange_.failures.pop(failure)) {
     notices_.add(Notice::Kind::problem, std::string(failure->what()) + "; undo the stroke, or save the work");
   }
-  return notices_.take();
+  return notices_.consume();
 }
 
 }  // namespace spoonbill

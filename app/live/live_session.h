@@ -1,5 +1,5 @@
-// A live session: the tick in real time on its own thread, with a journal and a worker beside it, and the
-// main thread's way to all of them.
+// A live session: the tick in real time on its own thread, with a journal and a worker, as the main thread
+// sees it.
 #pragma once
 
 #include <filesystem>
@@ -11,58 +11,59 @@
 
 namespace spoonbill {
 
+// Settings of a live session.
 struct LiveSettings {
   InstructionSet instruction_set = best_instruction_set();
   bool real_time = true;
 };
 
-// One owner, the program's main thread, which makes every call; none of them waits for the haptic thread.
+// Starts, controls and stops the threads of a session. One owner: the main thread, which makes all calls.
+// None of them waits for the haptic thread except stop().
 class LiveSession {
  public:
-  // `source` names the document's file in messages. The device must not be null; it is closed with the
-  // session. Refused: a scene that cannot be simulated, a device that does not answer or whose specification
-  // is out of range, no threads.
+  // Starts a session. `source` names the document's file in messages. The device must not be null and is
+  // closed with the session. Returns an error for a scene that cannot be simulated, a device that does not
+  // respond or whose specification is out of range, and if threads cannot be started.
   static Result<std::unique_ptr<LiveSession>> start(const Document& document, const std::string& source,
                                                     const LiveSettings& settings,
                                                     std::unique_ptr<Device> device);
-  ~LiveSession();  // stops the threads; what was handed over is written
+  ~LiveSession();  // stops the threads after all pending writes
 
-  // Done before the next tick, in the order asked. False when the haptic thread is so far behind that nothing
-  // more can be asked.
+  // Queues a request, which is applied before the next tick, in order. Returns false if the queue is full
+  // because the haptic thread is far behind.
   bool ask(Request request);
 
-  // Another document in place of this one; a recording ends first.
+  // Queues the replacement of the document. A recording ends first.
   bool open(Document document, std::string source);
 
-  // Begins anew from the shape as it is now, at rest, and records from there: that is what makes the
-  // recording whole by itself.
-  // `view` is how the replay looks at its beginning.
+  // Restarts the session from the current shape, at rest, and records from there, so that the recording is
+  // self-contained. `view` is the initial view of its replay.
   bool start_recording(std::filesystem::path file, const ViewChoice& view);
   bool stop_recording();
 
-  // Saves the document of the last frame as it is when the haptic thread hears of it; take_saved() and the
-  // notices tell. Refused there when another one has been opened by then.
+  // Saves the document of the last frame in the state of the next tick. consume_saved_document() and the
+  // notices report the result. Fails if another document was opened in the meantime.
   bool save(std::filesystem::path file);
-  std::optional<SavedDocument> take_saved() { return journal_.take_saved(); }
+  std::optional<SavedDocument> consume_saved_document() { return journal_.consume_saved_document(); }
 
-  // How documents are looked at when they are saved, and where unsaved work goes.
+  // Set the view that is saved with documents, and the autosave of unsaved work.
   void set_view(Json view) { journal_.set_view(std::move(view)); }
   void set_autosave(std::optional<Autosave> autosave);
 
-  // The newest tick there is.
+  // Returns the newest tick.
   const LiveFrame& frame();
-  // The one that frame() gave last; stays as it is until frame() is called again.
+  // Returns the frame of the last call of frame(); it is valid until the next one.
   const LiveFrame& last_frame() const { return exchange_.frames.reading(); }
-  // The forces of the ticks since the last call, oldest first.
-  void take_forces(std::vector<float>& forces_n);
-  std::vector<Notice> take_notices();
+  // Writes the forces of the ticks since the last call, oldest first, in newtons.
+  void consume_forces(std::vector<float>& forces_n);
+  std::vector<Notice> consume_notices();
   LoopFigures figures() const { return loop_->figures(); }
 
-  // Ends the haptic thread and a recording with it, and waits for what is written. Afterwards only the
-  // figures, the notices and the next are of use.
+  // Ends the haptic thread and a recording, and waits until everything is written. Afterwards only figures(),
+  // consume_notices() and is_last_recording_complete() may be called.
   void stop();
-  // Whether the last recording was written to its end.
-  bool last_recording_is_whole() const { return journal_.last_recording_is_whole(); }
+  // Returns true if the last recording was written to its end.
+  bool is_last_recording_complete() const { return journal_.is_last_recording_complete(); }
 
  private:
   LiveSession(std::unique_ptr<Session> session, std::unique_ptr<Device> device, const LiveSettings& settings,

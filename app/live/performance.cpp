@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "app/frames/frame_painter.h"
-#include "app/panel/session_panel.h"
+#include "app/panel/panel.h"
 #include "engine/base/geometry.h"
 #include "haptic/virtual_device.h"
 #include "render/gl/context.h"
@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int width_px = 1280;
 constexpr int height_px = 720;
 constexpr std::chrono::microseconds frame_time{16667};
-constexpr std::chrono::seconds longest_wait{10};
+constexpr std::chrono::seconds wait_limit{10};
 
 class Painting {
  public:
@@ -31,7 +31,8 @@ class Painting {
 
   Status paint(const LiveFrame& frame, const ViewChoice& choice) {
     const ViewSettings view = frame_view(choice, framed_, width_px, height_px);
-    return painter_.paint(frame.snapshot, view, panel_of(frame.facts, frame.snapshot, view), picture_);
+    return painter_.paint(frame.snapshot, view, make_panel_model(frame.facts, frame.snapshot, view),
+                          picture_);
   }
 
  private:
@@ -41,25 +42,27 @@ class Painting {
   Image picture_;
 };
 
-// What is asked of the session is done when a frame shows it.
+// Waits until a frame satisfies `done`. A notice about a problem is an error.
 template <class Done>
 Status wait_until(LiveSession& live, Done done, const char* what) {
-  const auto give_up = Clock::now() + longest_wait;
+  const auto give_up = Clock::now() + wait_limit;
   while (!done(live.frame())) {
-    for (Notice& notice : live.take_notices()) {
-      if (notice.kind == Notice::Kind::problem) return Error{std::move(notice.text)};
+    for (Notice& notice : live.consume_notices()) {
+      if (notice.kind == Notice::Kind::problem) return Error{ErrorCode::unwritable, std::move(notice.text)};
     }
-    if (Clock::now() > give_up) return Error{std::string(what) + " took longer than 10 s"};
+    if (Clock::now() > give_up)
+      return Error{ErrorCode::unavailable, std::string(what) + " took longer than 10 s"};
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return {};
 }
 
-Status ask_due(const Script& script, std::uint64_t tick, std::size_t& next, LiveSession& live) {
+Status send_due_requests(const Script& script, std::uint64_t tick, std::size_t& next, LiveSession& live) {
   for (; next < script.commands.size() && script.commands[next].tick <= tick; ++next) {
     auto request = request_from_json(script.commands[next]);
     if (!request) return request.error();
-    if (!live.ask(std::move(request).value())) return Error{"the haptic thread takes no more commands"};
+    if (!live.ask(std::move(request).value()))
+      return Error{ErrorCode::too_many, "the command queue of the haptic thread is full"};
   }
   return {};
 }
@@ -72,7 +75,7 @@ Status play(const Script& script, LiveSession& live, TargetMailbox& mailbox, Pai
     std::this_thread::sleep_until(at);
     const auto passed = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - begin).count();
     const auto tick = static_cast<std::uint64_t>(passed);
-    if (Status asked = ask_due(script, tick, next, live); !asked) return asked;
+    if (Status sent = send_due_requests(script, tick, next, live); !sent) return sent;
     if (tick >= script.tick_count()) break;
     mailbox.aim(script.target_at(tick));
     const LiveFrame& frame = live.frame();
@@ -96,11 +99,11 @@ Result<PerformanceReport> perform(const Script& script, const Document& document
   auto live = LiveSession::start(document, source, settings.live, std::move(device).value());
   if (!live) return live.error();
   LiveSession& session = *live.value();
-  std::vector<Notice> notices = session.take_notices();
+  std::vector<Notice> notices = session.consume_notices();
   session.start_recording(settings.recording, view.value());
   const auto recording = [](const LiveFrame& frame) { return frame.recording; };
-  Status begun = wait_until(session, recording, "the recording's beginning");
-  if (!begun) return begun.error();
+  Status started = wait_until(session, recording, "starting the recording");
+  if (!started) return started.error();
   std::optional<Painting> painting;
   if (settings.draw) {
     auto made = Painting::make(session.frame());
@@ -113,15 +116,15 @@ Result<PerformanceReport> perform(const Script& script, const Document& document
   if (!played) return played.error();
   session.stop_recording();
   const auto stopped = [](const LiveFrame& frame) { return !frame.recording; };
-  if (Status ended = wait_until(session, stopped, "the recording's end"); !ended) return ended.error();
+  if (Status ended = wait_until(session, stopped, "ending the recording"); !ended) return ended.error();
   session.stop();
   report.loop = session.figures();
-  std::string last_problem = "the recording is not whole";
-  for (Notice& notice : session.take_notices()) {
+  std::string last_problem = "the recording is incomplete";
+  for (Notice& notice : session.consume_notices()) {
     if (notice.kind == Notice::Kind::problem) last_problem = notice.text;
     notices.push_back(std::move(notice));
   }
-  if (!session.last_recording_is_whole()) return Error{std::move(last_problem)};
+  if (!session.is_last_recording_complete()) return Error{ErrorCode::unwritable, std::move(last_problem)};
   report.notices = std::move(notices);
   return report;
 }

@@ -1,6 +1,5 @@
-// A script performed live: its hand and commands in real time, on the threads of a live session, with or
-// without pictures drawn beside them. What a person at the window does, repeatable enough for tests and
-// figures.
+// A script performed live: its hand and commands in real time on the threads of a live session, with or
+// without drawing. Imitates a user at the window, repeatable enough for tests and measurements.
 #pragma once
 
 #include <filesystem>
@@ -13,9 +12,10 @@
 
 namespace spoonbill {
 
+// Settings of a performance.
 struct PerformanceSettings {
   LiveSettings live;
-  bool draw = false;  // sixty frames a second at 1280x720 into memory
+  bool draw = false;  // 60 frames per second at 1280x720 into memory
   std::filesystem::path recording;
 };
 
@@ -25,8 +25,8 @@ struct PerformanceReport {
   std::vector<Notice> notices;
 };
 
-// By the program's main thread; returns when the script is over or `interrupted` says so. Refused: a model
-// that cannot be simulated, a recording that cannot be written.
+// Performs the script on the main thread; returns at its end or when `interrupted` returns true. Returns an
+// error for a model that cannot be simulated or a recording that cannot be written.
 Result<PerformanceReport> perform(const Script& script, const Document& document, const std::string& source,
                                   const PerformanceSettings& settings,
                                   const std::function<bool()>& interrupted);

@@ -1,7 +1,4 @@
-// The Dear ImGui context of one picture or window: fonts, theme and frame clock. It writes no settings file,
-// and its clock advances 1/60 s a frame, so that the same frames always look the same (a window's backend
-// tells it the true time instead). One owner; the thread
-// that draws.
+// The Dear ImGui context of a picture or window: font, theme and frame clock.
 #pragma once
 
 #include <imgui.h>
@@ -9,24 +6,57 @@
 #include <memory>
 #include <string>
 
-#include "app/panel/theme.h"
 #include "engine/base/result.h"
+#include "render/renderer.h"
 
 namespace spoonbill {
 
+// The interface's font, as Debian's package fonts-roboto-unhinted installs it.
+inline constexpr const char* font_file =
+    "/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf";
+
+// Lengths of the interface, in pixels at its scale.
+struct Metrics {
+  float body_px;
+  float heading_px;
+  float panel_width_px;
+  float label_width_px;
+  float padding_px;
+  float row_gap_px;
+};
+
+// The look of the panel: light and quiet, so that the model is the brightest thing in the picture.
+struct Theme {
+  Metrics metrics;
+  InterfaceFonts fonts;
+};
+
+namespace colour {
+inline const ImVec4 ink{0.13F, 0.15F, 0.18F, 1.0F};
+inline const ImVec4 quiet_ink{0.42F, 0.45F, 0.49F, 1.0F};
+inline const ImVec4 accent{0.16F, 0.42F, 0.60F, 1.0F};
+inline const ImVec4 warning{0.74F, 0.30F, 0.06F, 1.0F};
+inline const ImVec4 white{1.0F, 1.0F, 1.0F, 1.0F};
+}  // namespace colour
+
+Metrics metrics_for(double scale);
+void apply_theme(ImGuiStyle& style, const Metrics& metrics);
+
+// Owns a Dear ImGui context. It writes no settings file. Its clock advances 1/60 s per frame, so that equal
+// frames look equal; a window's backend sets the true time instead. One owner: the thread that draws.
 class InterfaceContext {
  public:
-  // Refused: a font file that cannot be read.
+  // Returns an error if the font file cannot be read.
   static Result<InterfaceContext> make(const std::string& font_path, double scale);
 
-  // The same at another scale; the fonts must be uploaded again. Refused as make() does.
+  // Changes the scale; the fonts must be uploaded afterwards. Returns an error as make() does.
   Status rescale(double scale);
 
-  // ImGui keeps the current context in a variable of its own: makes ours the current one.
+  // Makes this context ImGui's current one, which ImGui stores in a global variable.
   void make_current() const { ImGui::SetCurrentContext(context_.get()); }
 
-  // Between the two, ImGui calls lay out one frame. The fonts must have been uploaded before the first. The
-  // draw data is valid until the next begin_frame().
+  // Begin and end a frame; ImGui calls between them lay it out. The fonts must be uploaded before the first
+  // frame. The draw data is valid until the next begin_frame().
   void begin_frame(int width_px, int height_px);
   const ImDrawData& end_frame();
 

@@ -11,10 +11,49 @@
 
 #include "app/panel/rows.h"
 #include "app/report/quantity_text.h"
-#include "app/view/stage_choice.h"
-#include "app/view/view_choice.h"
+#include "app/session/view_choice.h"
 
 namespace spoonbill {
+
+PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot, const ViewSettings& view) {
+  PanelModel model;
+  model.title = facts.title;
+  model.time_s = snapshot.time_s();
+  model.can_undo = facts.can_undo;
+  model.can_redo = facts.can_redo;
+
+  model.tool = facts.tool;
+  model.sculpting = facts.sculpting;
+  model.material = facts.material;
+  model.region_count = facts.region_count;
+  model.effective_youngs_modulus_pa = snapshot.bodies.front().material.effective_youngs_modulus_pa;
+  model.implicit_nodes = snapshot.bodies.front().material.implicit_nodes;
+  for (std::size_t b = 0; b < snapshot.bodies.size(); ++b) {
+    const double residual_m = snapshot.bodies[b].residual.largest_m;
+    if (residual_m <= model.residual_m) continue;
+    model.residual_m = residual_m;
+    model.residual_body = static_cast<int>(b);
+  }
+  model.plane_count = static_cast<int>(snapshot.planes.size());
+  for (const BodySnapshot& body : snapshot.bodies) {
+    const auto& fixed = body.lattice.fixed;
+    model.mass_kg += body.material.mass_kg;
+    model.fixed_node_count += static_cast<int>(std::count(fixed.begin(), fixed.end(), std::uint8_t{1}));
+    model.node_count += static_cast<int>(fixed.size());
+  }
+
+  model.overlays = view.overlays;
+  model.see_through_body = view.see_through_body;
+
+  model.device = snapshot.device.name;
+  model.force_n = snapshot.force_n.norm();
+  model.force_limit_n = snapshot.device.force_limit_n;
+  model.rate_hz = snapshot.device.nominal_rate_hz;
+  model.substeps = snapshot.substeps;
+  model.flags = snapshot.flags;
+  return model;
+}
+
 namespace {
 
 std::string rounded(double number, int decimals, const char* unit) {
@@ -43,19 +82,22 @@ void draw_title(const PanelModel& model, const Theme& theme, PanelAnswer& answer
   ImGui::EndDisabled();
 }
 
-// The row of a field that has a slider; nothing of one that has none. `text` stands in for the value's own.
+// Adds the row of a field that has a slider. `text` replaces the text of the value. Returns true if the user
+// changed the value.
 template <class Object>
 bool field_row(const Field<Object>& field, Object& object, std::string& refusal, const char* text = nullptr) {
   const FieldForm& form = field.form;
   if (form.slider.label == nullptr) return false;
-  const auto shown = [&](const std::string& own) { return text == nullptr ? own : std::string(text); };
-  if (const auto number = field.member.template pointer_to<double>()) {
-    double& value = object.*number;
+  const auto shown = [&](const std::string& value_text) {
+    return text == nullptr ? value_text : std::string(text);
+  };
+  if (const auto* number = std::get_if<double Object::*>(&field.member)) {
+    double& value = object.**number;
     return quantity_row(form, value, shown(quantity_text(form, value)), refusal);
   }
-  if (const auto number = field.member.template pointer_to<int>()) {
-    int& value = object.*number;
-    const char* unit = form.unit == FieldUnit::per_tick ? " a tick" : "";
+  if (const auto* number = std::get_if<int Object::*>(&field.member)) {
+    int& value = object.**number;
+    const char* unit = form.unit == FieldUnit::per_tick ? " per tick" : "";
     return slider_row(form, value, shown(std::to_string(value) + unit));
   }
   return false;
@@ -63,11 +105,12 @@ bool field_row(const Field<Object>& field, Object& object, std::string& refusal,
 
 template <class Object, class Value>
 bool is_field(const Field<Object>& field, Value Object::*member) {
-  return field.member.template pointer_to<Value>() == member;
+  const auto* found = std::get_if<Value Object::*>(&field.member);
+  return found != nullptr && *found == member;
 }
 
-// Only a sphere shows its radius, whatever the action.
-bool goes_by(const Tool& tool, const Field<Tool>& field) {
+// Returns true if the tool's action uses the field. Only a sphere has a radius.
+bool uses_field(const Tool& tool, const Field<Tool>& field) {
   if (find_tool_parameter(tool.action, field.form.name) == nullptr) return false;
   return tool.kind == ToolKind::sphere || !is_field(field, &Tool::radius_m);
 }
@@ -84,7 +127,7 @@ void draw_tool(const PanelModel& model, const Theme& theme, PanelAnswer& answer)
   tool.kind = static_cast<ToolKind>(kind);
   tool.action = static_cast<ToolAction>(action);
   for (const Field<Tool>& field : fields_of<Tool>) {
-    const bool offered = goes_by(tool, field);
+    const bool offered = uses_field(tool, field);
     ImGui::BeginDisabled(!offered);
     changed |= field_row(field, tool, answer.refusal, offered ? nullptr : "-");
     ImGui::EndDisabled();
@@ -111,31 +154,31 @@ bool draw_presets(const PanelModel& model, Material& material) {
   return changed;
 }
 
-// And what steps it: springs, which may hold a part of the stiffness, or an implicit method, which holds all
-// of it.
-std::string felt_text(const PanelModel& model) {
-  const std::string felt = modulus_text(model.effective_youngs_modulus_pa);
-  if (model.implicit_nodes > 0) return felt + "  (implicit)";
-  return felt + "  (" + percent_text(model.effective_youngs_modulus_pa / model.material.youngs_modulus_pa) +
+// Effective modulus and its solver: explicit springs, which may carry only a part of the stiffness, or the
+// implicit method, which carries all of it.
+std::string effective_modulus_text(const PanelModel& model) {
+  const std::string modulus = modulus_text(model.effective_youngs_modulus_pa);
+  if (model.implicit_nodes > 0) return modulus + "  (implicit)";
+  return modulus + "  (" + percent_text(model.effective_youngs_modulus_pa / model.material.youngs_modulus_pa) +
          " of E)";
 }
 
 std::string after_touch_text(const Material& material) {
-  if (material.plastic) return "keeps its bend";
-  if (!(material.relaxing_fraction > 0.0)) return "springs back";
-  return "creeps, " + rounded(material.relaxation_time_s, 0, " s");
+  if (material.plastic) return "plastic";
+  if (!(material.relaxing_fraction > 0.0)) return "elastic";
+  return "creep, " + rounded(material.relaxation_time_s, 0, " s");
 }
 
-// A material whose values do not go together is refused here, where the person is.
-void ask_for(Material material, PanelAnswer& answer) {
-  if (Status possible = check_material(material); !possible.ok()) {
-    answer.refusal = possible.error().message;
+// Requests the material, or reports why its values are inconsistent.
+void request_material(Material material, PanelAnswer& answer) {
+  if (Status checked = check_material(material); !checked.ok()) {
+    answer.refusal = checked.error().message;
     return;
   }
   answer.requests.emplace_back(Command(SetMaterial{std::move(material)}));
 }
 
-// And of how many regions beside the body's own: in one row, so that a small window shows them all.
+// Mass and number of other material regions, in one row so that a small window shows both.
 std::string mass_text(const PanelModel& model) {
   std::string mass = grams_text(model.mass_kg);
   if (model.region_count == 0) return mass;
@@ -151,18 +194,18 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
   bool changed = draw_presets(model, material);
   for (const Field<Material>& field : fields_of<Material>) {
     changed |= field_row(field, material, answer.refusal);
-    if (is_field(field, &Material::youngs_modulus_pa)) fact_row("Felt E", felt_text(model));
+    if (is_field(field, &Material::youngs_modulus_pa)) fact_row("Effective E", effective_modulus_text(model));
   }
-  bool steadied = field_row(field_of(&Sculpting::damping_per_s), sculpting, answer.refusal);
-  steadied |= switch_row("After touch", after_touch_text(material), "settles", sculpting.settles);
+  bool damping_changed = field_row(field_of(&Sculpting::damping_per_s), sculpting, answer.refusal);
+  damping_changed |= switch_row("After touch", after_touch_text(material), "no ringing", sculpting.settles);
   fact_row("Mass", mass_text(model));
-  if (changed) ask_for(std::move(material), answer);
-  if (steadied) answer.requests.emplace_back(Command(SetSculpting{sculpting}));
+  if (changed) request_material(std::move(material), answer);
+  if (damping_changed) answer.requests.emplace_back(Command(SetSculpting{sculpting}));
 }
 
-// What the control net cannot follow of the lattice.
-std::string behind_text(double residual_m) {
-  return rounded(1e3 * residual_m, 3, " mm behind");
+// Distance between the control net and its lattice.
+std::string residual_text(double residual_m) {
+  return rounded(1e3 * residual_m, 3, " mm error");
 }
 
 void draw_fixtures(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
@@ -172,7 +215,7 @@ void draw_fixtures(const PanelModel& model, const Theme& theme, PanelAnswer& ans
                               ", " + std::to_string(model.plane_count) +
                               (model.plane_count == 1 ? " plane" : " planes"));
   ImGui::BeginDisabled(!(model.residual_m > 0.0));
-  if (deed_row("Surface", behind_text(model.residual_m), "Add knots")) {
+  if (button_row("Surface", residual_text(model.residual_m), "Add knots")) {
     answer.requests.emplace_back(Command(RefineKnots{model.residual_body}));
   }
   ImGui::EndDisabled();
@@ -207,7 +250,7 @@ void draw_view(const PanelModel& model, const Theme& theme, PanelAnswer& answer)
   pair("Fixed nodes", overlays.fixed_nodes, "Touched nodes", overlays.touched_nodes);
   pair("Lattice", overlays.lattice, "Control net", overlays.control_net);
   pair("See through", see_through, "Fixing planes", overlays.fixing_planes);
-  // Three short ones, so that the panel needs no row more.
+  // Three short labels share this row, which saves one.
   pair("Force", overlays.force, "Cells", overlays.cells);
   ImGui::SameLine();
   ImGui::SetCursorPosX(0.71F * theme.metrics.panel_width_px);
@@ -257,10 +300,10 @@ Rectangle picture_panel_rectangle(int width_px, int height_px) {
   return panel_rectangle(width_px, height_px, panel_scale(height_px));
 }
 
-PanelAnswer draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px) {
+PanelAnswer draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& area_px) {
   PanelAnswer answer;
-  ImGui::SetNextWindowPos(ImVec2(static_cast<float>(place_px.x), static_cast<float>(place_px.y)));
-  ImGui::SetNextWindowSize(ImVec2(static_cast<float>(place_px.width), static_cast<float>(place_px.height)));
+  ImGui::SetNextWindowPos(ImVec2(static_cast<float>(area_px.x), static_cast<float>(area_px.y)));
+  ImGui::SetNextWindowSize(ImVec2(static_cast<float>(area_px.width), static_cast<float>(area_px.height)));
   ImGui::PushFont(theme.fonts.body);
   ImGui::Begin("Panel", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |

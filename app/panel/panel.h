@@ -4,30 +4,73 @@
 #include <string>
 #include <vector>
 
-#include "app/panel/panel_model.h"
-#include "app/panel/theme.h"
-#include "app/session/request.h"
+#include "app/panel/interface_context.h"
+#include "app/session/session.h"
+#include "engine/scene/scene.h"
+#include "engine/simulation/snapshot.h"
 #include "render/camera.h"
+#include "render/view_settings.h"
 
 namespace spoonbill {
 
-// The panel's place in a frame of that size and scale, at the left edge below what is already at the top;
-// empty where the frame is too small for a panel that can be read.
+// Contents of the panel, as plain data. Made once a frame from a snapshot and the settings; the panel has no
+// access to the simulation.
+struct PanelModel {
+  std::string title;
+  double time_s = 0.0;
+  bool can_undo = false;
+  bool can_redo = false;
+
+  Tool tool;
+  Sculpting sculpting;
+  Material material;
+  int region_count = 0;           // regions of other materials
+  std::vector<Material> presets;  // choices of the preset list
+
+  double effective_youngs_modulus_pa = 0.0;
+  int implicit_nodes = 0;  // 0: explicit springs
+  double mass_kg = 0.0;
+  int plane_count = 0;
+  int fixed_node_count = 0;
+  int node_count = 0;
+
+  double residual_m = 0.0;  // largest distance between a surface and its lattice
+  int residual_body = 0;    // index of that surface's body in the scene
+
+  Overlays overlays;
+  bool see_through_body = false;
+
+  std::string device;
+  double force_n = 0.0;
+  double force_limit_n = 0.0;
+  double rate_hz = 0.0;
+  bool rate_is_nominal = true;  // true in lock-step, where no clock measures it
+  int substeps = 0;
+  std::uint32_t flags = tick_flag_none;
+  std::string safety_text;   // reasons for a reduce_degree device force, one per line
+  std::string drawing_text;  // details omitted from the picture
+};
+
+// Makes the panel's contents. `snapshot` must be of the same session and tick; `view` draws it.
+PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot, const ViewSettings& view);
+
+// Returns the area of the panel in a frame of this size and scale: at the left edge, below `top_px`. Empty
+// where the frame is too small for a legible panel.
 Rectangle panel_rectangle(int width_px, int height_px, double scale, double top_px = 0.0);
 
-// The same for a picture, in which nobody can scroll: empty where not all of the panel can be seen.
+// Returns the same for a picture, which cannot be scrolled: empty where the panel does not fit as a whole.
 Rectangle picture_panel_rectangle(int width_px, int height_px);
 
-// The interface's scale for a frame of that height: 1 at 720 pixels, in steps of a half.
+// Returns the interface's scale for a frame of this height: 1 at 720 pixels, in steps of a half.
 double panel_scale(int height_px);
 
-// What the person asked for in a frame, and why what they typed was refused; empty where it was not.
+// The user's requests of one frame, and the reason why a typed value was rejected; empty if none was.
 struct PanelAnswer {
   std::vector<Request> requests;
   std::string refusal;
 };
 
-// Lays the panel out, between InterfaceContext::begin_frame() and end_frame().
-PanelAnswer draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& place_px);
+// Lays out the panel, between InterfaceContext::begin_frame() and end_frame().
+PanelAnswer draw_panel(const PanelModel& model, const Theme& theme, const Rectangle& area_px);
 
 }  // namespace spoonbill

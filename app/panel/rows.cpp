@@ -2,8 +2,135 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cstdio>
+#include <span>
+#include <string_view>
+
+#include "app/report/quantity_text.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
+namespace {
+
+// A unit and its size in SI units; the name is empty for a pure number.
+struct QuantityUnit {
+  std::string_view name;
+  double size = 1.0;
+};
+
+constexpr std::array<QuantityUnit, 3> lengths = {{{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}}};
+constexpr std::array<QuantityUnit, 4> moduli = {{{"Pa", 1.0}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}}};
+constexpr std::array<QuantityUnit, 4> densities = {
+    {{"g/cm\u00b3", 1e3}, {"g/cm3", 1e3}, {"kg/m\u00b3", 1.0}, {"kg/m3", 1.0}}};
+constexpr std::array<QuantityUnit, 1> pure_number = {{{"", 1.0}}};
+constexpr std::array<QuantityUnit, 1> rates = {{{"/s", 1.0}}};
+constexpr std::array<QuantityUnit, 2> factors = {{{"\u00d7", 1.0}, {"x", 1.0}}};
+
+std::span<const QuantityUnit> find_units(FieldUnit unit) {
+  switch (unit) {
+    case FieldUnit::metre:
+      return lengths;
+    case FieldUnit::pascal:
+      return moduli;
+    case FieldUnit::kilogram_per_m3:
+      return densities;
+    case FieldUnit::per_second:
+      return rates;
+    case FieldUnit::times:
+      return factors;
+    default:
+      return pure_number;
+  }
+}
+
+std::string rounded(double number, int decimals, const char* unit) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%.*f%s", decimals, number, unit);
+  return text.data();
+}
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(' ');
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+// A number and the text after it.
+struct Reading {
+  double number = 0.0;
+  std::string_view unit;
+  bool is_number = false;
+};
+
+Reading read_number(std::string_view text) {
+  text = trimmed(text);
+  Reading reading;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), reading.number);
+  reading.is_number = error == std::errc{};
+  reading.unit = trimmed(text.substr(static_cast<std::size_t>(end - text.data())));
+  return reading;
+}
+
+const QuantityUnit* find_unit(const FieldForm& form, std::string_view name) {
+  for (const QuantityUnit& unit : find_units(form.unit)) {
+    if (unit.name == name) return &unit;
+  }
+  return nullptr;
+}
+
+std::string text_in_unit(double value, const QuantityUnit& unit) {
+  return number_text(value / unit.size) + (unit.name.empty() ? "" : " ") + std::string(unit.name);
+}
+
+Error unknown_unit(const FieldForm& form, std::string_view name) {
+  std::string known;
+  for (const QuantityUnit& unit : find_units(form.unit)) {
+    known += (known.empty() ? "" : ", ") + std::string(unit.name.empty() ? "none" : unit.name);
+  }
+  return Error{
+      ErrorCode::unknown,
+      std::string(form.slider.label) + ": unit " + std::string(name) + " is unknown; units: " + known,
+      std::string(form.name)};
+}
+
+}  // namespace
+
+std::string quantity_text(const FieldForm& form, double value) {
+  switch (form.unit) {
+    case FieldUnit::metre:
+      return millimetres_text(value);
+    case FieldUnit::pascal:
+      return modulus_text(value);
+    case FieldUnit::kilogram_per_m3:
+      return density_text(value);
+    case FieldUnit::per_second:
+      return rounded(value, 1, " /s");
+    case FieldUnit::times:
+      return rounded(value, 2, " \u00d7");
+    default:
+      return rounded(value, 2, "");
+  }
+}
+
+Result<double> read_quantity(const FieldForm& form, const std::string& typed, const std::string& shown) {
+  const std::string field = form.slider.label;
+  const Reading reading = read_number(typed);
+  if (!reading.is_number)
+    return Error{ErrorCode::malformed, field + ": \"" + typed + "\" is not a number", std::string(form.name)};
+  const std::string_view name = reading.unit.empty() ? read_number(shown).unit : reading.unit;
+  const QuantityUnit* unit = find_unit(form, name);
+  if (unit == nullptr) return unknown_unit(form, name);
+  const double value = reading.number * unit->size;
+  if (!form.range.contains(value)) {
+    return Error{ErrorCode::out_of_range,
+                 field + " is " + text_in_unit(value, *unit) + ", must be " +
+                     text_in_unit(form.range.low, *unit) + " to " + text_in_unit(form.range.high, *unit),
+                 std::string(form.name)};
+  }
+  return value;
+}
+
 namespace {
 
 void begin_row(const char* label) {
@@ -15,22 +142,23 @@ void begin_row(const char* label) {
   ImGui::SetNextItemWidth(-FLT_MIN);
 }
 
-// The label stands in the left column; the widget needs it as a name only.
+// Returns an ImGui name without visible text; the label is in the left column.
 std::string hidden_name(const char* label) {
   return std::string("##") + label;
 }
 
-// ImGui takes a format, in which a percent sign means something.
+// Escapes percent signs for a parameter that ImGui reads as a format.
 std::string as_format(const std::string& text) {
   std::string format;
   for (const char letter : text) format += letter == '%' ? std::string("%%") : std::string(1, letter);
   return format;
 }
 
-// What a quantity's row is: a slider, or a field to type in, which gets the keyboard a frame after it opens.
+// State of a quantity row: a slider, or a text field, which receives the keyboard focus one frame after it
+// opens.
 enum Entry : int { entry_closed, entry_opens, entry_open };
 
-// Ctrl and a click turn the slider into a field, and do not move it.
+// Draws the slider. Ctrl and a click open the text field and leave the value unchanged.
 bool slide(const FieldForm& form, const std::string& name, double& value, const std::string& text,
            int& entry) {
   const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat |
@@ -47,7 +175,7 @@ bool slide(const FieldForm& form, const std::string& name, double& value, const 
   return changed;
 }
 
-// Whether what now stands in the field was confirmed.
+// Draws the text field. Returns true if its text was confirmed.
 bool type_in(const std::string& name, std::array<char, 64>& text, int& entry) {
   if (entry == entry_opens) ImGui::SetKeyboardFocusHere();
   const bool confirmed =
@@ -61,8 +189,8 @@ bool type_in(const std::string& name, std::array<char, 64>& text, int& entry) {
   return confirmed;
 }
 
-// Of the row just begun, for an item of this width.
-void put_at_right(float width) {
+// Moves the cursor so that an item of this width ends at the right edge of the row.
+void align_right(float width) {
   ImGui::SameLine();
   const float room = ImGui::GetContentRegionAvail().x - width;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0F, room));
@@ -133,21 +261,21 @@ void fact_row(const char* label, const std::string& text) {
   ImGui::TextUnformatted(text.c_str());
 }
 
-bool deed_row(const char* label, const std::string& text, const char* button) {
+bool button_row(const char* label, const std::string& text, const char* button) {
   fact_row(label, text);
-  put_at_right(ImGui::CalcTextSize(button).x + 2.0F * ImGui::GetStyle().FramePadding.x);
+  align_right(ImGui::CalcTextSize(button).x + 2.0F * ImGui::GetStyle().FramePadding.x);
   return ImGui::Button(button);
 }
 
 bool switch_row(const char* label, const std::string& text, const char* name, bool& on) {
   fact_row(label, text);
-  put_at_right(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize(name).x);
+  align_right(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize(name).x);
   return ImGui::Checkbox(name, &on);
 }
 
-void gauge_row(const char* label, double share, const std::string& text) {
+void gauge_row(const char* label, double fraction, const std::string& text) {
   begin_row(label);
-  const auto filled = static_cast<float>(std::clamp(share, 0.0, 1.0));
+  const auto filled = static_cast<float>(std::clamp(fraction, 0.0, 1.0));
   ImGui::ProgressBar(filled, ImVec2(-FLT_MIN, ImGui::GetFrameHeight()), text.c_str());
 }
 

@@ -1,19 +1,26 @@
-// The rows that the panel is made of: a label in the left column, a value or widget in the right one. To be
-// called between InterfaceContext::begin_frame() and end_frame(). Widgets return whether the person changed
-// the value.
+// Rows of the panel: a label in the left column, a value or widget in the right one. Called between
+// InterfaceContext::begin_frame() and end_frame(). Widgets return true if the user changed the value.
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
-#include "app/panel/quantity.h"
-#include "app/panel/theme.h"
+#include "app/panel/interface_context.h"
 #include "engine/base/field.h"
+#include "engine/base/result.h"
 
 namespace spoonbill {
 
-// A group of rows under a heading, open as long as the object lives.
+// Returns a number with its unit, as a slider shows it: "1.20 MPa", "0.45", "4.0 /s".
+std::string quantity_text(const FieldForm& form, double value);
+
+// Reads a typed number with an optional unit and returns it in SI units. The default unit is that of `shown`,
+// the text that is replaced. An unknown unit, text that is not a number, and a value out of range are errors
+// that name the units or the range.
+Result<double> read_quantity(const FieldForm& form, const std::string& typed, const std::string& shown);
+
+// A group of rows under a heading, open for the lifetime of the object.
 class RowGroup {
  public:
   RowGroup(const char* heading, const Theme& theme);
@@ -27,27 +34,28 @@ class RowGroup {
   bool open_;
 };
 
-// A field with a slider. `text` is what the slider shows for the value it has now. With Ctrl and a click a
-// value can be typed, as read_quantity() takes it; where that refuses, the value stays and `refusal` says
-// why.
+// Adds a field with a slider. `text` is the slider's text for the current value. Ctrl and a click turn it
+// into a text field, parsed by read_quantity(). On an error the value is unchanged and `refusal` is the
+// message.
 bool quantity_row(const FieldForm& form, double& value, const std::string& text, std::string& refusal);
 bool slider_row(const FieldForm& form, int& value, const std::string& text);
 
-// One of a few choices side by side.
+// Adds a few choices side by side.
 bool choice_row(const char* label, int& chosen, std::span<const char* const> names);
 
-// One of many, in a list that opens.
+// Adds a list of many choices that opens.
 bool list_row(const char* label, int& chosen, const std::vector<const char*>& names);
 
+// Adds a text.
 void fact_row(const char* label, const std::string& text);
 
-// A fact and what can be done about it: whether the button was pressed.
-bool deed_row(const char* label, const std::string& text, const char* button);
+// Adds a text with a button. Returns true if the button was pressed.
+bool button_row(const char* label, const std::string& text, const char* button);
 
-// A fact and what can be switched on about it: whether it was switched.
+// Adds a text with a checkbox. Returns true if it was toggled.
 bool switch_row(const char* label, const std::string& text, const char* name, bool& on);
 
-// A bar that fills from 0 to 1.
-void gauge_row(const char* label, double share, const std::string& text);
+// Adds a bar that is filled by `fraction`, 0 to 1.
+void gauge_row(const char* label, double fraction, const std::string& text);
 
 }  // namespace spoonbill

@@ -9,13 +9,13 @@ namespace spoonbill {
 
 std::uint64_t frame_count(std::uint64_t tick_count) {
   std::uint64_t count = tick_count * frames_per_second / 1000;
-  while (tick_of_frame(count) <= tick_count) ++count;
+  while (frame_tick(count) <= tick_count) ++count;
   return count;
 }
 
 namespace {
 
-Device& checked(Device* device) {
+Device& require(Device* device) {
   SPOONBILL_ASSERT(device != nullptr);
   return *device;
 }
@@ -23,11 +23,11 @@ Device& checked(Device* device) {
 }  // namespace
 
 Lockstep::Lockstep(Session& session, LockstepInput input, RecordingWriter* writer)
-    : session_(&session), input_(std::move(input)), writer_(writer), device_(checked(input_.device)) {}
+    : session_(&session), input_(std::move(input)), writer_(writer), device_(require(input_.device)) {}
 
 Status Lockstep::run_to(std::uint64_t tick) {
   while (true) {
-    if (Status stands = stand_at_tick(); !stands) return stands;
+    if (Status prepared = prepare_tick(); !prepared) return prepared;
     if (tick_ >= tick || tick_ >= input_.tick_count) return {};
     if (Status ran = run_tick(); !ran) return ran;
   }
@@ -41,31 +41,32 @@ Status Lockstep::finish() {
   return writer_ != nullptr ? writer_->finish(state_hash(*session_)) : Status();
 }
 
-Status Lockstep::stand_at_tick() {
-  if (stands_) return {};
-  const bool has_checkpoint = has_checkpoint_here();
-  if (has_checkpoint) {
+Status Lockstep::prepare_tick() {
+  if (is_prepared_) return {};
+  const bool is_checkpoint = has_checkpoint();
+  if (is_checkpoint) {
     if (Status same = compare_state(input_.expected[next_expected_++]); !same) return same;
   }
   const bool more = tick_ < input_.tick_count;
-  if (writer_ != nullptr && (more || has_checkpoint) && writer_->checkpoint_due()) {
+  if (writer_ != nullptr && (more || is_checkpoint) && writer_->checkpoint_due()) {
     if (Status written = writer_->checkpoint(state_hash(*session_)); !written) return written;
   }
   if (Status applied = apply_due_commands(); !applied) return applied;
-  stands_ = true;
+  is_prepared_ = true;
   return {};
 }
 
-bool Lockstep::has_checkpoint_here() const {
+bool Lockstep::has_checkpoint() const {
   return next_expected_ < input_.expected.size() && input_.expected[next_expected_].tick == tick_;
 }
 
 Status Lockstep::compare_state(const Checkpoint& expected) const {
   const std::uint64_t hash = state_hash(*session_);
   if (hash == expected.state_hash) return {};
-  return Error{input_.source + ": the state after " + std::to_string(tick_) + " ticks has the hash " +
-               hash_text(hash) + ", recorded was " + hash_text(expected.state_hash) +
-               "; another version made it: record it again with `spoonbill record`"};
+  return Error{ErrorCode::mismatch,
+               input_.source + ": the state after " + std::to_string(tick_) + " ticks has the hash " +
+                   hash_text(hash) + ", the recording has " + hash_text(expected.state_hash) +
+                   "; it was made by another version: record it again with `spoonbill record`"};
 }
 
 Status Lockstep::apply_due_commands() {
@@ -79,7 +80,7 @@ Status Lockstep::apply_due_commands() {
   return {};
 }
 
-// Recorded, so that the recording replays without the device.
+// The reset is recorded, so that the recording replays without the device.
 Status Lockstep::reset_proxy() {
   const Command command = ResetProxy{};
   if (Status applied = session_->simulation.apply(command); !applied) return applied;
@@ -97,7 +98,7 @@ Status Lockstep::run_tick() {
   const TickResult result = advance(*session_, reading);
   device_.give(result.force_n, 0);
   ++tick_;
-  stands_ = false;
+  is_prepared_ = false;
   return {};
 }
 

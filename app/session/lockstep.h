@@ -1,5 +1,5 @@
-// The lock-step loop: ticks advance by the recording's own time, never by a clock, so that the same input
-// gives the same states on any load. One owner, one thread.
+// The lock-step loop: ticks follow the recording's time instead of a clock, so that the same input gives the
+// same states on any machine.
 #pragma once
 
 #include <optional>
@@ -14,44 +14,46 @@ namespace spoonbill {
 
 inline constexpr std::uint64_t frames_per_second = 60;
 
-// Frame k shows the state after this many ticks.
-constexpr std::uint64_t tick_of_frame(std::uint64_t frame) {
+// Returns the number of ticks before frame `frame`.
+constexpr std::uint64_t frame_tick(std::uint64_t frame) {
   return frame * 1000 / frames_per_second;
 }
 
-// How many frames there are for that many ticks: those whose state is reached.
+// Returns the number of frames whose state is reached within `tick_count` ticks.
 std::uint64_t frame_count(std::uint64_t tick_count);
 
+// Input of a lock-step run.
 struct LockstepInput {
   Device* device = nullptr;  // read once a tick; must not be null
   std::uint64_t tick_count = 0;
-  std::vector<TimedCommand> commands;  // in order
-  std::vector<Checkpoint>
-      expected;  // states to compare with before a tick's commands, in order; may be empty
+  std::vector<TimedCommand> commands;  // ascending by tick
+  // States to compare with before the commands of their tick, ascending; may be empty.
+  std::vector<Checkpoint> expected;
   std::optional<Checkpoint> expected_end;
   std::string source;  // names the input in messages
 };
 
+// Runs a session in lock-step. One owner, one thread.
 class Lockstep {
  public:
-  // The session, the input's device and the writer (null for none) must outlive the loop.
+  // The session, the input's device and the writer must outlive the loop. The writer may be null.
   Lockstep(Session& session, LockstepInput input, RecordingWriter* writer);
 
-  // Runs until `tick` ticks are done and the commands that stand there have been applied. Refused, with tick
-  // and source named: a command that cannot be applied, a state that differs from an expected one, a
-  // recording that cannot be written.
+  // Runs until `tick` ticks are done and the commands due at that tick are applied. An error names tick and
+  // source: a command that cannot be applied, a state that differs from the expected one, a recording that
+  // cannot be written.
   Status run_to(std::uint64_t tick);
 
-  // Runs what is left, compares the last state and ends the written recording.
+  // Runs the remaining ticks, compares the last state and finishes the written recording.
   Status finish();
 
   std::uint64_t tick() const { return tick_; }
   std::uint64_t tick_count() const { return input_.tick_count; }
 
  private:
-  Status stand_at_tick();
+  Status prepare_tick();
   Status compare_state(const Checkpoint& expected) const;
-  bool has_checkpoint_here() const;
+  bool has_checkpoint() const;
   Status apply_due_commands();
   Status run_tick();
   Status reset_proxy();
@@ -59,11 +61,11 @@ class Lockstep {
   Session* session_;
   LockstepInput input_;
   RecordingWriter* writer_;
-  SafeDevice device_;  // the input's
+  SafeDevice device_;  // wraps the input's device
   std::uint64_t tick_ = 0;
   std::size_t next_command_ = 0;
   std::size_t next_expected_ = 0;
-  bool stands_ = false;  // the commands of tick_ have been applied
+  bool is_prepared_ = false;  // the commands of tick_ are applied
 };
 
 }  // namespace spoonbill

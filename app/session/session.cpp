@@ -1,25 +1,119 @@
 #include "app/session/session.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 #include <variant>
+
+#include "app/session/view_choice.h"
+#include "engine/exchange/document.h"
+#include "engine/exchange/field_reader.h"
 
 namespace spoonbill {
 namespace {
 
-bool changes_what_a_shape_means(const Command& command) {
+constexpr std::size_t mark_name_limit = 64;
+
+bool is_mark_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+}
+
+struct PlainRequest {
+  const char* name;
+  Request request;
+};
+
+const std::array<PlainRequest, 3>& plain_requests() {
+  static const std::array<PlainRequest, 3> all = {
+      {{"undo", UndoStroke{}}, {"redo", RedoStroke{}}, {"cancel_stroke", CancelStroke{}}}};
+  return all;
+}
+
+Result<Request> read_mark(const TimedCommand& timed, FileMarkKind kind) {
+  FieldReader reader(timed.command, timed.origin);
+  reader.ignore("command");
+  MarkFile mark{kind, reader.text("name")};
+  if (reader.status() && make_mark_name(mark.name) != mark.name) {
+    reader.refuse("name", "must have 1 to 64 letters, digits, - and _");
+  }
+  reader.finish();
+  if (!reader.status()) return reader.status().error();
+  return Request(std::move(mark));
+}
+
+Result<Request> read_view_command(const TimedCommand& timed) {
+  ViewChoice scratch;
+  if (Status read = apply_view_command(timed.command, timed.origin, scratch); !read) return read.error();
+  return Request(ChangeView{timed.command});
+}
+
+Result<Request> read_simulation_command(const TimedCommand& timed) {
+  auto command = command_from_json(timed.command, timed.origin);
+  if (!command) return command.error();
+  return Request(std::move(command).value());
+}
+
+struct RequestToJson {
+  Json operator()(const Command& command) const { return command_to_json(command); }
+  Json operator()(const UndoStroke&) const { return {{"command", "undo"}}; }
+  Json operator()(const RedoStroke&) const { return {{"command", "redo"}}; }
+  Json operator()(const CancelStroke&) const { return {{"command", "cancel_stroke"}}; }
+  Json operator()(const ChangeView& change) const { return change.command; }
+  Json operator()(const MarkFile& mark) const {
+    return {{"command", mark.kind == FileMarkKind::document ? "save" : "screenshot"}, {"name", mark.name}};
+  }
+};
+
+}  // namespace
+
+Result<Request> request_from_json(const TimedCommand& timed) {
+  if (is_simulation_command(timed.command)) return read_simulation_command(timed);
+  if (is_view_command(timed.command)) return read_view_command(timed);
+  FieldReader reader(timed.command, timed.origin);
+  const std::string name = reader.text("command");
+  if (!reader.status()) return reader.status().error();
+  if (name == "save") return read_mark(timed, FileMarkKind::document);
+  if (name == "screenshot") return read_mark(timed, FileMarkKind::picture);
+  for (const PlainRequest& plain : plain_requests()) {
+    if (name != plain.name) continue;
+    reader.finish();
+    if (!reader.status()) return reader.status().error();
+    return plain.request;
+  }
+  reader.refuse("command", "is " + json_excerpt(Json(name)) +
+                               ", must be one of save, screenshot, undo, redo, cancel_stroke, set_camera, "
+                               "set_overlays, " +
+                               simulation_command_names());
+  return reader.status().error();
+}
+
+Json request_to_json(const Request& request) {
+  return std::visit(RequestToJson{}, request);
+}
+
+std::string make_mark_name(const std::string& text) {
+  std::string name = text.substr(0, mark_name_limit);
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !is_mark_character(c); }, '-');
+  return name.empty() ? "unnamed" : name;
+}
+
+namespace {
+
+bool changes_shape_meaning(const Command& command) {
   return std::holds_alternative<PlacePlane>(command) || std::holds_alternative<RemovePlanes>(command) ||
          std::holds_alternative<KeepShape>(command) || std::holds_alternative<RefineKnots>(command);
 }
 
-// A recording cannot fill the memory with documents that nobody takes.
-constexpr std::size_t most_waiting_marks = 1000;
+// Largest number of unread marks, so that a recording cannot fill the memory with documents.
+constexpr std::size_t waiting_marks_limit = 1000;
 
 struct RequestApplier {
   Session& session;
 
   Status operator()(const Command& command) {
     if (Status applied = session.simulation.apply(command); !applied) return applied;
-    if (changes_what_a_shape_means(command)) session.history.clear(session.simulation);
+    if (changes_shape_meaning(command)) session.history.clear(session.simulation);
     return {};
   }
   Status operator()(const UndoStroke&) { return session.history.undo(session.simulation); }
@@ -33,9 +127,11 @@ struct RequestApplier {
     return apply_view_command(change.command, "view", session.view);
   }
   Status operator()(const MarkFile& mark) {
-    if (session.marks.size() == most_waiting_marks) return Error{"too many files are asked for at once"};
+    if (session.marks.size() == waiting_marks_limit)
+      return Error{ErrorCode::too_many,
+                   "more than " + std::to_string(waiting_marks_limit) + " files requested at one tick"};
     FileMark& made = session.marks.emplace_back(FileMark{mark, {}});
-    if (mark.kind == FileMarkKind::document) made.document = document_of(session);
+    if (mark.kind == FileMarkKind::document) made.document = make_session_document(session);
     return {};
   }
 };
@@ -47,7 +143,7 @@ Result<Session> Session::make(const Document& document, const std::string& sourc
   auto view = view_from_json(document.view, source);
   if (!view) return view.error();
   auto simulation = Simulation::make(document.scene, set, watch);
-  if (!simulation) return Error{source + ": " + simulation.error().message};
+  if (!simulation) return simulation.error().in(source);
   StrokeHistory history(simulation.value());
   return Session{document.name,
                  std::move(simulation).value(),
@@ -71,7 +167,7 @@ TickResult advance(Session& session, const DeviceReading& reading) {
 void write_snapshot(const Session& session, Snapshot& snapshot) {
   session.simulation.write_snapshot(snapshot);
   snapshot.tool.device = session.reading.pose();
-  // Before the first tick only the hand is known.
+  // The proxy is unknown before the first tick.
   if (session.simulation.tick() == 0) snapshot.tool.proxy = snapshot.tool.device;
   snapshot.tool.button = (session.reading.buttons & button_main) != 0;
   snapshot.device.name = session.device.name;
@@ -87,7 +183,7 @@ std::uint64_t state_hash(const Session& session) {
   return hash.value();
 }
 
-Document document_of(const Session& session) {
+Document make_session_document(const Session& session) {
   Document document{session.title, session.simulation.scene(), view_to_json(session.view)};
   session.simulation.write_scene(document.scene);
   return document;
@@ -97,22 +193,22 @@ Status apply_request(Session& session, const Request& request) {
   return std::visit(RequestApplier{session}, request);
 }
 
-bool rebuilds(const Session& session, const Request& request) {
+bool needs_rebuild(const Session& session, const Request& request) {
   if (std::holds_alternative<MarkFile>(request)) return true;
   const auto* command = std::get_if<Command>(&request);
   if (command == nullptr) return false;
   const auto* tool = std::get_if<SetTool>(command);
-  // What snapshots hold changes with a soft tool that comes or goes.
-  const bool held_solid = session.simulation.scene().tool.kind == ToolKind::solid;
-  return (tool != nullptr && (held_solid || tool->tool.kind == ToolKind::solid)) ||
-         (changes_what_a_shape_means(*command) || std::holds_alternative<SetMaterial>(*command));
+  // Snapshots change their size with a soft tool.
+  const bool is_solid = session.simulation.scene().tool.kind == ToolKind::solid;
+  return (tool != nullptr && (is_solid || tool->tool.kind == ToolKind::solid)) ||
+         (changes_shape_meaning(*command) || std::holds_alternative<SetMaterial>(*command));
 }
 
 Status apply_command(Session& session, const TimedCommand& timed) {
   const auto request = request_from_json(timed);
   if (!request) return request.error();
   if (Status applied = apply_request(session, request.value()); !applied) {
-    return Error{timed.origin + ": " + applied.error().message};
+    return applied.error().in(timed.origin);
   }
   return {};
 }
@@ -122,6 +218,19 @@ Status check_commands(const std::vector<TimedCommand>& commands) {
     if (const auto request = request_from_json(timed); !request) return request.error();
   }
   return {};
+}
+
+void write_facts(const Session& session, SessionFacts& facts) {
+  const Scene& scene = session.simulation.scene();
+  facts.title = session.title;
+  facts.tool = scene.tool;
+  facts.material = scene.bodies[0].material;
+  facts.region_count = static_cast<int>(scene.bodies[0].regions.size());
+  facts.sculpting = scene.sculpting;
+  facts.symmetry = scene.symmetry;
+  facts.can_undo = session.history.can_undo();
+  facts.can_redo = session.history.can_redo();
+  facts.in_stroke = session.history.in_stroke();
 }
 
 }  // namespace spoonbill

@@ -1,27 +1,65 @@
-// A session: one simulation with what belongs to it while it is worked on. Plain struct with one owner,
-// whoever ticks it: the lock-step loop or the haptic thread.
+// A session: one simulation with its undo history, view and device, and the requests that change it between
+// two ticks.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "app/session/request.h"
-#include "app/undo/stroke_history.h"
-#include "app/view/view_choice.h"
+#include "app/session/stroke_history.h"
+#include "app/session/view_choice.h"
+#include "engine/base/result.h"
 #include "engine/exchange/document.h"
+#include "engine/exchange/json.h"
+#include "engine/scene/scene.h"
 #include "haptic/device.h"
 #include "haptic/recording.h"
 #include "haptic/tick.h"
 
 namespace spoonbill {
 
-// A file that was asked for.
-struct FileMark {
-  MarkFile mark;
-  std::optional<Document> document;  // as it was then, when that is what was asked for
+// Requests: everything that a user, a script or a recording can ask of a session between two ticks. Plain
+// values, each with one JSON form:
+//  the simulation's commands (engine/exchange/document.h)     the view's (app/session/view_choice.h)
+//  {"command": "undo"}    {"command": "redo"}    {"command": "cancel_stroke"}
+//  {"command": "save", "name": "bent"}           the document at that tick
+//  {"command": "screenshot", "name": "bent"}     the next frame
+// A replay writes the last two as saved-NAME.json and picture-NAME.png into its own output folder. Names have
+// 1 to 64 letters, digits, - and _.
+struct UndoStroke {};
+struct RedoStroke {};
+struct CancelStroke {};
+
+// One of the view's commands, already validated.
+struct ChangeView {
+  Json command;
 };
 
+// A document or a screenshot to write, and its name.
+enum class FileMarkKind { document, picture };
+struct MarkFile {
+  FileMarkKind kind = FileMarkKind::document;
+  std::string name;
+};
+
+using Request = std::variant<Command, UndoStroke, RedoStroke, CancelStroke, ChangeView, MarkFile>;
+
+// Reads a request. An error names the command's origin and the field.
+Result<Request> request_from_json(const TimedCommand& timed);
+Json request_to_json(const Request& request);
+
+// Converts any text, such as a file name, to a valid name of a MarkFile request.
+std::string make_mark_name(const std::string& text);
+
+// A requested file with its contents.
+struct FileMark {
+  MarkFile mark;
+  std::optional<Document> document;  // the document at that tick; empty for a screenshot
+};
+
+// A simulation and all state that belongs to a session. Plain struct with one owner: the lock-step loop or
+// the haptic thread.
 struct Session {
   std::string title;
   Simulation simulation;
@@ -30,37 +68,56 @@ struct Session {
   ViewChoice view;
 
   DeviceSpecification device;
-  DeviceReading reading;                 // of the last tick
-  std::uint32_t flags = tick_flag_none;  // TickFlag bits, gathered until somebody clears them
-  std::vector<FileMark> marks;           // gathered until somebody takes them
+  DeviceReading reading;                 // from the last tick
+  std::uint32_t flags = tick_flag_none;  // TickFlag bits, accumulated until the reader clears them
+  std::vector<FileMark> marks;           // accumulated until consume_marks()
 
-  // `source` names the document's file in messages; `watch` is told how feature maps come along.
+  // Makes a session of the document. `source` names its file in messages; `watch` receives the progress of
+  // feature maps.
   static Result<Session> make(const Document& document, const std::string& source, DeviceSpecification device,
                               InstructionSet set, const FeatureMapWatch& watch = {});
 };
 
-// One tick of touch; the undo history follows.
+// Runs one tick of touch and updates the undo history.
 TickResult advance(Session& session, const DeviceReading& reading);
 
-// What there is to draw of the last tick, or before the first one.
+// Writes the data that drawing needs of the last tick, or of the start before the first tick.
 void write_snapshot(const Session& session, Snapshot& snapshot);
 
-// FNV-1a over every bit that the next tick depends on.
+// Returns the FNV-1a hash of every bit that the next tick depends on.
 std::uint64_t state_hash(const Session& session);
 
-// What would be saved now.
-Document document_of(const Session& session);
+// Returns the document of the current state, as it would be saved.
+Document make_session_document(const Session& session);
 
-// An error leaves the session as it was. Allocates nothing unless rebuilds(session, request).
+// Applies a request. An error leaves the session unchanged. Does not allocate unless needs_rebuild(session,
+// request).
 Status apply_request(Session& session, const Request& request);
 
-// Whether applying it builds grids or lattices anew: takes milliseconds and memory.
-bool rebuilds(const Session& session, const Request& request);
+// Returns true if applying the request rebuilds grids or lattices, which takes milliseconds and allocates.
+bool needs_rebuild(const Session& session, const Request& request);
 
-// As JSON. An error also names the command's origin.
+// Applies a request given as JSON. An error names the command's origin.
 Status apply_command(Session& session, const TimedCommand& command);
 
-// Whether each command can be understood, so that a mistake in a recording's last second shows at its start.
+// Checks that every command can be parsed, so that a replay reports a mistake at its start.
 Status check_commands(const std::vector<TimedCommand>& commands);
+
+// Settings and undo state of a session that the panel shows beside the snapshot. Plain data, copied from the
+// thread that ticks to the one that draws.
+struct SessionFacts {
+  std::string title;
+  Tool tool;
+  Material material;
+  int region_count = 0;  // of the first body, like the material
+  Sculpting sculpting;
+  Symmetry symmetry;
+  bool can_undo = false;
+  bool can_redo = false;
+  bool in_stroke = false;
+};
+
+// Copies the facts. Allocates only when a text is longer than the previous one.
+void write_facts(const Session& session, SessionFacts& facts);
 
 }  // namespace spoonbill

@@ -22,15 +22,15 @@ Document handle(const std::string& name) {
 TEST(Autosave, GivesBackWhatWasLeft) {
   const Workplace place;
   const Autosave autosave(place.path("."), {});
-  EXPECT_FALSE(autosave.left_over().value().has_value());
+  EXPECT_FALSE(autosave.recovered_document().value().has_value());
   ASSERT_TRUE(autosave.write(handle("unfinished")));
-  const auto found = autosave.left_over();
+  const auto found = autosave.recovered_document();
   ASSERT_TRUE(found) << found.error().message;
   ASSERT_TRUE(found.value().has_value());
   EXPECT_EQ(found.value()->name, "unfinished");
   EXPECT_EQ(document_to_json(*found.value()), document_to_json(handle("unfinished")));
   autosave.remove();
-  EXPECT_FALSE(autosave.left_over().value().has_value());
+  EXPECT_FALSE(autosave.recovered_document().value().has_value());
 }
 
 TEST(Autosave, DocumentsOfOneNameInTwoFoldersHaveTheirOwn) {
@@ -41,23 +41,23 @@ TEST(Autosave, DocumentsOfOneNameInTwoFoldersHaveTheirOwn) {
 
 TEST(AutosaveClaim, WindowsOnOneDocumentDoNotShareAnAutosave) {
   const Workplace place;
-  auto one = std::optional(AutosaveClaim::take(place.path("."), "/a/spoon.json"));
-  const auto other = AutosaveClaim::take(place.path("."), "/a/spoon.json");
+  auto one = std::optional(AutosaveClaim::acquire(place.path("."), "/a/spoon.json"));
+  const auto other = AutosaveClaim::acquire(place.path("."), "/a/spoon.json");
   EXPECT_NE(one->autosave().file(), other.autosave().file());
   // The first window crashes, and its work goes to the next one that opens; the second's is left to the
   // second.
   ASSERT_TRUE(one->autosave().write(handle("first")));
   ASSERT_TRUE(other.autosave().write(handle("second")));
   one.reset();
-  const auto next = AutosaveClaim::take(place.path("."), "/a/spoon.json");
-  EXPECT_EQ(next.autosave().left_over().value()->name, "first");
+  const auto next = AutosaveClaim::acquire(place.path("."), "/a/spoon.json");
+  EXPECT_EQ(next.autosave().recovered_document().value()->name, "first");
 }
 
 TEST(AutosaveClaim, FindsWhatASecondWindowLeft) {
   const Workplace place;
   ASSERT_TRUE(Autosave(place.path("."), {}, 2).write(handle("second")));
-  const auto claim = AutosaveClaim::take(place.path("."), {});
-  EXPECT_EQ(claim.autosave().left_over().value()->name, "second");
+  const auto claim = AutosaveClaim::acquire(place.path("."), {});
+  EXPECT_EQ(claim.autosave().recovered_document().value()->name, "second");
 }
 
 TEST(AutosaveClaim, LeavesNoLockBehind) {
@@ -67,7 +67,7 @@ TEST(AutosaveClaim, LeavesNoLockBehind) {
     return std::distance(begin(all), end(all));
   };
   const auto before = count();
-  { const auto claim = AutosaveClaim::take(place.path("."), {}); }
+  { const auto claim = AutosaveClaim::acquire(place.path("."), {}); }
   EXPECT_EQ(count(), before);
 }
 
@@ -78,7 +78,7 @@ TEST(Autosave, OlderThanTheDocumentIsNothing) {
   using namespace std::chrono_literals;
   std::filesystem::last_write_time(autosave.file(),
                                    std::filesystem::last_write_time(place.path("model.json")) - 10s);
-  EXPECT_FALSE(autosave.left_over().value().has_value());
+  EXPECT_FALSE(autosave.recovered_document().value().has_value());
 }
 
 TEST(Autosave, ABrokenOneIsAnErrorAndStays) {
@@ -88,7 +88,7 @@ TEST(Autosave, ABrokenOneIsAnErrorAndStays) {
        {"", "{", "[]", "{\"spoonbill_autosave\":1}", "{\"spoonbill_autosave\":1,\"of\":\"\",\"document\":{}}",
         "{\"spoonbill_autosave\":2,\"of\":\"\",\"document\":{}}"}) {
     std::ofstream(autosave.file()) << content;
-    const auto found = autosave.left_over();
+    const auto found = autosave.recovered_document();
     EXPECT_FALSE(found) << content;
     if (!found) {
       EXPECT_EQ(found.error().message.find('\n'), std::string::npos);
@@ -129,7 +129,7 @@ TEST(Autosave, AFullDiskKeepsTheLastWholeOne) {
   const Status failed = autosave.write(handle("second"));
   ASSERT_FALSE(failed);
   EXPECT_NE(failed.error().message.find("autosave"), std::string::npos) << failed.error().message;
-  const auto found = autosave.left_over();
+  const auto found = autosave.recovered_document();
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(found.value()->name, "first");
 }

@@ -2,12 +2,10 @@
 
 #include <set>
 
-#include "app/edit/key_bindings.h"
-#include "app/edit/mouse_hand.h"
-#include "app/edit/navigation.h"
-#include "app/edit/surface_pick.h"
-#include "app/session/request.h"
-#include "app/view/view_choice.h"
+#include "app/edit/menu.h"
+#include "app/edit/mouse.h"
+#include "app/session/session.h"
+#include "app/session/view_choice.h"
 #include "engine/simulation/simulation.h"
 #include "tests/engine/simulation/handle.h"
 
@@ -44,8 +42,8 @@ TEST(Navigation, MovesAsTheProgramsItIsNamedAfter) {
   EXPECT_EQ(camera_motion(Preset::sculptgl, pointer_with(true, false, false), false), Motion::orbit);
   EXPECT_EQ(camera_motion(Preset::sculptgl, pointer_with(true, false, false), true), Motion::none);
   EXPECT_EQ(camera_motion(Preset::sculptgl, pointer_with(false, true, false), true), Motion::pan);
-  for (const char* name : navigation_names) EXPECT_TRUE(navigation_named(name));
-  EXPECT_FALSE(navigation_named("maya"));
+  for (const char* name : navigation_names) EXPECT_TRUE(find_navigation(name));
+  EXPECT_FALSE(find_navigation("maya"));
 }
 
 TEST(Navigation, PanningKeepsThePointUnderThePointer) {
@@ -53,7 +51,7 @@ TEST(Navigation, PanningKeepsThePointUnderThePointer) {
   const Viewport viewport = make_viewport(800, 600, {});
   const Vector3 point = Vector3::Zero();
   const auto before = project(camera, viewport, point);
-  const Camera panned = moved(camera, CameraMotion::pan, {30.0, -20.0}, viewport);
+  const Camera panned = move_camera_by(camera, CameraMotion::pan, {30.0, -20.0}, viewport);
   const auto after = project(panned, viewport, point);
   EXPECT_NEAR(after->x() - before->x(), 30.0, 1e-6);
   EXPECT_NEAR(after->y() - before->y(), -20.0, 1e-6);
@@ -62,7 +60,8 @@ TEST(Navigation, PanningKeepsThePointUnderThePointer) {
 TEST(Navigation, StaysWithinItsLimits) {
   const Viewport viewport = make_viewport(800, 600, {});
   Camera camera;
-  for (int i = 0; i < 500; ++i) camera = zoomed(moved(camera, CameraMotion::orbit, {5, 50}, viewport), 3.0);
+  for (int i = 0; i < 500; ++i)
+    camera = zoom_camera(move_camera_by(camera, CameraMotion::orbit, {5, 50}, viewport), 3.0);
   EXPECT_LT(camera.pitch_rad, 1.5708);
   EXPECT_GE(camera.distance_m, 0.005);
 }
@@ -106,12 +105,12 @@ TEST(MouseHand, HoversPressesAndLetsGo) {
   const HandTarget deeper = follow(true);
   EXPECT_NEAR((deeper.pose.position_m - pressed.pose.position_m).norm(), 0.002, 1e-9);
   pointer.wheel = 0.0;
-  hand.let_go();
+  hand.release_press();
   EXPECT_EQ(follow(true).pose.position_m, hover.pose.position_m);
-  EXPECT_FALSE(hand.pressing());
+  EXPECT_FALSE(hand.is_pressing());
   follow(false);
   follow(true);
-  EXPECT_TRUE(hand.pressing());
+  EXPECT_TRUE(hand.is_pressing());
 }
 
 TEST(KeyBindings, NoChordMeansTwoThings) {
@@ -145,8 +144,8 @@ TEST(Request, AMarksNameCannotLeaveItsFolder) {
   for (const char* name : {"../x", "a/b", "", "a b", "a.json"}) {
     EXPECT_FALSE(request_from_json({0, Json{{"command", "save"}, {"name", name}}, "test"})) << name;
   }
-  EXPECT_EQ(mark_name_of("../my model"), "---my-model");
-  EXPECT_EQ(mark_name_of(""), "unnamed");
+  EXPECT_EQ(make_mark_name("../my model"), "---my-model");
+  EXPECT_EQ(make_mark_name(""), "unnamed");
 }
 
 TEST(ViewChoice, WritesNothingThatItWouldRefuse) {

@@ -280,12 +280,12 @@ TEST_F(EditWindow, KilledInAStrokeItLosesASecondAtMost) {
   const Autosave autosave(place_.path("state") / "spoonbill", place_.path("handle.json"));
   // Until what was autosaved is bent: a second after it was, at most.
   EXPECT_TRUE(wait_for([&] {
-    const auto saved = autosave.left_over();
+    const auto saved = autosave.recovered_document();
     return saved && saved.value() && largest_difference(*saved.value(), held_model()) > 1e-4;
   }));
   kill_editor();
   EXPECT_EQ(json_to_page(document_to_json(read_document(place_.path("handle.json")).value())), before);
-  const auto found = autosave.left_over();
+  const auto found = autosave.recovered_document();
   ASSERT_TRUE(found) << found.error().message;
   ASSERT_TRUE(found.value().has_value());
   EXPECT_GT(largest_difference(*found.value(), held_model()), 1e-4);

@@ -33,7 +33,7 @@ class Side {
     LiveFrame first;
     write_snapshot(*made, first.snapshot);
     write_facts(*made, first.facts);
-    const LiveScene scene{made->title, document_of(*made).scene};
+    const LiveScene scene{made->title, make_session_document(*made).scene};
     journal_.emplace(notices_, scene);
     worker_.emplace(notices_);
     exchange_.emplace(first);
@@ -45,16 +45,17 @@ class Side {
   void aim(const HandTarget& target) { mailbox_->aim(target); }
   void ask(Request request) {
     Json json = request_to_json(request);
-    ASSERT_TRUE(exchange_->commands.push(AskedRequest{std::move(request), std::move(json)}));
+    ASSERT_TRUE(exchange_->commands.push(QueuedRequest{std::move(request), std::move(json)}));
   }
   void begin_recording(const std::filesystem::path& file) {
-    const SessionWork work = [file](LentSession& lent) {
-      auto recording = RecordingWriter::create(file, {lent.session->device, document_of(*lent.session)});
+    const SessionJob work = [file](LentSession& lent) {
+      auto recording =
+          RecordingWriter::create(file, {lent.session->device, make_session_document(*lent.session)});
       if (!recording) return Status(recording.error());
       lent.recording = std::make_unique<RecordingWriter>(std::move(recording).value());
       return Status();
     };
-    ASSERT_TRUE(exchange_->commands.push(AskedWork{work, true}));
+    ASSERT_TRUE(exchange_->commands.push(QueuedJob{work, true}));
     for (int i = 0; i < 300'000 && !frame().recording; ++i) {
       tick(4);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -5,9 +5,9 @@
 #include <fstream>
 
 #include "app/program.h"
+#include "haptic/virtual_device.h"
 #include "haptic/recording.h"
 #include "haptic/safe_device.h"
-#include "haptic/virtual_device.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/app/wait_for.h"
 #include "tests/app/workplace.h"
@@ -122,7 +122,7 @@ TEST(LiveSession, ARefusedRequestIsSaidAndChangesNothing) {
   ASSERT_TRUE(live->ask(Command(SetMaterial{wrong})));
   std::vector<Notice> notices;
   EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) {
-    for (Notice& notice : live->take_notices()) {
+    for (Notice& notice : live->consume_notices()) {
       if (notice.kind == Notice::Kind::problem) notices.push_back(std::move(notice));
     }
     return !notices.empty();
@@ -138,7 +138,7 @@ TEST(LiveSession, SavesWhatTheShapeIsNow) {
   Live live(held_handle());
   stroke(live);
   ASSERT_TRUE(live->save(place.path("bent.json")));
-  EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return live->take_saved().has_value(); }));
+  EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return live->consume_saved_document().has_value(); }));
   const auto saved = read_document(place.path("bent.json"));
   ASSERT_TRUE(saved) << saved.error().message;
   double lowest = 1.0, lowest_before = 1.0;
@@ -152,7 +152,7 @@ TEST(LiveSession, SavesWhatTheShapeIsNow) {
 std::string next_notice(LiveSession& live, Notice::Kind kind) {
   std::string text;
   EXPECT_TRUE(wait_for(live, [&](const LiveFrame&) {
-    for (const Notice& notice : live.take_notices()) {
+    for (const Notice& notice : live.consume_notices()) {
       if (notice.kind == kind && notice.text.find("export") != std::string::npos) text = notice.text;
     }
     return !text.empty();
@@ -167,7 +167,7 @@ TEST(LiveSession, ExportsAMeshWhichSavesNothing) {
   stroke(live);
   ASSERT_TRUE(live->save(place.path("bent.stl")));
   EXPECT_EQ(next_notice(*live, Notice::Kind::information), "exported bent.stl, in mm");
-  EXPECT_FALSE(live->take_saved().has_value());
+  EXPECT_FALSE(live->consume_saved_document().has_value());
   // Eighty bytes, a count, and fifty for each triangle.
   std::ifstream in(place.path("bent.stl"), std::ios::binary);
   std::uint32_t triangles = 0;
@@ -190,7 +190,7 @@ TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
   ASSERT_TRUE(live->save(place.path("model.json")));  // of the one that is still to be seen
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.title == "another"; }));
   wait_ticks(*live, 1000);
-  EXPECT_FALSE(live->take_saved().has_value());
+  EXPECT_FALSE(live->consume_saved_document().has_value());
   EXPECT_EQ(read_document(place.path("model.json"))->name, "small handle");
 }
 
@@ -201,11 +201,11 @@ TEST(LiveSession, LeavesItsNewestWorkAutosavedWhenItEndsInAFault) {
   {
     Live live(held_handle());
     live->set_autosave(autosave);
-    const std::uint64_t before = live->frame().deed;
+    const std::uint64_t before = live->frame().edit_count;
     ASSERT_TRUE(live->ask(Command(PlacePlane{{Vector3(0.01, 0, 0), Vector3::UnitX()}})));
-    ASSERT_TRUE(wait_for(*live, [&](const LiveFrame& frame) { return frame.deed > before; }));
+    ASSERT_TRUE(wait_for(*live, [&](const LiveFrame& frame) { return frame.edit_count > before; }));
   }
-  const auto found = autosave.left_over();
+  const auto found = autosave.recovered_document();
   ASSERT_TRUE(found) << found.error().message;
   ASSERT_TRUE(found.value().has_value());
   EXPECT_EQ(found.value()->scene.planes.size(), 2U);
@@ -220,13 +220,13 @@ TEST(LiveSession, AutosavesUnsavedWorkUntilItIsSaved) {
   EXPECT_FALSE(std::filesystem::exists(autosave.file()));  // nothing has changed
   stroke(live);
   EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return std::filesystem::exists(autosave.file()); }));
-  const auto found = autosave.left_over();
+  const auto found = autosave.recovered_document();
   ASSERT_TRUE(found) << found.error().message;
   ASSERT_TRUE(found.value().has_value());
   // Settled, so that nothing is autosaved after the save.
   wait_ticks(*live, 4000);
   ASSERT_TRUE(live->save(place.path("model.json")));
-  EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return live->take_saved().has_value(); }));
+  EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return live->consume_saved_document().has_value(); }));
   EXPECT_FALSE(std::filesystem::exists(autosave.file()));
 }
 
@@ -234,8 +234,8 @@ TEST(LiveSession, ARecordingThatCannotBeWrittenIsSaid) {
   const Workplace place;
   Live live(held_handle());
   ASSERT_TRUE(live->start_recording(place.path("no such folder/x.recording.jsonl"), ViewChoice()));
-  EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.works == 1; }));
-  EXPECT_EQ(live->frame().failed_works, 1U);
+  EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.completed_jobs == 1; }));
+  EXPECT_EQ(live->frame().failed_jobs, 1U);
   EXPECT_FALSE(live->frame().recording);
   wait_ticks(*live, 10);
 }
@@ -249,7 +249,7 @@ TEST(LiveSession, AnOlderRecordingStaysUntilTheNewOneIsWhole) {
   wait_ticks(*live, 50);
   EXPECT_EQ(content_of(file), "an older one");
   live->stop();
-  EXPECT_TRUE(live->last_recording_is_whole());
+  EXPECT_TRUE(live->is_last_recording_complete());
   const auto recording = read_recording(file);
   ASSERT_TRUE(recording) << recording.error().message;
   EXPECT_TRUE(recording->end.has_value());
@@ -269,7 +269,7 @@ TEST(LiveSession, OpensAnotherDocument) {
     ASSERT_TRUE(check_net(live->frame().snapshot.bodies[0].surface));
     wait_ticks(*live, 5);
   }
-  EXPECT_EQ(live->frame().works, 1U);
+  EXPECT_EQ(live->frame().completed_jobs, 1U);
 }
 
 TEST(LiveSession, TheWorkspaceFollowsTheModelThatIsOpened) {
@@ -278,7 +278,7 @@ TEST(LiveSession, TheWorkspaceFollowsTheModelThatIsOpened) {
   far.scene.planes.clear();
   for (double& x : far.scene.bodies[0].surface.net.x) x += 2.0;
   ASSERT_TRUE(live->open(far, "far"));
-  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.works == 1; }));
+  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.completed_jobs == 1; }));
   live.aim(at(2.05, 0.03));
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) {
     return frame.snapshot.tool.device.position_m.x() > 2.04 &&
@@ -288,10 +288,10 @@ TEST(LiveSession, TheWorkspaceFollowsTheModelThatIsOpened) {
 
 TEST(LiveSession, CancellingWithoutAStrokeChangesNothing) {
   Live live(held_handle());
-  const std::uint64_t deed = live->frame().deed;
+  const std::uint64_t edits = live->frame().edit_count;
   ASSERT_TRUE(live->ask(CancelStroke{}));
   wait_ticks(*live, 50);
-  EXPECT_EQ(live->frame().deed, deed);
+  EXPECT_EQ(live->frame().edit_count, edits);
 }
 
 // A live session recorded and replayed gives the same states: the replay compares every thousandth tick and

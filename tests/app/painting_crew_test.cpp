@@ -1,10 +1,9 @@
-#include "app/frames/painting_crew.h"
-
 #include <gtest/gtest.h>
 
 #include <utility>
 
-#include "app/panel/session_panel.h"
+#include "app/frames/frame_painter.h"
+#include "app/panel/panel.h"
 #include "tests/engine/simulation/handle.h"
 #include "tests/render/compare.h"
 
@@ -30,7 +29,7 @@ class Crew : public ::testing::Test {
     job.view = frame_view(session_.view, framed_box(job.snapshot), width_px, height_px);
     SessionFacts facts;
     write_facts(session_, facts);
-    job.panel = panel_of(facts, job.snapshot, job.view);
+    job.panel = make_panel_model(facts, job.snapshot, job.view);
     SurfaceSnapshot& surface = job.snapshot.bodies[0].surface;
     // Away from the ends, which stay closed.
     const int raised = surface.v.control_point_count() / 2;
@@ -47,7 +46,7 @@ TEST_F(Crew, PaintsInOrderWhatOnePainterPaints) {
   PaintingCrew crew(width_px, height_px);
   std::vector<PaintedFrame> painted;
   const auto take = [&] {
-    auto frame = crew.take();
+    auto frame = crew.receive();
     ASSERT_TRUE(frame) << frame.error().message;
     painted.push_back(std::move(frame).value());
   };
@@ -77,7 +76,7 @@ TEST_F(Crew, APainterThatCannotPaintSaysSo) {
   PaintingJob broken = job(0);
   broken.snapshot.bodies[0].surface.y.clear();
   crew.start(std::move(broken));
-  EXPECT_FALSE(crew.take());
+  EXPECT_FALSE(crew.receive());
 }
 
 TEST_F(Crew, WhatNobodyTakesIsThrownAway) {

@@ -5,12 +5,9 @@
 
 #include <memory>
 
-#include "app/panel/font_file.h"
 #include "app/panel/interface_context.h"
-#include "app/panel/session_panel.h"
 #include "app/report/quantity_text.h"
-#include "app/view/stage_choice.h"
-#include "app/view/view_choice.h"
+#include "app/session/view_choice.h"
 
 namespace spoonbill {
 namespace {
@@ -208,10 +205,10 @@ TEST(Panel, RefusesWrongMaterialsWithTheRange) {
   };
   EXPECT_EQ(refusal(modulus_y, "-5 kPa"), "E is -5 kPa, must be 0.001 kPa to 1e+09 kPa");
   EXPECT_EQ(refusal(modulus_y, "nan"), "E is nan kPa, must be 0.001 kPa to 1e+09 kPa");
-  EXPECT_EQ(refusal(modulus_y, "5 psi"), "E: unit psi not known; known: Pa, kPa, MPa, GPa");
+  EXPECT_EQ(refusal(modulus_y, "5 psi"), "E: unit psi is unknown; units: Pa, kPa, MPa, GPa");
   EXPECT_EQ(refusal(poisson_y, "0.5"), "Poisson is 0.5, must be 0 to 0.49");
   EXPECT_EQ(refusal(density_y, "0"), "Density is 0 g/cm\u00b3, must be 0.001 g/cm\u00b3 to 30 g/cm\u00b3");
-  EXPECT_EQ(refusal(density_y, "wet"), "Density: \"wet\" is no number");
+  EXPECT_EQ(refusal(density_y, "wet"), "Density: \"wet\" is not a number");
   EXPECT_EQ(refusal(poisson_y, "0.1"),
             "material modelling-clay: poissons_ratio is 0.1, must be 0.2 or more for a material that is "
             "plastic, creeps or stiffens");
@@ -224,7 +221,7 @@ TEST(Panel, AddsKnotsToTheBodyThatLagsMost) {
   snapshot.bodies[0].residual.largest_m = 1e-5;
   snapshot.bodies[1].residual.largest_m = 3e-5;
   snapshot.bodies[2].residual.largest_m = 2e-5;
-  const PanelModel model = panel_of({}, snapshot, {});
+  const PanelModel model = make_panel_model({}, snapshot, {});
   EXPECT_EQ(model.residual_m, 3e-5);
   Frame frame(1280, 720);
   frame.draw(model);

@@ -141,7 +141,7 @@ TEST(PluggedDevice, DrivesALiveSessionAndIsUnharmedByItsFaults) {
   EXPECT_EQ(hardware->force_n, 0.0);
   expect_harmless(*hardware);
   EXPECT_TRUE(hardware->is_open);
-  EXPECT_TRUE(live->last_recording_is_whole());
+  EXPECT_TRUE(live->is_last_recording_complete());
   live.reset();
   EXPECT_FALSE(hardware->is_open);
   replay_to_the_same_states(place, "plugged.jsonl");
@@ -172,7 +172,7 @@ TEST(PluggedDevice, GetsNoForceInTicksThatAFailedAssertBreaksOff) {
   EXPECT_TRUE(
       wait_for(*live, [](const LiveFrame& frame) { return (frame.snapshot.flags & tick_flag_failed) != 0; }));
   EXPECT_TRUE(wait_until_felt(*live, *hardware));
-  const std::vector<Notice> notices = live->take_notices();
+  const std::vector<Notice> notices = live->consume_notices();
   EXPECT_EQ(std::count_if(notices.begin(), notices.end(),
                           [](const Notice& notice) { return notice.kind == Notice::Kind::problem; }),
             1);

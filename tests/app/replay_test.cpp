@@ -19,10 +19,10 @@ std::set<std::string> names_in(const std::filesystem::path& folder) {
 }
 
 TEST(Frames, ShowTheStateAfterWholeTicks) {
-  EXPECT_EQ(tick_of_frame(0), 0U);
-  EXPECT_EQ(tick_of_frame(1), 16U);
-  EXPECT_EQ(tick_of_frame(2), 33U);
-  EXPECT_EQ(tick_of_frame(60), 1000U);
+  EXPECT_EQ(frame_tick(0), 0U);
+  EXPECT_EQ(frame_tick(1), 16U);
+  EXPECT_EQ(frame_tick(2), 33U);
+  EXPECT_EQ(frame_tick(60), 1000U);
   EXPECT_EQ(frame_count(0), 1U);
   EXPECT_EQ(frame_count(15), 1U);
   EXPECT_EQ(frame_count(16), 2U);

@@ -1,9 +1,9 @@
-#include "app/undo/stroke_history.h"
+#include "app/session/stroke_history.h"
 
 #include <gtest/gtest.h>
 
-#include "haptic/tick.h"
 #include "haptic/virtual_device.h"
+#include "haptic/tick.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"

@@ -1,8 +1,7 @@
-#include "app/view/view_choice.h"
+#include "app/session/view_choice.h"
 
 #include <gtest/gtest.h>
 
-#include "app/view/stage_choice.h"
 
 namespace spoonbill {
 namespace {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "app/frames/frame_painter.h"
-#include "app/panel/session_panel.h"
+#include "app/panel/panel.h"
 #include "app/session/lockstep.h"
 #include "engine/base/geometry.h"
 #include "engine/exchange/document.h"
@@ -73,7 +73,7 @@ class MomentPictures : public ::testing::Test {
     const std::uint64_t ticks = recording->readings.size();
     Lockstep lockstep(session.value(), {&device, ticks, recording->commands, {}, {}, "recording"}, nullptr);
     const auto frame = static_cast<std::uint64_t>(moment.share * static_cast<double>(frame_count(ticks) - 1));
-    EXPECT_TRUE(lockstep.run_to(tick_of_frame(frame)));
+    EXPECT_TRUE(lockstep.run_to(frame_tick(frame)));
     session->flags = tick_flag_none;  // of many frames at once
     write_snapshot(session.value(), snapshot);
     return {std::move(session).value(), std::move(painter).value(), std::move(snapshot), framed};
@@ -102,7 +102,7 @@ class MomentPictures : public ::testing::Test {
     ViewSettings view = frame_view(stage.session.view, stage.framed, width_px, height_px);
     SessionFacts facts;
     write_facts(stage.session, facts);
-    PanelModel panel = panel_of(facts, stage.snapshot, view);
+    PanelModel panel = make_panel_model(facts, stage.snapshot, view);
     if (edit) edit(view, panel);
     Image image;
     EXPECT_TRUE(stage.painter.paint(stage.snapshot, view, panel, image));

@@ -1,4 +1,4 @@
-#include "app/undo/stroke_history.h"
+#include "app/session/stroke_history.h"
 
 #include <algorithm>
 
@@ -24,51 +24,51 @@ void StrokeHistory::after_tick(const Simulation& simulation, bool touching) {
 
 void StrokeHistory::begin_stroke() {
   if (open_stroke_) {
-    if (at_ + 1 == shapes_.size()) {
+    if (current_ + 1 == shapes_.size()) {
       std::rotate(shapes_.begin(), shapes_.begin() + 1, shapes_.end());
     } else {
-      ++at_;
+      ++current_;
     }
   }
-  shapes_[at_] = untouched_;
-  count_ = at_ + 1;
+  shapes_[current_] = untouched_;
+  count_ = current_ + 1;
   open_stroke_ = true;
 }
 
 Status StrokeHistory::undo(Simulation& simulation) {
   if (!can_undo()) return {};
-  if (!open_stroke_) return go_to(at_ - 1, simulation);
-  if (at_ + 1 == shapes_.size()) {
+  if (!open_stroke_) return restore_shape(current_ - 1, simulation);
+  if (current_ + 1 == shapes_.size()) {
     std::rotate(shapes_.begin(), shapes_.begin() + 1, shapes_.end());
-    --at_;
+    --current_;
   }
-  simulation.write_shape(shapes_[at_ + 1]);
-  count_ = at_ + 2;
-  return go_to(at_, simulation);
+  simulation.write_shape(shapes_[current_ + 1]);
+  count_ = current_ + 2;
+  return restore_shape(current_, simulation);
 }
 
 Status StrokeHistory::redo(Simulation& simulation) {
-  return can_redo() ? go_to(at_ + 1, simulation) : Status();
+  return can_redo() ? restore_shape(current_ + 1, simulation) : Status();
 }
 
 Status StrokeHistory::cancel(Simulation& simulation) {
   if (!in_stroke()) return {};
-  count_ = at_ + 1;
-  return go_to(at_, simulation);
+  count_ = current_ + 1;
+  return restore_shape(current_, simulation);
 }
 
 void StrokeHistory::clear(const Simulation& simulation) {
-  at_ = 0;
+  current_ = 0;
   count_ = 1;
   open_stroke_ = false;
   touching_ = false;
   simulation.write_shape(untouched_);
 }
 
-Status StrokeHistory::go_to(std::size_t index, Simulation& simulation) {
+Status StrokeHistory::restore_shape(std::size_t index, Simulation& simulation) {
   if (Status restored = simulation.restore(shapes_[index]); !restored) return restored;
   untouched_ = shapes_[index];
-  at_ = index;
+  current_ = index;
   open_stroke_ = false;
   touching_ = false;
   return {};

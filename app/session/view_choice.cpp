@@ -1,4 +1,4 @@
-#include "app/view/view_choice.h"
+#include "app/session/view_choice.h"
 
 #include <algorithm>
 #include <array>
@@ -175,8 +175,8 @@ Status apply_view_command(const Json& command, const std::string& source, ViewCh
   return {};
 }
 
-ViewSettings settings_for(const ViewChoice& choice, const Box& body, int width_px, int height_px,
-                          const Rectangle& panel_px, double interface_scale) {
+ViewSettings make_view_settings(const ViewChoice& choice, const Box& body, int width_px, int height_px,
+                                const Rectangle& panel_px, double interface_scale) {
   ViewSettings settings;
   settings.camera = choice.camera;
   if (choice.shows_whole_body) {

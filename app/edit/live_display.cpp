@@ -1,4 +1,4 @@
-#include "app/edit/plots.h"
+#include "app/edit/live_display.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -6,10 +6,31 @@
 #include "app/panel/rows.h"
 
 namespace spoonbill {
+
+void MessageLine::draw(const Theme& theme, const ImVec2& corner_px, double seconds) {
+  while (shown_.size() > lines_limit) shown_.pop_front();
+  for (Shown& shown : shown_) shown.seconds_left -= seconds;
+  while (!shown_.empty() && shown_.front().seconds_left <= 0.0) shown_.pop_front();
+  if (shown_.empty()) return;
+  ImGui::PushFont(theme.fonts.body);
+  const float gap = theme.metrics.padding_px;
+  ImGui::SetNextWindowPos(ImVec2(corner_px.x + gap, corner_px.y - gap), ImGuiCond_Always, ImVec2(0.0F, 1.0F));
+  ImGui::Begin("Messages", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
+  for (const Shown& shown : shown_) {
+    const bool problem = shown.notice.kind == Notice::Kind::problem;
+    ImGui::TextColored(problem ? colour::warning : colour::ink, "%s", shown.notice.text.c_str());
+  }
+  ImGui::End();
+  ImGui::PopFont();
+}
+
 namespace {
 
-constexpr float width_heights = 15.0F;  // in text heights
-constexpr float plot_heights = 2.6F;
+constexpr float width_heights = 15.0F;  // width of a plot, in text heights
+constexpr float plot_heights = 2.6F;    // height of a plot, in text heights
 
 }  // namespace
 
@@ -20,7 +41,7 @@ void LivePlots::add(const std::vector<float>& forces_n, const LoopFigures& loop,
   }
   loop_ = loop;
   since_rate_s_ += seconds;
-  if (since_rate_s_ < seconds_between_rates) return;
+  if (since_rate_s_ < rate_interval_s) return;
   since_rate_s_ = 0.0;
   rates_hz_[next_rate_] = static_cast<float>(loop.rate_hz);
   next_rate_ = (next_rate_ + 1) % rate_count;

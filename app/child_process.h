@@ -1,0 +1,63 @@
+// Child processes: programs that are started with given pipes, and a reader of a child's output that limits
+// its memory and time.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+
+namespace spoonbill {
+
+// Starts `arguments[0]`, searched in PATH unless it contains a slash. `input` becomes its standard input and
+// `output` its standard output; a negative one stands for /dev/null, where standard error always goes.
+// Returns -1 if the program cannot be started. Pipe ends that the child must not inherit need O_CLOEXEC.
+pid_t start_process(const std::vector<std::string>& arguments, int input, int output);
+
+// Waits until the process ends. Returns its state as waitpid() does.
+int wait_for_process(pid_t process);
+
+// How a child process ended.
+struct ChildEnd {
+  int exit_code = 0;         // valid when no signal ended the process
+  int signal = 0;            // 0 for none
+  bool out_of_time = false;  // killed at the deadline, or for exceeding its processor time
+};
+
+// The standard output of a child process with limited memory and time. One owner, one thread.
+class ChildOutput {
+ public:
+  static constexpr std::size_t memory_limit = std::size_t{4} << 30;  // address space of the child, in bytes
+
+  // Starts the child. `patience` limits both its wall-clock time and its processor time. `input` becomes its
+  // standard input; none if negative. Returns an error if no pipe is left or the program cannot be started.
+  static Result<ChildOutput> start(const std::vector<std::string>& arguments,
+                                   std::chrono::milliseconds patience, int input = -1);
+
+  ChildOutput(ChildOutput&& other) noexcept;
+  ChildOutput& operator=(ChildOutput&&) = delete;
+  ~ChildOutput();  // kills a child that still runs
+
+  // Reads exactly `bytes` bytes. Returns false if the output ends earlier, the time is over, or `gives_up`,
+  // which is called every 50 ms meanwhile, returns true.
+  bool read(void* to, std::size_t bytes, const std::function<bool()>& gives_up = {});
+
+  // Waits for the child until the time is over, then kills it.
+  ChildEnd wait();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  ChildOutput(pid_t process, int pipe, Clock::time_point deadline)
+      : process_(process), pipe_(pipe), deadline_(deadline) {}
+
+  pid_t process_;  // -1 after it has ended
+  int pipe_;
+  Clock::time_point deadline_;
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,141 @@
+// The mouse: moves the camera, picks the point of the surface under the pointer, and holds the virtual
+// handle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/simulation/snapshot.h"
+#include "haptic/virtual_device.h"
+#include "render/camera.h"
+#include "render/tessellation/tessellated_surface.h"
+
+namespace spoonbill {
+
+// Mouse navigation of a modelling program. Rhino: right orbits, Shift+right pans, Ctrl+right or the wheel
+// zooms. Blender: middle orbits, Shift+middle pans, Ctrl+middle or the wheel zooms. SculptGL: right, or left
+// beside the model, orbits, middle pans, the wheel zooms.
+enum class NavigationPreset { rhino, blender, sculptgl };
+
+inline constexpr std::array<const char*, 3> navigation_names = {"rhino", "blender", "sculptgl"};
+
+// Returns the preset of this name.
+Result<NavigationPreset> find_navigation(const std::string& name);
+
+// State of the mouse in a frame. Positions in pixels from the upper left corner.
+struct Pointer {
+  Eigen::Vector2d position_px = Eigen::Vector2d::Zero();
+  Eigen::Vector2d moved_px = Eigen::Vector2d::Zero();  // since the last frame
+  double wheel = 0.0;                                  // notches; positive away from the user
+  bool left = false, middle = false, right = false;    // pressed
+  bool ctrl = false, shift = false;
+};
+
+enum class CameraMotion { none, orbit, pan, zoom };
+
+// Returns the camera motion of the pressed buttons. `on_model`: the drag began on the model.
+CameraMotion camera_motion(NavigationPreset preset, const Pointer& pointer, bool on_model);
+
+// Returns the camera after a motion of the pointer. An orbit turns it about its target.
+Camera move_camera_by(const Camera& camera, CameraMotion motion, const Eigen::Vector2d& moved_px,
+                      const Viewport& viewport);
+
+// Returns the camera after a zoom. One notch away from the user reduces the distance by a tenth.
+Camera zoom_camera(const Camera& camera, double notches);
+
+// Contact of a tool that moves along a ray with the body.
+struct PickedPoint {
+  Vector3 centre_m;  // centre of the tool at first contact
+  Vector3 outward;   // unit vector from the body to the tool's centre
+};
+
+// Finds where a tool that moves along a ray first touches a body. It gives the mouse, which has no depth, a
+// point on the surface. One owner: the thread that draws.
+class SurfacePick {
+ public:
+  // Samples the current surfaces. Grids are reused until the knots of a surface change. Surfaces that cannot
+  // be evaluated are not picked.
+  void update(const Snapshot& snapshot);
+
+  // Returns the first point along the ray where a sphere of this radius meets the samples; nothing if it
+  // misses. Each sample is a small ball, so that the tool does not sink between samples.
+  std::optional<PickedPoint> first_touch(const Ray& ray, double radius_m) const;
+
+ private:
+  struct Sampled {
+    TessellatedSurface surface;
+    double ball_m = 0.0;  // radius of the balls: half a cell's diagonal
+    std::vector<std::uint32_t> vertices;
+    std::uint64_t topology = 0;  // topology version of `vertices`
+  };
+  static void update_vertices(Sampled& sampled);
+
+  std::vector<Sampled> surfaces_;
+};
+
+// Settings of a stroke.
+struct MouseStroke {
+  double radius_m = 0.0;    // radius of the tool, 0 for a point
+  double strength_m = 0.0;  // depth of a press
+  bool grips = false;       // the tool attaches at first touch, as for a pull
+};
+
+// Input of one frame: the mouse, the view and the surfaces.
+struct MouseFrame {
+  Pointer pointer;
+  bool is_stroking = false;  // the stroke button is down and was pressed on the picture
+  Camera camera;
+  Viewport viewport;
+  const SurfacePick* pick = nullptr;  // must outlive the frame
+  MouseStroke stroke;
+};
+
+// The mouse as the hand that holds the virtual handle. While hovering, the tool is just above the surface
+// under the pointer without touching it; beside the body it is on the plane of the last touch. A press pushes
+// it in by the strength; it then follows the pointer in the screen plane, which the wheel moves. One owner:
+// the thread that draws.
+class MouseHand : public InputSource {
+ public:
+  // Starts at rest at `start_m`, which also defines the first hover plane.
+  explicit MouseHand(const Vector3& start_m)
+      : depth_point_m_(start_m), hover_m_(start_m), target_m_(start_m) {}
+
+  // Sets the input of is_used() and next_target(). The pick must not be null.
+  void set_frame(const MouseFrame& frame) { frame_ = frame; }
+
+  bool is_used() override { return frame_.is_stroking || !frame_.pointer.moved_px.isZero(); }
+  HandTarget next_target(const HandTarget& current, double elapsed_s) override;
+
+  // Ends the press as if the button were released, until it is pressed again.
+  void release_press();
+
+  bool is_pressing() const { return press_.has_value(); }
+  const Vector3& target_m() const { return target_m_; }  // last target of the handle
+  bool on_model() const { return is_on_model_; }         // the last hover was over the body
+
+ private:
+  struct Press {
+    Vector3 anchor_m;   // position of the tool at the press
+    Vector3 inward;     // unit vector into the body; zero beside it
+    Vector3 pointer_m;  // pointer position in the screen plane at the press
+    double depth_m = 0.0;
+    int frames = 0;
+  };
+  void hover(const Ray& ray, const Camera& camera, const SurfacePick& pick, const MouseStroke& stroke);
+  void press(const Ray& ray, const Pointer& pointer, const Camera& camera, const MouseStroke& stroke);
+
+  MouseFrame frame_;
+  Vector3 depth_point_m_;
+  Vector3 hover_m_;
+  Vector3 inward_ = Vector3::Zero();
+  bool is_on_model_ = false;
+  std::optional<Press> press_;
+  bool must_release_ = false;
+  Vector3 target_m_;
+};
+
+}  // namespace spoonbill

@@ -1,0 +1,61 @@
+// Undo of strokes. A stroke lasts from first touch to release and includes all motion until the next stroke.
+// Shapes are stored bit for bit.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/simulation/simulation.h"
+
+namespace spoonbill {
+
+// Shapes before and after strokes. One owner: the thread that ticks. The constructor allocates all memory, so
+// that later calls are safe on the haptic thread. When the history is full, the oldest shape is dropped.
+class StrokeHistory {
+ public:
+  // Shortest release that ends a stroke, in ticks; a shorter one is a bounce within the stroke.
+  static constexpr int release_ticks = 50;
+
+  // Largest number of stored shapes. Bodies whose shapes would exceed the memory limit have fewer, at least
+  // 3.
+  static constexpr std::size_t shape_limit = 64;
+  static constexpr std::size_t memory_limit_bytes = std::size_t{64} << 20;
+
+  explicit StrokeHistory(const Simulation& simulation);
+
+  // Must be called after every tick. `touching`: the tool acted on the body in that tick.
+  void after_tick(const Simulation& simulation, bool touching);
+
+  // Restore the shape before the last stroke, or after the next one. They do nothing where there is none. An
+  // error of the simulation leaves the history unchanged.
+  Status undo(Simulation& simulation);
+  Status redo(Simulation& simulation);
+
+  // Restores the shape before the current stroke and discards the stroke. Does nothing outside a stroke.
+  Status cancel(Simulation& simulation);
+
+  // Forgets all strokes. Must be called when a command changes what a shape means, such as fixing planes or
+  // the rest shape.
+  void clear(const Simulation& simulation);
+
+  bool can_undo() const { return open_stroke_ || current_ > 0; }
+  bool can_redo() const { return !open_stroke_ && current_ + 1 < count_; }
+  bool in_stroke() const { return touching_; }
+
+ private:
+  void begin_stroke();
+  Status restore_shape(std::size_t index, Simulation& simulation);
+
+  // Sequence that undo and redo step through: shapes_[0 .. count_ - 1]. The body has the shape
+  // shapes_[current_], or, while a stroke is open, one after it that is not stored yet.
+  std::vector<ShapeState> shapes_;
+  std::size_t count_ = 1;
+  std::size_t current_ = 0;
+  bool open_stroke_ = false;
+
+  bool touching_ = false;
+  int ticks_since_touch_ = 0;
+  ShapeState untouched_;  // shape after the last tick outside a stroke
+};
+
+}  // namespace spoonbill

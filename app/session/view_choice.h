@@ -1,0 +1,98 @@
+// How a document or a recording shows its scene, with the JSON for it and the contact debug views:
+//  "view": {"camera": {...}, "overlays": {"lattice": true, ...}, "see_through_body": false,
+//           "ground_mm": -40}
+//  {"command": "set_camera", ...}   {"command": "set_overlays", "lattice": true, ...}
+//  {"command": "set_overlays", "contact_stage": "spheres", "sphere_level": 1}
+// A contact stage is "none", "hulls", "spheres", "triangles" or "contacts". The sphere level ranges from 0,
+// the coarsest, to 3. Camera fields, all optional: "yaw_deg", "pitch_deg", "field_of_view_deg", and
+// "target_mm": [x, y, z] with "distance_mm". Without target and distance the whole body is shown. Overlays
+// that are not named keep their state. The default ground is just below the body; a height suits bodies that
+// will be bent further down. Unknown fields and values out of range are errors that name the field.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "engine/base/geometry.h"
+#include "engine/base/result.h"
+#include "engine/exchange/json.h"
+#include "engine/simulation/snapshot_stages.h"
+#include "render/view_settings.h"
+
+namespace spoonbill {
+
+// Camera, overlays and ground of a view.
+struct ViewChoice {
+  Camera camera;
+  bool shows_whole_body = true;  // target and distance are computed from the body
+  Overlays overlays;
+  bool see_through_body = false;
+  std::optional<double> ground_y_m;  // default: just below the body
+};
+
+// Reads a view. `source` names the file in messages. An empty object gives the defaults.
+Result<ViewChoice> view_from_json(const Json& view, const std::string& source);
+
+// Returns the JSON of a view, as stored in a document.
+Json view_to_json(const ViewChoice& choice);
+
+// Return the commands that set the camera, or all overlays, to those of the choice.
+Json camera_command(const ViewChoice& choice);
+Json overlays_command(const Overlays& overlays, bool see_through_body);
+
+// Returns true if "command" names one of the view's commands.
+bool is_view_command(const Json& command);
+
+// Applies a view command to the choice. An error leaves the choice unchanged.
+Status apply_view_command(const Json& command, const std::string& source, ViewChoice& choice);
+
+// Returns the settings that draw a frame of this size beside a panel. `body` encloses the model at the start,
+// so that neither camera nor ground moves as the model deforms.
+ViewSettings make_view_settings(const ViewChoice& choice, const Box& body, int width_px, int height_px,
+                                const Rectangle& panel_px, double interface_scale);
+
+// A contact debug view that the user can choose; each sphere level is one choice.
+struct StageChoice {
+  const char* name;
+  ContactStage stage;
+  int sphere_level;
+
+  bool is_chosen(const Overlays& overlays) const {
+    return overlays.contact_stage == stage &&
+           (stage != ContactStage::spheres || overlays.sphere_level == sphere_level);
+  }
+  void choose(Overlays& overlays) const {
+    overlays.contact_stage = stage;
+    overlays.sphere_level = sphere_level;
+  }
+};
+
+static_assert(finest_stage_level == 3);
+inline constexpr std::array<StageChoice, 8> stage_choices = {{
+    {"None", ContactStage::none, 0},
+    {"Hulls", ContactStage::hulls, 0},
+    {"Spheres, level 0", ContactStage::spheres, 0},
+    {"Spheres, level 1", ContactStage::spheres, 1},
+    {"Spheres, level 2", ContactStage::spheres, 2},
+    {"Spheres, level 3", ContactStage::spheres, 3},
+    {"Triangles", ContactStage::triangles, 0},
+    {"Contact points", ContactStage::contacts, 0},
+}};
+
+// Contact stages of the next frame, computed only while one of them is shown. One owner: the thread that
+// draws.
+class StageFinder {
+ public:
+  // Sets settings.stages, to null where no stage is shown.
+  void fill(const Snapshot& snapshot, ViewSettings& settings) {
+    settings.stages = nullptr;
+    if (settings.overlays.contact_stage == ContactStage::none) return;
+    settings.stages = std::make_shared<const ContactStages>(finder_.find(snapshot));
+  }
+
+ private:
+  SnapshotStages finder_;
+};
+
+}  // namespace spoonbill
