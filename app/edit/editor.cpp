@@ -14,10 +14,10 @@
 #include <utility>
 
 #include "app/assets_folder.h"
+#include "app/files/documents.h"
 #include "app/files/state_folder.h"
 #include "app/live/journal.h"
 #include "app/panel/panel.h"
-#include "app/files/documents.h"
 #include "engine/base/assert.h"
 #include "engine/base/geometry.h"
 #include "haptic/safe_device.h"
