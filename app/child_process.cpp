@@ -76,8 +76,9 @@ void limit(pid_t process, std::chrono::milliseconds patience) {
 Result<ChildOutput> ChildOutput::start(const std::vector<std::string>& arguments,
                                        std::chrono::milliseconds patience, int input) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0)
+  if (pipe2(ends, O_CLOEXEC) != 0) {
     return Error{ErrorCode::unavailable, "no pipe is left to read a child process"};
+  }
   const pid_t process = start_process(arguments, input, ends[1]);
   close(ends[1]);
   if (process < 0) {

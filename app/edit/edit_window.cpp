@@ -77,9 +77,10 @@ Status EditWindow::end_frame(const Snapshot& snapshot, const ViewSettings& view)
 
 Result<FrameLog> FrameLog::open(const std::filesystem::path& file) {
   std::ofstream out(file, std::ios::trunc);
-  if (!out)
+  if (!out) {
     return Error{ErrorCode::unwritable,
                  file.string() + " cannot be written: check the folder and its permissions"};
+  }
   return FrameLog(std::move(out));
 }
 

@@ -14,10 +14,10 @@
 #include <utility>
 
 #include "app/assets_folder.h"
-#include "app/files/documents.h"
 #include "app/files/state_folder.h"
 #include "app/live/journal.h"
 #include "app/panel/panel.h"
+#include "app/files/documents.h"
 #include "engine/base/assert.h"
 #include "engine/base/geometry.h"
 #include "haptic/safe_device.h"
@@ -388,9 +388,9 @@ void Editor::handle_keys(const LiveFrame& frame) {
     // Esc is the only command while text is typed.
     if (ImGui::GetIO().WantTextInput && press.key != GLFW_KEY_ESCAPE) continue;
     for (const KeyBinding& binding : key_bindings()) {
-      const bool meant =
+      const bool matches =
           binding.key == press.key && binding.ctrl == press.ctrl && binding.shift == press.shift;
-      if (!meant) continue;
+      if (!matches) continue;
       if (binding.action == EditAction::choose_tool) {
         set_tool(frame, binding.kind, binding.tool_action);
       } else {
@@ -696,7 +696,7 @@ void Editor::toggle_recording(const LiveFrame& frame) {
   }
   const bool is_requested =
       std::any_of(pending_jobs_.begin(), pending_jobs_.end(), [](const auto& job) { return !job; });
-  if (is_requested) return;  // already requested
+  if (is_requested) return;
   const std::filesystem::path file =
       find_free_file(parent_folder(document_.file()), document_stem(document_.file()), ".recording.jsonl");
   if (!live_->start_recording(file, view_)) return;

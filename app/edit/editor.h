@@ -16,8 +16,8 @@
 #include "app/edit/prompts.h"
 #include "app/session/view_choice.h"
 #include "engine/base/geometry.h"
-#include "haptic/space_mouse.h"
 #include "haptic/virtual_device.h"
+#include "haptic/space_mouse.h"
 #include "render/view_settings.h"
 
 namespace spoonbill {

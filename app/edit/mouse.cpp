@@ -177,8 +177,9 @@ HandTarget MouseHand::next_target(const HandTarget&, double) {
   const Ray ray = ray_through(camera, viewport, pointer.position_px);
   if (!is_stroking) must_release_ = false;
   const bool pressed = is_stroking && !must_release_;
-  if (pressed && !press_)
+  if (pressed && !press_) {
     press_ = Press{hover_m_, inward_, project_to_screen_plane(ray, camera, hover_m_), 0.0, 0};
+  }
   if (!pressed) press_.reset();
   if (press_) {
     press(ray, pointer, camera, stroke);

@@ -71,8 +71,9 @@ Status prepare_frame_folder(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error)
+  if (error) {
     return Error{ErrorCode::unwritable, folder.string() + ": cannot create the folder: " + error.message()};
+  }
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     return Error{ErrorCode::unwritable,
                  folder.string() + ": cannot write to the folder: " + std::generic_category().message(errno)};
@@ -84,8 +85,9 @@ Status prepare_frame_folder(const std::filesystem::path& folder) {
   for (const fs::path& file : old) {
     if (!error) fs::remove(file, error);
   }
-  if (error)
+  if (error) {
     return Error{ErrorCode::unwritable, folder.string() + ": cannot remove old frames: " + error.message()};
+  }
   return {};
 }
 
@@ -184,8 +186,9 @@ Result<VideoEncoder> VideoEncoder::start(const std::filesystem::path& file, int 
   std::filesystem::path unfinished = file;
   unfinished.replace_filename(file.stem().string() + ".unfinished" + file.extension().string());
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0)
+  if (pipe2(ends, O_CLOEXEC) != 0) {
     return Error{ErrorCode::unavailable, std::string("no pipe to ffmpeg: ") + std::strerror(errno)};
+  }
   const pid_t process =
       start_process(ffmpeg_arguments(unfinished, std::to_string(width_px) + "x" + std::to_string(height_px),
                                      std::to_string(rate_numerator) + "/" + std::to_string(rate_denominator)),

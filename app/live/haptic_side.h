@@ -25,8 +25,8 @@
 #include "app/session/session.h"
 #include "engine/base/assert.h"
 #include "engine/simulation/snapshot.h"
-#include "haptic/haptic_loop.h"
 #include "haptic/lock_free.h"
+#include "haptic/haptic_loop.h"
 #include "haptic/recording.h"
 #include "haptic/safe_device.h"
 
@@ -49,10 +49,14 @@ struct QueuedRequest {
   Request request;
   Json json;
 };
+
+// A job for the worker.
 struct QueuedJob {
   SessionJob job;
   bool ends_recording = false;
 };
+
+// A request to publish the scene for a save.
 struct SceneRequest {
   std::uint64_t request = 0;
 };

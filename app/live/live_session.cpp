@@ -55,8 +55,9 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
   const DeviceSpecification& specification = device->specification();
   if (Status checked = check_specification(specification); !checked) return checked.error();
   const std::optional<DeviceReading> reading = device->read();
-  if (!reading || !reading->is_valid())
+  if (!reading || !reading->is_valid()) {
     return Error{ErrorCode::unreadable, "device " + specification.name + ": does not answer"};
+  }
   auto session = make_session(document, source, specification, settings.instruction_set);
   if (!session) return session.error();
   Session& made = *session.value();

@@ -17,9 +17,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int width_px = 1280;
 constexpr int height_px = 720;
-constexpr std::chrono::microseconds frame_time{16667};
+constexpr std::chrono::microseconds picture_interval{16667};
 constexpr std::chrono::seconds wait_limit{10};
 
+// Draws frames offscreen into memory, as the window would.
 class Painting {
  public:
   static Result<Painting> make(const LiveFrame& first) {
@@ -50,8 +51,9 @@ Status wait_until(LiveSession& live, Done done, const char* what) {
     for (Notice& notice : live.consume_notices()) {
       if (notice.kind == Notice::Kind::problem) return Error{ErrorCode::unwritable, std::move(notice.text)};
     }
-    if (Clock::now() > give_up)
+    if (Clock::now() > give_up) {
       return Error{ErrorCode::unavailable, std::string(what) + " took longer than 10 s"};
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return {};
@@ -61,8 +63,9 @@ Status send_due_requests(const Script& script, std::uint64_t tick, std::size_t& 
   for (; next < script.commands.size() && script.commands[next].tick <= tick; ++next) {
     auto request = request_from_json(script.commands[next]);
     if (!request) return request.error();
-    if (!live.ask(std::move(request).value()))
+    if (!live.ask(std::move(request).value())) {
       return Error{ErrorCode::too_many, "the command queue of the haptic thread is full"};
+    }
   }
   return {};
 }
@@ -71,7 +74,7 @@ Status play(const Script& script, LiveSession& live, TargetMailbox& mailbox, Pai
             const ViewChoice& view, const std::function<bool()>& interrupted, std::uint64_t& frames) {
   const auto begin = Clock::now();
   std::size_t next = 0;
-  for (auto at = begin; !interrupted(); at = std::max(at + frame_time, Clock::now())) {
+  for (auto at = begin; !interrupted(); at = std::max(at + picture_interval, Clock::now())) {
     std::this_thread::sleep_until(at);
     const auto passed = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - begin).count();
     const auto tick = static_cast<std::uint64_t>(passed);

@@ -19,6 +19,7 @@ struct PerformanceSettings {
   std::filesystem::path recording;
 };
 
+// Results of a performance.
 struct PerformanceReport {
   LoopFigures loop;
   std::uint64_t frames = 0;

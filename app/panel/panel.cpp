@@ -56,12 +56,6 @@ PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot,
 
 namespace {
 
-std::string rounded(double number, int decimals, const char* unit) {
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), "%.*f%s", decimals, number, unit);
-  return text.data();
-}
-
 void draw_title(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
   ImGui::PushFont(theme.fonts.heading);
   ImGui::TextUnformatted(model.title.c_str());
@@ -91,12 +85,12 @@ bool field_row(const Field<Object>& field, Object& object, std::string& refusal,
   const auto shown = [&](const std::string& value_text) {
     return text == nullptr ? value_text : std::string(text);
   };
-  if (const auto number = field.member.template pointer_to<double>()) {
-    double& value = object.*number;
+  if (const auto* number = std::get_if<double Object::*>(&field.member)) {
+    double& value = object.**number;
     return quantity_row(form, value, shown(quantity_text(form, value)), refusal);
   }
-  if (const auto number = field.member.template pointer_to<int>()) {
-    int& value = object.*number;
+  if (const auto* number = std::get_if<int Object::*>(&field.member)) {
+    int& value = object.**number;
     const char* unit = form.unit == FieldUnit::per_tick ? " per tick" : "";
     return slider_row(form, value, shown(std::to_string(value) + unit));
   }
@@ -105,7 +99,8 @@ bool field_row(const Field<Object>& field, Object& object, std::string& refusal,
 
 template <class Object, class Value>
 bool is_field(const Field<Object>& field, Value Object::*member) {
-  return field.member.template pointer_to<Value>() == member;
+  const auto* found = std::get_if<Value Object::*>(&field.member);
+  return found != nullptr && *found == member;
 }
 
 // Returns true if the tool's action uses the field. Only a sphere has a radius.
@@ -158,14 +153,14 @@ bool draw_presets(const PanelModel& model, Material& material) {
 std::string effective_modulus_text(const PanelModel& model) {
   const std::string modulus = modulus_text(model.effective_youngs_modulus_pa);
   if (model.implicit_nodes > 0) return modulus + "  (implicit)";
-  return modulus + "  (" +
-         percent_text(model.effective_youngs_modulus_pa / model.material.youngs_modulus_pa) + " of E)";
+  return modulus + "  (" + percent_text(model.effective_youngs_modulus_pa / model.material.youngs_modulus_pa) +
+         " of E)";
 }
 
 std::string after_touch_text(const Material& material) {
   if (material.plastic) return "plastic";
   if (!(material.relaxing_fraction > 0.0)) return "elastic";
-  return "creep, " + rounded(material.relaxation_time_s, 0, " s");
+  return "creep, " + rounded_text(material.relaxation_time_s, 0, " s");
 }
 
 // Requests the material, or reports why its values are inconsistent.
@@ -204,7 +199,7 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
 
 // Distance between the control net and its lattice.
 std::string residual_text(double residual_m) {
-  return rounded(1e3 * residual_m, 3, " mm error");
+  return rounded_text(1e3 * residual_m, 3, " mm error");
 }
 
 void draw_fixtures(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
@@ -264,11 +259,11 @@ void draw_device(const PanelModel& model, const Theme& theme, PanelAnswer& answe
     if (!group) return;
     Sculpting sculpting = model.sculpting;
     gauge_row("Force", model.force_limit_n > 0.0 ? model.force_n / model.force_limit_n : 0.0,
-              rounded(model.force_n, 2, "") + " of " + newtons_text(model.force_limit_n));
+              rounded_text(model.force_n, 2, "") + " of " + newtons_text(model.force_limit_n));
     if (field_row(field_of(&Sculpting::force_scale), sculpting, answer.refusal)) {
       answer.requests.emplace_back(Command(SetSculpting{sculpting}));
     }
-    fact_row("Rate", rounded(model.rate_hz, 0, model.rate_is_nominal ? " Hz (nominal)" : " Hz") + ", " +
+    fact_row("Rate", rounded_text(model.rate_hz, 0, model.rate_is_nominal ? " Hz (nominal)" : " Hz") + ", " +
                          std::to_string(model.substeps) + (model.substeps == 1 ? " substep" : " substeps"));
   }
   for (const std::string& text : flag_texts(model.flags)) {

@@ -47,7 +47,7 @@ struct PanelModel {
   bool rate_is_nominal = true;  // true in lock-step, where no clock measures it
   int substeps = 0;
   std::uint32_t flags = tick_flag_none;
-  std::string safety_text;   // reasons for a reduce_degree device force, one per line
+  std::string safety_text;   // reasons for a limited device force, one per line
   std::string drawing_text;  // details omitted from the picture
 };
 

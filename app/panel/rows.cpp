@@ -44,12 +44,6 @@ std::span<const QuantityUnit> find_units(FieldUnit unit) {
   }
 }
 
-std::string rounded(double number, int decimals, const char* unit) {
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), "%.*f%s", decimals, number, unit);
-  return text.data();
-}
-
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(' ');
   if (first == std::string_view::npos) return {};
@@ -96,6 +90,12 @@ Error unknown_unit(const FieldForm& form, std::string_view name) {
 
 }  // namespace
 
+std::string rounded_text(double number, int decimals, const char* unit) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%.*f%s", decimals, number, unit);
+  return text.data();
+}
+
 std::string quantity_text(const FieldForm& form, double value) {
   switch (form.unit) {
     case FieldUnit::metre:
@@ -105,19 +105,20 @@ std::string quantity_text(const FieldForm& form, double value) {
     case FieldUnit::kilogram_per_m3:
       return density_text(value);
     case FieldUnit::per_second:
-      return rounded(value, 1, " /s");
+      return rounded_text(value, 1, " /s");
     case FieldUnit::times:
-      return rounded(value, 2, " \u00d7");
+      return rounded_text(value, 2, " \u00d7");
     default:
-      return rounded(value, 2, "");
+      return rounded_text(value, 2, "");
   }
 }
 
 Result<double> read_quantity(const FieldForm& form, const std::string& typed, const std::string& shown) {
   const std::string field = form.slider.label;
   const Reading reading = read_number(typed);
-  if (!reading.is_number)
+  if (!reading.is_number) {
     return Error{ErrorCode::malformed, field + ": \"" + typed + "\" is not a number", std::string(form.name)};
+  }
   const std::string_view name = reading.unit.empty() ? read_number(shown).unit : reading.unit;
   const QuantityUnit* unit = find_unit(form, name);
   if (unit == nullptr) return unknown_unit(form, name);

@@ -12,6 +12,9 @@
 
 namespace spoonbill {
 
+// Returns the number with this many decimals, followed by `unit`.
+std::string rounded_text(double number, int decimals, const char* unit);
+
 // Returns a number with its unit, as a slider shows it: "1.20 MPa", "0.45", "4.0 /s".
 std::string quantity_text(const FieldForm& form, double value);
 

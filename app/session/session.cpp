@@ -127,9 +127,10 @@ struct RequestApplier {
     return apply_view_command(change.command, "view", session.view);
   }
   Status operator()(const MarkFile& mark) {
-    if (session.marks.size() == waiting_marks_limit)
+    if (session.marks.size() == waiting_marks_limit) {
       return Error{ErrorCode::too_many,
                    "more than " + std::to_string(waiting_marks_limit) + " files requested at one tick"};
+    }
     FileMark& made = session.marks.emplace_back(FileMark{mark, {}});
     if (mark.kind == FileMarkKind::document) made.document = make_session_document(session);
     return {};

@@ -36,8 +36,10 @@ struct ChangeView {
   Json command;
 };
 
-// A document or a screenshot to write, and its name.
+// Kind of a file to write.
 enum class FileMarkKind { document, picture };
+
+// A request to write a document or a screenshot under this name.
 struct MarkFile {
   FileMarkKind kind = FileMarkKind::document;
   std::string name;

@@ -44,8 +44,8 @@ TEST(AutosaveClaim, WindowsOnOneDocumentDoNotShareAnAutosave) {
   auto one = std::optional(AutosaveClaim::acquire(place.path("."), "/a/spoon.json"));
   const auto other = AutosaveClaim::acquire(place.path("."), "/a/spoon.json");
   EXPECT_NE(one->autosave().file(), other.autosave().file());
-  // The first window crashes, and its work goes to the next one that opens; the second's is left to the
-  // second.
+  // The first window crashes, and the next window that opens recovers its work. The second window keeps its
+  // own.
   ASSERT_TRUE(one->autosave().write(handle("first")));
   ASSERT_TRUE(other.autosave().write(handle("second")));
   one.reset();
@@ -97,7 +97,7 @@ TEST(Autosave, ABrokenOneIsAnErrorAndStays) {
   }
 }
 
-// A disk of 64 KiB.
+// A mounted disk of 64 KiB.
 class SmallDisk {
  public:
   explicit SmallDisk(const std::filesystem::path& folder) : folder_(folder) {

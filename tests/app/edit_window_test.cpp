@@ -24,8 +24,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The editor in a window of its own, and a person's hands: real X events from xdotool. Software drawing on a
-// loaded machine manages a frame in a second; every wait ends when the editor's log shows what is waited for.
+// The editor in a window, driven by X events from xdotool. Software drawing on a loaded machine takes up to a
+// second per frame, so every wait ends at a state of the frame log.
 class EditWindow : public testing::Test {
  protected:
   void SetUp() override {
@@ -54,7 +54,7 @@ class EditWindow : public testing::Test {
 
   std::filesystem::path log_file() const { return place_.path("frames.log"); }
 
-  // The last frame that was shown, empty before the first. It has the fields of ShownFrame.
+  // Returns the last frame shown, with the fields of ShownFrame; empty before the first frame.
   Json shown() const {
     std::ifstream log(log_file());
     std::string line, last;
@@ -62,7 +62,7 @@ class EditWindow : public testing::Test {
     return last.empty() ? Json::object() : json_of(last);
   }
 
-  // Until a frame was shown of which the condition is true.
+  // Waits until a frame satisfies the condition.
   template <class Condition>
   bool wait_shown(Condition condition) const {
     return wait_for([&] {
@@ -71,20 +71,20 @@ class EditWindow : public testing::Test {
     });
   }
 
-  // Until so many more frames were begun and shown, which have seen what happened before.
+  // Waits until `count` further frames were started and shown, which include all earlier events.
   bool wait_frames(int count) const {
     const Json before = shown();
     const int from = before.empty() ? 0 : before["frame"].get<int>();
     return wait_shown([&](const Json& frame) { return frame["frame"].get<int>() > from + count; });
   }
 
-  // Until so many more ticks were computed: on a machine under load they take longer.
+  // Waits until `count` further ticks were computed, which take longer on a loaded machine.
   bool wait_ticks(int count) const {
     const int from = shown()["tick"].get<int>();
     return wait_shown([&](const Json& frame) { return frame["tick"].get<int>() >= from + count; });
   }
 
-  // Moves the pointer until the editor has seen it there and the device is where the hand holds it.
+  // Moves the pointer and waits until the editor has seen it there and the device has reached the hand.
   bool move_to(int x, int y) const {
     if (!hands("mousemove " + std::to_string(x) + " " + std::to_string(y))) return false;
     return wait_shown(
@@ -94,7 +94,7 @@ class EditWindow : public testing::Test {
            });
   }
 
-  // Holds the keys down until frames have seen them: a text field asks for their state alone.
+  // Holds the keys down until frames have seen them, because a text field reads only their current state.
   void press(const std::string& keys) const {
     std::string down, up;
     std::istringstream words(keys);
@@ -123,7 +123,7 @@ class EditWindow : public testing::Test {
     return false;
   }
 
-  // The file's content once it is newer than `older`.
+  // Saves the document and reads the file once it is newer than `older`.
   Document saved(const std::string& name, std::filesystem::file_time_type older) {
     EXPECT_TRUE(hands("key ctrl+s"));
     EXPECT_TRUE(wait_for([&] { return std::filesystem::last_write_time(place_.path(name)) > older; }));
@@ -135,7 +135,7 @@ class EditWindow : public testing::Test {
     return std::filesystem::last_write_time(place_.path(name));
   }
 
-  // Presses at the handle's upper edge, right of the panel, and drags down.
+  // Presses on the handle's upper edge, right of the panel, and drags down.
   void stroke() {
     EXPECT_TRUE(move_to(900, 250));
     EXPECT_TRUE(hands("mousedown 1"));
@@ -193,19 +193,19 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   start({place_.text("handle.json"), "--record", place_.text("session.jsonl")});
   const Document original = saved("handle.json", time_of("handle.json"));
   stroke();
-  ASSERT_TRUE(wait_ticks(4000));  // settled
+  ASSERT_TRUE(wait_ticks(4000));  // at rest
   const Document bent = saved("handle.json", time_of("handle.json"));
   EXPECT_GT(largest_difference(bent, original), 1e-3);
 
   ASSERT_TRUE(hands("key ctrl+z"));
   ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["can_redo"].get<bool>(); }));
   const Document undone = saved("handle.json", time_of("handle.json"));
-  EXPECT_EQ(largest_difference(undone, original), 0.0);  // to the bit
+  EXPECT_EQ(largest_difference(undone, original), 0.0);  // bit for bit
 
   ASSERT_TRUE(hands("key ctrl+y"));
   ASSERT_TRUE(wait_shown([](const Json& frame) { return !frame["can_redo"].get<bool>(); }));
   const Document redone = saved("handle.json", time_of("handle.json"));
-  // Between the saves it went on settling.
+  // The body moves a little between the two saves.
   EXPECT_LT(largest_difference(redone, bent), 0.25 * largest_difference(bent, original));
 
   ASSERT_TRUE(hands("key F12"));
@@ -278,7 +278,7 @@ TEST_F(EditWindow, KilledInAStrokeItLosesASecondAtMost) {
   ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["pressing"].get<bool>(); }));
   ASSERT_TRUE(hands("mousemove 900 330"));
   const Autosave autosave(place_.path("state") / "spoonbill", place_.path("handle.json"));
-  // Until what was autosaved is bent: a second after it was, at most.
+  // An autosave lags the shape by at most a second, so a bent one appears soon.
   EXPECT_TRUE(wait_for([&] {
     const auto saved = autosave.recovered_document();
     return saved && saved.value() && largest_difference(*saved.value(), held_model()) > 1e-4;

@@ -22,7 +22,7 @@ HandTarget at(double y_m, std::uint32_t buttons = 0) {
   return {{Vector3(0.05, y_m, 0.0), Quaternion::Identity()}, buttons};
 }
 
-// The haptic thread's part of a live session, called by the test's own thread, so that allocations count.
+// The haptic thread's part of a live session, called on the test's thread, whose allocations are counted.
 class Side {
  public:
   Side() {
@@ -63,7 +63,7 @@ class Side {
     ASSERT_TRUE(frame().recording);
   }
 
-  // How often the ticks took something from the heap.
+  // Runs ticks. Returns their number of heap allocations.
   std::size_t tick(int count, std::uint64_t dropped = 0) {
     const std::size_t before = allocation_count();
     for (int i = 0; i < count; ++i) side_->tick({index_++, dropped});
@@ -89,7 +89,7 @@ TEST(HapticSide, TicksStrokesAndLightCommandsAllocateNothing) {
   const Workplace place;
   Side side;
   side.begin_recording(place.path("live.jsonl"));
-  side.tick(2000);  // every buffer has had its first value
+  side.tick(2000);  // fills every buffer
   side.aim(at(0.004));
   bool in_stroke = false;
   for (int i = 0; i < 300; ++i) {
@@ -104,11 +104,11 @@ TEST(HapticSide, TicksStrokesAndLightCommandsAllocateNothing) {
   side.ask(ChangeView{camera_command(ViewChoice())});
   EXPECT_EQ(side.tick(50), 0U);
   side.aim(at(0.03));
-  EXPECT_EQ(side.tick(1500), 0U);  // a state hash among them
+  EXPECT_EQ(side.tick(1500), 0U);  // includes a state hash
   side.ask(UndoStroke{});
   side.ask(RedoStroke{});
   EXPECT_EQ(side.tick(100), 0U);
-  EXPECT_EQ(side.tick(5, 40), 0U);  // stalls, which reset the proxy
+  EXPECT_EQ(side.tick(5, 40), 0U);  // dropped ticks reset the proxy
 }
 
 TEST(HapticSide, ATargetThatIsNotFiniteIsNotFollowed) {

@@ -5,9 +5,9 @@
 #include <fstream>
 
 #include "app/program.h"
+#include "haptic/virtual_device.h"
 #include "haptic/recording.h"
 #include "haptic/safe_device.h"
-#include "haptic/virtual_device.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/app/wait_for.h"
 #include "tests/app/workplace.h"
@@ -53,7 +53,7 @@ void wait_ticks(LiveSession& live, std::uint64_t ticks) {
   EXPECT_TRUE(wait_for(live, [&](const LiveFrame& frame) { return frame.snapshot.tick >= from + ticks; }));
 }
 
-// Presses the handle's end down and lets go.
+// Presses the end of the handle down and releases it.
 void stroke(Live& live) {
   live.aim(at(0.05, 0.0));
   ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.in_stroke; }));
@@ -86,7 +86,7 @@ TEST(LiveSession, AStrokeIsUndoneAndRedone) {
 }
 
 TEST(LiveSession, ACancelledStrokeLeavesNothingAndTheToolActsAgainOnceItHasLeft) {
-  // Of rubber: clay gives way to the first blow and no longer touches, which ends the stroke.
+  // Rubber keeps contact; clay yields at the first contact, which ends the stroke.
   Document rubber = held_handle();
   rubber.scene.bodies[0].material.plastic = false;
   Live live(rubber);
@@ -168,7 +168,7 @@ TEST(LiveSession, ExportsAMeshWhichSavesNothing) {
   ASSERT_TRUE(live->save(place.path("bent.stl")));
   EXPECT_EQ(next_notice(*live, Notice::Kind::information), "exported bent.stl, in mm");
   EXPECT_FALSE(live->consume_saved_document().has_value());
-  // Eighty bytes, a count, and fifty for each triangle.
+  // A binary STL file has 80 bytes, a count and 50 bytes per triangle.
   std::ifstream in(place.path("bent.stl"), std::ios::binary);
   std::uint32_t triangles = 0;
   in.seekg(80);
@@ -180,21 +180,21 @@ TEST(LiveSession, ExportsAMeshWhichSavesNothing) {
   EXPECT_EQ(next_notice(*live, Notice::Kind::problem).substr(0, 14), "not exported: ");
 }
 
-// Otherwise one document would be written into another's file.
+// A late save must not write one document into the file of another.
 TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
   const Workplace place;
   Live live(held_handle());
   Document other = held_handle();
   other.name = "another";
   ASSERT_TRUE(live->open(other, "other"));
-  ASSERT_TRUE(live->save(place.path("model.json")));  // of the one that is still to be seen
+  ASSERT_TRUE(live->save(place.path("model.json")));  // the document that is still shown
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.title == "another"; }));
   wait_ticks(*live, 1000);
   EXPECT_FALSE(live->consume_saved_document().has_value());
   EXPECT_EQ(read_document(place.path("model.json"))->name, "small handle");
 }
 
-// As it ends when a fault in the program unwinds it: nobody says that the work is not wanted any more.
+// A fault in the program unwinds the session without discarding its autosave.
 TEST(LiveSession, LeavesItsNewestWorkAutosavedWhenItEndsInAFault) {
   const Workplace place;
   const Autosave autosave(place.path("."), place.path("model.json"));
@@ -217,13 +217,13 @@ TEST(LiveSession, AutosavesUnsavedWorkUntilItIsSaved) {
   Live live(held_handle());
   live->set_autosave(autosave);
   wait_ticks(*live, 600);
-  EXPECT_FALSE(std::filesystem::exists(autosave.file()));  // nothing has changed
+  EXPECT_FALSE(std::filesystem::exists(autosave.file()));  // no changes yet
   stroke(live);
   EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return std::filesystem::exists(autosave.file()); }));
   const auto found = autosave.recovered_document();
   ASSERT_TRUE(found) << found.error().message;
   ASSERT_TRUE(found.value().has_value());
-  // Settled, so that nothing is autosaved after the save.
+  // At rest, so that nothing is autosaved after the save.
   wait_ticks(*live, 4000);
   ASSERT_TRUE(live->save(place.path("model.json")));
   EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return live->consume_saved_document().has_value(); }));
@@ -264,7 +264,7 @@ TEST(LiveSession, OpensAnotherDocument) {
   ASSERT_TRUE(live->open(other, "other"));
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.title == "another"; }));
   EXPECT_TRUE(live->frame().snapshot.planes.empty());
-  // Without the plane its knots are fewer; the slots between the threads held those of the first document.
+  // Without the plane the surface has fewer knots, and the buffers still hold those of the first document.
   for (int frame = 0; frame < 6; ++frame) {
     ASSERT_TRUE(check_net(live->frame().snapshot.bodies[0].surface));
     wait_ticks(*live, 5);
@@ -294,8 +294,8 @@ TEST(LiveSession, CancellingWithoutAStrokeChangesNothing) {
   EXPECT_EQ(live->frame().edit_count, edits);
 }
 
-// A live session recorded and replayed gives the same states: the replay compares every thousandth tick and
-// the last.
+// A recording of a live session replays to the same states. The replay compares every thousandth tick and the
+// last.
 class LiveRecording : public testing::Test {
  protected:
   static const char* script() {
@@ -331,7 +331,7 @@ TEST_F(LiveRecording, ReplaysToItsOwnStates) {
   const Outcome replayed = run({"replay", place.text("live.jsonl"), "--no-frames", "--json"});
   ASSERT_EQ(replayed.code, exit_done) << replayed.err;
   EXPECT_TRUE(json_of(replayed.out)["complete"].get<bool>());
-  // A sanitizer makes most ticks late, and late ones drop: how many are left says nothing.
+  // Under a sanitizer most ticks are late and dropped, so the number of ticks has no lower bound.
   EXPECT_GT(json_of(replayed.out)["ticks"].get<int>(), 0);
 }
 

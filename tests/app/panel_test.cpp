@@ -34,7 +34,7 @@ PanelModel full_model() {
   return model;
 }
 
-// One frame of the panel, without a picture.
+// Lays out the panel without drawing it.
 class Frame {
  public:
   Frame(int width_px, int height_px)
@@ -121,7 +121,7 @@ std::vector<Request> click_once(const PanelModel& model, float x, float y) {
   return frame.draw(model);
 }
 
-// The requests of a click on what stands third in the row of kinds.
+// Returns the requests of a click on the third tool kind.
 std::vector<Request> click_third_kind(const PanelModel& model) {
   return click_once(model, 241.0F, 83.0F);
 }
@@ -156,7 +156,7 @@ TEST(Panel, LetsBodiesSettleAndSwingAgain) {
   }
 }
 
-// What the panel answers to a text typed, with Ctrl and a click, over the slider at this height.
+// Returns the answer to a text typed over the slider at this height, after Ctrl and a click.
 PanelAnswer type_over_slider(float y, const char* text) {
   Frame frame(1280, 720);
   const PanelModel model = full_model();
@@ -214,7 +214,7 @@ TEST(Panel, RefusesWrongMaterialsWithTheRange) {
             "plastic, creeps or stiffens");
 }
 
-// The button is somewhere at the right edge; what else is clicked on the way asks for something else.
+// Clicks down the right edge until the button is hit; other widgets make other requests.
 TEST(Panel, AddsKnotsToTheBodyThatLagsMost) {
   Snapshot snapshot;
   snapshot.bodies.resize(3);
@@ -243,7 +243,7 @@ TEST(Panel, AddsKnotsToTheBodyThatLagsMost) {
   EXPECT_EQ(refined.front(), 1);
 }
 
-// Opens the list of stages, which stands over the last rows, and clicks what is second in it.
+// Opens the list of stages, which covers the last rows, and clicks its second entry.
 TEST(Panel, OffersTheStagesOfContact) {
   Frame frame(1280, 720);
   const auto click = [&](float x, float y) {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "haptic/tick.h"
 #include "haptic/virtual_device.h"
+#include "haptic/tick.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-// A simulation that is touched by hand, with its history.
+// A simulation with its history and a tool that the test moves.
 struct Touched {
   Simulation simulation = Simulation::make(small_handle(), InstructionSet::baseline).value();
   StrokeHistory history{simulation};
@@ -32,7 +32,7 @@ struct Touched {
     return touched;
   }
 
-  // Comes down until it touches, and presses a little further. Returns the shape before the touch.
+  // Lowers the tool until it touches and presses a little further. Returns the shape before the contact.
   ShapeState press() {
     ShapeState before = simulation.shape();
     double height_m = 0.011;

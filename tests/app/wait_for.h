@@ -1,4 +1,4 @@
-// Waits for a state of a live session that a frame shows, never for a fixed time.
+// Waits until a frame of a live session shows a state, instead of a fixed time.
 #pragma once
 
 #include <chrono>
@@ -8,10 +8,10 @@
 
 namespace spoonbill {
 
-// A machine under load or a sanitizer may take its time; nothing is judged by it.
+// Time limit, long enough for a loaded machine or a sanitizer; no test measures it.
 inline constexpr std::chrono::seconds patience{300};
 
-// Whether the condition held of a frame before patience ran out.
+// Returns true if a frame satisfied the condition within the time limit.
 template <class Condition>
 bool wait_for(LiveSession& live, Condition condition) {
   const auto give_up = std::chrono::steady_clock::now() + patience;
