@@ -14,10 +14,10 @@
 #include <utility>
 
 #include "app/assets_folder.h"
+#include "app/files/documents.h"
 #include "app/files/state_folder.h"
 #include "app/live/journal.h"
 #include "app/panel/panel.h"
-#include "app/files/documents.h"
 #include "engine/base/assert.h"
 #include "engine/base/geometry.h"
 #include "haptic/safe_device.h"
@@ -628,7 +628,7 @@ void Editor::open_spoon_handle() {
   pending_jobs_.emplace_back(PendingOpen{{}, view.value()});
 }
 
-void Editor::open_shape(const LumpChoice& choice) {
+void Editor::open_shape(const StockShapeChoice& choice) {
   const auto material = shipped_material("modelling-clay");
   if (!material) return messages_.add_problem(material.error().message);
   auto document = make_stock_shape_document(choice, material.value());

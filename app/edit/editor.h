@@ -16,8 +16,8 @@
 #include "app/edit/prompts.h"
 #include "app/session/view_choice.h"
 #include "engine/base/geometry.h"
-#include "haptic/virtual_device.h"
 #include "haptic/space_mouse.h"
+#include "haptic/virtual_device.h"
 #include "render/view_settings.h"
 
 namespace spoonbill {
@@ -91,7 +91,7 @@ class Editor {
   void start_next_step(NextStep step);
   void open(const std::filesystem::path& file);
   void open_spoon_handle();
-  void open_shape(const LumpChoice& choice);
+  void open_shape(const StockShapeChoice& choice);
   void recover();
   void save();
   void save_as(const std::filesystem::path& file);

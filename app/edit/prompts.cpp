@@ -184,7 +184,7 @@ void ShapePrompt::draw_fields() {
   }
 }
 
-std::optional<LumpChoice> ShapePrompt::draw() {
+std::optional<StockShapeChoice> ShapePrompt::draw() {
   if (!is_open_) return std::nullopt;
   if (appearing_) ImGui::OpenPopup(shape_prompt_title);
   appearing_ = false;
@@ -202,7 +202,7 @@ std::optional<LumpChoice> ShapePrompt::draw() {
     ImGui::TextUnformatted(problem_.c_str());
     ImGui::PopTextWrapPos();
   }
-  std::optional<LumpChoice> result;
+  std::optional<StockShapeChoice> result;
   const bool entered = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
   if (ImGui::Button("Create") || entered) {
     result = choice_;

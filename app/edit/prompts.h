@@ -76,14 +76,14 @@ class ShapePrompt {
   void refuse(std::string problem);
 
   // Draws the prompt, between begin_frame() and end_frame(). Returns the choice once.
-  std::optional<LumpChoice> draw();
+  std::optional<StockShapeChoice> draw();
 
  private:
   void draw_fields();
 
   bool is_open_ = false;
   bool appearing_ = false;
-  LumpChoice choice_ = default_stock_shape(0);
+  StockShapeChoice choice_ = default_stock_shape(0);
   std::string problem_;
 };
 

@@ -56,8 +56,6 @@ struct StockShapeChoice {
   std::vector<double> sizes_mm;  // one per field
 };
 
-using LumpChoice = StockShapeChoice;  // former name, used in app/edit
-
 StockShapeChoice default_stock_shape(std::size_t kind);
 
 // Returns a document around the stock shape, fitted within 0.1 mm: few enough control points for ticks of one

@@ -25,8 +25,8 @@
 #include "app/session/session.h"
 #include "engine/base/assert.h"
 #include "engine/simulation/snapshot.h"
-#include "haptic/lock_free.h"
 #include "haptic/haptic_loop.h"
+#include "haptic/lock_free.h"
 #include "haptic/recording.h"
 #include "haptic/safe_device.h"
 

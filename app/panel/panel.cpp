@@ -85,12 +85,12 @@ bool field_row(const Field<Object>& field, Object& object, std::string& refusal,
   const auto shown = [&](const std::string& value_text) {
     return text == nullptr ? value_text : std::string(text);
   };
-  if (const auto* number = std::get_if<double Object::*>(&field.member)) {
-    double& value = object.**number;
+  if (const auto number = field.member.template pointer_to<double>()) {
+    double& value = object.*number;
     return quantity_row(form, value, shown(quantity_text(form, value)), refusal);
   }
-  if (const auto* number = std::get_if<int Object::*>(&field.member)) {
-    int& value = object.**number;
+  if (const auto number = field.member.template pointer_to<int>()) {
+    int& value = object.*number;
     const char* unit = form.unit == FieldUnit::per_tick ? " per tick" : "";
     return slider_row(form, value, shown(std::to_string(value) + unit));
   }
@@ -99,8 +99,7 @@ bool field_row(const Field<Object>& field, Object& object, std::string& refusal,
 
 template <class Object, class Value>
 bool is_field(const Field<Object>& field, Value Object::*member) {
-  const auto* found = std::get_if<Value Object::*>(&field.member);
-  return found != nullptr && *found == member;
+  return field.member.template pointer_to<Value>() == member;
 }
 
 // Returns true if the tool's action uses the field. Only a sphere has a radius.
@@ -153,8 +152,8 @@ bool draw_presets(const PanelModel& model, Material& material) {
 std::string effective_modulus_text(const PanelModel& model) {
   const std::string modulus = modulus_text(model.effective_youngs_modulus_pa);
   if (model.implicit_nodes > 0) return modulus + "  (implicit)";
-  return modulus + "  (" + percent_text(model.effective_youngs_modulus_pa / model.material.youngs_modulus_pa) +
-         " of E)";
+  return modulus + "  (" +
+         percent_text(model.effective_youngs_modulus_pa / model.material.youngs_modulus_pa) + " of E)";
 }
 
 std::string after_touch_text(const Material& material) {

@@ -5,9 +5,9 @@
 #include <fstream>
 
 #include "app/program.h"
-#include "haptic/virtual_device.h"
 #include "haptic/recording.h"
 #include "haptic/safe_device.h"
+#include "haptic/virtual_device.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/app/wait_for.h"
 #include "tests/app/workplace.h"

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "haptic/virtual_device.h"
 #include "haptic/tick.h"
+#include "haptic/virtual_device.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
