@@ -15,6 +15,7 @@
 #include "engine/exchange/file_format.h"
 #include "engine/material/lattice/body_lattice.h"
 #include "haptic/recording.h"
+#include "haptic/recording_lines.h"
 #include "haptic/script.h"
 #include "haptic/virtual_device.h"
 

@@ -139,7 +139,7 @@ class TableReader {
   }
 
   Result<PointTable> finish() && {
-    if (table_.rows_m.empty()) return Error{ErrorCode::too_few, source_ + ": holds no points"};
+    if (table_.rows_m.empty()) return Error{ErrorCode::too_few, source_ + ": contains no points"};
     return std::move(table_);
   }
 

@@ -15,6 +15,7 @@
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 #include "engine/scene/tool.h"
+#include "haptic/recording_lines.h"
 #include "haptic/script.h"
 #include "haptic/virtual_device.h"
 

@@ -14,6 +14,7 @@
 #include "app/report/quantity_text.h"
 #include "app/session/lockstep.h"
 #include "engine/base/geometry.h"
+#include "haptic/recording_lines.h"
 #include "haptic/virtual_device.h"
 #include "render/gl/context.h"
 

@@ -161,7 +161,7 @@ Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReadi
     if (surface.trim_problem.empty()) continue;
     model.notes.push_back("'" + surface.name + "' is read without its trims: " + surface.trim_problem);
   }
-  if (model.surfaces.empty()) return Error{ErrorCode::too_few, file.string() + ": holds no surface"};
+  if (model.surfaces.empty()) return Error{ErrorCode::too_few, file.string() + ": contains no surface"};
   return model;
 }
 

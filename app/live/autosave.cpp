@@ -6,6 +6,7 @@
 #include "engine/base/file.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/simulation/simulation.h"
+#include "haptic/recording_lines.h"
 
 namespace spoonbill {
 namespace {

@@ -38,7 +38,7 @@ void SessionWorker::lend(LentSession lent, LiveCommand job) {
   pending_.release();
 }
 
-bool SessionWorker::take_back(LentSession& lent, LiveCommand& job, bool& is_done) {
+bool SessionWorker::reclaim(LentSession& lent, LiveCommand& job, bool& is_done) {
   if (!finished_.exchange(false, std::memory_order_acquire)) return false;
   lent = std::move(lent_);
   job = std::move(job_);
@@ -106,7 +106,7 @@ void HapticSide::abandon_tick(const FailedAssertion& failure, std::uint64_t drop
 void HapticSide::run_tick(const LoopTick& tick) {
   if (journal_->consume_recording_failure()) recording_ = false;
   const DeviceReading reading = safe_device_.read();
-  if (lent_.session == nullptr) take_back_if_done();
+  if (lent_.session == nullptr) reclaim_if_done();
   if (lent_.session != nullptr) {
     record_state_when_due();
     run_commands();
@@ -159,9 +159,9 @@ void HapticSide::lend() {
   lent_ = {};
 }
 
-void HapticSide::take_back_if_done() {
+void HapticSide::reclaim_if_done() {
   bool is_done = false;
-  if (!worker_->take_back(lent_, command_, is_done)) return;
+  if (!worker_->reclaim(lent_, command_, is_done)) return;
   if (lent_.is_new_session) {
     ++session_count_;
     safe_device_.set_workspace_radius(lent_.session->device.workspace_radius_m);

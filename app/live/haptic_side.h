@@ -91,9 +91,9 @@ class SessionWorker {
   ~SessionWorker();  // finishes the current job first
 
   // Called by the haptic thread; they do not wait or allocate. After lend(), no other lend() until
-  // take_back() has returned true, once per loan. `job` is the command, `is_done` is true if it succeeded.
+  // reclaim() has returned true, once per loan. `job` is the command, `is_done` is true if it succeeded.
   void lend(LentSession lent, LiveCommand job);
-  bool take_back(LentSession& lent, LiveCommand& job, bool& is_done);
+  bool reclaim(LentSession& lent, LiveCommand& job, bool& is_done);
 
  private:
   void run();
@@ -150,7 +150,7 @@ class HapticSide {
   void run_commands();
   bool run_command();
   void lend();
-  void take_back_if_done();
+  void reclaim_if_done();
   void report_job(bool is_done);
   void apply_now(QueuedRequest& queued);
   void record(Json&& command);

@@ -34,13 +34,6 @@ std::string deviation_text(double deviation_m);
 // Returns for each set TickFlag what it means and what to do about it.
 std::vector<std::string> flag_texts(std::uint32_t flags);
 
-// A state hash as recordings and reports show it: sixteen hexadecimal digits.
-inline std::string hash_text(std::uint64_t hash) {
-  char text[17];
-  std::snprintf(text, sizeof(text), "%016llx", static_cast<unsigned long long>(hash));
-  return text;
-}
-
 const char* name_of(Closedness closedness);        // "solid", "tube", "sheet"
 std::string closing_text(const Closing& closing);  // "a tube, open by 12.0 mm at an end"
 

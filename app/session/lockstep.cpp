@@ -4,6 +4,7 @@
 
 #include "app/report/quantity_text.h"
 #include "engine/base/assert.h"
+#include "haptic/recording_lines.h"
 
 namespace spoonbill {
 

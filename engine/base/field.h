@@ -72,7 +72,7 @@ struct FieldForm {
   Range<double> range{-unlimited, unlimited};  // of a number, or of each component of a vector
   double length_limit = unlimited;             // largest length of a vector
   VectorSense sense = VectorSense::quantity;   // meaning of a vector
-  // Whether files may omit the field. It then has its struct's default, and it is written only if it differs.
+  // True if files may omit the field. It then has its struct's default, and it is written only if it differs.
   bool optional = false;
   // An earlier optional field that this one accompanies: required if that one is given, unknown otherwise.
   const char* partner = nullptr;

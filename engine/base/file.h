@@ -30,7 +30,7 @@ Result<std::ifstream> open_file(const std::filesystem::path& file);
 std::string read_first_bytes(const std::filesystem::path& file, std::size_t count);
 std::string read_last_bytes(const std::filesystem::path& file, std::size_t count);
 
-// Whether commit() waits until the content is on the disk. A sequence of files is committed with `later` and
+// Says if commit() waits until the content is on the disk. A sequence of files is committed with `later` and
 // followed by one call of flush_to_disk().
 enum class Durability { now, later };
 

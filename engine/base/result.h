@@ -42,7 +42,6 @@ struct Error {
   // is.
   Error(ErrorCode error_code, std::string error_message, std::string field_name = {})
       : code(error_code), message(std::move(error_message)), field(std::move(field_name)) {}
-  explicit Error(std::string error_message) : message(std::move(error_message)) {}
 
   // Returns the same error with "context: " before its message.
   Error in(std::string_view context) const { return {code, std::string(context) + ": " + message, field}; }

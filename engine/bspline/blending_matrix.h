@@ -51,7 +51,7 @@ Result<Eigen::MatrixXd> pseudo_inverse(const KnotVector& knots, std::span<const 
 struct RefitConstraints {
   // One flag for each control column, 1 for a column that never moves; empty if none is fixed.
   std::vector<std::uint8_t> fixed_columns;
-  // Whether the first or last sample is interpolated, so that a pole stays a pole; needs clamped knots.
+  // True if the first or last sample is interpolated, so that a pole stays a pole; needs clamped knots.
   bool keep_first = false, keep_last = false;
 };
 

@@ -63,7 +63,7 @@ struct ShapeFit {
   int degree = 3;
   // Least number of cells in each direction; the default allows shaping everywhere.
   int min_spans = 12;
-  // Whether a displacement along the shape counts as an error too, for shapes whose edges must stay where
+  // True if a displacement along the shape counts as an error too, for shapes whose edges must stay where
   // they are.
   bool keeps_parameters = false;
   // Numbers of control points along u and v instead of the tolerance; they are placed where the shape needs

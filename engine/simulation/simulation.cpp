@@ -214,12 +214,14 @@ void Simulation::write_scene(Scene& scene) const {
     scene.bodies[b].surface = state_->bodies[b].mapping().current();
   }
 }
+
 std::vector<std::string> Simulation::remarks() const {
   std::vector<std::string> warnings;
   for (const Body& body : state_->scene.bodies) {
     const auto at = static_cast<std::size_t>(&body - state_->scene.bodies.data());
     const std::string warning = describe_lattice_warning(state_->bodies[at]);
-    if (!warning.empty()) warnings.push_back(name_body(body, state_->scene, Error{warning}).message);
+    if (!warning.empty())
+      warnings.push_back(name_body(body, state_->scene, Error{ErrorCode::internal, warning}).message);
   }
   return warnings;
 }

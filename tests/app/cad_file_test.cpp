@@ -137,7 +137,7 @@ TEST_F(CadFileTest, OtherContentIsRefused) {
   const std::string nothing =
       "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
       "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n";
-  expect_refusal(write("nothing.step", nothing), "holds no");
+  expect_refusal(write("nothing.step", nothing), "contains no");
 }
 
 // Truncated and changed files give a model or a one-line error, in bounded time.

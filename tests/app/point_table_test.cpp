@@ -43,11 +43,11 @@ TEST(PointTable, SaysWhereAFileIsWrong) {
   const auto refusal = [](const std::string& text, bool with_section = false) {
     const auto table = read(text, with_section);
     EXPECT_FALSE(table.ok()) << text;
-    return table.ok() ? Error{""} : table.error();
+    return table.ok() ? Error{ErrorCode::internal, ""} : table.error();
   };
   const auto message = [&](const std::string& text) { return refusal(text).message; };
-  EXPECT_EQ(message(""), "points.csv: holds no points");
-  EXPECT_EQ(message("x_mm,y_mm,z_mm\n"), "points.csv: holds no points");
+  EXPECT_EQ(message(""), "points.csv: contains no points");
+  EXPECT_EQ(message("x_mm,y_mm,z_mm\n"), "points.csv: contains no points");
   EXPECT_NE(message("1,2,3\n").find("points.csv:1: names the columns"), std::string::npos);
   EXPECT_NE(message("x,y,z\n1,2,3\n").find("x_mm,y_mm,z_mm"), std::string::npos);
   EXPECT_NE(message("x_mm,y_mm,z_mm\n1,2\n").find("points.csv:2: has 2 values"), std::string::npos);

@@ -245,7 +245,7 @@ namespace {
 
 // Vertices of a boundary loop in the winding order of the adjacent triangles, opposite to that of the filling
 // triangles.
-using BoundaryLoop = std::vector<std::uint32_t>;
+using VertexLoop = std::vector<std::uint32_t>;
 
 // Cuts the boundary sides into simple loops that visit no vertex twice. Parts have no vertex in common, so
 // each loop belongs to one part.
@@ -284,7 +284,7 @@ class BoundaryWalk {
  private:
   template <class Visit>
   void cut_at(std::uint32_t vertex, const Visit& visit) {
-    const BoundaryLoop loop(path_.begin() + position_[vertex], path_.end());
+    const VertexLoop loop(path_.begin() + position_[vertex], path_.end());
     for (const std::uint32_t vertex_in_loop : loop) position_[vertex_in_loop] = none;
     path_.resize(path_.size() - loop.size());
     visit(loop);
@@ -298,7 +298,7 @@ class BoundaryWalk {
   std::vector<std::uint32_t> path_;
 };
 
-Vector3 loop_centre(const TriangleMesh& mesh, const BoundaryLoop& loop) {
+Vector3 loop_centre(const TriangleMesh& mesh, const VertexLoop& loop) {
   Vector3 sum = Vector3::Zero();
   double length = 0.0;
   for (std::size_t k = 0; k < loop.size(); ++k) {
@@ -310,7 +310,7 @@ Vector3 loop_centre(const TriangleMesh& mesh, const BoundaryLoop& loop) {
   return sum / length;
 }
 
-double fan_area(const TriangleMesh& mesh, const BoundaryLoop& loop) {
+double fan_area(const TriangleMesh& mesh, const VertexLoop& loop) {
   const Vector3 centre = loop_centre(mesh, loop);
   double sum = 0.0;
   for (std::size_t k = 0; k < loop.size(); ++k) {
@@ -320,12 +320,12 @@ double fan_area(const TriangleMesh& mesh, const BoundaryLoop& loop) {
 }
 
 struct Openings {
-  std::vector<BoundaryLoop> loops;
+  std::vector<VertexLoop> loops;
   double area_m2 = 0.0;
 };
 
 // The triangles that fill a crack would have no normal.
-bool is_crack(const TriangleMesh& mesh, const BoundaryLoop& loop) {
+bool is_crack(const TriangleMesh& mesh, const VertexLoop& loop) {
   double longest = 0.0;
   for (std::size_t k = 0; k < loop.size(); ++k) {
     longest = std::max(longest, (mesh.vertices_m[loop[k]] - mesh.vertices_m[loop[0]]).norm());
@@ -333,7 +333,7 @@ bool is_crack(const TriangleMesh& mesh, const BoundaryLoop& loop) {
   return fan_area(mesh, loop) <= vertex_joining_fraction * longest * longest;
 }
 
-void add_fan(TriangleMesh& mesh, const BoundaryLoop& loop) {
+void add_fan(TriangleMesh& mesh, const VertexLoop& loop) {
   if (loop.size() == 3) {
     mesh.triangles.push_back({loop[0], loop[2], loop[1]});
     return;
@@ -364,7 +364,7 @@ std::vector<Openings> find_openings(MeshParts& parts) {
     }
   }
   std::vector<Openings> openings(parts.parts.size());
-  BoundaryWalk(mesh, edges.boundary()).walk([&](const BoundaryLoop& loop) {
+  BoundaryWalk(mesh, edges.boundary()).walk([&](const VertexLoop& loop) {
     Openings& own = openings[find_part_of_vertex(parts.parts, loop[0])];
     own.area_m2 += fan_area(mesh, loop);
     own.loops.push_back(loop);
@@ -380,12 +380,12 @@ std::size_t fill_small_holes(MeshParts& parts) {
   std::size_t filled = 0, cracks = 0;
   for (std::size_t p = 0; p < parts.parts.size(); ++p) {
     MeshPart& part = parts.parts[p];
-    std::vector<BoundaryLoop>& loops = openings[p].loops;
+    std::vector<VertexLoop>& loops = openings[p].loops;
     part.closed = parts.orientable[p] &&
                   (loops.empty() || openings[p].area_m2 <= hole_area_fraction * part_area(parts.mesh, part));
     if (!part.closed) loops.clear();
     cracks += loops.size();
-    std::erase_if(loops, [&](const BoundaryLoop& loop) { return is_crack(parts.mesh, loop); });
+    std::erase_if(loops, [&](const VertexLoop& loop) { return is_crack(parts.mesh, loop); });
     cracks -= loops.size();
     filled += loops.size();
   }
@@ -397,7 +397,7 @@ std::size_t fill_small_holes(MeshParts& parts) {
     MeshPart& part = parts.parts[p];
     const std::uint32_t before = part.first_vertex;
     part = append_part(parts.mesh, part, whole);
-    for (BoundaryLoop& loop : openings[p].loops) {
+    for (VertexLoop& loop : openings[p].loops) {
       for (std::uint32_t& vertex : loop) vertex = vertex - before + part.first_vertex;
       add_fan(whole, loop);
     }

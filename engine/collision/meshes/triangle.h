@@ -18,9 +18,9 @@ inline Box bounding_box(const Triangle& t) {
 }
 
 // Returns true if the triangles intersect or touch, or if no plane separates them by more than `slack_m`.
-// That includes every pair nearer than the slack and some slightly farther pairs whose corners face each
-// other. The separating axes are both normals, the cross products of the edges and the directions across the
-// edges, for coplanar triangles.
+// The result includes every pair nearer than the slack and some slightly farther pairs whose corners face
+// each other. The separating axes are both normals, the cross products of the edges and the directions across
+// the edges, for coplanar triangles.
 bool triangles_meet(const Triangle& a, const Triangle& b, double slack_m = 0.0);
 
 // Result of intersect_line_triangle().

@@ -16,7 +16,7 @@ struct SurfaceSpot {
 };
 
 // Descends from `from` to a local minimum of the distance over the surface; the result is never farther.
-// Where several faces of the solid are equally near (an edge, an inner ridge), it keeps each face's second
+// If several faces of the solid are equally near (an edge, an inner ridge), it keeps each face's second
 // order expansion. Each step minimises their maximum: a bundle-Newton method (Luksan and Vlcek 1998) in two
 // unknowns. The tool must be a solid. Allocates nothing.
 SurfaceSpot polish_on_solid(const Surface& surface, const ToolShape& tool, const SurfaceSpot& from);

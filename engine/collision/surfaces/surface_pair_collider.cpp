@@ -105,7 +105,7 @@ bool SurfacePairCollider::touches(const RegionCells& cells, const Seed* last) {
   if (search_.best_distance_m() <= touch_tolerance_m) return true;
   const std::size_t count = cells.pairs.size(), seeds = cells.at_most(region_seeds);
   for (std::size_t k = 0; k < seeds; ++k) {
-    // Goes from the middle of the list outwards, where a region is likely to be deepest.
+    // Goes from the centre of the list outwards, where a region is likely to be deepest.
     search_.offer(cells.pair_centre(cells.pairs[(count / 2 + k * count / seeds) % count]));
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }

@@ -81,13 +81,13 @@ std::vector<double> flat_knots(const TColStd_Array1OfReal& knots,
   return flat;
 }
 
-using ControlLines = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using ControlMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Returns the control points as a matrix; those of one index along the direction are a row.
-ControlLines control_lines(const Surface& surface, Direction direction) {
+ControlMatrix control_lines(const Surface& surface, Direction direction) {
   const ControlNet& net = surface.net;
   const bool along_u = direction == Direction::u;
-  ControlLines lines(along_u ? net.rows : net.columns, 3 * (along_u ? net.columns : net.rows));
+  ControlMatrix lines(along_u ? net.rows : net.columns, 3 * (along_u ? net.columns : net.rows));
   for (int i = 0; i < net.rows; ++i) {
     for (int j = 0; j < net.columns; ++j) {
       const Vector3 point = net.point(i, j);
@@ -101,7 +101,7 @@ ControlLines control_lines(const Surface& surface, Direction direction) {
 
 // Returns the surface with other knots and control points along the direction.
 Surface replace_controls(const Surface& like, Direction direction, const KnotVector& knots,
-                         const ControlLines& lines) {
+                         const ControlMatrix& lines) {
   const bool along_u = direction == Direction::u;
   const auto rows = static_cast<int>(along_u ? lines.rows() : lines.cols() / 3);
   const auto columns = static_cast<int>(along_u ? lines.cols() / 3 : lines.rows());
@@ -115,7 +115,7 @@ Surface replace_controls(const Surface& like, Direction direction, const KnotVec
   return surface;
 }
 
-double largest_point_distance(const ControlLines& a, const ControlLines& b) {
+double largest_point_distance(const ControlMatrix& a, const ControlMatrix& b) {
   double largest = 0.0;
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
     for (Eigen::Index j = 0; j + 2 < a.cols(); j += 3) {
@@ -136,15 +136,15 @@ Result<KnotVector> periodic_knots(const KnotVector& open, int seam_multiplicity)
 }
 
 // Returns the control points of the open form of a periodic surface, for comparison.
-ControlLines opened_lines(const Surface& periodic, Direction direction) {
+ControlMatrix opened_lines(const Surface& periodic, Direction direction) {
   const KnotVector& before = direction == Direction::u ? periodic.u : periodic.v;
   const auto full = insert_knot(periodic, direction, before.domain_start(), before.degree());
   if (!full) return {};
   const KnotVector& knots = direction == Direction::u ? full->u : full->v;
-  const ControlLines lines = control_lines(full.value(), direction);
+  const ControlMatrix lines = control_lines(full.value(), direction);
   const int count = knots.control_point_count();
   const int first = knots.control_index(knots.find_span(knots.domain_start()), 0);
-  ControlLines opened(lines.rows() + 1, lines.cols());
+  ControlMatrix opened(lines.rows() + 1, lines.cols());
   for (int i = 0; i <= count; ++i) opened.row(i) = lines.row((first + i) % count);
   return opened;
 }
@@ -218,20 +218,20 @@ Surface close_seam(const Surface& surface, Direction direction, double tolerance
   SPOONBILL_ASSERT(tolerance_m >= 0.0);
   const KnotVector& open = direction == Direction::u ? surface.u : surface.v;
   if (open.is_periodic()) return surface;
-  const ControlLines lines = control_lines(surface, direction);
-  const ControlLines first = lines.topRows(1), last = lines.bottomRows(1);
+  const ControlMatrix lines = control_lines(surface, direction);
+  const ControlMatrix first = lines.topRows(1), last = lines.bottomRows(1);
   if (largest_point_distance(first, last) > tolerance_m) return surface;
-  const ControlLines one_point = first.leftCols(3).replicate(1, first.cols() / 3);
+  const ControlMatrix one_point = first.leftCols(3).replicate(1, first.cols() / 3);
   if (largest_point_distance(first, one_point) <= tolerance_m) return surface;
   for (int multiplicity = 1; multiplicity <= open.degree(); ++multiplicity) {
     auto knots = periodic_knots(open, multiplicity);
     if (!knots) continue;
     const std::vector<double> parameters = greville_parameters(knots.value());
     const Eigen::PartialPivLU<Eigen::MatrixXd> solver(blending_matrix(knots.value(), parameters, 0).dense());
-    const ControlLines controls = solver.solve(blending_matrix(open, parameters, 0).dense() * lines);
+    const ControlMatrix controls = solver.solve(blending_matrix(open, parameters, 0).dense() * lines);
     if (!controls.allFinite()) continue;
     Surface closed = replace_controls(surface, direction, knots.value(), controls);
-    const ControlLines opened = opened_lines(closed, direction);
+    const ControlMatrix opened = opened_lines(closed, direction);
     if (opened.rows() == lines.rows() && largest_point_distance(opened, lines) <= tolerance_m) return closed;
   }
   return surface;

@@ -25,7 +25,7 @@ struct CellResponse {
   CellMatrix tangent;  // derivative of the forces, N/m
 };
 
-// Whether a tangent includes the contribution of the present stress. Newton's method is fastest with it;
+// Says if a tangent includes the contribution of the present stress. Newton's method is fastest with it;
 // without it, no stress makes the tangent indefinite.
 enum class Tangent : std::uint8_t { stressed, plain };
 

@@ -156,7 +156,7 @@ int rounded_up(int count, int block) {
   return (count + block - 1) / block * block;
 }
 
-void take_cell(CellBatch& batch, int lane, const CellCorners& corners, const CellMatrix& stiffness) {
+void gather_cell(CellBatch& batch, int lane, const CellCorners& corners, const CellMatrix& stiffness) {
   Vector3 centre = Vector3::Zero();
   for (const Vector3& corner : corners) centre += corner / 8.0;
   const CellGradients gradients = centre_gradients(corners);
@@ -229,7 +229,7 @@ void ImplicitBody::add_cells(const BlockMaterials& materials) {
                              cell_parts(materials, mesh_.cell_index(i, j, k)), &materials.materials};
         CellBatch& batch = block_.batches.back();
         const CellMatrix stiffness = cell.stiffness();
-        take_cell(batch, lane, cell.corners, cell.fraction * stiffness);
+        gather_cell(batch, lane, cell.corners, cell.fraction * stiffness);
         cell.report(stiffness, report_);
         volume_m3 += cell.volume_m3();
         const std::array<double, 8> masses = cell.masses();

@@ -56,7 +56,7 @@ struct FlowRule {
 inline constexpr double largest_flow_step = 0.5;
 
 // Creep of rest lengths: the creep strain approaches `fraction` of the strain by the factor `rate_step`.
-// Where springs differ, each has its own fraction and relaxation time, and its rate step follows from
+// If springs differ, each has its own fraction and relaxation time, and its rate step follows from
 // `time_s`.
 struct CreepRule {
   float fraction = 0.0f;

@@ -137,7 +137,7 @@ TEST(PcdPoints, TextBinaryAndCompressed) {
   expect_refusal(parse_pcd_points(file + packed.substr(0, 20)), "length");
   std::string broken = packed;
   broken[0] = static_cast<char>(0xff);  // a reference to before the beginning
-  expect_refusal(parse_pcd_points(file + broken), "unpacked");
+  expect_refusal(parse_pcd_points(file + broken), "decompressed");
 }
 
 TEST(PcdPoints, RefusesEachDamageWithItsReason) {

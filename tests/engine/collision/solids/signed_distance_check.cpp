@@ -35,7 +35,7 @@ std::string text(const Vector3& p) {
 }
 
 Error refusal(const std::string& what, const Vector3& where, const std::string& remedy) {
-  return Error{"signed distance: " + what + " at " + text(where) + "; " + remedy};
+  return Error{ErrorCode::internal, "signed distance: " + what + " at " + text(where) + "; " + remedy};
 }
 
 Status check_finite(const Vector3& point, const DistanceSample& sample) {
@@ -90,12 +90,14 @@ bool fits_differences(const SignedDistance& solid, const Vector3& point, const V
 Status check_signed_distance(const SignedDistance& solid, const Box& where) {
   const Box bounds = solid.bounds();
   if (bounds.low.hasNaN() || bounds.high.hasNaN() || !(bounds.low.array() <= bounds.high.array()).all()) {
-    return Error{"signed distance: bounds() has a low corner above its high one; give low <= high"};
+    return Error{ErrorCode::internal,
+                 "signed distance: bounds() has a low corner above its high one; give low <= high"};
   }
   const Vector3 sides = where.high - where.low;
   const double size = where.size();
   if (!(sides.minCoeff() > 0.0 && std::isfinite(size))) {
-    return Error{"signed distance: the box to sample is empty or endless; give one around the solid"};
+    return Error{ErrorCode::internal,
+                 "signed distance: the box to sample is empty or endless; give one around the solid"};
   }
   const auto point = [&](int k) -> Vector3 { return where.low + sides.cwiseProduct(spread(k)); };
   int misfits = 0;

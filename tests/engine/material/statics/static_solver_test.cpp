@@ -202,7 +202,7 @@ TEST(StaticSolver, RefusesWhatCannotRest) {
   const auto refusal = [&](const std::vector<FixedAxis>& held) {
     const Result<StaticResult> result = rest_under_load(body, {}, held);
     EXPECT_FALSE(result.ok());
-    return result.ok() ? Error{"no refusal"} : result.error();
+    return result.ok() ? Error{ErrorCode::internal, "no refusal"} : result.error();
   };
   EXPECT_EQ(refusal({}).code, ErrorCode::too_few);
   EXPECT_EQ(refusal({}).field, "supports");
