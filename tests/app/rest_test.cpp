@@ -94,7 +94,7 @@ TEST(Rest, RefusesBodiesThatNothingHolds) {
   document.scene.bodies[0].loads = {ForceLoad{{{0.5, 0.5001}}, Vector3(1, 0, 0)}};
   const Outcome nowhere = rest_of(place, document);
   EXPECT_TRUE(is_clean_failure(nowhere));
-  EXPECT_NE(nowhere.err.find("loads[0]: its region contains no"), std::string::npos) << nowhere.err;
+  EXPECT_NE(nowhere.err.find("loads[0]: the region contains no"), std::string::npos) << nowhere.err;
   EXPECT_TRUE(is_clean_failure(run({"rest", place.text("missing.json")})));
   EXPECT_EQ(run({"rest"}).code, exit_wrong_use);
 }

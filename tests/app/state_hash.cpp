@@ -6,6 +6,7 @@
 
 #include "app/report/quantity_text.h"
 #include "app/session/lockstep.h"
+#include "haptic/recording_lines.h"
 #include "haptic/virtual_device.h"
 
 namespace spoonbill {
